@@ -1,0 +1,88 @@
+/* Tobiuo: particle-method simulation. See types.h for the definitions.
+
+   Ownership: a tobi_world is opaque and owned by the caller from create to destroy. Arrays returned
+   by pointer stay owned by the world and are valid until the next call that changes it. A failing
+   call leaves the world as it was, except TOBI_DIVERGED: the world stays readable, steps no more.
+   All units are SI. No call prints, exits or keeps global state; different worlds may be used from
+   different threads. */
+#ifndef TOBIUO_H
+#define TOBIUO_H
+#include "tobiuo/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tobi_world tobi_world;
+
+TOBI_API const char *tobi_version(void);
+TOBI_API const char *tobi_status_text(tobi_status status);
+
+TOBI_API tobi_world_def  tobi_default_world_def(void);
+TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
+TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
+TOBI_API tobi_fill_def   tobi_default_fill_def(void);
+TOBI_API tobi_body_def   tobi_default_body_def(void);
+TOBI_API tobi_output_def tobi_default_output_def(void);
+
+/* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def), NULL = its
+   defaults. On failure *world is NULL and err says why. */
+TOBI_API tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
+                                       tobi_world **world, tobi_error *err);
+TOBI_API void tobi_world_destroy(tobi_world *world);
+
+/* Adds a fluid with the regions it fills. Particles sit on the lattice (i + 1/2) d from the region's
+   lower corner (from the domain's lower corner for meshes); those inside a body are cut out at start. */
+TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
+                                          const tobi_fill_def *fills, int fill_count, tobi_error *err);
+/* Adds a body. The mesh must be closed and oriented outwards (flipped meshes are turned). */
+TOBI_API tobi_status tobi_world_add_body(tobi_world *world, const tobi_body_def *def, tobi_error *err);
+
+/* Counts particles and bytes without allocating them. */
+TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,
+                                         int64_t *body_particles, int64_t *bytes, tobi_error *err);
+/* Places the particles; no fluid or body may be added after it. Called by the first step if not
+   called before. TOBI_INVALID if there is no particle at all, TOBI_NO_MEMORY before allocating more
+   than the machine has. */
+TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
+
+/* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. */
+TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info, tobi_error *err);
+/* Steps until time t (s), hit exactly. */
+TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
+
+TOBI_API double  tobi_world_time(const tobi_world *world);
+TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
+TOBI_API int     tobi_world_body_count(const tobi_world *world);
+TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_body_info *info);
+TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
+
+/* Particle sets: the fluid, or the particles of the bodies. In both, rows are in id order. */
+typedef enum tobi_set { TOBI_FLUID, TOBI_BODIES } tobi_set;
+TOBI_API int64_t tobi_world_count(const tobi_world *world, tobi_set set);
+/* Field names by index, NULL past the end; components is 1 or 3. */
+TOBI_API const char *tobi_world_field_name(int field, int *components, const char **unit);
+/* Copies a field into buffer (count x components doubles, row-major, id order). */
+TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
+                                     double *buffer, int64_t count, tobi_error *err);
+/* The moving surface of a body: vertices (m) and triangles, owned by the world. */
+TOBI_API tobi_status tobi_world_surface(const tobi_world *world, int body, int64_t *vertex_count,
+                                        const double (**vertices)[3], int64_t *triangle_count,
+                                        const int32_t (**triangles)[3]);
+
+/* Hash of the whole state (positions, velocities, pressures in id order): equal for any thread count. */
+TOBI_API uint64_t tobi_world_hash(tobi_world *world);
+/* Bytes the world has allocated. */
+TOBI_API int64_t tobi_world_bytes(const tobi_world *world);
+/* Time spent per stage so far: name and seconds by index, NULL past the end. */
+TOBI_API const char *tobi_world_stage(const tobi_world *world, int stage, double *seconds);
+
+/* Writes / reads the complete state, so that run = run + restart bit for bit. The world read into
+   must have been created and filled by the same definitions. The file appears whole or not at all. */
+TOBI_API tobi_status tobi_world_save(tobi_world *world, const char *path, tobi_error *err);
+TOBI_API tobi_status tobi_world_load(tobi_world *world, const char *path, tobi_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

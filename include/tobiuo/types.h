@@ -1,0 +1,133 @@
+/* Definitions: plain structs that say everything about a simulation before it exists.
+   Obtain each from its tobi_default_* function, change members, hand it to tobi_world_create and
+   friends. Every member carries its unit, default and range in the tables of src/world/params.c,
+   which the scene reader, `tobiuo describe`, resolved.json and the documentation all read.
+   Strings are borrowed: they must live until the call that takes the definition returns. */
+#ifndef TOBIUO_TYPES_H
+#define TOBIUO_TYPES_H
+#include "tobiuo/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum tobi_wall   { TOBI_WALL_SLIP, TOBI_WALL_NO_SLIP, TOBI_WALL_PERIODIC } tobi_wall;
+typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
+typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
+typedef enum tobi_compression { TOBI_COMPRESS_NONE, TOBI_COMPRESS_ZLIB, TOBI_COMPRESS_LZ4, TOBI_ASCII } tobi_compression;
+
+/* The box, the fluid resolution and the clock. */
+typedef struct tobi_world_def {
+    const char *method;          /* name in the method list, "dfsph"                                 */
+    int         dimension;       /* 2 or 3; 2-D lives in x-y, masses and forces are per metre depth   */
+    double      domain_min[3];   /* m, any sign                                                      */
+    double      domain_max[3];   /* m                                                                */
+    int         wall_min[3];     /* tobi_wall of the side at domain_min, per axis                    */
+    int         wall_max[3];     /* tobi_wall of the side at domain_max; periodic comes in pairs     */
+    double      gravity[3];      /* m/s2                                                             */
+    double      spacing;         /* m, particle spacing d of the fluid                               */
+    double      end_time;        /* s                                                                */
+    double      time_step;       /* s, fixed step; 0 = adaptive                                      */
+    double      time_step_max;   /* s, cap of the adaptive step; 0 = none                            */
+    double      cfl;             /* 1, dt <= cfl d / |v|max                                          */
+    double      speed_limit;     /* m/s, a faster particle stops the run as diverged; 0 = automatic  */
+    int         threads;         /* 0 = all cores                                                    */
+} tobi_world_def;
+
+/* Parameters of the DFSPH method. */
+typedef struct tobi_dfsph_def {
+    int    kernel;                    /* tobi_smoothing                                               */
+    double support;                   /* support radius in spacings, 2 to 4                           */
+    double density_tolerance;         /* 1, mean |density error| at which the density solve may stop  */
+    double divergence_tolerance;      /* 1, mean |div v| dt at which the divergence solve may stop    */
+    double pressure_tolerance;        /* 1, relative pressure residual both solves must also reach    */
+    int    density_iterations_min, density_iterations_max;
+    int    divergence_iterations_min, divergence_iterations_max;
+    double shifting;                  /* 1, particle shifting coefficient; 0 = off                    */
+} tobi_dfsph_def;
+
+/* A fluid: one material. */
+typedef struct tobi_fluid_def {
+    const char *name;
+    double density;       /* kg/m3 */
+    double viscosity;     /* Pa s, dynamic */
+} tobi_fluid_def;
+
+/* One region filled with a fluid at the start: a box, or the inside of a closed mesh. */
+typedef struct tobi_fill_def {
+    double      box_min[3], box_max[3];  /* m; used when mesh is NULL */
+    const char *mesh;                    /* path of a closed mesh, or NULL */
+    double      scale[3], translation[3];
+    double      velocity[3];             /* m/s */
+} tobi_fill_def;
+
+/* Maps rest positions to positions at time t. Points are mesh vertices, in metres, already placed
+   by scale, rotation and translation. Must be a pure function of (user, t, rest). `rigid` motions
+   move all points by one rigid transform. Returns TOBI_OK, or a status with a text in err. */
+typedef tobi_status (*tobi_motion_fn)(void *user, double t, int64_t n, const double (*rest)[3],
+                                      double (*position)[3], tobi_error *err);
+
+/* A body: the inside of a closed mesh, at rest or moved by a motion. */
+typedef struct tobi_body_def {
+    const char *name;
+    const char *mesh;           /* path: OBJ, STL or PLY */
+    double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
+    double rotation_axis[3];    /* direction; second                                                 */
+    double rotation_angle;      /* degrees                                                           */
+    double translation[3];      /* m; last                                                           */
+    double density;             /* kg/m3                                                             */
+    double spacing;             /* m, spacing of the body's own particles; 0 = the fluid's           */
+    int    friction;            /* tobi_friction felt by the fluid                                   */
+    tobi_motion_fn motion;      /* NULL = fixed                                                      */
+    void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */
+    int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
+} tobi_body_def;
+
+/* Files of a run. */
+typedef struct tobi_output_def {
+    double      interval;             /* s of simulated time between outputs, hit exactly            */
+    double      checkpoint_interval;  /* s of simulated time between checkpoints; 0 = only at the end */
+    int         compression;          /* tobi_compression                                             */
+    const char *fields;               /* names separated by commas; see tobi_world_field_name         */
+    int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
+    int         frames;               /* 1: write a PNG picture at each output                        */
+} tobi_output_def;
+
+/* What one step did. */
+typedef struct tobi_step_info {
+    int64_t step;                 /* number of this step, first = 1                                   */
+    double  time, dt;             /* s, after the step                                                */
+    int     density_iterations, divergence_iterations;
+    int     density_converged, divergence_converged;
+    double  density_error_mean, density_error_max;   /* 1, |rho/rho0 - 1| compression over all fluid   */
+    double  divergence_mean, divergence_max;         /* 1/s over all fluid                             */
+    double  pressure_residual;    /* 1, relative pressure residual of the density solve               */
+    double  wall_force[3];        /* N, force of the fluid on the domain's walls                      */
+    double  weight;               /* N, |m g| of all fluid                                            */
+    double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
+    double  momentum[3];          /* kg m/s of all fluid                                              */
+    double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
+    double  speed_max;            /* m/s                                                              */
+    int64_t fluid_particles;
+    int64_t particles_lost;       /* left the domain so far                                           */
+    int64_t contacts;             /* particles held back at a surface by position in this step        */
+} tobi_step_info;
+
+/* What a body is doing. Pressure and viscous parts apart; torque about `position`. */
+typedef struct tobi_body_info {
+    double position[3];           /* m, centre of mass                                                */
+    double orientation[4];        /* unit quaternion w x y z against the rest pose                    */
+    double velocity[3];           /* m/s of the centre of mass                                        */
+    double angular_velocity[3];   /* rad/s                                                            */
+    double pressure_force[3], viscous_force[3];      /* N, of the fluid on the body                   */
+    double pressure_torque[3], viscous_torque[3];    /* N m                                           */
+    double mass, volume;          /* kg, m3 by exact integrals of the mesh                            */
+    double inertia[9];            /* kg m2 about the centre of mass, row-major                        */
+    int64_t particles;            /* body particles                                                   */
+    double sampled_volume;        /* m3, number of body particles times spacing^3                     */
+} tobi_body_info;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

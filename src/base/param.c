@@ -1,0 +1,53 @@
+#include "base/param.h"
+#include <math.h>
+#include <string.h>
+
+static void *member(void *def, const tobi_param *p) { return (char *)def + p->offset; }
+
+void tobi_param_defaults(const tobi_param_table *table, void *def)
+{
+    memset(def, 0, table->size);
+    for (const tobi_param *p = table->rows; p->key; p++) {
+        switch (p->type) {
+        case TOBI_PARAM_REAL: memcpy(member(def, p), p->def, sizeof(double)); break;
+        case TOBI_PARAM_VEC3: memcpy(member(def, p), p->def, 3*sizeof(double)); break;
+        case TOBI_PARAM_TEXT: memcpy(member(def, p), &p->text, sizeof p->text); break;
+        case TOBI_PARAM_INT:
+        case TOBI_PARAM_BOOL:
+        case TOBI_PARAM_CHOICE: {
+            int value = (int)p->def[0];
+            memcpy(member(def, p), &value, sizeof value);
+            break;
+        }
+        }
+    }
+}
+
+static tobi_status check_value(const tobi_param_table *table, const tobi_param *p, double v, tobi_error *err)
+{
+    if (!isfinite(v))
+        return tobi_fail(err, TOBI_INVALID, "%s.%s is not a finite number", table->name, p->key);
+    if (p->positive && !(v > 0))
+        return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, must be greater than 0 %s", table->name, p->key, v, p->unit);
+    if ((!isnan(p->min) && v < p->min) || (!isnan(p->max) && v > p->max))
+        return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, allowed is %g to %g %s", table->name, p->key, v,
+                         isnan(p->min) ? -INFINITY : p->min, isnan(p->max) ? INFINITY : p->max, p->unit);
+    return TOBI_OK;
+}
+
+tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tobi_error *err)
+{
+    for (const tobi_param *p = table->rows; p->key; p++) {
+        const char *at = (const char *)def + p->offset;
+        double v[3];
+        int n = 1, i;
+        switch (p->type) {
+        case TOBI_PARAM_REAL: memcpy(v, at, sizeof(double)); break;
+        case TOBI_PARAM_VEC3: memcpy(v, at, sizeof v); n = 3; break;
+        case TOBI_PARAM_TEXT: continue;
+        default: memcpy(&i, at, sizeof i); v[0] = i; break;
+        }
+        for (i = 0; i < n; i++) TOBI_TRY(check_value(table, p, v[i], err));
+    }
+    return TOBI_OK;
+}
