@@ -1,0 +1,38 @@
+# One object per instruction set.
+#
+# Files src/<room>/isa_*.c hold the loops that need wide vectors. On x86-64 each is compiled three
+# times, with TOBI_ISA = v2, v3 and v4 (the psABI levels: SSE4.2, AVX2, AVX-512); elsewhere once, as
+# v2 and without any machine flag. src/exec picks one set when the program starts. Everything else is
+# compiled for the plain architecture, so the program starts on any machine of that architecture.
+# v4 keeps to 256-bit registers: eight float lanes on every set, hence the same bits.
+
+# What an object library of rooms is compiled with.
+function(tobi_room_target target)
+    target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/src")
+    target_link_libraries(${target} PRIVATE tobi_flags ${TOBI_LIBRARIES})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# Sets <out> to the objects of all isa_*.c files, for every set of this architecture.
+function(tobi_isa_objects out)
+    file(GLOB files CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*/isa_*.c")
+    set(flags_v2 "")
+    set(sets v2)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+        set(sets v2 v3 v4)
+        set(flags_v2 -march=x86-64-v2)
+        set(flags_v3 -march=x86-64-v3)
+        set(flags_v4 -march=x86-64-v4 -mprefer-vector-width=256)
+    endif()
+    set(objects)
+    if(files)
+        foreach(isa IN LISTS sets)
+            add_library(tobi_isa_${isa} OBJECT ${files})
+            tobi_room_target(tobi_isa_${isa})
+            target_compile_definitions(tobi_isa_${isa} PRIVATE TOBI_ISA=${isa})
+            target_compile_options(tobi_isa_${isa} PRIVATE ${flags_${isa}})
+            list(APPEND objects $<TARGET_OBJECTS:tobi_isa_${isa}>)
+        endforeach()
+    endif()
+    set(${out} ${objects} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,50 @@
+#!/bin/bash
+# The flying fish at a coarse spacing: installs what is missing, builds, runs, says where to look.
+# usage: ./demo.sh [options of "tobiuo run"]     e.g. ./demo.sh --until 0.1
+# Every run gets a folder of its own: out/flying_fish, out/flying_fish_2, ...
+set -euo pipefail
+cd "$(dirname "$0")"
+case ${1:-} in -h|--help) sed -n '2,4s/^# //p' "$0"; exit 0 ;; esac
+
+tools/install_packages.sh
+tools/build.sh release tobiuo
+
+out=out/flying_fish
+n=1
+while [ -e "$out" ]; do n=$((n + 1)); out=out/flying_fish_$n; done
+mkdir -p out
+
+export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
+program=build/release/tobiuo
+code=0
+"$program" run scenes/flying_fish --spacing 0.008 --set output.frames=true --out "$out" "$@" || code=$?
+if [ $code -ne 0 ]; then
+    echo "demo: the run ended early (exit code $code)." >&2
+    [ -d "$out" ] && echo "demo: what is finished is in $out; go on with: $program resume $out" >&2
+    exit $code
+fi
+
+echo
+echo "Results: $out"
+first_line="Look at them in ParaView (File > Open):"
+for series in "$out"/*.pvd; do
+    [ -e "$series" ] || continue
+    echo "${first_line}"
+    first_line="                     and"
+    echo "    paraview $series"
+done
+echo "Tables:   $out/history.csv (time, iterations, errors, energies), $out/bodies.csv (forces on the fish)"
+
+frames=$(find "$out" -name '*.png' | sort | head -n 1)
+if [ -n "$frames" ]; then
+    pictures=$(dirname "$frames")
+    movie="ffmpeg -y -framerate 25 -pattern_type glob -i '$pictures/*.png' -pix_fmt yuv420p -vf pad=ceil(iw/2)*2:ceil(ih/2)*2 $out/movie.mp4"
+    echo "Pictures: $pictures/"
+    if command -v ffmpeg > /dev/null &&
+       ffmpeg -y -loglevel error -framerate 25 -pattern_type glob -i "$pictures/*.png" -pix_fmt yuv420p \
+              -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' "$out/movie.mp4" < /dev/null; then
+        echo "Movie:    $out/movie.mp4"
+    else
+        echo "Movie:    apt-get install ffmpeg, then: $movie"
+    fi
+fi

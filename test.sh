@@ -1,0 +1,72 @@
+#!/bin/bash
+# Installs what is missing, builds the release preset with its tests, runs them.
+# usage: ./test.sh                 everything, at most ten minutes with the build
+#        ./test.sh NAME            only the tests whose name matches (a regular expression)
+#        ./test.sh --slow [CASE]   physics cases at reference size; rows and plots go to docs/validation
+# The exit code is 0 only if everything passed. Closing lines: those of ctest, then "N passed, N failed".
+set -uo pipefail
+cd "$(dirname "$0")"
+begin=$SECONDS
+limit=590      # s, for the whole of an ordinary run
+python=/usr/bin/python3
+[ -x $python ] || python=python3
+
+close() { echo "$1 passed, $2 failed"; [ "$2" -eq 0 ]; exit; }
+
+prepare() {
+    tools/install_packages.sh --test && tools/build.sh release && return
+    close 0 1
+}
+
+run_slow() {
+    local wanted=${1:-} commit machine passed=0 failed=0 found=0
+    commit=$(git rev-parse --short HEAD 2> /dev/null || echo unknown)
+    [ -n "$(git status --porcelain --untracked-files=no -- src include app test 2> /dev/null)" ] && commit+=+changes
+    machine="$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores"
+    for script in test/physics/*/run.py; do
+        local case
+        case=$(basename "$(dirname "$script")")
+        [ -e "$script" ] && { [ -z "$wanted" ] || [ "$wanted" = "$case" ]; } || continue
+        found=1
+        echo "== $case"
+        mkdir -p "build/slow/$case"
+        if (cd "build/slow/$case" && "$python" "$OLDPWD/$script" --tobiuo "$OLDPWD/build/release/tobiuo" \
+            --size reference --commit "$commit" --machine "$machine"); then
+            passed=$((passed + 1))
+        else
+            failed=$((failed + 1))
+            echo "== $case failed"
+        fi
+    done
+    if [ $found -eq 0 ]; then
+        echo "test: no physics case '$wanted'; there are: $(ls test/physics 2> /dev/null | tr '\n' ' ')" >&2
+        exit 2
+    fi
+    close $passed $failed
+}
+
+run_fast() {
+    local log=build/test.log left=$((limit - (SECONDS - begin)))
+    timeout $((left > 1 ? left : 1)) ctest --test-dir build/release -j 2 --timeout 240 --output-on-failure \
+        --no-tests=error ${1:+-R "$1"} 2>&1 < /dev/null | tee $log
+    local code=${PIPESTATUS[0]}
+    [ "$code" -eq 124 ] && echo "test: stopped after $limit s; tests that did not end count as failed"
+    # A test that did not report Passed or Skipped has failed.
+    local passed failed skipped
+    read -r passed failed skipped < <(awk '
+        match($0, /^ *[0-9]+\/[0-9]+ Test +#/) {
+            split($1, part, "/"); total = part[2] ? part[2] : total
+            if (/\*\*\*Skipped/) skipped++; else if (/ Passed +[0-9.]+ sec/) passed++ }
+        END { print passed + 0, total - passed - skipped + 0, skipped + 0 }' $log)
+    [ "$skipped" -gt 0 ] && echo "$skipped skipped"
+    [ "$code" -ne 0 ] && [ "$failed" -eq 0 ] && failed=1
+    echo "$((SECONDS - begin)) s"
+    close "$passed" "$failed"
+}
+
+case ${1:-} in
+-h|--help) sed -n '2,6s/^# //p' "$0"; exit 0 ;;
+--slow) prepare; run_slow "${2:-}" ;;
+-*) echo "test: unknown option $1 (see ./test.sh --help)" >&2; exit 2 ;;
+*) prepare; run_fast "${1:-}" ;;
+esac

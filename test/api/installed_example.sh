@@ -1,0 +1,26 @@
+#!/bin/bash
+# Installs the library into an empty folder, builds example.c against it through pkg-config, as a user
+# would, with the shared and with the static library, and runs both.
+# usage: installed_example.sh CMAKE BUILD_DIR CC
+set -euo pipefail
+cmake=$1 build=$2 cc=$3
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$cmake" --install "$build" --prefix "$work/usr" > "$work/install.log"
+pc=$(dirname "$(find "$work/usr" -name tobiuo.pc)")
+export PKG_CONFIG_PATH=$pc
+libdir=$(pkg-config --variable=libdir tobiuo)
+
+flags="-std=c17 -Wall -Wextra -Werror -O1"
+# shellcheck disable=SC2046,SC2086
+"$cc" $flags "$here/example.c" -o "$work/shared" $(pkg-config --cflags --libs tobiuo)
+# shellcheck disable=SC2046,SC2086
+"$cc" $flags "$here/example.c" -o "$work/static" $(pkg-config --cflags tobiuo) "$libdir/libtobiuo.a" \
+    $(pkg-config --static --libs tobiuo | sed 's/-ltobiuo//')
+
+LD_LIBRARY_PATH=$libdir "$work/shared" | tee "$work/shared.txt"
+"$work/static" > "$work/static.txt"
+cmp "$work/shared.txt" "$work/static.txt" || { echo "shared and static library disagree"; exit 1; }
+ldd "$work/shared" | grep -q 'libtobiuo\.so\.0' || { echo "the example is not linked to the soname"; exit 1; }

@@ -1,0 +1,49 @@
+"""The checks must find what they look for: a small wrong tree for each rule."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+BAD = "/" + "work/somebody"      # written in two pieces: this file is checked too
+
+CASES = [
+    # tool, file, text, expected words (None: the tree is right)
+    ("check_layers.py", "src/base/a.c", '#include "exec/x.h"\n', "base includes exec"),
+    ("check_layers.py", "src/sph/a.c", '#include "io/x.h"\n', "sibling io"),
+    ("check_layers.py", "src/rigid/a.h", '\n  #  include "world/x.h"\n', "src/rigid/a.h:2:"),
+    ("check_layers.py", "app/tobiuo/a.c", '#include "world/x.h"\n', "not a public header"),
+    ("check_layers.py", "include/tobiuo/a.h", '#include "base/x.h"\n', "public header includes"),
+    ("check_layers.py", "src/odd/a.c", "\n", "unknown room"),
+    ("check_layers.py", "src/world/a.c", '#include "sph/x.h"\n#include "tobiuo/base.h"\n', None),
+    ("check_house.py", "src/base/a.c", "int a;\n"*601, "601 lines"),
+    ("check_house.py", "src/base/a.c", "int f(void)\n{\n" + "    f();\n"*80 + "}\n", "a.c:1: function f"),
+    ("check_house.py", "tools/a.py", "def f():\n" + "    f()\n"*80, "function f"),
+    ("check_house.py", "src/base/utils.c", "int a;\n", "says nothing"),
+    ("check_house.py", "src/base/mesh_common.h", "int a;\n", "says nothing"),
+    ("check_house.py", "src/base/a.c", "\tint a;\n", "src/base/a.c:1: tab"),
+    ("check_house.py", "src/base/a.c", "// " + "x"*110 + "\n", "113 columns"),
+    ("check_house.py", "src/base/a.c", f'const char *p = "{BAD}";\n', "path of a machine"),
+    ("check_house.py", "src/base/a.c", "int f(void)\n{\n    return 1/2;\n}\n", None),
+]
+
+
+def main():
+    failed = 0
+    for tool, name, text, expected in CASES:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / name
+            path.parent.mkdir(parents=True)
+            path.write_text(text, encoding="utf-8")
+            run = subprocess.run([sys.executable, TOOLS / tool, folder], capture_output=True, text=True)
+        right = run.returncode == 0 if expected is None else run.returncode == 1 and expected in run.stdout
+        if not right:
+            failed += 1
+            print(f"{tool} on {name}: expected {expected!r}, exit code {run.returncode}, said:")
+            print(run.stdout + run.stderr)
+    print(f"{len(CASES) - failed} of {len(CASES)} wrong trees judged rightly")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

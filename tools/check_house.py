@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Checks the house rules that a machine can check. Prints file:line of each breach; exit 1.
+
+usage: check_house.py [ROOT]
+
+Files of at most 600 lines, functions of at most 80, lines of at most 110 columns, no tabs, no file
+named utils, common or misc, no path of somebody's machine in the sources.
+"""
+import ast
+import pathlib
+import re
+import sys
+
+FILE_LINES = 600
+FUNCTION_LINES = 80
+COLUMNS = 110
+FOLDERS = ["include", "src", "app", "bench", "test", "tools", "scenes", "cmake", "docs", ".ci"]
+C_SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
+CODE_SUFFIXES = C_SUFFIXES | {".py", ".sh", ".lua", ".cmake", ".txt", ".json"}
+SCRIPT_SUFFIXES = {".sh", ".py", ".txt", ".cmake"}
+FORBIDDEN = re.compile(r"(^|[_.-])(utils?|common|misc)([_.-]|$)", re.IGNORECASE)
+MACHINE_PATH = re.compile(r"""(?<![\w.$})/-])/(work|root|tmp|home)(/|\b)""")
+
+
+def source_files(root):
+    """Text files people write. Meshes, pictures and recorded data are not among them."""
+    found = [p for p in root.glob("*") if p.name in ("CMakeLists.txt", "demo.sh", "test.sh")]
+    for folder in FOLDERS:
+        for path in sorted((root / folder).rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts:
+                found.append(path)
+    return found
+
+
+def belongs_to_head(line):
+    return line.strip() and not line.startswith(("}", "#", "/*", "//")) and not line.rstrip().endswith("*/")
+
+
+def c_functions(lines):
+    """(first line, length, name) of each function: a brace in column 0 opens and closes its body."""
+    start = None
+    for number, line in enumerate(lines, 1):
+        if line.startswith("{") and start is None:
+            first = number
+            while first > 1 and belongs_to_head(lines[first - 2]):
+                first -= 1
+            start = first
+        elif start is None and line.rstrip().endswith(") {") and line[:1].isalpha():
+            start = number
+        elif line.startswith("}") and start is not None:
+            name = re.search(r"(\w+)\s*\(", " ".join(lines[start - 1:number]))
+            yield start, number - start + 1, name.group(1) if name else "?"
+            start = None
+
+
+def python_functions(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            yield node.lineno, node.end_lineno - node.lineno + 1, node.name
+
+
+def check_lines(where, suffix, lines, errors):
+    for number, line in enumerate(lines, 1):
+        if "\t" in line:
+            errors.append(f"{where}:{number}: tab")
+        if len(line) > COLUMNS:
+            errors.append(f"{where}:{number}: {len(line)} columns, at most {COLUMNS}")
+        if suffix not in SCRIPT_SUFFIXES and MACHINE_PATH.search(line):
+            errors.append(f"{where}:{number}: path of a machine: {line.strip()[:60]}")
+        if line != line.rstrip() and suffix in C_SUFFIXES:
+            errors.append(f"{where}:{number}: blanks at the end of the line")
+
+
+def check_file(root, path, errors, longest):
+    where = path.relative_to(root)
+    if any(FORBIDDEN.search(part) for part in (path.stem, path.parent.name)):
+        errors.append(f"{where}:1: a name that says nothing (utils, common, misc)")
+    if path.suffix not in CODE_SUFFIXES:
+        return
+    text = path.read_text(encoding="utf-8")
+    lines = text.splitlines()
+    if path.suffix != ".json" and len(lines) > FILE_LINES:
+        errors.append(f"{where}:{len(lines)}: {len(lines)} lines, at most {FILE_LINES}")
+    check_lines(where, path.suffix, lines, errors)
+    functions = []
+    if path.suffix in C_SUFFIXES:
+        functions = list(c_functions(lines))
+    elif path.suffix == ".py":
+        functions = list(python_functions(text))
+    for number, length, name in functions:
+        longest.append((length, f"{where}:{number}: {name}"))
+        if length > FUNCTION_LINES:
+            errors.append(f"{where}:{number}: function {name} has {length} lines, at most {FUNCTION_LINES}")
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]).resolve()
+    errors, longest = [], []
+    paths = source_files(root)
+    for path in paths:
+        check_file(root, path, errors, longest)
+    longest.sort(reverse=True)
+    lengths = sorted(length for length, _ in longest)
+    if lengths:
+        print(f"functions: {len(lengths)}, 90 % have at most {lengths[len(lengths)*9//10]} lines; longest:")
+        for length, where in longest[:5]:
+            print(f"  {length:3d} lines  {where}")
+    print("\n".join(errors + [f"{len(paths)} files, {len(errors)} breaches of the house rules"]))
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
