@@ -1,0 +1,398 @@
+/* VTK XML files. The header is written first with room for each array's offset; arrays follow one by one,
+   compressed in batches of blocks by all threads, so that the memory needed does not grow with the run.
+   Index arrays of vertex cells are made block by block instead of being stored. */
+#define _GNU_SOURCE 1
+#include "io/vtk.h"
+#include "io/file.h"
+#include <inttypes.h>
+#include <lz4.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+enum { BLOCK = 65536, BATCH = 64, OFFSET_ROOM = 20, LINE = 9 };
+
+/* Where an array's numbers come from: memory, a + b i, or (U8 and VTK_VERTEX) a constant. */
+typedef struct source {
+    const char   *name;
+    tobi_vtk_type type;
+    int           components;
+    int64_t       rows;
+    const void   *data;          /* NULL: first + step * index */
+    int64_t       first, step;
+    off_t         offset_at;     /* in the file, where the offset goes */
+} source;
+
+typedef struct document {
+    tobi_file        file;
+    tobi_compression compression;
+    source          *sources;
+    int              count;
+} document;
+
+static const char *const type_names[] = { "Float32", "Float64", "Int32", "Int64", "UInt8" };
+
+/* Length of the UTF-8 sequence at text, 0 if it is not one. */
+static int utf8_length(const unsigned char *text)
+{
+    int n = text[0] < 0x80 ? 1 : text[0] >= 0xc2 && text[0] < 0xe0 ? 2
+          : (text[0] & 0xf0) == 0xe0 ? 3 : text[0] >= 0xf0 && text[0] < 0xf5 ? 4 : 0;
+    for (int i = 1; i < n; i++)
+        if ((text[i] & 0xc0) != 0x80) return 0;
+    return n;
+}
+
+/* Writes text as an XML attribute value; what XML cannot hold becomes an underscore. */
+static void print_escaped(tobi_file *file, const char *text)
+{
+    const unsigned char *at = (const unsigned char *)text;
+    while (*at) {
+        int n = utf8_length(at);
+        switch (*at) {
+        case '&':  tobi_file_print(file, "&amp;"); break;
+        case '<':  tobi_file_print(file, "&lt;"); break;
+        case '>':  tobi_file_print(file, "&gt;"); break;
+        case '"':  tobi_file_print(file, "&quot;"); break;
+        case '\'': tobi_file_print(file, "&apos;"); break;
+        default:
+            if (n == 0 || *at < 0x20) tobi_file_write(file, "_", 1);
+            else tobi_file_write(file, at, (size_t)n);
+        }
+        at += n ? n : 1;
+    }
+}
+
+/* Bytes [begin, begin + size) of the array: a pointer into its data, or made in scratch. */
+static const void *read_source(const source *s, size_t begin, size_t size, void *scratch)
+{
+    if (s->data) return (const char *)s->data + begin;
+    if (s->type == TOBI_U8) {
+        memset(scratch, (int)s->first, size);
+        return scratch;
+    }
+    int64_t *out = scratch;
+    int64_t first = s->first + s->step*(int64_t)(begin/8);
+    for (size_t i = 0; i < size/8; i++) out[i] = first + s->step*(int64_t)i;
+    return scratch;
+}
+
+static size_t source_bytes(const source *s)
+{
+    return (size_t)s->rows*(size_t)s->components*tobi_type_size(s->type);
+}
+
+static size_t compress_block(tobi_compression compression, const void *in, size_t size, void *out, size_t room)
+{
+    if (compression == TOBI_COMPRESS_LZ4) {
+        int n = LZ4_compress_default(in, out, (int)size, (int)room);
+        return n > 0 ? (size_t)n : 0;
+    }
+    uLongf n = room;
+    return compress2(out, &n, in, size, 1) == Z_OK ? n : 0;
+}
+
+static void write_raw(tobi_file *file, const source *s)
+{
+    uint64_t bytes = source_bytes(s);
+    _Alignas(8) char scratch[BLOCK];
+    tobi_file_write(file, &bytes, sizeof bytes);
+    for (size_t at = 0; at < bytes && !file->error; at += BLOCK) {
+        size_t size = bytes - at < BLOCK ? bytes - at : BLOCK;
+        tobi_file_write(file, read_source(s, at, size, scratch), size);
+    }
+}
+
+/* Header {blocks, block size, size of a partial last block, compressed sizes...}, then the blocks. */
+static tobi_status write_compressed(document *doc, const source *s, tobi_error *err)
+{
+    size_t bytes = source_bytes(s), blocks = (bytes + BLOCK - 1)/BLOCK;
+    size_t room = compressBound(BLOCK) > (uLong)LZ4_compressBound(BLOCK) ? compressBound(BLOCK)
+                                                                        : (size_t)LZ4_compressBound(BLOCK);
+    size_t slots = blocks < BATCH ? blocks : BATCH;
+    uint64_t *header = calloc(blocks + 3, sizeof *header);
+    char *packed = malloc(slots*room + 1), *scratch = malloc(slots*BLOCK + 8);
+    int failed = 0;
+    if (header && packed && scratch) {
+        header[0] = blocks;
+        header[1] = BLOCK;
+        header[2] = bytes%BLOCK;
+        off_t header_at = tobi_file_tell(&doc->file);
+        tobi_file_write(&doc->file, header, (blocks + 3)*sizeof *header);
+        for (size_t begin = 0; begin < blocks && !doc->file.error; begin += BATCH) {
+            size_t end = blocks - begin < BATCH ? blocks : begin + BATCH;
+            #pragma omp parallel for schedule(dynamic) reduction(|:failed)
+            for (size_t b = begin; b < end; b++) {
+                size_t slot = b - begin, size = bytes - b*BLOCK < BLOCK ? bytes - b*BLOCK : BLOCK;
+                const void *in = read_source(s, b*BLOCK, size, scratch + slot*BLOCK);
+                header[3 + b] = compress_block(doc->compression, in, size, packed + slot*room, room);
+                failed |= header[3 + b] == 0;
+            }
+            for (size_t b = begin; b < end; b++)
+                tobi_file_write(&doc->file, packed + (b - begin)*room, header[3 + b]);
+        }
+        tobi_file_patch(&doc->file, header_at, header, (blocks + 3)*sizeof *header);
+    }
+    tobi_status status = TOBI_OK;
+    if (!header || !packed || !scratch || failed)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "no memory to compress %s of %s", s->name, doc->file.path);
+    free(header);
+    free(packed);
+    free(scratch);
+    return status;
+}
+
+/* Numbers as text, a few per line. The format has no text for NaN and infinity: those are refused. */
+static tobi_status write_ascii(document *doc, const source *s, tobi_error *err)
+{
+    tobi_file *file = &doc->file;
+    int64_t count = s->rows*s->components;
+    for (int64_t i = 0; i < count && !file->error; i++) {
+        double real = s->type == TOBI_F32 ? (double)((const float *)s->data)[i]
+                    : s->type == TOBI_F64 ? ((const double *)s->data)[i] : 0;
+        if (!isfinite(real))
+            return tobi_fail(err, TOBI_INVALID, "%s: row %" PRId64 " of %s is not finite, which an ASCII file cannot "
+                             "hold; use a binary format", file->path, i/s->components, s->name);
+        const char *gap = i%LINE == LINE - 1 || i == count - 1 ? "\n" : " ";
+        int64_t whole = !s->data ? s->first + s->step*i
+                      : s->type == TOBI_I32 ? ((const int32_t *)s->data)[i]
+                      : s->type == TOBI_I64 ? ((const int64_t *)s->data)[i]
+                      : s->type == TOBI_U8 ? ((const uint8_t *)s->data)[i] : 0;
+        if (s->type == TOBI_F32 || s->type == TOBI_F64)
+            tobi_file_print(file, s->type == TOBI_F32 ? "%.9g%s" : "%.17g%s", real, gap);
+        else
+            tobi_file_print(file, "%" PRId64 "%s", whole, gap);
+    }
+    return TOBI_OK;
+}
+
+/* The DataArray element: complete in ASCII, else with room for an offset to be filled in later. */
+static tobi_status add_source(document *doc, source s, tobi_error *err)
+{
+    tobi_file *file = &doc->file;
+    tobi_file_print(file, "<DataArray type=\"%s\" Name=\"", type_names[s.type]);
+    print_escaped(file, s.name);
+    tobi_file_print(file, "\" NumberOfComponents=\"%d\" ", s.components);
+    if (doc->compression == TOBI_ASCII) {
+        tobi_file_print(file, "format=\"ascii\">\n");
+        TOBI_TRY(write_ascii(doc, &s, err));
+        tobi_file_print(file, "</DataArray>\n");
+        return TOBI_OK;
+    }
+    tobi_file_print(file, "format=\"appended\" offset=");
+    s.offset_at = tobi_file_tell(file);
+    tobi_file_print(file, "%*s/>\n", OFFSET_ROOM + 2, "");
+    doc->sources[doc->count++] = s;
+    return TOBI_OK;
+}
+
+static tobi_status add_arrays(document *doc, const tobi_vtk_array *arrays, int count, int64_t rows, tobi_error *err)
+{
+    for (int i = 0; i < count; i++) {
+        const tobi_vtk_array *a = &arrays[i];
+        TOBI_TRY(add_source(doc, (source){ .name = a->name, .type = a->type, .components = a->components,
+                                           .rows = rows, .data = a->data }, err));
+    }
+    return TOBI_OK;
+}
+
+static tobi_status check_arrays(const char *path, const tobi_vtk_array *arrays, int count, int64_t rows,
+                                tobi_error *err)
+{
+    if (rows < 0 || count < 0) return tobi_fail(err, TOBI_INVALID, "%s: a negative number of rows or arrays", path);
+    for (int i = 0; i < count; i++) {
+        const tobi_vtk_array *a = &arrays[i];
+        if (!a->name || !a->name[0]) return tobi_fail(err, TOBI_INVALID, "%s: array %d has no name", path, i);
+        if (tobi_type_size(a->type) == 0)
+            return tobi_fail(err, TOBI_INVALID, "%s: array %s has an unknown type", path, a->name);
+        if (a->components < 1)
+            return tobi_fail(err, TOBI_INVALID, "%s: array %s has %d components, at least 1 is needed", path,
+                             a->name, a->components);
+        if (!a->data && rows > 0) return tobi_fail(err, TOBI_INVALID, "%s: array %s has no data", path, a->name);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status check_triangles(const char *path, int64_t vertex_count, int64_t triangle_count,
+                                   const int32_t (*triangles)[3], tobi_error *err)
+{
+    if (vertex_count < 0 || triangle_count < 0)
+        return tobi_fail(err, TOBI_INVALID, "%s: a negative number of vertices or triangles", path);
+    for (int64_t t = 0; t < triangle_count; t++)
+        for (int k = 0; k < 3; k++)
+            if (triangles[t][k] < 0 || triangles[t][k] >= vertex_count)
+                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " uses vertex %d of %" PRId64, path, t,
+                                 (int)triangles[t][k], vertex_count);
+    return TOBI_OK;
+}
+
+static tobi_status open_document(document *doc, const char *path, tobi_compression compression, const char *type,
+                                 int array_room, tobi_error *err)
+{
+    *doc = (document){ .compression = compression };
+    if ((unsigned)compression > TOBI_ASCII)
+        return tobi_fail(err, TOBI_INVALID, "%s: unknown compression %d", path, (int)compression);
+    doc->sources = calloc((size_t)array_room, sizeof *doc->sources);
+    if (!doc->sources) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
+    tobi_status status = tobi_file_open(&doc->file, path, err);
+    if (status != TOBI_OK) {
+        free(doc->sources);
+        return status;
+    }
+    const char *compressor = compression == TOBI_COMPRESS_ZLIB ? " compressor=\"vtkZLibDataCompressor\""
+                           : compression == TOBI_COMPRESS_LZ4 ? " compressor=\"vtkLZ4DataCompressor\"" : "";
+    tobi_file_print(&doc->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s>\n", type, compressor, type);
+    return TOBI_OK;
+}
+
+static tobi_status write_appended(document *doc, tobi_error *err)
+{
+    tobi_file *file = &doc->file;
+    tobi_file_print(file, "<AppendedData encoding=\"raw\">\n_");
+    off_t origin = tobi_file_tell(file);
+    for (int i = 0; i < doc->count; i++) {
+        source *s = &doc->sources[i];
+        char offset[OFFSET_ROOM + 3];
+        int n = snprintf(offset, sizeof offset, "\"%" PRId64 "\"", (int64_t)(tobi_file_tell(file) - origin));
+        tobi_file_patch(file, s->offset_at, offset, (size_t)n);
+        if (doc->compression == TOBI_COMPRESS_NONE) write_raw(file, s);
+        else TOBI_TRY(write_compressed(doc, s, err));
+    }
+    tobi_file_print(file, "\n</AppendedData>\n");
+    return TOBI_OK;
+}
+
+/* Ends the element and the file; status is how the writing went so far. */
+static tobi_status close_document(document *doc, const char *type, tobi_status status, tobi_error *err)
+{
+    if (status == TOBI_OK) {
+        tobi_file_print(&doc->file, "</Piece>\n</%s>\n", type);
+        if (doc->compression != TOBI_ASCII) status = write_appended(doc, err);
+        tobi_file_print(&doc->file, "</VTKFile>\n");
+    }
+    free(doc->sources);
+    if (status == TOBI_OK) return tobi_file_commit(&doc->file, err);
+    tobi_file_abandon(&doc->file);
+    return status;
+}
+
+static tobi_status write_points(document *doc, int64_t n, const double (*points)[3], tobi_error *err)
+{
+    tobi_file_print(&doc->file, "<Points>\n");
+    TOBI_TRY(add_source(doc, (source){ .name = "Points", .type = TOBI_F64, .components = 3, .rows = n,
+                                       .data = points }, err));
+    tobi_file_print(&doc->file, "</Points>\n");
+    return TOBI_OK;
+}
+
+static tobi_status write_vertex_cells(document *doc, int64_t n, tobi_error *err)
+{
+    tobi_file_print(&doc->file, "<Cells>\n");
+    TOBI_TRY(add_source(doc, (source){ "connectivity", TOBI_I64, 1, n, NULL, 0, 1, 0 }, err));
+    TOBI_TRY(add_source(doc, (source){ "offsets", TOBI_I64, 1, n, NULL, 1, 1, 0 }, err));
+    TOBI_TRY(add_source(doc, (source){ "types", TOBI_U8, 1, n, NULL, 1, 0, 0 }, err));
+    tobi_file_print(&doc->file, "</Cells>\n");
+    return TOBI_OK;
+}
+
+static tobi_status write_particles(document *doc, int64_t n, const double (*points)[3],
+                                   const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+{
+    tobi_file_print(&doc->file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<PointData>\n",
+                    n, n);
+    TOBI_TRY(add_arrays(doc, arrays, array_count, n, err));
+    tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
+    TOBI_TRY(write_points(doc, n, points, err));
+    return write_vertex_cells(doc, n, err);
+}
+
+tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n, const double (*points)[3],
+                           const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+{
+    TOBI_TRY(check_arrays(path, arrays, array_count, n, err));
+    if (n > 0 && !points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
+    document doc;
+    TOBI_TRY(open_document(&doc, path, compression, "UnstructuredGrid", array_count + 4, err));
+    tobi_status status = write_particles(&doc, n, points, arrays, array_count, err);
+    return close_document(&doc, "UnstructuredGrid", status, err);
+}
+
+static tobi_status write_surface(document *doc, const tobi_vtk_surface *s, tobi_error *err)
+{
+    tobi_file_print(&doc->file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+                    "NumberOfStrips=\"0\" NumberOfPolys=\"%" PRId64 "\">\n<PointData>\n",
+                    s->vertex_count, s->triangle_count);
+    TOBI_TRY(add_arrays(doc, s->point_arrays, s->point_array_count, s->vertex_count, err));
+    tobi_file_print(&doc->file, "</PointData>\n<CellData>\n");
+    TOBI_TRY(add_arrays(doc, s->cell_arrays, s->cell_array_count, s->triangle_count, err));
+    tobi_file_print(&doc->file, "</CellData>\n");
+    TOBI_TRY(write_points(doc, s->vertex_count, s->vertices, err));
+    tobi_file_print(&doc->file, "<Polys>\n");
+    TOBI_TRY(add_source(doc, (source){ .name = "connectivity", .type = TOBI_I32, .components = 1,
+                                       .rows = 3*s->triangle_count, .data = s->triangles }, err));
+    TOBI_TRY(add_source(doc, (source){ "offsets", TOBI_I64, 1, s->triangle_count, NULL, 3, 3, 0 }, err));
+    tobi_file_print(&doc->file, "</Polys>\n");
+    return TOBI_OK;
+}
+
+tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
+                           tobi_error *err)
+{
+    const tobi_vtk_surface *s = surface;
+    TOBI_TRY(check_arrays(path, s->point_arrays, s->point_array_count, s->vertex_count, err));
+    TOBI_TRY(check_arrays(path, s->cell_arrays, s->cell_array_count, s->triangle_count, err));
+    TOBI_TRY(check_triangles(path, s->vertex_count, s->triangle_count, s->triangles, err));
+    document doc;
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", s->point_array_count + s->cell_array_count + 3, err));
+    tobi_status status = write_surface(&doc, s, err);
+    return close_document(&doc, "PolyData", status, err);
+}
+
+tobi_status tobi_pvd_write(const char *path, const tobi_pvd_entry *entries, int64_t n, tobi_error *err)
+{
+    tobi_file file;
+    TOBI_TRY(tobi_file_open(&file, path, err));
+    tobi_file_print(&file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+                    "byte_order=\"LittleEndian\">\n<Collection>\n");
+    for (int64_t i = 0; i < n; i++) {
+        tobi_file_print(&file, "<DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"", entries[i].time,
+                        entries[i].part);
+        print_escaped(&file, entries[i].name ? entries[i].name : "");
+        tobi_file_print(&file, "\" file=\"");
+        print_escaped(&file, entries[i].file);
+        tobi_file_print(&file, "\"/>\n");
+    }
+    tobi_file_print(&file, "</Collection>\n</VTKFile>\n");
+    return tobi_file_commit(&file, err);
+}
+
+tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],
+                           int64_t triangle_count, const int32_t (*triangles)[3], tobi_error *err)
+{
+    TOBI_TRY(check_triangles(path, vertex_count, triangle_count, triangles, err));
+    if (triangle_count > UINT32_MAX)
+        return tobi_fail(err, TOBI_INVALID, "%s: STL holds at most %u triangles", path, UINT32_MAX);
+    tobi_file file;
+    TOBI_TRY(tobi_file_open(&file, path, err));
+    /* Not starting with "solid", by which readers recognise the text form. */
+    char title[80] = "binary STL, metres";
+    uint32_t count = (uint32_t)triangle_count;
+    tobi_file_write(&file, title, sizeof title);
+    tobi_file_write(&file, &count, sizeof count);
+    for (int64_t t = 0; t < triangle_count && !file.error; t++) {
+        const double *a = vertices[triangles[t][0]], *b = vertices[triangles[t][1]], *c = vertices[triangles[t][2]];
+        double u[3], v[3];
+        for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k];
+        double normal[3] = { u[1]*v[2] - u[2]*v[1], u[2]*v[0] - u[0]*v[2], u[0]*v[1] - u[1]*v[0] };
+        double length = sqrt(normal[0]*normal[0] + normal[1]*normal[1] + normal[2]*normal[2]);
+        float record[12];
+        for (int k = 0; k < 3; k++) {
+            record[k] = (float)(length > 0 ? normal[k]/length : 0);
+            record[3 + k] = (float)a[k], record[6 + k] = (float)b[k], record[9 + k] = (float)c[k];
+        }
+        tobi_file_write(&file, record, sizeof record);
+        tobi_file_write(&file, "\0", 2);
+    }
+    return tobi_file_commit(&file, err);
+}

@@ -1,0 +1,48 @@
+/* ParaView files: particles (VTU), surfaces (VTP, STL) and the time series that ties them (PVD).
+
+   VTU and VTP hold appended raw binary with a UInt64 header, optionally compressed in blocks by zlib or LZ4,
+   or ASCII. Source: the VTK XML file format as its own readers define it. Every file appears whole or not
+   at all (io/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for arguments that no file can hold.
+   Arrays are borrowed for the call. Names and file names are UTF-8 and may hold any character. */
+#pragma once
+#include "tobiuo/types.h"
+#include "base/error.h"
+#include "io/type.h"
+
+typedef struct tobi_vtk_array {
+    const char   *name;
+    tobi_vtk_type type;
+    int           components;   /* 1 = scalar, 3 = vector                      */
+    const void   *data;         /* rows x components, row-major; may be NULL if there are no rows */
+} tobi_vtk_array;
+
+/* Particles: one vertex cell per point. points in m; every array has n rows; n = 0 is fine. */
+tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n, const double (*points)[3],
+                           const tobi_vtk_array *arrays, int array_count, tobi_error *err);
+
+typedef struct tobi_vtk_surface {
+    int64_t vertex_count;
+    const double (*vertices)[3];            /* m                             */
+    int64_t triangle_count;
+    const int32_t (*triangles)[3];          /* indices into vertices         */
+    const tobi_vtk_array *point_arrays;     /* vertex_count rows each        */
+    int point_array_count;
+    const tobi_vtk_array *cell_arrays;      /* triangle_count rows each      */
+    int cell_array_count;
+} tobi_vtk_surface;
+
+tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
+                           tobi_error *err);
+
+typedef struct tobi_pvd_entry {
+    double      time;    /* s                                                            */
+    const char *file;    /* relative to the PVD file                                     */
+    const char *name;    /* of the part, "fluid"; NULL = none                            */
+    int         part;    /* files of the same time need different parts                  */
+} tobi_pvd_entry;
+
+tobi_status tobi_pvd_write(const char *path, const tobi_pvd_entry *entries, int64_t n, tobi_error *err);
+
+/* Binary STL: little-endian floats, normals by the right-hand rule. At most 2^32 - 1 triangles. */
+tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],
+                           int64_t triangle_count, const int32_t (*triangles)[3], tobi_error *err);
