@@ -1,0 +1,57 @@
+/* Scenes: a whole simulation in one JSON file. See docs of the format with `tobiuo describe` and in
+   scenes/. A scene can do no more than a C program can: building one calls only tobiuo.h.
+
+   The format: JSON in UTF-8 with comments (# or // to the end of the line), SI units, angles in
+   degrees. Relative paths are looked up beside the scene file. */
+#ifndef TOBIUO_SCENE_H
+#define TOBIUO_SCENE_H
+#include "tobiuo/tobiuo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tobi_scene tobi_scene;
+
+/* Everything that is wrong with a scene, one line each:
+   `file:line:column: path: what is wrong, what is allowed, did you mean`. */
+typedef struct tobi_report tobi_report;
+TOBI_API int         tobi_report_count(const tobi_report *report);          /* NULL: 0 */
+TOBI_API const char *tobi_report_line(const tobi_report *report, int line); /* NULL past the end */
+TOBI_API void        tobi_report_free(tobi_report *report);                 /* NULL is fine */
+
+/* Reads and checks a scene, without creating a world.
+   overrides: "path=value" texts ended by NULL, or NULL; applied in order before the check, for
+   example "spacing=0.008", "dfsph.support=3", "fluids[0].viscosity=0.1" or "fluids.water.viscosity=0.1"
+   (entries of a list by number or by name). The value is JSON; anything that is not JSON is a text.
+   On success *scene is owned by the caller and *report is NULL. On failure *scene is NULL;
+   TOBI_INVALID comes with all mistakes in *report (owned by the caller; report may be NULL) and as
+   many of them as fit in err; TOBI_NOT_FOUND, TOBI_IO and TOBI_NO_MEMORY with a text in err. */
+TOBI_API tobi_status tobi_scene_load(const char *path, const char *const *overrides,
+                                     tobi_scene **scene, tobi_report **report, tobi_error *err);
+/* NULL is fine. Frees the motions too, so a world built from the scene must be destroyed before. */
+TOBI_API void tobi_scene_free(tobi_scene *scene);
+
+/* Creates the world of the scene with its fluids, bodies and motions. On failure *world is NULL. */
+TOBI_API tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **world, tobi_error *err);
+
+/* Owned by the scene. The name is that of the scene's directory if the file is scene.json, or else
+   the file's name without its extension. */
+TOBI_API const char *tobi_scene_name(const tobi_scene *scene);
+TOBI_API const tobi_world_def  *tobi_scene_world_def(const tobi_scene *scene);
+TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
+
+/* The scene as JSON with every default made explicit and paths of files made absolute, so that it
+   can be kept in any directory of the same machine; loading it gives the same scene bit for bit.
+   Owned by the caller (free()). NULL when out of memory. */
+TOBI_API char *tobi_scene_resolved(const tobi_scene *scene);
+
+/* Parameters, units, defaults and ranges of a topic, as text: a method ("dfsph"), "world", "fluid",
+   "fill", "body", "motion" or "output"; NULL lists the topics. Owned by the caller (free()).
+   NULL if there is no such topic. */
+TOBI_API char *tobi_scene_describe(const char *topic);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

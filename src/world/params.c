@@ -1,0 +1,222 @@
+/* One table per definition struct. A member that is missing here cannot be set by a scene, has no
+   default and appears in no help text; a unit test checks that the tables cover the structs. */
+#include "world/params.h"
+#include "tobiuo/tobiuo.h"
+#include <math.h>
+#include <string.h>
+
+#define AT(type, member_name) .offset = offsetof(type, member_name)
+#define REAL     .type = TOBI_PARAM_REAL
+#define INT      .type = TOBI_PARAM_INT
+#define BOOL     .type = TOBI_PARAM_BOOL, .min = 0, .max = 1, .unit = "true or false"
+#define VEC3     .type = TOBI_PARAM_VEC3
+#define TEXT     .type = TOBI_PARAM_TEXT, .min = NAN, .max = NAN
+#define ANY      .min = NAN, .max = NAN
+#define FROM(a)  .min = (a), .max = NAN
+#define RANGE(a, b) .min = (a), .max = (b)
+#define POSITIVE .min = 0, .max = NAN, .positive = true
+#define CHOICE(words, count) \
+    .type = TOBI_PARAM_CHOICE, .min = 0, .max = (count) - 1, .choices = words, .unit = "word"
+
+#define WALL(key_, member_, axis_, doc_)                                              \
+    { .key = key_, CHOICE("slip|no-slip|periodic", 3),                                \
+      .offset = offsetof(tobi_world_def, member_) + (axis_)*sizeof(int), .doc = doc_ }
+
+static const tobi_param world_rows[] = {
+    { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "name", .text = "dfsph",
+      .doc = "The method that moves the particles." },
+    { .key = "dimension", INT, AT(tobi_world_def, dimension), .def = { 3 }, RANGE(2, 3), .unit = "1",
+      .doc = "3, or 2 for a flow in the x-y plane with masses and forces per metre of depth." },
+    { .key = "domain.min", VEC3, AT(tobi_world_def, domain_min), ANY, .unit = "m",
+      .required = true, .doc = "Lower corner of the box that holds everything, of any sign." },
+    { .key = "domain.max", VEC3, AT(tobi_world_def, domain_max), ANY, .unit = "m",
+      .required = true, .doc = "Upper corner of the box." },
+    WALL("domain.walls.x[0]", wall_min, 0, "Side at the lower x."),
+    WALL("domain.walls.x[1]", wall_max, 0, "Side at the upper x; periodic comes in pairs."),
+    WALL("domain.walls.y[0]", wall_min, 1, "Side at the lower y."),
+    WALL("domain.walls.y[1]", wall_max, 1, "Side at the upper y."),
+    WALL("domain.walls.z[0]", wall_min, 2, "Side at the lower z."),
+    WALL("domain.walls.z[1]", wall_max, 2, "Side at the upper z."),
+    { .key = "gravity", VEC3, AT(tobi_world_def, gravity), .def = { 0, 0, -9.81 }, ANY, .unit = "m/s2",
+      .doc = "Acceleration of gravity, in any direction; a 2-D scene that gives none gets [0, -9.81]." },
+    { .key = "spacing", REAL, AT(tobi_world_def, spacing), POSITIVE, .unit = "m", .required = true,
+      .doc = "Distance between fluid particles: the resolution." },
+    { .key = "end_time", REAL, AT(tobi_world_def, end_time), FROM(0), .unit = "s", .required = true,
+      .doc = "Simulated time at which the run ends." },
+    { .key = "time_step", REAL, AT(tobi_world_def, time_step), FROM(0), .unit = "s", .text = "adaptive",
+      .doc = "A fixed time step; adaptive chooses each step from speeds, forces and viscosity." },
+    { .key = "time_step_max", REAL, AT(tobi_world_def, time_step_max), FROM(0), .unit = "s", .text = "none",
+      .doc = "Longest step that the adaptive choice may take." },
+    { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 }, .min = 0, .max = 1, .positive = true,
+      .unit = "1", .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step." },
+    { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit), FROM(0), .unit = "m/s",
+      .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
+    { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1", .text = "all",
+      .doc = "Processor cores to use; the result is the same for any number." },
+    { 0 }
+};
+
+static const tobi_param dfsph_rows[] = {
+    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(tobi_dfsph_def, kernel),
+      .doc = "Smoothing kernel." },
+    { .key = "support", REAL, AT(tobi_dfsph_def, support), .def = { 2 }, RANGE(2, 4), .unit = "spacings",
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." },
+    { .key = "density_tolerance", REAL, AT(tobi_dfsph_def, density_tolerance), .def = { 5e-4 },
+      .min = 0, .max = 0.1, .positive = true, .unit = "1",
+      .doc = "Mean relative density error at which the density solve may stop." },
+    { .key = "divergence_tolerance", REAL, AT(tobi_dfsph_def, divergence_tolerance), .def = { 1e-3 },
+      .min = 0, .max = 1, .positive = true, .unit = "1",
+      .doc = "Mean |div v| times the time step at which the divergence solve may stop." },
+    { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 1e-2 },
+      .min = 0, .max = 1, .positive = true, .unit = "1",
+      .doc = "Relative pressure residual that both solves must reach as well." },
+    { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min), .def = { 2 },
+      RANGE(0, 1000000), .unit = "1", .doc = "Fewest iterations of the density solve in a step." },
+    { .key = "density_iterations_max", INT, AT(tobi_dfsph_def, density_iterations_max), .def = { 1000 },
+      RANGE(1, 1000000), .unit = "1",
+      .doc = "Most iterations of the density solve; a step that needs more is reported as not converged." },
+    { .key = "divergence_iterations_min", INT, AT(tobi_dfsph_def, divergence_iterations_min), .def = { 1 },
+      RANGE(0, 1000000), .unit = "1", .doc = "Fewest iterations of the divergence solve in a step." },
+    { .key = "divergence_iterations_max", INT, AT(tobi_dfsph_def, divergence_iterations_max), .def = { 200 },
+      RANGE(0, 1000000), .unit = "1", .doc = "Most iterations of the divergence solve in a step." },
+    { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), RANGE(0, 1), .unit = "1", .text = "off",
+      .doc = "Particle shifting coefficient." },
+    { 0 }
+};
+
+static const tobi_param fluid_rows[] = {
+    { .key = "name", TEXT, AT(tobi_fluid_def, name), .unit = "name", .text = "fluid", .required = true,
+      .doc = "Name of the fluid, used once in a scene." },
+    { .key = "density", REAL, AT(tobi_fluid_def, density), .def = { 1000 }, POSITIVE, .unit = "kg/m3",
+      .doc = "Rest density." },
+    { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, FROM(0), .unit = "Pa s",
+      .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3." },
+    { 0 }
+};
+
+static const tobi_param fill_rows[] = {
+    { .key = "box.min", VEC3, AT(tobi_fill_def, box_min), ANY, .unit = "m",
+      .doc = "Lower corner of the filled box." },
+    { .key = "box.max", VEC3, AT(tobi_fill_def, box_max), ANY, .unit = "m",
+      .doc = "Upper corner of the filled box." },
+    { .key = "mesh", TEXT, AT(tobi_fill_def, mesh), .unit = "path",
+      .doc = "A closed mesh (OBJ, STL or PLY) whose inside is filled, instead of a box." },
+    { .key = "scale", VEC3, AT(tobi_fill_def, scale), .def = { 1, 1, 1 }, POSITIVE, .unit = "1",
+      .doc = "Size factor of the mesh, one number or one per axis, applied first." },
+    { .key = "translation", VEC3, AT(tobi_fill_def, translation), ANY, .unit = "m",
+      .doc = "Where the origin of the mesh is put." },
+    { .key = "velocity", VEC3, AT(tobi_fill_def, velocity), ANY, .unit = "m/s",
+      .doc = "Velocity of the fluid at the start." },
+    { 0 }
+};
+
+static const tobi_param body_rows[] = {
+    { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body", .required = true,
+      .doc = "Name of the body, used once in a scene and in the names of its files." },
+    { .key = "mesh", TEXT, AT(tobi_body_def, mesh), .unit = "path", .required = true,
+      .doc = "The body's closed surface (OBJ, STL or PLY)." },
+    { .key = "scale", VEC3, AT(tobi_body_def, scale), .def = { 1, 1, 1 }, POSITIVE, .unit = "1",
+      .doc = "Size factor, one number or one per axis, about the mesh's own origin, applied first." },
+    { .key = "rotation.axis", VEC3, AT(tobi_body_def, rotation_axis), .def = { 0, 0, 1 }, ANY, .unit = "1",
+      .doc = "Direction that the mesh is turned about, applied second." },
+    { .key = "rotation.angle", REAL, AT(tobi_body_def, rotation_angle), ANY, .unit = "degrees",
+      .doc = "Angle of that turn, by the right-hand rule." },
+    { .key = "translation", VEC3, AT(tobi_body_def, translation), ANY, .unit = "m",
+      .doc = "Where the origin of the mesh is put, applied last." },
+    { .key = "density", REAL, AT(tobi_body_def, density), .def = { 1000 }, POSITIVE, .unit = "kg/m3",
+      .doc = "Density of the body, for its mass and inertia." },
+    { .key = "spacing", REAL, AT(tobi_body_def, spacing), FROM(0), .unit = "m", .text = "fluid",
+      .doc = "Distance between the body's own particles, whatever the fluid's; fluid takes that of the fluid." },
+    { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
+      .doc = "Whether the fluid slips along the body or sticks to it." },
+    { 0 }
+};
+
+static const tobi_param output_rows[] = {
+    { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, POSITIVE, .unit = "s",
+      .doc = "Simulated time between outputs, hit exactly." },
+    { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), FROM(0), .unit = "s",
+      .text = "end", .doc = "Simulated time between checkpoints; end writes one when the run ends." },
+    { .key = "compression", CHOICE("none|zlib|lz4|ascii", 4), AT(tobi_output_def, compression),
+      .def = { TOBI_COMPRESS_ZLIB }, .doc = "Form of the VTU and VTP files." },
+    { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
+      .text = "velocity,pressure,density,object_id,particle_id",
+      .doc = "Fields to write for every particle." },
+    { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
+      .doc = "Write the moving surface of each body as VTP and STL." },
+    { .key = "frames", BOOL, AT(tobi_output_def, frames), .doc = "Write a PNG picture at each output." },
+    { 0 }
+};
+
+const tobi_param_table tobi_world_table = {
+    "world", "The box, the fluid resolution and the clock: keys at the top of a scene.",
+    sizeof(tobi_world_def), world_rows };
+const tobi_param_table tobi_dfsph_table = {
+    "dfsph", "Divergence-free SPH (Bender & Koschier 2015, 2017) for incompressible liquids.",
+    sizeof(tobi_dfsph_def), dfsph_rows };
+const tobi_param_table tobi_fluid_table = {
+    "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
+const tobi_param_table tobi_fill_table = {
+    "fill", "An entry of a fluid's fill: one region that it fills at the start, a box or a mesh.",
+    sizeof(tobi_fill_def), fill_rows };
+const tobi_param_table tobi_body_table = {
+    "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
+    sizeof(tobi_body_def), body_rows };
+const tobi_param_table tobi_output_table = {
+    "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
+
+static const tobi_param_table *const methods[] = { &tobi_dfsph_table };
+enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
+
+const tobi_param_table *tobi_param_table_at(int index)
+{
+    static const tobi_param_table *const tables[] = {
+        &tobi_world_table, &tobi_dfsph_table, &tobi_fluid_table,
+        &tobi_fill_table,  &tobi_body_table,  &tobi_output_table
+    };
+    return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
+}
+
+const char *tobi_method_name(int index)
+{
+    return index >= 0 && index < METHOD_COUNT ? methods[index]->name : NULL;
+}
+
+const tobi_param_table *tobi_method_table(const char *method)
+{
+    for (int i = 0; method && i < METHOD_COUNT; i++)
+        if (strcmp(methods[i]->name, method) == 0) return methods[i];
+    return NULL;
+}
+
+const char *tobi_choice_word(const char *choices, int i, int *length)
+{
+    for (const char *word = choices; word; i--) {
+        const char *bar = strchr(word, '|');
+        *length = (int)(bar ? (size_t)(bar - word) : strlen(word));
+        if (i == 0) return word;
+        word = bar ? bar + 1 : NULL;
+    }
+    return NULL;
+}
+
+int tobi_choice_count(const char *choices)
+{
+    int count = 1;
+    for (const char *c = choices; *c; c++) count += *c == '|';
+    return count;
+}
+
+#define DEFAULT(noun)                                        \
+    tobi_##noun##_def tobi_default_##noun##_def(void)        \
+    {                                                        \
+        tobi_##noun##_def def;                               \
+        tobi_param_defaults(&tobi_##noun##_table, &def);     \
+        return def;                                          \
+    }
+DEFAULT(world)
+DEFAULT(dfsph)
+DEFAULT(fluid)
+DEFAULT(fill)
+DEFAULT(body)
+DEFAULT(output)

@@ -1,0 +1,31 @@
+/* The parameter tables of every definition struct in tobiuo/types.h: the only place that says a
+   member's scene key, unit, default, range and sentence.
+
+   Conventions of the rows, on top of base/param.h:
+   - A key with dots is a key of a nested object in a scene: "domain.min" is domain: { min: ... }.
+   - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
+   - TOBI_PARAM_TEXT: unit "name", "path" (a file, looked up beside the scene) or "names" (a list).
+   - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
+   - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */
+#pragma once
+#include "base/param.h"
+#include "tobiuo/types.h"
+
+extern const tobi_param_table tobi_world_table;
+extern const tobi_param_table tobi_dfsph_table;
+extern const tobi_param_table tobi_fluid_table;
+extern const tobi_param_table tobi_fill_table;
+extern const tobi_param_table tobi_body_table;
+extern const tobi_param_table tobi_output_table;
+
+/* Every table by index, NULL past the end. */
+const tobi_param_table *tobi_param_table_at(int index);
+/* The parameters of a method by its name ("dfsph"), NULL if there is no such method. */
+const tobi_param_table *tobi_method_table(const char *method);
+/* Method names by index, NULL past the end. */
+const char *tobi_method_name(int index);
+
+/* The number of words in "a|b|c", and word i of it (not terminated), its length in *length;
+   NULL past the end. */
+int tobi_choice_count(const char *choices);
+const char *tobi_choice_word(const char *choices, int i, int *length);
