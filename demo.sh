@@ -38,13 +38,12 @@ echo "Tables:   $out/history.csv (time, iterations, errors, energies), $out/bodi
 frames=$(find "$out" -name '*.png' | sort | head -n 1)
 if [ -n "$frames" ]; then
     pictures=$(dirname "$frames")
-    movie="ffmpeg -y -framerate 25 -pattern_type glob -i '$pictures/*.png' -pix_fmt yuv420p -vf pad=ceil(iw/2)*2:ceil(ih/2)*2 $out/movie.mp4"
+    encode=(ffmpeg -y -loglevel error -framerate 25 -pattern_type glob -i "$pictures/*.png"
+            -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p "$out/movie.mp4")
     echo "Pictures: $pictures/"
-    if command -v ffmpeg > /dev/null &&
-       ffmpeg -y -loglevel error -framerate 25 -pattern_type glob -i "$pictures/*.png" -pix_fmt yuv420p \
-              -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' "$out/movie.mp4" < /dev/null; then
+    if command -v ffmpeg > /dev/null && "${encode[@]}" < /dev/null; then
         echo "Movie:    $out/movie.mp4"
     else
-        echo "Movie:    apt-get install ffmpeg, then: $movie"
+        echo "Movie:    apt-get install ffmpeg, then: ${encode[*]@Q}"
     fi
 fi

@@ -21,7 +21,9 @@ prepare() {
 run_slow() {
     local wanted=${1:-} commit machine passed=0 failed=0 found=0
     commit=$(git rev-parse --short HEAD 2> /dev/null || echo unknown)
-    [ -n "$(git status --porcelain --untracked-files=no -- src include app test 2> /dev/null)" ] && commit+=+changes
+    if [ -n "$(git status --porcelain --untracked-files=no -- src include app test 2> /dev/null)" ]; then
+        commit+=+changes
+    fi
     machine="$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores"
     for script in test/physics/*/run.py; do
         local case
