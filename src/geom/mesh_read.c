@@ -1,0 +1,288 @@
+/* Reading a mesh file through assimp in a child process.
+
+   The child imports, merges all meshes of the file and writes raw arrays into a pipe; the parent
+   checks every byte of meaning again. So a crash, a hang or an endless allocation of the importer
+   ends the child only. Drawback: the arrays are copied once through the pipe, and a host that
+   reaps all children itself loses the exit cause (the text then says only that it ended).
+
+   assimp holds coordinates as float. Each is replaced by the shortest decimal that reads back as the
+   same float, so that 0.1 in a text file arrives as the double 0.1. */
+#define _GNU_SOURCE
+#include "geom/mesh.h"
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#define IMPORT_SECONDS 60
+#define IMPORT_BYTES ((rlim_t)8 << 30)    /* beyond what the parent has mapped already */
+#define MAX_NODE_DEPTH 1000
+
+typedef struct import_header {
+    char magic[8];
+    int64_t vertex_count, triangle_count;
+    char text[1024];                      /* the importer's complaint, empty if none */
+} import_header;
+
+typedef struct collector {
+    const struct aiScene *scene;
+    int64_t vertex_count, triangle_count; /* counted first, then written           */
+    double  (*vertices)[3];
+    int32_t (*triangles)[3];
+    int fill, depth;
+} collector;
+
+/* --- in the child ------------------------------------------------------------------------- */
+
+static double shortest_decimal(float x)
+{
+    char text[32];
+    for (int digits = 6; digits < 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)x);
+        if (strtof(text, NULL) == x) return strtod(text, NULL);
+    }
+    return x;
+}
+
+static void collect_mesh(collector *c, const struct aiMesh *m, const struct aiMatrix4x4 *x)
+{
+    int64_t first = c->vertex_count;
+    int identity = aiMatrix4AreEqual(x, &(struct aiMatrix4x4){1, 0, 0, 0, 0, 1, 0, 0,
+                                                             0, 0, 1, 0, 0, 0, 0, 1});
+    for (unsigned i = 0; c->fill && i < m->mNumVertices; i++) {
+        struct aiVector3D v = m->mVertices[i];
+        if (!identity) aiTransformVecByMatrix4(&v, x);
+        double *out = c->vertices[first + i];
+        out[0] = shortest_decimal(v.x);
+        out[1] = shortest_decimal(v.y);
+        out[2] = shortest_decimal(v.z);
+    }
+    c->vertex_count += m->mNumVertices;
+    for (unsigned i = 0; i < m->mNumFaces; i++) {
+        if (m->mFaces[i].mNumIndices != 3) continue;
+        for (int k = 0; c->fill && k < 3; k++) {
+            unsigned index = m->mFaces[i].mIndices[k];
+            /* an index outside its own part must not land in the next part */
+            c->triangles[c->triangle_count][k] = index < m->mNumVertices ? (int32_t)(first + index)
+                                                                         : INT32_MAX;
+        }
+        c->triangle_count++;
+    }
+}
+
+static void collect_node(collector *c, const struct aiNode *node, const struct aiMatrix4x4 *parent)
+{
+    struct aiMatrix4x4 here = *parent;
+    if (!node || ++c->depth > MAX_NODE_DEPTH) return;
+    aiMultiplyMatrix4(&here, &node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        if (node->mMeshes[i] < c->scene->mNumMeshes)
+            collect_mesh(c, c->scene->mMeshes[node->mMeshes[i]], &here);
+    for (unsigned i = 0; i < node->mNumChildren; i++) collect_node(c, node->mChildren[i], &here);
+    c->depth--;
+}
+
+static int write_all(int fd, const void *data, size_t size)
+{
+    for (const char *p = data; size;) {
+        ssize_t n = write(fd, p, size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return 0;
+        p += n;
+        size -= (size_t)n;
+    }
+    return 1;
+}
+
+static void limit_child(void)
+{
+    struct rlimit none = {0, 0}, cpu = {IMPORT_SECONDS, IMPORT_SECONDS};
+    setrlimit(RLIMIT_CORE, &none);
+    setrlimit(RLIMIT_CPU, &cpu);
+#ifndef __SANITIZE_ADDRESS__       /* its shadow memory maps terabytes */
+    FILE *f = fopen("/proc/self/statm", "r");
+    unsigned long pages = 0;
+    if (f) {
+        if (fscanf(f, "%lu", &pages) == 1) {
+            rlim_t bytes = (rlim_t)pages*(rlim_t)sysconf(_SC_PAGESIZE) + IMPORT_BYTES;
+            setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+        }
+        fclose(f);
+    }
+#endif
+}
+
+static _Noreturn void run_child(const char *path, int fd)
+{
+    static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
+    for (size_t i = 0; i < sizeof reset/sizeof *reset; i++) signal(reset[i], SIG_DFL);
+    limit_child();
+    int null = open("/dev/null", O_RDWR);      /* the importer must not print either */
+    if (null >= 0) {
+        dup2(null, STDOUT_FILENO);
+        dup2(null, STDERR_FILENO);
+    }
+    import_header header = {.magic = "tobimesh"};
+    struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    collector c = {.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate)};
+    if (!c.scene) {
+        snprintf(header.text, sizeof header.text, "%s", aiGetErrorString());
+        if (!header.text[0]) strcpy(header.text, "the importer gave up without a reason");
+        write_all(fd, &header, sizeof header);
+        _exit(0);
+    }
+    collect_node(&c, c.scene->mRootNode, &identity);
+    c.vertices = malloc((size_t)(c.vertex_count + 1)*sizeof *c.vertices);
+    c.triangles = malloc((size_t)(c.triangle_count + 1)*sizeof *c.triangles);
+    if (!c.vertices || !c.triangles || c.vertex_count > INT32_MAX - 1) {
+        strcpy(header.text, "too large to import");
+        write_all(fd, &header, sizeof header);
+        _exit(0);
+    }
+    c.fill = 1;
+    c.vertex_count = c.triangle_count = c.depth = 0;
+    collect_node(&c, c.scene->mRootNode, &identity);
+    header.vertex_count = c.vertex_count;
+    header.triangle_count = c.triangle_count;
+    _exit(!(write_all(fd, &header, sizeof header) &&
+            write_all(fd, c.vertices, (size_t)c.vertex_count*sizeof *c.vertices) &&
+            write_all(fd, c.triangles, (size_t)c.triangle_count*sizeof *c.triangles)));
+}
+
+/* --- in the parent ------------------------------------------------------------------------ */
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
+}
+
+/* Reads size bytes before the deadline: 1 done, 0 the pipe ended, -1 out of time. */
+static int read_all(int fd, void *data, size_t size, double deadline)
+{
+    for (char *p = data; size;) {
+        double left = deadline - now();
+        struct pollfd wait = {.fd = fd, .events = POLLIN};
+        if (left <= 0) return -1;
+        int ready = poll(&wait, 1, (int)(left*1000) + 1);
+        if (ready < 0 && errno != EINTR) return 0;
+        if (ready <= 0) continue;
+        ssize_t n = read(fd, p, size);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return 0;
+        p += n;
+        size -= (size_t)n;
+    }
+    return 1;
+}
+
+static tobi_status receive_mesh(const char *path, int fd, tobi_mesh *out, int *finished, tobi_error *err)
+{
+    import_header header;
+    double deadline = now() + IMPORT_SECONDS;
+    tobi_mesh raw = {0};
+    *finished = read_all(fd, &header, sizeof header, deadline);
+    if (*finished != 1) return TOBI_INVALID;
+    header.text[sizeof header.text - 1] = 0;
+    if (memcmp(header.magic, "tobimesh", 8) || header.vertex_count < 0 || header.triangle_count < 0 ||
+        header.vertex_count > INT32_MAX || header.triangle_count > INT32_MAX) {
+        *finished = 0;
+        return TOBI_INVALID;
+    }
+    if (header.text[0])
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: %s", path, header.text);
+    raw.vertices = malloc((size_t)(header.vertex_count + 1)*sizeof *raw.vertices);
+    raw.triangles = malloc((size_t)(header.triangle_count + 1)*sizeof *raw.triangles);
+    tobi_status status;
+    if (!raw.vertices || !raw.triangles)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "mesh '%s': no memory for %lld triangles", path,
+                           (long long)header.triangle_count);
+    else if ((*finished = read_all(fd, raw.vertices, (size_t)header.vertex_count*sizeof *raw.vertices,
+                                   deadline)) != 1 ||
+             (*finished = read_all(fd, raw.triangles,
+                                   (size_t)header.triangle_count*sizeof *raw.triangles, deadline)) != 1)
+        status = TOBI_INVALID;
+    else
+        status = tobi_mesh_build(path, header.vertex_count, (const double (*)[3])raw.vertices,
+                                 header.triangle_count, (const int32_t (*)[3])raw.triangles, out, err);
+    tobi_mesh_free(&raw);
+    return status;
+}
+
+static tobi_status fail_import(const char *path, int finished, int reaped, int state, tobi_error *err)
+{
+    if (finished < 0)
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer took more than %d s; "
+                         "the file is damaged or far too large", path, IMPORT_SECONDS);
+    if (reaped && WIFSIGNALED(state))
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer crashed (signal %d: "
+                         "%s); the file is damaged", path, WTERMSIG(state), strsignal(WTERMSIG(state)));
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer ended early; the file is "
+                     "damaged", path);
+}
+
+static tobi_status import_apart(const char *path, tobi_mesh *out, tobi_error *err)
+{
+    int ends[2], finished = 0, state = 0;
+    if (pipe2(ends, O_CLOEXEC))
+        return tobi_fail(err, TOBI_IO, "mesh '%s': no pipe for the importer: %s", path, strerror(errno));
+    pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        run_child(path, ends[1]);
+    }
+    close(ends[1]);
+    if (child < 0) {
+        close(ends[0]);
+        return tobi_fail(err, TOBI_IO, "mesh '%s': the importer cannot start: %s", path, strerror(errno));
+    }
+    tobi_status status = receive_mesh(path, ends[0], out, &finished, err);
+    close(ends[0]);
+    if (finished < 0) kill(child, SIGKILL);
+    pid_t reaped;
+    do reaped = waitpid(child, &state, 0);
+    while (reaped < 0 && errno == EINTR);
+    if (finished != 1) return fail_import(path, finished, reaped == child, state, err);
+    return status;
+}
+
+static tobi_status check_file(const char *path, tobi_error *err)
+{
+    static const char *const allowed[] = {".obj", ".stl", ".ply"};
+    struct stat info;
+    const char *dot = strrchr(path, '.');
+    int known = 0;
+    if (stat(path, &info))
+        return tobi_fail(err, errno == ENOENT || errno == ENOTDIR ? TOBI_NOT_FOUND : TOBI_IO,
+                         "mesh '%s': %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return tobi_fail(err, TOBI_IO, "mesh '%s' is not a regular file", path);
+    for (int i = 0; dot && i < 3; i++) known |= !strcasecmp(dot, allowed[i]);
+    if (!known)
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s': unknown format; allowed are .obj, .stl and .ply",
+                         path);
+    if (access(path, R_OK))
+        return tobi_fail(err, TOBI_IO, "mesh '%s': %s", path, strerror(errno));
+    if (info.st_size == 0) return tobi_fail(err, TOBI_INVALID, "mesh '%s' is an empty file", path);
+    return TOBI_OK;
+}
+
+tobi_status tobi_mesh_read(const char *path, tobi_mesh *out, tobi_error *err)
+{
+    *out = (tobi_mesh){0};
+    TOBI_TRY(check_file(path, err));
+    return import_apart(path, out, err);
+}
