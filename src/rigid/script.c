@@ -1,0 +1,342 @@
+/* Motion scripts on LuaJIT.
+
+   Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
+   user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled into
+   it and runs at the speed of C. Endless loops end through the guards of script_guard.c, memory
+   through a counting allocator.
+
+   The optimiser's constant folding is off: it computes x^2 as x*x where the interpreter calls pow,
+   and a restart, which begins interpreted, would not repeat the bits of a run that is compiled. */
+#include "rigid/script.h"
+#include "rigid/script_guard.h"
+#include <errno.h>
+#include <jansson.h>
+#include <lauxlib.h>
+#include <lua.h>
+#include <lualib.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MEMORY_LIMIT (64u << 20)      /* bytes a script may hold            */
+#define FILE_LIMIT   (4 << 20)        /* bytes of a script file             */
+#define TICK_LIMIT   10000000         /* loop turns and calls per point     */
+#define DEPTH_LIMIT  50               /* nesting of params                  */
+
+struct tobi_script {
+    lua_State *lua;
+    size_t bytes;             /* held by Lua now                             */
+    char *path;
+    bool rigid;
+    int deform, place;        /* registry references of the walks in DRIVER  */
+    double pivot[3];          /* m                                           */
+};
+
+/* Our side: gets the user's environment, returns the walks. `at` tells C which point was in work. */
+static const char DRIVER[] =
+    "local user, limit = ...\n"
+    "local ffi, math, string = require('ffi'), math, string\n"
+    "require('jit.opt').start('-fold')\n"
+    "local error, type = error, type\n"
+    "for _, name in ipairs{'ipairs', 'pairs', 'next', 'select', 'tonumber', 'tostring', 'type',\n"
+    "                      'unpack', 'error', 'assert'} do user[name] = _G[name] end\n"
+    "user.math, user.table, user.string = {}, {}, {}\n"
+    "for k, v in pairs(math) do user.math[k] = v end\n"
+    "user.math.random, user.math.randomseed = nil, nil\n"
+    "for _, k in ipairs{'concat', 'insert', 'remove', 'sort', 'maxn'} do user.table[k] = table[k] end\n"
+    "for _, k in ipairs{'format', 'len', 'sub', 'byte', 'char', 'lower', 'upper'} do\n"
+    "    user.string[k] = string[k]\n"
+    "end\n"
+    "getmetatable('').__index = user.string\n"
+    "local count = 0\n"
+    "user." TOBI_SCRIPT_TICK " = function()\n"
+    "    count = count + 1\n"
+    "    if count > limit then\n"
+    "        error('endless loop? stopped after ' .. limit .. ' turns and calls', 2)\n"
+    "    end\n"
+    "end\n"
+    "local function seal()\n"
+    "    local meta = {}\n"
+    "    function meta.__index(_, k) error(\"unknown name '\" .. tostring(k) .. \"'\", 2) end\n"
+    "    function meta.__newindex(_, k)\n"
+    "        error(\"assignment to the global '\" .. tostring(k) .. \"': write local\", 2)\n"
+    "    end\n"
+    "    setmetatable(user, meta)\n"
+    "end\n"
+    "local f, g\n"
+    "local function bind(deform, place) f, g = deform, place end\n"
+    "local function deform(n, t, rest, position, at)\n"
+    "    rest, position = ffi.cast('const double *', rest), ffi.cast('double *', position)\n"
+    "    at = ffi.cast('double *', at)\n"
+    "    for i = 0, n - 1 do\n"
+    "        local k = 3 * i\n"
+    "        at[0], count = i, 0\n"
+    "        local x, y, z, more = f(rest[k], rest[k + 1], rest[k + 2], t)\n"
+    "        if type(x) ~= 'number' or type(y) ~= 'number' or type(z) ~= 'number' or more ~= nil then\n"
+    "            error('deform must return three numbers', 0)\n"
+    "        end\n"
+    "        position[k], position[k + 1], position[k + 2] = x, y, z\n"
+    "    end\n"
+    "end\n"
+    "local function place(t) count = 0 return g(t) end\n"
+    "return seal, bind, deform, place\n";
+
+static void *allocate(void *user, void *p, size_t old, size_t size)
+{
+    tobi_script *script = user;
+    if (!p) old = 0;
+    if (size > old && script->bytes + (size - old) > MEMORY_LIMIT) return NULL;
+    void *q = NULL;
+    if (size == 0) free(p);
+    else if (!(q = realloc(p, size))) return NULL;
+    script->bytes += size - old;
+    return q;
+}
+
+static tobi_status read_text(const char *path, char **text, size_t *length, tobi_error *err)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO,
+                         "motion script %s: %s", path, strerror(errno));
+    *text = malloc(FILE_LIMIT + 1);
+    *length = *text ? fread(*text, 1, FILE_LIMIT + 1, file) : 0;
+    bool failed = ferror(file);
+    int reason = errno;
+    fclose(file);
+    if (*text && !failed && *length <= FILE_LIMIT) return TOBI_OK;
+    free(*text);
+    if (failed) return tobi_fail(err, TOBI_IO, "motion script %s: %s", path, strerror(reason));
+    return tobi_fail(err, *text ? TOBI_INVALID : TOBI_NO_MEMORY,
+                     "motion script %s: larger than 4 MiB", path);
+}
+
+/* Leaves the Lua value of a JSON value on the stack; null is nil, arrays count from 1. */
+static void push_json(lua_State *lua, const json_t *value, int depth)
+{
+    luaL_checkstack(lua, 4, "params");
+    if (depth > DEPTH_LIMIT) luaL_error(lua, "params are nested too deeply");
+    if (json_is_number(value)) lua_pushnumber(lua, json_number_value(value));
+    else if (json_is_boolean(value)) lua_pushboolean(lua, json_is_true(value));
+    else if (json_is_string(value)) lua_pushlstring(lua, json_string_value(value), json_string_length(value));
+    else if (json_is_array(value)) {
+        lua_newtable(lua);
+        for (size_t i = 0; i < json_array_size(value); i++) {
+            push_json(lua, json_array_get(value, i), depth + 1);
+            lua_rawseti(lua, -2, (int)i + 1);
+        }
+    } else if (json_is_object(value)) {
+        const char *key;
+        json_t *child;
+        lua_newtable(lua);
+        json_object_foreach((json_t *)value, key, child) {
+            push_json(lua, child, depth + 1);
+            lua_setfield(lua, -2, key);
+        }
+    } else {
+        lua_pushnil(lua);
+    }
+}
+
+/* What loading needs inside Lua's protected call. */
+typedef struct load_job {
+    tobi_script *script;
+    const char *name;         /* of the file, for messages */
+    const char *text;         /* guarded                   */
+    const json_t *params;
+} load_job;
+
+static void read_pivot(lua_State *lua, int user, double pivot[3])
+{
+    lua_getfield(lua, user, "pivot");
+    if (!lua_isnil(lua, -1)) {
+        if (!lua_istable(lua, -1)) luaL_error(lua, "pivot must be {x, y, z}");
+        for (int a = 0; a < 3; a++) {
+            lua_rawgeti(lua, -1, a + 1);
+            pivot[a] = lua_tonumber(lua, -1);
+            if (lua_type(lua, -1) != LUA_TNUMBER || !isfinite(pivot[a]))
+                luaL_error(lua, "pivot must be {x, y, z}, three finite numbers");
+            lua_pop(lua, 1);
+        }
+    }
+    lua_pop(lua, 1);
+}
+
+/* Compiles and runs the user's text in its environment, then binds its function to the walks. */
+static int load_protected(lua_State *lua)
+{
+    load_job *job = lua_touserdata(lua, 1);
+    luaL_openlibs(lua);
+    lua_newtable(lua);
+    int user = lua_gettop(lua);
+    push_json(lua, job->params, 0);
+    lua_setfield(lua, user, "params");
+
+    if (luaL_loadbufferx(lua, DRIVER, sizeof DRIVER - 1, "=driver", "t")) return lua_error(lua);
+    lua_pushvalue(lua, user);
+    lua_pushnumber(lua, TICK_LIMIT);
+    lua_call(lua, 2, 4);
+    int seal = user + 1, bind = user + 2;
+    job->script->place = luaL_ref(lua, LUA_REGISTRYINDEX);
+    job->script->deform = luaL_ref(lua, LUA_REGISTRYINDEX);
+
+    if (luaL_loadbufferx(lua, job->text, strlen(job->text), job->name, "t")) return lua_error(lua);
+    lua_pushvalue(lua, user);
+    lua_setfenv(lua, -2);
+    lua_call(lua, 0, 0);
+
+    read_pivot(lua, user, job->script->pivot);
+    lua_pushvalue(lua, bind);
+    lua_getfield(lua, user, "deform");
+    lua_getfield(lua, user, "place");
+    bool deforms = lua_isfunction(lua, -2), places = lua_isfunction(lua, -1);
+    if (deforms == places)
+        return luaL_error(lua, "define either function deform(x, y, z, t) or function place(t)%s",
+                          deforms ? ", not both" : "");
+    job->script->rigid = places;
+    lua_call(lua, 2, 0);
+    lua_pushvalue(lua, seal);
+    lua_call(lua, 0, 0);
+    return 0;
+}
+
+static const char *message(lua_State *lua)
+{
+    const char *text = lua_tostring(lua, -1);
+    return text ? text : "an error without a text";
+}
+
+static tobi_status load(load_job *job, tobi_error *err)
+{
+    lua_State *lua = lua_newstate(allocate, job->script);
+    if (!lua) return tobi_fail(err, TOBI_NO_MEMORY, "motion script: no memory for Lua");
+    job->script->lua = lua;
+    if (lua_cpcall(lua, load_protected, job) == 0) return TOBI_OK;
+    return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s", job->script->path, message(lua));
+}
+
+/* Name of a chunk in messages: the file's own name, as Lua cuts long ones. */
+static char *make_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *file = slash ? slash + 1 : path;
+    char *name = malloc(strlen(file) + 2);
+    if (name) sprintf(name, "@%s", file);
+    return name;
+}
+
+static tobi_status guard_and_load(tobi_script *script, const json_t *params, tobi_error *err)
+{
+    char *text = NULL;
+    size_t length = 0;
+    TOBI_TRY(read_text(script->path, &text, &length, err));
+    tobi_error why = { 0 };
+    if (memchr(text, '\0', length) || (length > 0 && text[0] == '\x1b')) {
+        free(text);
+        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: not a text file", script->path);
+    }
+    char *guarded = tobi_script_guard(text, length, &why);
+    free(text);
+    if (!guarded) return tobi_fail(err, why.status, "motion script %s: %s", script->path, why.text);
+    char *name = make_name(script->path);
+    load_job job = { script, name, guarded, params };
+    tobi_status status = name ? load(&job, err) : tobi_fail(err, TOBI_NO_MEMORY, "out of memory");
+    free(name);
+    free(guarded);
+    return status;
+}
+
+tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script **out,
+                             tobi_error *err)
+{
+    *out = NULL;
+    json_error_t where;
+    json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
+    if (!json_is_object(params)) {
+        json_decref(params);
+        return tobi_fail(err, TOBI_INVALID, "motion params: %s",
+                         params ? "must be a JSON object" : where.text);
+    }
+    tobi_script *script = calloc(1, sizeof *script);
+    tobi_status status = TOBI_OK;
+    if (!script || !(script->path = strdup(path)))
+        status = tobi_fail(err, TOBI_NO_MEMORY, "motion script %s: out of memory", path);
+    else
+        status = guard_and_load(script, params, err);
+    json_decref(params);
+    if (status == TOBI_OK) *out = script;
+    else tobi_script_free(script);
+    return status;
+}
+
+void tobi_script_free(tobi_script *script)
+{
+    if (!script) return;
+    if (script->lua) lua_close(script->lua);
+    free(script->path);
+    free(script);
+}
+
+int tobi_script_is_rigid(const tobi_script *script) { return script->rigid; }
+
+tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const double (*rest)[3],
+                               double (*position)[3], tobi_error *err)
+{
+    lua_State *lua = script->lua;
+    double at = 0.0;
+    lua_settop(lua, 0);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, script->deform);
+    lua_pushnumber(lua, (double)n);
+    lua_pushnumber(lua, t);
+    lua_pushlightuserdata(lua, (void *)rest);
+    lua_pushlightuserdata(lua, position);
+    lua_pushlightuserdata(lua, &at);
+    bool failed = lua_pcall(lua, 5, 0, 0) != 0;
+    const char *why = failed ? message(lua) : "deform returned a number that is not finite";
+    int64_t i = failed ? (int64_t)at : 0;
+    while (!failed && i < n && isfinite(position[i][0] + position[i][1] + position[i][2])) i++;
+    if (!failed && i == n) return TOBI_OK;
+    if (i >= n) return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s", script->path, why);
+    return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s (t = %.9g s, rest point %.6g %.6g %.6g)",
+                     script->path, why, t, rest[i][0], rest[i][1], rest[i][2]);
+}
+
+/* Axis to unit length; a turn needs one. */
+static tobi_status set_turn(const tobi_script *script, double t, const double r[7], tobi_pose *pose,
+                            tobi_error *err)
+{
+    double length = sqrt(r[3] * r[3] + r[4] * r[4] + r[5] * r[5]);
+    pose->degrees = r[6];
+    if (r[6] == 0.0) return TOBI_OK;
+    if (!(length > 0.0))
+        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: place returned a turn about a zero axis"
+                         " (t = %.9g s)", script->path, t);
+    for (int a = 0; a < 3; a++) pose->axis[a] = r[3 + a] / length;
+    return TOBI_OK;
+}
+
+tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, tobi_error *err)
+{
+    lua_State *lua = script->lua;
+    lua_settop(lua, 0);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, script->place);
+    lua_pushnumber(lua, t);
+    if (lua_pcall(lua, 1, LUA_MULTRET, 0) != 0)
+        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s (t = %.9g s)", script->path,
+                         message(lua), t);
+    int count = lua_gettop(lua);
+    bool good = count == 3 || count == 7;
+    double r[7] = { 0 };
+    for (int k = 0; good && k < count; k++) {
+        r[k] = lua_tonumber(lua, k + 1);
+        good = lua_type(lua, k + 1) == LUA_TNUMBER && isfinite(r[k]);
+    }
+    if (!good)
+        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: place must return three finite numbers "
+                         "(shift) or seven (shift, axis, degrees) (t = %.9g s)", script->path, t);
+    *pose = (tobi_pose){ .shift = { r[0], r[1], r[2] }, .axis = { 0.0, 0.0, 1.0 } };
+    memcpy(pose->pivot, script->pivot, sizeof pose->pivot);
+    return count == 7 ? set_turn(script, t, r, pose, err) : TOBI_OK;
+}

@@ -1,0 +1,47 @@
+/* A motion script: a text file in Lua that defines exactly one of
+
+     function deform(x, y, z, t)        -- rest position (m) and time (s)
+         return x, y, z                 -- position (m)
+     end
+
+     function place(t)                  -- time (s)
+         return px, py, pz              -- shift of the body (m), or
+         return px, py, pz, ax, ay, az, degrees   -- and a turn about the axis (ax, ay, az)
+     end
+
+   Rest positions are the points of the mesh after the scene's scale, rotation and translation. The
+   turn of place() is right-handed, about the global `pivot = {x, y, z}` (rest coordinates, m;
+   {0, 0, 0} when the script does not set it): position = pivot + p + R (rest - pivot).
+
+   The script sees `params` (motion.params of the scene: numbers, texts, true/false, arrays from 1,
+   objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring, type,
+   unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no files,
+   no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
+   global is an error, because it is nearly always a misspelt name, and because a motion that
+   remembers things would break restarts. */
+#pragma once
+#include "base/error.h"
+
+typedef struct tobi_script tobi_script;
+
+/* A rigid placement; axis has unit length. */
+typedef struct tobi_pose {
+    double shift[3];      /* m        */
+    double axis[3];       /* 1        */
+    double degrees;       /* degrees  */
+    double pivot[3];      /* m        */
+} tobi_pose;
+
+/* Loads and runs the file once. Errors as in tobi_motion_script. */
+tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script **out,
+                             tobi_error *err);
+void tobi_script_free(tobi_script *script);
+
+/* 1 when the script defines place(), 0 when it defines deform(). */
+int tobi_script_is_rigid(const tobi_script *script);
+
+/* Calls deform() for n points. */
+tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const double (*rest)[3],
+                               double (*position)[3], tobi_error *err);
+/* Calls place(). */
+tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, tobi_error *err);

@@ -1,0 +1,274 @@
+/* Motions: formulas against their definition, scripts against the same formulas in C, and everything
+   a script may not do. */
+#include "rigid/motion.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#define PI 3.14159265358979323846
+
+/* Writes a script to a fresh file; the path lives until the next call. */
+static const char *write_script(const char *text)
+{
+    static char path[64];
+    strcpy(path, "/tmp/tobiuo_motion_XXXXXX");
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, text, strlen(text)), (ssize_t)strlen(text));
+    close(fd);
+    return path;
+}
+
+static tobi_status load(const char *text, const char *params, tobi_motion **motion, tobi_error *err)
+{
+    const char *path = write_script(text);
+    tobi_status status = tobi_motion_script(path, params, motion, err);
+    unlink(path);
+    return status;
+}
+
+/* The script must fail while loading, with this text in the message. */
+static void expect_bad(const char *text, const char *part)
+{
+    tobi_motion *motion = NULL;
+    tobi_error err = { 0 };
+    tobi_status status = load(text, NULL, &motion, &err);
+    if (status != TOBI_SCRIPT || !strstr(err.text, part))
+        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
+    assert_null(motion);
+}
+
+/* The script must load, and fail when evaluated at time t. */
+static void expect_bad_at(const char *text, double t, const char *part)
+{
+    tobi_motion *motion = NULL;
+    tobi_error err = { 0 };
+    if (load(text, NULL, &motion, &err) != TOBI_OK) fail_msg("<%s>: %s", text, err.text);
+    double points[50][3], moved[50][3];
+    for (int i = 0; i < 50; i++)
+        for (int a = 0; a < 3; a++) points[i][a] = 0.1 * i + a;
+    tobi_status status = tobi_motion_positions(motion, t, 50, (const double (*)[3])points, moved, &err);
+    if (status != TOBI_SCRIPT || !strstr(err.text, part))
+        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
+    tobi_motion_free(motion);
+}
+
+static void test_formulas(void **state)
+{
+    (void)state;
+    tobi_motion *m = NULL;
+    tobi_error err = { 0 };
+    const double rest[2][3] = { { 1, 2, 3 }, { -1, 0.5, 0 } };
+    double p[2][3];
+
+    assert_int_equal(tobi_motion_translation((double[3]){ 1, -2, 0.5 }, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_positions(m, 2.0, 2, rest, p, &err), TOBI_OK);
+    assert_true(p[0][0] == 3 && p[0][1] == -2 && p[0][2] == 4 && p[1][1] == -3.5);
+    assert_int_equal(tobi_motion_is_rigid(m), 1);
+    tobi_motion_free(m);
+
+    /* 90 degrees about z through (1, 0, 0): (1, 2, 3) -> (-1, 0, 3) */
+    assert_int_equal(tobi_motion_rotation((double[3]){ 1, 0, 0 }, (double[3]){ 0, 0, 7 }, 45, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_positions(m, 2.0, 2, rest, p, &err), TOBI_OK);
+    assert_true(fabs(p[0][0] + 1) < 1e-14 && fabs(p[0][1]) < 1e-14 && fabs(p[0][2] - 3) < 1e-14);
+    assert_int_equal(tobi_motion_positions(m, 8.0, 2, rest, p, &err), TOBI_OK);   /* one full turn */
+    assert_true(p[0][0] == 1 && p[0][1] == 2);
+    tobi_motion_free(m);
+
+    assert_int_equal(tobi_motion_oscillation((double[3]){ 0, 0, -2 }, 0.1, 4, 30, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_positions(m, 0.3, 2, rest, p, &err), TOBI_OK);
+    assert_true(fabs(p[0][2] - (3 - 0.1 * sin(2 * PI * 4 * 0.3 + PI / 6))) < 1e-14 && p[0][0] == 1);
+    tobi_motion_free(m);
+
+    assert_int_equal(tobi_motion_rotation((double[3]){ 0 }, (double[3]){ 0 }, 1, &m, &err), TOBI_INVALID);
+    assert_int_equal(tobi_motion_translation((double[3]){ NAN, 0, 0 }, &m, &err), TOBI_INVALID);
+    assert_null(m);
+}
+
+static void test_script_params_and_place(void **state)
+{
+    (void)state;
+    tobi_motion *m = NULL;
+    tobi_error err = { 0 };
+    const double rest[1][3] = { { 2, 0, 0 } };
+    double p[1][3];
+    const char *text = "pivot = params.centre\n"
+                       "local s = params.deep.speed[2]\n"
+                       "function place(t) return s * t, 0, 0, 0, 0, 2, 90 * t end\n";
+    const char *params = "{\"centre\": [1, 0, 0], \"deep\": {\"speed\": [1, 5.5]}, \"name\": \"x\", \"on\": true}";
+    if (load(text, params, &m, &err)) fail_msg("%s", err.text);
+    assert_int_equal(tobi_motion_is_rigid(m), 1);
+    assert_int_equal(tobi_motion_positions(m, 1.0, 1, rest, p, &err), TOBI_OK);
+    assert_true(fabs(p[0][0] - 6.5) < 1e-14 && fabs(p[0][1] - 1) < 1e-14);
+    tobi_motion_free(m);
+
+    if (load("function deform(x, y, z, t) return x + t, y * 2, z end", NULL, &m, &err)) fail_msg("%s", err.text);
+    assert_int_equal(tobi_motion_is_rigid(m), 0);
+    assert_int_equal(tobi_motion_positions(m, 1.0, 1, rest, p, &err), TOBI_OK);
+    assert_true(p[0][0] == 3);
+    tobi_motion_free(m);
+
+    assert_int_equal(load("function place(t) return 0,0,0 end", "[1]", &m, &err), TOBI_INVALID);
+    assert_int_equal(load("function place(t) return 0,0,0 end", "{", &m, &err), TOBI_INVALID);
+    assert_int_equal(tobi_motion_script("/nowhere/motion.lua", NULL, &m, &err), TOBI_NOT_FOUND);
+    assert_non_null(strstr(err.text, "/nowhere/motion.lua"));
+}
+
+static void test_mistakes_are_named(void **state)
+{
+    (void)state;
+    expect_bad("x = 1\ny = = 2\n", ":2:");
+    expect_bad("local a = nil\n\nlocal b = a.x\n", ":3:");
+    expect_bad("local a = 1", "define either");
+    expect_bad("function place(t) end function deform() end", "not both");
+    expect_bad("pivot = 3 function place(t) return 0, 0, 0 end", "pivot");
+    expect_bad("\x1bLJ\x02", "not a text file");
+    expect_bad("local tick__ = 1", "reserved");
+    expect_bad_at("function deform(x, y, z, t)\n  return x, y\nend", 0, "three numbers");
+    expect_bad_at("function deform(x, y, z, t) return x, y, z, 1 end", 0, "three numbers");
+    expect_bad_at("function deform(x, y, z, t) return x, y, 'z' end", 0, "three numbers");
+    expect_bad_at("function deform(x, y, z, t) return x, y, z / (x - 1) * 0 end", 0, "rest point 1 2 3");
+    expect_bad_at("function deform(x, y, z, t) return x, y, 1 / 0 end", 0.25, "t = 0.25 s");
+    expect_bad_at("function deform(x, y, z, t)\n  return x, y, q\nend", 0, ":2: unknown name 'q'");
+    expect_bad_at("function deform(x, y, z, t)\n  q = 1\n  return x, y, z\nend", 0, "write local");
+    expect_bad_at("function place(t) return 1, 2 end", 0, "place must return");
+    expect_bad_at("function place(t) return 1, 2, 0 / 0 end", 0, "place must return");
+    expect_bad_at("function place(t) return 0, 0, 0, 0, 0, 0, 5 end", 0, "zero axis");
+    expect_bad_at("function place(t) error('mine') end", 0, ":1: mine");
+    expect_bad_at("function place(t) error({}) end", 0, "without a text");
+}
+
+static void test_mathematics_only(void **state)
+{
+    (void)state;
+    static const char *const names[] = { "io", "os", "require", "load", "loadstring", "loadfile", "dofile",
+        "ffi", "debug", "jit", "package", "module", "getfenv", "setfenv", "rawset", "rawget", "rawequal",
+        "setmetatable", "getmetatable", "pcall", "xpcall", "coroutine", "collectgarbage", "print", "newproxy",
+        "_G", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump", "math.random" };
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        char text[200];
+        snprintf(text, sizeof text, "if %s ~= nil then error('FOUND') end", names[k]);
+        expect_bad(text, "define either");
+    }
+    expect_bad("local s = 'x' for i = 1, 60 do s = s .. s end", "not enough memory");
+    expect_bad("local t = {} for i = 1, 1e12 do t[i] = {} end", "not enough memory");
+}
+
+/* Every kind of endless loop, at load, at once, and only later when the function is long compiled. */
+static void test_endless_loops_end(void **state)
+{
+    (void)state;
+    expect_bad("while true do end", ":1: endless");
+    expect_bad("\n\nrepeat until false", ":3: endless");
+    expect_bad("for i = 1, 1/0 do end", "endless");
+    expect_bad("for i = 1, 0, 0 do end local function f() return f() end f()", "endless");
+    expect_bad("::a:: goto a", "endless");
+    expect_bad("::a:: do --[[x]] goto --[==[ do ]==] a end", "endless");
+    expect_bad("local f = function(a, b) f2 = a return a(a, b) end f(f)", "endless");
+    expect_bad("local s = [[ while ]] .. \"do ' \\\" \" while s do end", "endless");
+    expect_bad_at("function deform(x, y, z, t) while true do end end", 0, "endless");
+    expect_bad_at("function place(t) repeat t = t + 1 until t < 0 return 0, 0, 0 end", 0, "endless");
+    expect_bad_at("function deform(x,y,z,t) if x > 3 then while true do end end return x,y,z end", 0, "endless");
+
+    tobi_motion *m = NULL;
+    tobi_error err = { 0 };
+    const char *late = "function deform(x, y, z, t)\n"
+                       "  local k = 0\n"
+                       "  while k < 5 or t > 0.5 do k = k + 1 end\n"
+                       "  return x + k, y, z\nend";
+    if (load(late, NULL, &m, &err)) fail_msg("%s", err.text);
+    double rest[500][3] = { { 0 } }, p[500][3];
+    for (int step = 0; step < 40; step++) {
+        assert_int_equal(tobi_motion_positions(m, 0.01 * step, 500, (const double (*)[3])rest, p, &err), TOBI_OK);
+        assert_true(p[499][0] == 5);
+    }
+    struct timespec a, b;
+    clock_gettime(CLOCK_MONOTONIC, &a);
+    assert_int_equal(tobi_motion_positions(m, 0.51, 500, (const double (*)[3])rest, p, &err), TOBI_SCRIPT);
+    clock_gettime(CLOCK_MONOTONIC, &b);
+    assert_non_null(strstr(err.text, "endless"));
+    assert_true((double)(b.tv_sec - a.tv_sec) < 5.0);
+    /* and the motion still works afterwards */
+    assert_int_equal(tobi_motion_positions(m, 0.2, 500, (const double (*)[3])rest, p, &err), TOBI_OK);
+    tobi_motion_free(m);
+}
+
+/* Rewritten text must mean what it meant: jumps over locals, methods, strings and comments that look
+   like code. */
+static void test_guards_keep_the_meaning(void **state)
+{
+    (void)state;
+    const char *text =
+        "local s, n = 'function(do) while', 0 -- do repeat goto function (\n"
+        "for i = 1, 10 do\n"
+        "  if i % 2 == 0 then goto continue end\n"
+        "  local k = i\n"
+        "  n = n + k\n"
+        "  ::continue::\n"
+        "end\n"
+        "local o = { f = function(self, ...) return select('#', ...) end }\n"
+        "local function add(a, --[[ ) ]] b) return a + b end\n"
+        "do (function() n = n + 100 end)() end\n"
+        "local g = (function(...) return (...) end)\n"
+        "function deform(x, y, z, t) return n, add(o:f(1, 2, 3), #s), g(7) end\n";
+    tobi_motion *m = NULL;
+    tobi_error err = { 0 };
+    if (load(text, NULL, &m, &err)) fail_msg("%s", err.text);
+    const double rest[1][3] = { { 0 } };
+    double p[1][3];
+    assert_int_equal(tobi_motion_positions(m, 0, 1, rest, p, &err), TOBI_OK);
+    assert_true(p[0][0] == 125 && p[0][1] == 3 + 18 && p[0][2] == 7);
+    tobi_motion_free(m);
+}
+
+/* One point at a time in fresh states (interpreted) must give the bits of a long compiled batch:
+   a restarted run begins interpreted. */
+static void test_compiled_equals_interpreted(void **state)
+{
+    (void)state;
+    const char *text = "local sin, sqrt, atan2 = math.sin, math.sqrt, math.atan2\n"
+                       "function deform(x, y, z, t)\n"
+                       "  return x ^ 2 + sin(7 * y) * x ^ 3, sqrt(x * x + z * z) % 0.3 + t ^ 2,\n"
+                       "         atan2(y, z) * math.exp(-x) + (1 - z) ^ 2 / 3 + x ^ 0.5 + 2 ^ y\nend";
+    enum { N = 4000 };
+    static double rest[N][3], batch[N][3];
+    tobi_error err = { 0 };
+    tobi_motion *m = NULL, *fresh = NULL;
+    srand(3);
+    for (int i = 0; i < N; i++)
+        for (int a = 0; a < 3; a++) rest[i][a] = (double)rand() / RAND_MAX;
+    if (load(text, NULL, &m, &err)) fail_msg("%s", err.text);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(tobi_motion_positions(m, 0.1, N, (const double (*)[3])rest, batch, &err), TOBI_OK);
+    for (int i = 0; i < N; i++) {
+        double one[1][3];
+        if (i % 20 == 0) {
+            tobi_motion_free(fresh);
+            if (load(text, NULL, &fresh, &err)) fail_msg("%s", err.text);
+        }
+        assert_int_equal(tobi_motion_positions(fresh, 0.1, 1, (const double (*)[3])&rest[i], one, &err), TOBI_OK);
+        assert_memory_equal(one, batch[i], sizeof one);
+    }
+    tobi_motion_free(m);
+    tobi_motion_free(fresh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_formulas),
+        cmocka_unit_test(test_script_params_and_place),
+        cmocka_unit_test(test_mistakes_are_named),
+        cmocka_unit_test(test_mathematics_only),
+        cmocka_unit_test(test_endless_loops_end),
+        cmocka_unit_test(test_guards_keep_the_meaning),
+        cmocka_unit_test(test_compiled_equals_interpreted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
