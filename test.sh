@@ -55,11 +55,11 @@ run_fast() {
     [ "$code" -eq 124 ] && echo "test: stopped after $limit s; tests that did not end count as failed"
     # A test that did not report Passed or Skipped has failed.
     local passed failed skipped
-    read -r passed failed skipped < <(awk '
+    read -r passed failed skipped <<< "$(awk '
         match($0, /^ *[0-9]+\/[0-9]+ Test +#/) {
             split($1, part, "/"); total = part[2] ? part[2] : total
             if (/\*\*\*Skipped/) skipped++; else if (/ Passed +[0-9.]+ sec/) passed++ }
-        END { print passed + 0, total - passed - skipped + 0, skipped + 0 }' $log)
+        END { print passed + 0, total - passed - skipped + 0, skipped + 0 }' $log)"
     [ "$skipped" -gt 0 ] && echo "$skipped skipped"
     [ "$code" -ne 0 ] && [ "$failed" -eq 0 ] && failed=1
     echo "$((SECONDS - begin)) s"
