@@ -1,0 +1,45 @@
+/* Closest point, inside test and crossing test against a closed triangle surface.
+
+   A tree of boxes built once by the surface area heuristic and refitted when the vertices move.
+   Queries are const, allocate nothing, may run from many threads, and give the same answer whatever
+   the thread; among features equally near the first in tree order wins. */
+#pragma once
+#include "base/error.h"
+
+typedef struct tobi_bvh tobi_bvh;
+
+typedef struct tobi_bvh_hit {
+    double  distance;          /* m, >= 0                                                       */
+    double  signed_distance;   /* m, negative inside                                            */
+    double  point[3];          /* m, the nearest point of the surface                           */
+    double  normal[3];         /* outward unit pseudonormal of the nearest feature              */
+    double  barycentric[3];    /* of point in its triangle, sum 1                               */
+    int32_t triangle;
+} tobi_bvh_hit;
+
+/* Builds over triangles that tobi_mesh_orient has passed (an open mesh works, but its sign means
+   little at the open edges). The triangles are copied; vertices are read now and at each refit. */
+tobi_status tobi_bvh_build(int64_t vertex_count, const double (*vertices)[3],
+                           int64_t triangle_count, const int32_t (*triangles)[3],
+                           tobi_bvh **out, tobi_error *err);
+void tobi_bvh_free(tobi_bvh *bvh);
+
+/* Takes new positions of the same vertices. The boxes and pseudonormals follow; the shape of the
+   tree stays, so queries slow down when the shape changes beyond recognition, but stay right. */
+void tobi_bvh_refit(tobi_bvh *bvh, const double (*vertices)[3]);
+
+/* The box around all triangles, m. */
+void tobi_bvh_box(const tobi_bvh *bvh, double min[3], double max[3]);
+
+/* The nearest point of the surface closer than max_distance (INFINITY = anywhere): 1 and fills hit,
+   or 0 and leaves it alone. The sign is that of the angle-weighted pseudonormal of the nearest
+   vertex, edge or face (Baerentzen & Aanaes, IEEE TVCG 11 (2005)). */
+int tobi_bvh_closest(const tobi_bvh *bvh, const double p[3], double max_distance, tobi_bvh_hit *hit);
+
+/* 1 if p is inside. */
+int tobi_bvh_inside(const tobi_bvh *bvh, const double p[3]);
+
+/* 1 if a triangle lies strictly between a and b: touching with an end, or running within the plane
+   of a triangle, is no hit. Neighbouring triangles decide about their common edge with the same
+   arithmetic, so nothing slips through an edge. */
+int tobi_bvh_segment_hits(const tobi_bvh *bvh, const double a[3], const double b[3]);

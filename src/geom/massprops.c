@@ -1,0 +1,79 @@
+/* Mass properties. Sums run relative to the middle of the mesh's box, so that a body far from the
+   origin loses no digits. */
+#include "geom/massprops.h"
+#include "geom/section.h"
+#include "geom/vec3.h"
+#include <string.h>
+
+tobi_status tobi_massprops_volume(const tobi_mesh *mesh, tobi_massprops *out, tobi_error *err)
+{
+    double min[3], max[3], origin[3], first[3] = {0}, second[3][3] = {{0}}, volume = 0, area = 0;
+    memset(out, 0, sizeof *out);
+    tobi_mesh_box(mesh, min, max);
+    for (int k = 0; k < 3; k++) origin[k] = 0.5*(min[k] + max[k]);
+
+    for (int64_t t = 0; t < mesh->triangle_count; t++) {
+        double e[3][3], n[3], ab[3], ac[3], sum[3];
+        for (int c = 0; c < 3; c++) vec3_sub(e[c], mesh->vertices[mesh->triangles[t][c]], origin);
+        vec3_sub(ab, e[1], e[0]);
+        vec3_sub(ac, e[2], e[0]);
+        vec3_cross(n, ab, ac);
+        area += 0.5*vec3_length(n);
+        /* six times the signed volume of the tetrahedron (origin, a, b, c) */
+        double det = vec3_dot(e[0], n);
+        volume += det/6;
+        for (int i = 0; i < 3; i++) {
+            sum[i] = e[0][i] + e[1][i] + e[2][i];
+            first[i] += det*sum[i]/24;
+        }
+        /* integral of x_i x_j over the tetrahedron = det/120 (sum_i sum_j + a_i a_j + b_i b_j + c_i c_j) */
+        for (int i = 0; i < 3; i++)
+            for (int j = i; j < 3; j++)
+                second[i][j] += det/120*(sum[i]*sum[j] + e[0][i]*e[0][j] + e[1][i]*e[1][j] +
+                                         e[2][i]*e[2][j]);
+    }
+    if (!(volume > 0))
+        return tobi_fail(err, TOBI_INVALID, "the mesh encloses a volume of %g m3; it must be closed and "
+                         "oriented outwards", volume);
+    double c[3], m[3][3];
+    for (int i = 0; i < 3; i++) c[i] = first[i]/volume;
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) m[i][j] = m[j][i] = second[i][j] - volume*c[i]*c[j];
+    double trace = m[0][0] + m[1][1] + m[2][2];
+    for (int i = 0; i < 3; i++) {
+        out->centre[i] = origin[i] + c[i];
+        for (int j = 0; j < 3; j++) out->inertia[3*i + j] = (i == j ? trace : 0) - m[i][j];
+    }
+    out->volume = volume;
+    out->area = area;
+    return TOBI_OK;
+}
+
+tobi_status tobi_massprops_section(const tobi_mesh *mesh, tobi_massprops *out, tobi_error *err)
+{
+    tobi_section s;
+    double area = 0, first[2] = {0}, polar = 0, length = 0;
+    memset(out, 0, sizeof *out);
+    TOBI_TRY(tobi_section_cut(mesh, &s, err));
+    const double origin[2] = {s.from[0][0], s.from[0][1]};
+    for (int64_t i = 0; i < s.count; i++) {
+        double a[2] = {s.from[i][0] - origin[0], s.from[i][1] - origin[1]};
+        double b[2] = {s.to[i][0] - origin[0], s.to[i][1] - origin[1]};
+        double det = a[0]*b[1] - a[1]*b[0];
+        area += det/2;
+        for (int k = 0; k < 2; k++) {
+            first[k] += det*(a[k] + b[k])/6;
+            polar += det*(a[k]*a[k] + a[k]*b[k] + b[k]*b[k])/12;
+        }
+        length += hypot(b[0] - a[0], b[1] - a[1]);
+    }
+    tobi_section_free(&s);
+    if (!(area > 0))
+        return tobi_fail(err, TOBI_INVALID, "the section of the mesh with z = 0 has an area of %g m2; it "
+                         "must be closed and oriented outwards", area);
+    out->volume = area;
+    out->area = length;
+    for (int k = 0; k < 2; k++) out->centre[k] = origin[k] + first[k]/area;
+    out->inertia[8] = polar - (first[0]*first[0] + first[1]*first[1])/area;
+    return TOBI_OK;
+}
