@@ -1,0 +1,204 @@
+/* Surface pieces. Halving the longest edge keeps the pieces of a sliver few and their areas powers
+   of two of the triangle's. */
+#include "geom/surface.h"
+#include "geom/section.h"
+#include "geom/vec3.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_PIECES 2000000000LL
+
+typedef struct piece {
+    double corner[3][3];     /* barycentric corners                       */
+    double fraction;
+} piece;
+
+void tobi_surface_free(tobi_surface *s)
+{
+    if (!s) return;
+    free(s->triangle);
+    free(s->a);
+    free(s->b);
+    free(s->fraction);
+    *s = (tobi_surface){0};
+}
+
+static tobi_status allocate_surface(tobi_surface *s, int64_t count, int dimension, tobi_error *err)
+{
+    size_t n = (size_t)count + 1;
+    *s = (tobi_surface){.dimension = dimension, .count = count};
+    s->triangle = malloc(n*sizeof *s->triangle);
+    s->a = malloc(n*sizeof *s->a);
+    if (dimension == 2) s->b = malloc(n*sizeof *s->b);
+    else s->fraction = malloc(n*sizeof *s->fraction);
+    if (s->triangle && s->a && (s->b || s->fraction)) return TOBI_OK;
+    tobi_surface_free(s);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld surface pieces", (long long)count);
+}
+
+static void place_point(double out[3], const double bary[3], const double *const x[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = bary[0]*x[0][k] + bary[1]*x[1][k] + bary[2]*x[2][k];
+}
+
+/* Cuts one triangle; writes pieces from *count on if out is given, and counts them. */
+static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_surface *out, int64_t *count)
+{
+    piece stack[64 + 1] = {{.corner = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .fraction = 1}};
+    int top = 1;
+    while (top) {
+        piece p = stack[--top];
+        double corner[3][3], longest = -1;
+        int k = 0;
+        for (int i = 0; i < 3; i++) place_point(corner[i], p.corner[i], x);
+        for (int i = 0; i < 3; i++) {
+            double length2 = vec3_distance2(corner[i], corner[(i + 1) % 3]);
+            if (length2 > longest) {
+                longest = length2;
+                k = i;
+            }
+        }
+        if (longest <= spacing*spacing*(1 + 1e-12) || top + 2 > 64) {
+            if (out) {
+                out->triangle[*count] = t;
+                out->fraction[*count] = p.fraction;
+                for (int i = 0; i < 3; i++)
+                    out->a[*count][i] = (p.corner[0][i] + p.corner[1][i] + p.corner[2][i])/3;
+            }
+            ++*count;
+            continue;
+        }
+        piece half = p;
+        half.fraction = p.fraction = 0.5*p.fraction;
+        for (int i = 0; i < 3; i++)
+            p.corner[(k + 1) % 3][i] = half.corner[k][i] = 0.5*(p.corner[k][i] + half.corner[(k + 1) % 3][i]);
+        stack[top++] = half;
+        stack[top++] = p;
+    }
+}
+
+static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_surface *out, tobi_error *err)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        int64_t count = 0;
+        for (int64_t t = 0; t < mesh->triangle_count; t++) {
+            const int32_t *v = mesh->triangles[t];
+            const double *x[3] = {mesh->vertices[v[0]], mesh->vertices[v[1]], mesh->vertices[v[2]]};
+            double longest2 = fmax(vec3_distance2(x[0], x[1]),
+                                   fmax(vec3_distance2(x[1], x[2]), vec3_distance2(x[2], x[0])));
+            if (!(longest2/(spacing*spacing) < (double)MAX_PIECES) || count > MAX_PIECES)
+                return tobi_fail(err, TOBI_INVALID, "a surface in pieces of %g m needs more than %lld of "
+                                 "them; allow larger ones", spacing, MAX_PIECES);
+            cut_triangle(x, spacing, (int32_t)t, pass ? out : NULL, &count);
+        }
+        if (pass == 0) TOBI_TRY(allocate_surface(out, count, 3, err));
+    }
+    return TOBI_OK;
+}
+
+static int64_t count_parts(const tobi_section *s, int64_t i, double spacing)
+{
+    double length = hypot(s->to[i][0] - s->from[i][0], s->to[i][1] - s->from[i][1]);
+    return length > 0 ? (int64_t)ceil(length/spacing*(1 - 1e-12)) : 0;
+}
+
+static tobi_status build_section(const tobi_mesh *mesh, double spacing, tobi_surface *out, tobi_error *err)
+{
+    tobi_section s;
+    int64_t count = 0;
+    TOBI_TRY(tobi_section_cut(mesh, &s, err));
+    for (int64_t i = 0; i < s.count; i++) {
+        count += count_parts(&s, i, spacing);
+        if (count <= MAX_PIECES) continue;
+        tobi_section_free(&s);
+        return tobi_fail(err, TOBI_INVALID, "an outline in pieces of %g m needs more than %lld of them; "
+                         "allow larger ones", spacing, MAX_PIECES);
+    }
+    tobi_status status = allocate_surface(out, count, 2, err);
+    count = 0;
+    for (int64_t i = 0; status == TOBI_OK && i < s.count; i++) {
+        int64_t n = count_parts(&s, i, spacing);
+        for (int64_t j = 0; j < n; j++, count++) {
+            double p = (double)j/(double)n, q = (double)(j + 1)/(double)n;
+            out->triangle[count] = s.triangle[i];
+            for (int k = 0; k < 3; k++) {
+                out->a[count][k] = (1 - p)*s.a[i][k] + p*s.b[i][k];
+                out->b[count][k] = (1 - q)*s.a[i][k] + q*s.b[i][k];
+            }
+        }
+    }
+    tobi_section_free(&s);
+    return status;
+}
+
+tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimension, tobi_surface *out,
+                               tobi_error *err)
+{
+    *out = (tobi_surface){0};
+    if (!(spacing > 0) || !isfinite(spacing))
+        return tobi_fail(err, TOBI_INVALID, "surface spacing is %g m; it must be > 0", spacing);
+    if (dimension != 2 && dimension != 3)
+        return tobi_fail(err, TOBI_INVALID, "dimension is %d; allowed are 2 and 3", dimension);
+    return dimension == 2 ? build_section(mesh, spacing, out, err) : build_triangles(mesh, spacing, out, err);
+}
+
+/* --- moving ------------------------------------------------------------------------------- */
+
+static void update_part(const tobi_surface *s, int64_t i, const double *const x[3], double middle[3],
+                        double normal[3], double *area)
+{
+    double ab[3], ac[3];
+    vec3_sub(ab, x[1], x[0]);
+    vec3_sub(ac, x[2], x[0]);
+    vec3_cross(normal, ab, ac);
+    *area = 0.5*vec3_length(normal)*s->fraction[i];
+    vec3_normalize(normal);
+    place_point(middle, s->a[i], x);
+}
+
+static void update_line(const tobi_surface *s, int64_t i, const double *const x[3], double middle[3],
+                        double normal[3], double *length)
+{
+    double from[3], to[3];
+    place_point(from, s->a[i], x);
+    place_point(to, s->b[i], x);
+    normal[0] = to[1] - from[1];
+    normal[1] = from[0] - to[0];
+    normal[2] = 0;
+    *length = vec3_length(normal);
+    vec3_normalize(normal);
+    for (int k = 0; k < 2; k++) middle[k] = 0.5*(from[k] + to[k]);
+    middle[2] = 0;
+}
+
+void tobi_surface_update(const tobi_surface *s, const double (*vertices)[3], const int32_t (*triangles)[3],
+                         double (*position)[3], double (*normal)[3], double *area)
+{
+#pragma omp parallel for schedule(static) if (s->count > 4096)
+    for (int64_t i = 0; i < s->count; i++) {
+        const int32_t *t = triangles[s->triangle[i]];
+        const double *x[3] = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+        double middle[3], n[3], weight;
+        if (s->dimension == 2) update_line(s, i, x, middle, n, &weight);
+        else update_part(s, i, x, middle, n, &weight);
+        if (position) memcpy(position[i], middle, sizeof middle);
+        if (normal) memcpy(normal[i], n, sizeof n);
+        if (area) area[i] = weight;
+    }
+}
+
+void tobi_surface_interpolate(const tobi_surface *s, const int32_t (*triangles)[3],
+                              const double (*vertex_values)[3], double (*out)[3])
+{
+#pragma omp parallel for schedule(static) if (s->count > 4096)
+    for (int64_t i = 0; i < s->count; i++) {
+        const int32_t *t = triangles[s->triangle[i]];
+        const double *x[3] = {vertex_values[t[0]], vertex_values[t[1]], vertex_values[t[2]]};
+        place_point(out[i], s->a[i], x);
+        if (s->dimension == 3) continue;
+        double end[3];
+        place_point(end, s->b[i], x);
+        for (int k = 0; k < 2; k++) out[i][k] = 0.5*(out[i][k] + end[k]);
+        out[i][2] = 0;
+    }
+}
