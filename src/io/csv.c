@@ -1,0 +1,247 @@
+#define _GNU_SOURCE 1
+#include "io/csv.h"
+#include "io/file.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct tobi_csv {
+    char    *path;
+    int      fd;
+    int      digits, columns;
+    int      filled;         /* values in the row so far */
+    char    *row;            /* its text */
+    size_t   length, room;
+    int      no_memory;
+    locale_t plain;          /* "C", for numbers */
+};
+
+static void append(tobi_csv *csv, const char *text, size_t bytes)
+{
+    if (csv->length + bytes > csv->room) {
+        size_t room = 2*(csv->length + bytes) + 256;
+        char *row = realloc(csv->row, room);
+        if (!row) {
+            csv->no_memory = 1;
+            return;
+        }
+        csv->row = row;
+        csv->room = room;
+    }
+    memcpy(csv->row + csv->length, text, bytes);
+    csv->length += bytes;
+}
+
+static void append_value(tobi_csv *csv, const char *text, size_t bytes)
+{
+    if (csv->filled++ > 0) append(csv, ",", 1);
+    append(csv, text, bytes);
+}
+
+/* A snprintf with a decimal point whatever the host program's locale. */
+void tobi_csv_add_real(tobi_csv *csv, double value)
+{
+    char text[40];
+    locale_t before = uselocale(csv->plain);
+    int n = isnan(value) ? snprintf(text, sizeof text, "nan")
+                         : snprintf(text, sizeof text, "%.*g", csv->filled == 0 ? 17 : csv->digits, value);
+    uselocale(before);
+    append_value(csv, text, (size_t)n);
+}
+
+void tobi_csv_add_int(tobi_csv *csv, int64_t value)
+{
+    char text[24];
+    int n = snprintf(text, sizeof text, "%" PRId64, value);
+    append_value(csv, text, (size_t)n);
+}
+
+void tobi_csv_add_text(tobi_csv *csv, const char *value)
+{
+    if (value[strcspn(value, ",\"\r\n")] == '\0') {
+        append_value(csv, value, strlen(value));
+        return;
+    }
+    append_value(csv, "\"", 1);
+    for (const char *at = value; *at; at++) append(csv, *at == '"' ? "\"\"" : at, *at == '"' ? 2 : 1);
+    append(csv, "\"", 1);
+}
+
+/* One write per row; after a failure the file is cut back to whole rows. */
+static tobi_status write_row(tobi_csv *csv, tobi_error *err)
+{
+    off_t end = lseek(csv->fd, 0, SEEK_END);
+    size_t done = 0;
+    int code = end < 0 ? errno : 0;
+    while (!code && done < csv->length) {
+        ssize_t n = write(csv->fd, csv->row + done, csv->length - done);
+        if (n > 0) done += (size_t)n;
+        else if (n == 0) code = ENOSPC;
+        else if (errno != EINTR) code = errno;
+    }
+    csv->length = 0;
+    if (!code) return TOBI_OK;
+    if (done > 0 && ftruncate(csv->fd, end) != 0) done = 0;   /* tobi_csv_open drops the torn line */
+    return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(code));
+}
+
+tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err)
+{
+    int filled = csv->filled, no_memory = csv->no_memory;
+    csv->filled = csv->no_memory = 0;
+    if (no_memory || filled != csv->columns) csv->length = 0;
+    if (filled != csv->columns)
+        return tobi_fail(err, TOBI_INVALID, "%s: a row of %d values in a table of %d columns", csv->path, filled, csv->columns);
+    append(csv, "\n", 1);
+    if (no_memory || csv->no_memory) {
+        csv->length = 0;
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
+    }
+    return write_row(csv, err);
+}
+
+static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
+{
+    for (int i = 0; i < csv->columns; i++) {
+        const char *unit = columns[i].unit;
+        char text[256];
+        if (unit && unit[0] && strcmp(unit, "1") != 0) snprintf(text, sizeof text, "%s [%s]", columns[i].name, unit);
+        else snprintf(text, sizeof text, "%s", columns[i].name);
+        tobi_csv_add_text(csv, text);
+    }
+}
+
+/* Reads a whole file; *text is the caller's. */
+static tobi_status read_all(int fd, const char *path, char **text, size_t *bytes, tobi_error *err)
+{
+    struct stat info;
+    *text = NULL;
+    *bytes = 0;
+    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+    char *all = malloc((size_t)info.st_size + 1);
+    if (!all) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
+    while (*bytes < (size_t)info.st_size) {
+        ssize_t n = pread(fd, all + *bytes, (size_t)info.st_size - *bytes, (off_t)*bytes);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) {
+            int code = errno;
+            free(all);
+            return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
+        }
+        if (n == 0) break;
+        *bytes += (size_t)n;
+    }
+    all[*bytes] = '\0';
+    *text = all;
+    return TOBI_OK;
+}
+
+/* Length of the line at text with its newline; 0 if it has no end. Newlines in quotes belong to it. */
+static size_t line_length(const char *text, size_t bytes)
+{
+    int quoted = 0;
+    for (size_t i = 0; i < bytes; i++) {
+        if (text[i] == '"') quoted = !quoted;
+        else if (text[i] == '\n' && !quoted) return i + 1;
+    }
+    return 0;
+}
+
+/* Compares the header and drops a torn last line. *empty: there is nothing to continue. */
+static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
+{
+    char *text;
+    size_t bytes, end = 0, n;
+    TOBI_TRY(read_all(csv->fd, csv->path, &text, &bytes, err));
+    size_t header = line_length(text, bytes);
+    while ((n = line_length(text + end, bytes - end)) > 0) end += n;
+    tobi_status status = TOBI_OK;
+    if (header > 0 && (header != csv->length || memcmp(text, csv->row, header) != 0))
+        status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes: %.*s", csv->path,
+                           header < 400 ? (int)header - 1 : 400, text);
+    else if (end < bytes && ftruncate(csv->fd, (off_t)end) != 0)
+        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
+    *empty = header == 0;
+    free(text);
+    return status;
+}
+
+static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode, tobi_error *err)
+{
+    int empty = 1;
+    csv->fd = open(csv->path, O_RDWR | O_CREAT | O_CLOEXEC | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
+    if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
+    add_header(csv, columns);
+    append(csv, "\n", 1);
+    if (csv->no_memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
+    csv->filled = 0;
+    if (mode == TOBI_CSV_APPEND) TOBI_TRY(continue_table(csv, &empty, err));
+    if (empty) return write_row(csv, err);
+    csv->length = 0;
+    return TOBI_OK;
+}
+
+tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, const tobi_csv_column *columns,
+                          int column_count, tobi_csv **csv, tobi_error *err)
+{
+    *csv = NULL;
+    if (column_count < 1 || digits < 1 || digits > 17)
+        return tobi_fail(err, TOBI_INVALID, "%s: a table of %d columns with %d digits", path, column_count, digits);
+    tobi_csv *c = calloc(1, sizeof *c);
+    if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
+    c->fd = -1;
+    c->path = strdup(path);
+    c->plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    c->digits = digits;
+    c->columns = column_count;
+    tobi_status status = !c->path || !c->plain ? tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path)
+                                               : start_table(c, columns, mode, err);
+    if (status == TOBI_OK) *csv = c;
+    else tobi_csv_close(c);
+    return status;
+}
+
+void tobi_csv_close(tobi_csv *csv)
+{
+    if (!csv) return;
+    if (csv->fd >= 0) close(csv->fd);
+    if (csv->plain) freelocale(csv->plain);
+    free(csv->path);
+    free(csv->row);
+    free(csv);
+}
+
+/* Whether the row at text starts with a number that is at most time. */
+static int keeps_row(const char *text, double time, locale_t plain)
+{
+    char *end;
+    double value = strtod_l(text, &end, plain);
+    return end != text && (*end == ',' || *end == '\n' || *end == '\r') && value <= time;
+}
+
+tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+    char *text;
+    size_t bytes, n;
+    tobi_status status = read_all(fd, path, &text, &bytes, err);
+    close(fd);
+    TOBI_TRY(status);
+    tobi_file file;
+    status = tobi_file_open(&file, path, err);
+    if (status == TOBI_OK) {
+        for (size_t at = 0; (n = line_length(text + at, bytes - at)) > 0; at += n)
+            if (at == 0 || keeps_row(text + at, time, file.plain)) tobi_file_write(&file, text + at, n);
+        status = tobi_file_commit(&file, err);
+    }
+    free(text);
+    return status;
+}

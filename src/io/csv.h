@@ -1,0 +1,36 @@
+/* Tables that grow row by row: history.csv, bodies.csv.
+
+   Each row reaches the file in one write, so that a killed run leaves whole rows (a torn last line is dropped
+   when the table is opened again). The first column is always written with 17 digits, because resuming
+   compares it; texts are quoted as RFC 4180 says. Numbers have a decimal point in every locale; what is not
+   finite is written as nan, inf, -inf. */
+#pragma once
+#include "base/error.h"
+
+typedef struct tobi_csv tobi_csv;
+
+typedef struct tobi_csv_column {
+    const char *name;
+    const char *unit;   /* "m/s": the header says "name [m/s]"; NULL, "" or "1" = no unit */
+} tobi_csv_column;
+
+typedef enum tobi_csv_mode {
+    TOBI_CSV_NEW,       /* replaces a file that is there                                           */
+    TOBI_CSV_APPEND     /* continues; TOBI_INVALID if its header differs. No file or no header yet: as new */
+} tobi_csv_mode;
+
+/* Digits of real numbers after the first column: 9 or 17. TOBI_IO, TOBI_NO_MEMORY, TOBI_INVALID. */
+tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, const tobi_csv_column *columns,
+                          int column_count, tobi_csv **csv, tobi_error *err);
+void tobi_csv_add_real(tobi_csv *csv, double value);
+void tobi_csv_add_int(tobi_csv *csv, int64_t value);
+void tobi_csv_add_text(tobi_csv *csv, const char *value);
+/* Writes the row. TOBI_INVALID if it has not one value per column (the row is dropped); TOBI_IO if the disk
+   refuses, and then the file ends with the row before. */
+tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err);
+/* NULL is fine. */
+void tobi_csv_close(tobi_csv *csv);
+
+/* Drops the rows whose first column is greater than `time`, or not a number, and a torn last line. The file
+   is replaced in one stroke; a missing file is TOBI_NOT_FOUND. */
+tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err);
