@@ -1,0 +1,387 @@
+/* Lattice points inside a body.
+
+   Lines along z (2-D: along y) through a lattice four times finer in the other directions are cut
+   with the mesh once; every shift of the body's lattice by quarters of its spacing is then counted
+   from the same cuts, without testing a single point. Lines are cut by the half-open rule of polygon
+   filling (an edge's upper end is not part of it), each edge always from its lower-numbered vertex,
+   so a line through an edge or a vertex is still cut an even number of times. */
+#include "geom/sample.h"
+#include "geom/massprops.h"
+#include "geom/section.h"
+#include "geom/vec3.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { FINE = 4 };                /* shifts per axis                                               */
+#define MAX_LINES 400000000LL
+#define GOOD 0.005                /* relative volume error that needs no better lattice            */
+#define ALLOWED 0.01
+
+typedef struct cut {
+    double at;                    /* along the line, from the middle                               */
+    int turn;                     /* +1 enters, -1 leaves                                          */
+} cut;
+
+/* Lines of one pose of the mesh. Line (i, j) runs through x = middle + i fine, y = middle + j fine. */
+typedef struct lines {
+    double fine, middle[3];
+    int64_t low[2], size[2];      /* range of i and j; 2-D: one j                                  */
+    int64_t *start;               /* offsets into cuts, size[0] size[1] + 1                        */
+    cut *cuts;
+    int dimension;
+} lines;
+
+/* Sums over the points of one shift. */
+typedef struct moments {
+    double count, first[3], second[3];
+} moments;
+
+static void free_lines(lines *l)
+{
+    free(l->start);
+    free(l->cuts);
+}
+
+static int64_t line_index(const lines *l, int64_t i, int64_t j)
+{
+    return (i - l->low[0])*l->size[1] + j - l->low[1];
+}
+
+/* Files a cut (pass 1), or only counts it (pass 0). */
+static void add_cut(lines *l, int pass, int64_t line, double at, int turn)
+{
+    if (pass == 0) l->start[line + 2]++;
+    else l->cuts[l->start[line + 1]++] = (cut){at, turn};
+}
+
+/* Where the row y cuts the edge from p to q, which it straddles: x and z. */
+static void cut_edge(const double p[3], const double q[3], double y, double out[2])
+{
+    double s = (y - p[1])/(q[1] - p[1]);
+    out[0] = p[0] + s*(q[0] - p[0]);
+    out[1] = p[2] + s*(q[2] - p[2]);
+}
+
+/* Cuts the lines of one row that meet a triangle (corners relative to the middle). */
+static void cut_row(lines *l, int pass, double corner[3][3], const int32_t t[3], int64_t j)
+{
+    double y = (double)j*l->fine, rise[2] = {0}, fall[2] = {0};
+    int found = 0;
+    for (int k = 0; k < 3; k++) {
+        int next = (k + 1) % 3;
+        int up = corner[k][1] <= y && corner[next][1] > y, down = corner[next][1] <= y && corner[k][1] > y;
+        if (!up && !down) continue;
+        int from = t[k] < t[next] ? k : next, to = from == k ? next : k;
+        cut_edge(corner[from], corner[to], y, up ? rise : fall);
+        found++;
+    }
+    if (found != 2 || rise[0] == fall[0]) return;
+    /* a rising edge on the right: seen from +z the triangle runs counter-clockwise and faces up */
+    int turn = rise[0] > fall[0] ? -1 : 1;
+    const double *left = turn < 0 ? fall : rise, *right = turn < 0 ? rise : fall;
+    int64_t i = (int64_t)ceil(left[0]/l->fine) - 1, end = (int64_t)ceil(right[0]/l->fine) + 1;
+    for (; i <= end; i++) {
+        double x = (double)i*l->fine;
+        if (x < left[0] || x >= right[0]) continue;
+        double s = (x - left[0])/(right[0] - left[0]);
+        add_cut(l, pass, line_index(l, i, j), left[1] + s*(right[1] - left[1]), turn);
+    }
+}
+
+static void cut_triangles(lines *l, int pass, const tobi_mesh *mesh)
+{
+    for (int64_t t = 0; t < mesh->triangle_count; t++) {
+        double corner[3][3], low = INFINITY, high = -INFINITY;
+        for (int c = 0; c < 3; c++) {
+            vec3_sub(corner[c], mesh->vertices[mesh->triangles[t][c]], l->middle);
+            low = fmin(low, corner[c][1]);
+            high = fmax(high, corner[c][1]);
+        }
+        int64_t end = (int64_t)floor(high/l->fine);
+        for (int64_t j = (int64_t)ceil(low/l->fine); j <= end; j++)
+            cut_row(l, pass, corner, mesh->triangles[t], j);
+    }
+}
+
+static void cut_pieces(lines *l, int pass, const tobi_section *s)
+{
+    for (int64_t n = 0; n < s->count; n++) {
+        double a[2], b[2];
+        for (int k = 0; k < 2; k++) {
+            a[k] = s->from[n][k] - l->middle[k];
+            b[k] = s->to[n][k] - l->middle[k];
+        }
+        /* the inside lies on the left: a piece running to +x is entered on the way up */
+        int turn = a[0] < b[0] ? 1 : -1;
+        const double *left = turn > 0 ? a : b, *right = turn > 0 ? b : a;
+        int64_t i = (int64_t)ceil(left[0]/l->fine) - 1, end = (int64_t)ceil(right[0]/l->fine) + 1;
+        for (; i <= end; i++) {
+            double x = (double)i*l->fine;
+            if (x < left[0] || x >= right[0]) continue;
+            double f = (x - left[0])/(right[0] - left[0]);
+            add_cut(l, pass, line_index(l, i, 0), left[1] + f*(right[1] - left[1]), turn);
+        }
+    }
+}
+
+static int compare_cuts(const void *a, const void *b)
+{
+    const cut *p = a, *q = b;
+    if (p->at != q->at) return p->at < q->at ? -1 : 1;
+    return q->turn - p->turn;
+}
+
+static tobi_status cut_lines(lines *l, const tobi_mesh *mesh, const tobi_section *section,
+                             double spacing, tobi_error *err)
+{
+    double min[3], max[3];
+    tobi_mesh_box(mesh, min, max);
+    l->dimension = section ? 2 : 3;
+    l->fine = spacing/FINE;
+    for (int k = 0; k < 3; k++) l->middle[k] = section && k == 2 ? 0 : 0.5*(min[k] + max[k]);
+    double estimate = 1;
+    for (int k = 0; k < 2; k++) {
+        double half = section && k ? 0 : 0.5*(max[k] - min[k])/l->fine;
+        estimate *= 2*half + 3;
+        if (!(estimate < (double)MAX_LINES))
+            return tobi_fail(err, TOBI_INVALID, "a body spacing of %g m is too fine for a body of %g x %g x "
+                             "%g m", spacing, max[0] - min[0], max[1] - min[1], max[2] - min[2]);
+        l->low[k] = -(int64_t)half - 2;
+        l->size[k] = section && k ? 1 : 2*((int64_t)half + 2) + 1;
+        if (section && k) l->low[k] = 0;
+    }
+    int64_t n = l->size[0]*l->size[1];
+    l->start = calloc((size_t)n + 2, sizeof *l->start);
+    for (int pass = 0; pass < 2 && l->start; pass++) {
+        if (section) cut_pieces(l, pass, section);
+        else cut_triangles(l, pass, mesh);
+        if (pass) continue;
+        for (int64_t i = 0; i < n; i++) l->start[i + 2] += l->start[i + 1];
+        l->cuts = malloc((size_t)(l->start[n + 1] + 1)*sizeof *l->cuts);
+        if (!l->cuts) break;
+    }
+    if (!l->start || !l->cuts)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory to fill a body at a spacing of %g m", spacing);
+    for (int64_t i = 0; i < n; i++)
+        qsort(l->cuts + l->start[i], (size_t)(l->start[i + 1] - l->start[i]), sizeof *l->cuts, compare_cuts);
+    return TOBI_OK;
+}
+
+/* First lattice number k whose point (FINE k + shift) fine lies at or beyond z. */
+static int64_t first_point(const lines *l, double z, int shift)
+{
+    int64_t k = (int64_t)floor(z/(l->fine*FINE)) - 1;
+    while ((double)(FINE*k + shift)*l->fine < z) k++;
+    return k;
+}
+
+/* Calls for each run [k0, k1) of lattice points of a shift that lies inside on one line. */
+typedef void run_fn(void *to, const double xy[2], int64_t k0, int64_t k1);
+
+static void visit_line(const lines *l, int64_t i, int64_t j, int shift, run_fn *visit, void *to)
+{
+    int64_t line = line_index(l, i, j);
+    double xy[2] = {(double)i*l->fine, (double)j*l->fine};
+    int wound = 0;
+    for (int64_t c = l->start[line]; c + 1 < l->start[line + 1]; c++) {
+        wound += l->cuts[c].turn;
+        if (wound <= 0) continue;
+        int64_t k0 = first_point(l, l->cuts[c].at, shift), k1 = first_point(l, l->cuts[c + 1].at, shift);
+        if (k1 > k0) visit(to, xy, k0, k1);
+    }
+}
+
+/* The lowest number >= low that is shift modulo FINE. */
+static int64_t first_shifted(int64_t low, int shift)
+{
+    int64_t rest = (shift - low) % FINE;
+    return low + (rest < 0 ? rest + FINE : rest);
+}
+
+static void visit_lattice(const lines *l, const int shift[3], run_fn *visit, void *to)
+{
+    int64_t end[2] = {l->low[0] + l->size[0], l->low[1] + l->size[1]};
+    int flat = l->dimension == 2;
+    for (int64_t i = first_shifted(l->low[0], shift[0]); i < end[0]; i += FINE)
+        for (int64_t j = flat ? 0 : first_shifted(l->low[1], shift[1]); j < end[1]; j += FINE)
+            visit_line(l, i, j, shift[2], visit, to);
+}
+
+typedef struct tally {
+    moments m;
+    double fine;
+    int shift, along;             /* along: axis of the lines                                      */
+} tally;
+
+static void count_run(void *to, const double xy[2], int64_t k0, int64_t k1)
+{
+    tally *c = to;
+    double n = (double)(k1 - k0), step = FINE*c->fine;
+    double mean = 0.5*step*(double)(k0 + k1 - 1) + c->shift*c->fine;
+    c->m.count += n;
+    for (int k = 0; k < c->along; k++) {
+        c->m.first[k] += n*xy[k];
+        c->m.second[k] += n*xy[k]*xy[k];
+    }
+    c->m.first[c->along] += n*mean;
+    c->m.second[c->along] += n*(mean*mean + step*step*(n*n - 1)/12);
+}
+
+/* How badly the points of one shift stand for the body: volume first, then second moments and
+   centre against those of all shifts together. Each point stands for its cell, hence the spread. */
+static double score_shift(const lines *l, const moments *m, const moments *all, double volume_error)
+{
+    double cell = l->fine*FINE, score = 2*volume_error + 20*fmax(0, volume_error - GOOD);
+    if (m->count == 0) return INFINITY;
+    for (int k = 0; k < l->dimension; k++) {
+        double mean = m->first[k]/m->count - all->first[k]/all->count;
+        double own = m->second[k]/m->count + cell*cell/12;
+        double whole = all->second[k]/all->count + l->fine*l->fine/12;
+        score += fabs(own/whole - 1)/l->dimension + 0.1*fabs(mean)/sqrt(whole);
+    }
+    return score;
+}
+
+static void decode_shift(int s, int shift[3])
+{
+    shift[0] = s/(FINE*FINE);
+    shift[1] = s/FINE % FINE;
+    shift[2] = s % FINE;
+}
+
+/* The best shift of the lattice for these lines and its relative volume error. */
+static double choose_shift(const lines *l, double volume, int best_shift[3])
+{
+    moments per_shift[FINE*FINE*FINE], all = {0};
+    double cell = pow(l->fine*FINE, l->dimension), best = INFINITY, best_error = INFINITY;
+    for (int s = 0; s < FINE*FINE*FINE; s++) {
+        int shift[3];
+        decode_shift(s, shift);
+        per_shift[s] = (moments){0};
+        if (l->dimension == 2 && shift[1]) continue;
+        tally c = {.fine = l->fine, .shift = shift[2], .along = l->dimension - 1};
+        visit_lattice(l, shift, count_run, &c);
+        per_shift[s] = c.m;
+        all.count += c.m.count;
+        for (int k = 0; k < 3; k++) {
+            all.first[k] += c.m.first[k];
+            all.second[k] += c.m.second[k];
+        }
+    }
+    for (int s = 0; s < FINE*FINE*FINE; s++) {
+        double error = fabs(per_shift[s].count*cell/volume - 1);
+        double score = score_shift(l, &per_shift[s], &all, error);
+        /* equal up to rounding: the earlier one, whatever the last bits of this pose */
+        if (!(score < best - 1e-9)) continue;
+        best = score;
+        best_error = error;
+        decode_shift(s, best_shift);
+    }
+    return best_error;
+}
+
+typedef struct writer {
+    const lines *l;
+    double (*points)[3];
+    int64_t count;
+    int shift;
+} writer;
+
+static void write_run(void *to, const double xy[2], int64_t k0, int64_t k1)
+{
+    writer *w = to;
+    int along = w->l->dimension - 1;
+    for (int64_t k = k0; k < k1; k++, w->count++) {
+        double local[3] = {xy[0], xy[1], 0}, *x = w->points[w->count];
+        local[along] = (double)(FINE*k + w->shift)*w->l->fine;
+        for (int c = 0; c < 3; c++) x[c] = w->l->middle[c] + local[c];
+    }
+}
+
+static tobi_status write_points(const lines *l, const int shift[3], double (**points)[3], int64_t *count,
+                                tobi_error *err)
+{
+    tally c = {.fine = l->fine, .shift = shift[2], .along = l->dimension - 1};
+    visit_lattice(l, shift, count_run, &c);
+    writer w = {.l = l, .shift = shift[2], .points = malloc((size_t)(c.m.count + 1)*sizeof *w.points)};
+    if (!w.points)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %.0f body particles", c.m.count);
+    visit_lattice(l, shift, write_run, &w);
+    *points = w.points;
+    *count = w.count;
+    return TOBI_OK;
+}
+
+/* A turned pose of the lattice: the mesh is turned instead, and the points turned back. */
+typedef struct pose {
+    double axis[3], degrees;
+} pose;
+
+/* Upright first; then angles without a simple relation to each other or to right angles. */
+static const pose poses[] = {
+    {{0, 0, 1}, 0},      {{1, 2, 3}, 37.3},   {{3, 1, -2}, 29.1}, {{-2, 3, 1}, 53.9}, {{1, -3, 2}, 41.7},
+    {{2, 1, 1}, 19.4},   {{1, 3, -1}, 61.2},  {{3, -1, 1}, 23.6}, {{1, 1, 2}, 47.8},
+};
+static const pose flat_poses[] = {
+    {{0, 0, 1}, 0},      {{0, 0, 1}, 31.7},   {{0, 0, 1}, 17.3},  {{0, 0, 1}, 26.2},  {{0, 0, 1}, 39.4},
+    {{0, 0, 1}, 11.9},   {{0, 0, 1}, 34.6},   {{0, 0, 1}, 22.8},  {{0, 0, 1}, 14.1},
+};
+enum { POSES = sizeof poses/sizeof *poses };
+
+static const double no_scale[3] = {1, 1, 1}, no_translation[3] = {0, 0, 0};
+
+/* Finds the best shift in one pose; writes the points too if asked. */
+static tobi_status try_pose(const tobi_mesh *mesh, const pose *p, double spacing, int dimension,
+                            double *error, double (**points)[3], int64_t *count, tobi_error *err)
+{
+    tobi_mesh turned;
+    tobi_section section = {0};
+    tobi_massprops whole;
+    lines l = {0};
+    int shift[3] = {0, 0, 0};
+    TOBI_TRY(tobi_mesh_copy(mesh, &turned, err));
+    tobi_status status = tobi_mesh_transform(&turned, no_scale, p->axis, p->degrees, no_translation, err);
+    if (status == TOBI_OK)
+        status = (dimension == 2 ? tobi_massprops_section : tobi_massprops_volume)(&turned, &whole, err);
+    if (status == TOBI_OK && dimension == 2) status = tobi_section_cut(&turned, &section, err);
+    if (status == TOBI_OK)
+        status = cut_lines(&l, &turned, dimension == 2 ? &section : NULL, spacing, err);
+    if (status == TOBI_OK) *error = choose_shift(&l, whole.volume, shift);
+    if (status == TOBI_OK && points) {
+        status = write_points(&l, shift, points, count, err);
+        tobi_mesh cloud = {.vertex_count = *count, .vertices = *points};
+        if (status == TOBI_OK)
+            status = tobi_mesh_transform(&cloud, no_scale, p->axis, -p->degrees, no_translation, err);
+    }
+    free_lines(&l);
+    tobi_section_free(&section);
+    tobi_mesh_free(&turned);
+    return status;
+}
+
+tobi_status tobi_sample_volume(const tobi_mesh *mesh, const tobi_bvh *bvh, double spacing, int dimension,
+                               double (**points)[3], int64_t *count, tobi_error *err)
+{
+    (void)bvh;
+    *points = NULL;
+    *count = 0;
+    if (!(spacing > 0) || !isfinite(spacing))
+        return tobi_fail(err, TOBI_INVALID, "body spacing is %g m; it must be > 0", spacing);
+    if (dimension != 2 && dimension != 3)
+        return tobi_fail(err, TOBI_INVALID, "dimension is %d; allowed are 2 and 3", dimension);
+    const pose *list = dimension == 2 ? flat_poses : poses;
+    double best = INFINITY;
+    int chosen = 0;
+    for (int i = 0; i < POSES && best > (i == 1 ? ALLOWED : GOOD); i++) {
+        double error = INFINITY;
+        TOBI_TRY(try_pose(mesh, &list[i], spacing, dimension, &error, NULL, NULL, err));
+        if (error < best) {
+            best = error;
+            chosen = i;
+        }
+    }
+    if (isinf(best))
+        return tobi_fail(err, TOBI_INVALID, "no particle fits into the body at a spacing of %g m; choose a "
+                         "smaller one", spacing);
+    return try_pose(mesh, &list[chosen], spacing, dimension, &best, points, count, err);
+}
