@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#define REST(p) ((const double (*)[3])(p))
 #define PI 3.14159265358979323846
 
 /* Writes a script to a fresh file; the path lives until the next call. */
@@ -53,7 +54,7 @@ static void expect_bad_at(const char *text, double t, const char *part)
     double points[50][3], moved[50][3];
     for (int i = 0; i < 50; i++)
         for (int a = 0; a < 3; a++) points[i][a] = 0.1 * i + a;
-    tobi_status status = tobi_motion_positions(motion, t, 50, (const double (*)[3])points, moved, &err);
+    tobi_status status = tobi_motion_positions(motion, t, 50, REST(points), moved, &err);
     if (status != TOBI_SCRIPT || !strstr(err.text, part))
         fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
     tobi_motion_free(motion);
@@ -74,14 +75,15 @@ static void test_formulas(void **state)
     tobi_motion_free(m);
 
     /* 90 degrees about z through (1, 0, 0): (1, 2, 3) -> (-1, 0, 3) */
-    assert_int_equal(tobi_motion_rotation((double[3]){ 1, 0, 0 }, (double[3]){ 0, 0, 7 }, 45, &m, &err), TOBI_OK);
+    const double pivot[3] = { 1, 0, 0 }, axis[3] = { 0, 0, 7 }, along[3] = { 0, 0, -2 };
+    assert_int_equal(tobi_motion_rotation(pivot, axis, 45, &m, &err), TOBI_OK);
     assert_int_equal(tobi_motion_positions(m, 2.0, 2, rest, p, &err), TOBI_OK);
     assert_true(fabs(p[0][0] + 1) < 1e-14 && fabs(p[0][1]) < 1e-14 && fabs(p[0][2] - 3) < 1e-14);
     assert_int_equal(tobi_motion_positions(m, 8.0, 2, rest, p, &err), TOBI_OK);   /* one full turn */
     assert_true(p[0][0] == 1 && p[0][1] == 2);
     tobi_motion_free(m);
 
-    assert_int_equal(tobi_motion_oscillation((double[3]){ 0, 0, -2 }, 0.1, 4, 30, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_oscillation(along, 0.1, 4, 30, &m, &err), TOBI_OK);
     assert_int_equal(tobi_motion_positions(m, 0.3, 2, rest, p, &err), TOBI_OK);
     assert_true(fabs(p[0][2] - (3 - 0.1 * sin(2 * PI * 4 * 0.3 + PI / 6))) < 1e-14 && p[0][0] == 1);
     tobi_motion_free(m);
@@ -101,14 +103,16 @@ static void test_script_params_and_place(void **state)
     const char *text = "pivot = params.centre\n"
                        "local s = params.deep.speed[2]\n"
                        "function place(t) return s * t, 0, 0, 0, 0, 2, 90 * t end\n";
-    const char *params = "{\"centre\": [1, 0, 0], \"deep\": {\"speed\": [1, 5.5]}, \"name\": \"x\", \"on\": true}";
+    const char *params = "{\"centre\": [1, 0, 0],"
+                         " \"deep\": {\"speed\": [1, 5.5]}, \"name\": \"x\", \"on\": true}";
     if (load(text, params, &m, &err)) fail_msg("%s", err.text);
     assert_int_equal(tobi_motion_is_rigid(m), 1);
     assert_int_equal(tobi_motion_positions(m, 1.0, 1, rest, p, &err), TOBI_OK);
     assert_true(fabs(p[0][0] - 6.5) < 1e-14 && fabs(p[0][1] - 1) < 1e-14);
     tobi_motion_free(m);
 
-    if (load("function deform(x, y, z, t) return x + t, y * 2, z end", NULL, &m, &err)) fail_msg("%s", err.text);
+    if (load("function deform(x, y, z, t) return x + t, y * 2, z end", NULL, &m, &err))
+        fail_msg("%s", err.text);
     assert_int_equal(tobi_motion_is_rigid(m), 0);
     assert_int_equal(tobi_motion_positions(m, 1.0, 1, rest, p, &err), TOBI_OK);
     assert_true(p[0][0] == 3);
@@ -149,8 +153,8 @@ static void test_mathematics_only(void **state)
     (void)state;
     static const char *const names[] = { "io", "os", "require", "load", "loadstring", "loadfile", "dofile",
         "ffi", "debug", "jit", "package", "module", "getfenv", "setfenv", "rawset", "rawget", "rawequal",
-        "setmetatable", "getmetatable", "pcall", "xpcall", "coroutine", "collectgarbage", "print", "newproxy",
-        "_G", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump", "math.random" };
+        "setmetatable", "getmetatable", "pcall", "xpcall", "coroutine", "collectgarbage", "print", "_G",
+        "newproxy", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump", "math.random" };
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char text[200];
         snprintf(text, sizeof text, "if %s ~= nil then error('FOUND') end", names[k]);
@@ -174,7 +178,8 @@ static void test_endless_loops_end(void **state)
     expect_bad("local s = [[ while ]] .. \"do ' \\\" \" while s do end", "endless");
     expect_bad_at("function deform(x, y, z, t) while true do end end", 0, "endless");
     expect_bad_at("function place(t) repeat t = t + 1 until t < 0 return 0, 0, 0 end", 0, "endless");
-    expect_bad_at("function deform(x,y,z,t) if x > 3 then while true do end end return x,y,z end", 0, "endless");
+    expect_bad_at("function deform(x,y,z,t) if x > 3 then while true do end end return x,y,z end",
+                  0, "endless");
 
     tobi_motion *m = NULL;
     tobi_error err = { 0 };
@@ -182,20 +187,21 @@ static void test_endless_loops_end(void **state)
                        "  local k = 0\n"
                        "  while k < 5 or t > 0.5 do k = k + 1 end\n"
                        "  return x + k, y, z\nend";
-    if (load(late, NULL, &m, &err)) fail_msg("%s", err.text);
+    if (load(late, NULL, &m, &err))
+        fail_msg("%s", err.text);
     double rest[500][3] = { { 0 } }, p[500][3];
     for (int step = 0; step < 40; step++) {
-        assert_int_equal(tobi_motion_positions(m, 0.01 * step, 500, (const double (*)[3])rest, p, &err), TOBI_OK);
+        assert_int_equal(tobi_motion_positions(m, 0.01 * step, 500, REST(rest), p, &err), TOBI_OK);
         assert_true(p[499][0] == 5);
     }
     struct timespec a, b;
     clock_gettime(CLOCK_MONOTONIC, &a);
-    assert_int_equal(tobi_motion_positions(m, 0.51, 500, (const double (*)[3])rest, p, &err), TOBI_SCRIPT);
+    assert_int_equal(tobi_motion_positions(m, 0.51, 500, REST(rest), p, &err), TOBI_SCRIPT);
     clock_gettime(CLOCK_MONOTONIC, &b);
     assert_non_null(strstr(err.text, "endless"));
     assert_true((double)(b.tv_sec - a.tv_sec) < 5.0);
     /* and the motion still works afterwards */
-    assert_int_equal(tobi_motion_positions(m, 0.2, 500, (const double (*)[3])rest, p, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_positions(m, 0.2, 500, REST(rest), p, &err), TOBI_OK);
     tobi_motion_free(m);
 }
 
@@ -219,7 +225,8 @@ static void test_guards_keep_the_meaning(void **state)
         "function deform(x, y, z, t) return n, add(o:f(1, 2, 3), #s), g(7) end\n";
     tobi_motion *m = NULL;
     tobi_error err = { 0 };
-    if (load(text, NULL, &m, &err)) fail_msg("%s", err.text);
+    if (load(text, NULL, &m, &err))
+        fail_msg("%s", err.text);
     const double rest[1][3] = { { 0 } };
     double p[1][3];
     assert_int_equal(tobi_motion_positions(m, 0, 1, rest, p, &err), TOBI_OK);
@@ -243,16 +250,17 @@ static void test_compiled_equals_interpreted(void **state)
     srand(3);
     for (int i = 0; i < N; i++)
         for (int a = 0; a < 3; a++) rest[i][a] = (double)rand() / RAND_MAX;
-    if (load(text, NULL, &m, &err)) fail_msg("%s", err.text);
+    if (load(text, NULL, &m, &err))
+        fail_msg("%s", err.text);
     for (int k = 0; k < 3; k++)
-        assert_int_equal(tobi_motion_positions(m, 0.1, N, (const double (*)[3])rest, batch, &err), TOBI_OK);
+        assert_int_equal(tobi_motion_positions(m, 0.1, N, REST(rest), batch, &err), TOBI_OK);
     for (int i = 0; i < N; i++) {
         double one[1][3];
         if (i % 20 == 0) {
             tobi_motion_free(fresh);
             if (load(text, NULL, &fresh, &err)) fail_msg("%s", err.text);
         }
-        assert_int_equal(tobi_motion_positions(fresh, 0.1, 1, (const double (*)[3])&rest[i], one, &err), TOBI_OK);
+        assert_int_equal(tobi_motion_positions(fresh, 0.1, 1, REST(&rest[i]), one, &err), TOBI_OK);
         assert_memory_equal(one, batch[i], sizeof one);
     }
     tobi_motion_free(m);

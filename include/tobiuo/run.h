@@ -1,0 +1,68 @@
+/* Recording a run: steps a world and leaves its results in a directory.
+
+   DIR/resolved.json            the scene with every default explicit (what the caller handed over)
+   DIR/history.csv              one row per output: clock, solver, walls, energies, losses
+   DIR/bodies.csv               one row per output and body: pose, rates, forces and torques
+   DIR/fluid.pvd, fluid/        the fluid's particles, VTU per output
+   DIR/bodies.pvd, bodies/      the bodies' particles
+   DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
+   DIR/frames/                  pictures, if asked
+   DIR/checkpoints/             the last two states and the recorder's place in the files
+   DIR/summary.json             totals
+
+   Output k happens at the time k interval exactly, the first at 0. Every file but the two tables
+   appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
+   its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
+   resume equal those of one run, byte for byte (except the wall clock times of summary.json). */
+#ifndef TOBIUO_RUN_H
+#define TOBIUO_RUN_H
+#include "tobiuo/tobiuo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tobi_run tobi_run;
+
+/* Starts recording into dir, which is made with its parents if missing. Starts the world (see
+   tobi_world_start) and writes the output at time 0. The world stays the caller's and must outlive
+   the run; output is copied. resolved_json may be NULL (then no resolved.json and no resume by the
+   command line). TOBI_INVALID if dir holds results and force is 0; with force, the files that a
+   run writes are removed first, and nothing else. TOBI_INVALID for an unknown name in
+   output->fields. TOBI_IO if dir cannot be written or another run is writing to it. */
+TOBI_API tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
+                                     int force, const char *resolved_json, tobi_run **run,
+                                     tobi_error *err);
+
+/* Goes on with the run in dir: loads its last whole checkpoint into the world (made by the same
+   definitions, not started) and cuts the tables and series back to that time. Without any checkpoint
+   the run begins again at time 0. TOBI_NOT_FOUND if dir holds no run, TOBI_DAMAGED if there are
+   checkpoints and none is whole. */
+TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
+                                     tobi_run **run, tobi_error *err);
+
+/* What tobi_run_resume found worth telling ("resumed at ..."), "" if nothing. Owned by the run. */
+TOBI_API const char *tobi_run_note(const tobi_run *run);
+
+/* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
+   NULL. When `end` is a multiple of the interval to within rounding, that multiple is the end. */
+TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err);
+/* 1 when the world has reached `end`. */
+TOBI_API int tobi_run_done(const tobi_run *run, double end);
+
+/* Writes an output now. tobi_run_step does it when it is due; call it only when stepping the world
+   without tobi_run_step, at the times k interval. */
+TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
+/* Writes a checkpoint now; the two newest are kept. Does nothing if the last one is of this step. */
+TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
+
+/* Writes summary.json. outcome: "complete", "interrupted", "diverged" or another word. */
+TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err);
+
+/* Closes the files; NULL is fine. Writes nothing: a run that was not finished stays resumable. */
+TOBI_API void tobi_run_free(tobi_run *run);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

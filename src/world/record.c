@@ -1,0 +1,197 @@
+/* The life of a run: create or resume, step, output, finish. The files are made in record_*.c. */
+#include "world/record.h"
+#include "io/file.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Outputs are due when the clock is this part of an interval before them: only rounding. */
+#define SNAP 1e-9
+
+double tobi_record_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double next_checkpoint_after(const tobi_run *run, double t)
+{
+    double every = run->output.checkpoint_interval;
+    return every > 0.0 ? (floor(t / every * (1.0 + SNAP)) + 1.0) * every : INFINITY;
+}
+
+/* What create and resume share: a run with its directory locked and the world started. */
+static tobi_status open_run(tobi_world *world, const tobi_output_def *output, const char *dir,
+                            tobi_run **out, tobi_error *err)
+{
+    tobi_run *run = calloc(1, sizeof *run);
+    *out = run;
+    if (!run || !(run->dir = strdup(dir))) {
+        free(run);
+        *out = NULL;
+        return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    }
+    run->world = world;
+    run->output = *output;
+    run->lock = -1;
+    run->checkpoint_step = -1;
+    run->begun = tobi_record_clock();
+    if (!(output->interval > 0.0) || !isfinite(output->interval))
+        return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
+    return tobi_record_open_dir(dir, &run->lock, err);
+}
+
+static tobi_status write_text(const char *dir, const char *name, const char *text, tobi_error *err)
+{
+    char *path = tobi_record_path(dir, "%s", name);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    tobi_file file;
+    tobi_status status = tobi_file_open(&file, path, err);
+    if (status == TOBI_OK) {
+        tobi_file_write(&file, text, strlen(text));
+        status = tobi_file_commit(&file, err);
+    }
+    free(path);
+    return status;
+}
+
+/* Results that belong to nobody else: tables from the start, output 0. */
+static tobi_status begin(tobi_run *run, tobi_error *err)
+{
+    TOBI_TRY(tobi_world_start(run->world, err));
+    TOBI_TRY(tobi_series_prepare(run, err));
+    TOBI_TRY(tobi_tables_open(run, false, err));
+    run->next_checkpoint = next_checkpoint_after(run, 0.0);
+    return tobi_run_output(run, err);
+}
+
+static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_error *err)
+{
+    if (tobi_record_has_results(run->dir) && !force)
+        return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
+                         " (choose another directory, or force to replace them)", run->dir);
+    /* A world that cannot start must not cost the old results. */
+    TOBI_TRY(tobi_world_start(run->world, err));
+    TOBI_TRY(tobi_record_clear(run->dir, false, err));
+    if (resolved) TOBI_TRY(write_text(run->dir, "resolved.json", resolved, err));
+    return begin(run, err);
+}
+
+tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
+                            int force, const char *resolved_json, tobi_run **out, tobi_error *err)
+{
+    tobi_run *run = NULL;
+    tobi_status status = open_run(world, output, dir, &run, err);
+    if (status == TOBI_OK) status = create(run, force, resolved_json, err);
+    if (status != TOBI_OK) {
+        tobi_run_free(run);
+        run = NULL;
+    }
+    *out = run;
+    return status;
+}
+
+static tobi_status resume(tobi_run *run, tobi_error *err)
+{
+    bool found = false;
+    TOBI_TRY(tobi_record_clear(run->dir, true, err));
+    TOBI_TRY(tobi_state_load(run, &found, err));
+    if (!found) {
+        snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0", run->dir);
+        return begin(run, err);
+    }
+    TOBI_TRY(tobi_series_prepare(run, err));
+    TOBI_TRY(tobi_tables_open(run, true, err));
+    run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
+    return tobi_series_lists(run, err);
+}
+
+tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
+                            tobi_run **out, tobi_error *err)
+{
+    *out = NULL;
+    if (!tobi_record_has_results(dir))
+        return tobi_fail(err, TOBI_NOT_FOUND, "%s: there is no run to resume", dir);
+    tobi_run *run = NULL;
+    tobi_status status = open_run(world, output, dir, &run, err);
+    if (status == TOBI_OK) status = resume(run, err);
+    if (status != TOBI_OK) {
+        tobi_run_free(run);
+        run = NULL;
+    }
+    *out = run;
+    return status;
+}
+
+const char *tobi_run_note(const tobi_run *run) { return run->note; }
+
+/* The end, moved onto the output time that it means. */
+static double snap_end(const tobi_run *run, double end)
+{
+    double nearest = tobi_record_time(run, llround(end / run->output.interval));
+    return fabs(nearest - end) <= SNAP * run->output.interval ? nearest : end;
+}
+
+static bool reached(const tobi_run *run, double t)
+{
+    return tobi_world_time(run->world) >= t - SNAP * run->output.interval;
+}
+
+int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
+
+tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err)
+{
+    double next = tobi_record_time(run, run->outputs);
+    double target = fmin(next, snap_end(run, end));
+    if (reached(run, target) && !reached(run, next)) return TOBI_OK;
+
+    if (!reached(run, next)) {
+        double before = tobi_record_clock();
+        tobi_step_info now;
+        TOBI_TRY(tobi_world_step(run->world, target - tobi_world_time(run->world), &now, err));
+        run->step_wall += tobi_record_clock() - before;
+        run->particle_steps += (double)now.fluid_particles;
+        tobi_tally_add(&run->since, &now);
+        tobi_tally_add(&run->total, &now);
+        if (info) *info = now;
+    }
+    if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
+    if (tobi_world_time(run->world) >= run->next_checkpoint) TOBI_TRY(tobi_run_checkpoint(run, err));
+    return TOBI_OK;
+}
+
+tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
+{
+    TOBI_TRY(tobi_series_write(run, err));
+    TOBI_TRY(tobi_tables_write(run, err));
+    run->outputs++;
+    run->since = (tobi_tally){ 0 };
+    return TOBI_OK;
+}
+
+tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
+{
+    if (tobi_world_info(run->world)->step == run->checkpoint_step) return TOBI_OK;
+    TOBI_TRY(tobi_state_save(run, err));
+    run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
+    return TOBI_OK;
+}
+
+tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
+{
+    return tobi_summary_write(run, outcome, err);
+}
+
+void tobi_run_free(tobi_run *run)
+{
+    if (!run) return;
+    tobi_csv_close(run->history);
+    tobi_csv_close(run->bodies);
+    if (run->lock >= 0) close(run->lock);
+    free(run->body_file);
+    free(run->dir);
+    free(run);
+}

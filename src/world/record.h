@@ -1,0 +1,90 @@
+/* The recorder's insides, shared by record_*.c. See tobiuo/run.h for what it promises.
+
+   What a resumed run must know besides the world itself is in two tobi_tally and a few totals;
+   record_state.c saves them beside each checkpoint. Everything else follows from the world's time. */
+#pragma once
+#include "base/error.h"
+#include "io/csv.h"
+#include "tobiuo/run.h"
+#include <stdbool.h>
+#include <stdio.h>
+
+/* Sums over steps. */
+typedef struct tobi_tally {
+    int64_t steps;                        /* in the sums below                       */
+    int64_t unconverged;                  /* steps in which a solver ran out of iterations */
+    double density_iterations, divergence_iterations;   /* sums                      */
+    double density_error_mean;            /* sum of the steps' means                 */
+    double density_error_max;             /* largest                                 */
+} tobi_tally;
+
+/* One field to write. */
+typedef struct tobi_record_field {
+    const char *name;                     /* of the world's list                     */
+    int components;
+    int type;                             /* tobi_vtk_type in files                  */
+} tobi_record_field;
+
+enum { TOBI_RECORD_FIELD_LIMIT = 32 };
+
+struct tobi_run {
+    tobi_world *world;
+    tobi_output_def output;               /* fields is not used after creation       */
+    char *dir;
+    int lock;                             /* descriptor of dir, locked               */
+    char note[1024];
+    tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
+    int field_count;
+    char (*body_file)[80];                /* names of the bodies' surface files      */
+
+    tobi_csv *history, *bodies;           /* bodies is NULL without bodies           */
+    int64_t outputs;                      /* written so far = index of the next      */
+    tobi_tally since, total;              /* since the last output; of the run       */
+    double wall, step_wall;               /* s, earlier sessions + this one          */
+    double begun;                         /* s, monotonic clock at the start         */
+    double particle_steps;                /* sum of fluid particles over steps       */
+    int64_t checkpoint_step;              /* of the last checkpoint, -1 = none       */
+    double next_checkpoint;               /* s                                       */
+    int threads;                          /* that the world runs on                  */
+};
+
+/* record_files.c: the directory. */
+/* dir/format..., owned by the caller; NULL without memory. */
+char *tobi_record_path(const char *dir, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Makes dir and its parents, tells whether it holds results, locks it against other runs. */
+tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err);
+bool tobi_record_has_results(const char *dir);
+/* Removes the files a run writes, with `only_parts` only unfinished ones. */
+tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
+tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
+/* Steps of the checkpoints in dir, newest first; at most limit. */
+int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
+
+/* record_tables.c: history.csv and bodies.csv. */
+/* Opens both: new, or continued after the rows up to the world's time. */
+tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
+tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
+void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
+
+/* record_series.c: VTU, VTP, STL, PNG and PVD. */
+tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
+/* The files of output run->outputs, then the lists including it. */
+tobi_status tobi_series_write(tobi_run *run, tobi_error *err);
+/* The lists of outputs 0 .. run->outputs - 1. */
+tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
+
+/* record_state.c: checkpoints. */
+tobi_status tobi_state_save(tobi_run *run, tobi_error *err);
+/* Loads the newest whole checkpoint; *found = false if there is none at all. */
+tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err);
+
+/* record_summary.c */
+tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err);
+
+/* Seconds of a clock that never jumps. */
+double tobi_record_clock(void);
+/* Time of output k. */
+static inline double tobi_record_time(const tobi_run *run, int64_t k)
+{
+    return (double)k * run->output.interval;
+}

@@ -1,0 +1,176 @@
+/* The directory of a run: making, locking, and knowing which files in it are ours.
+
+   Ours is what matches the list of names below. Anything else in the directory is the user's and is
+   never touched. */
+#include "world/record.h"
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SIX "[0-9][0-9][0-9][0-9][0-9][0-9]"
+
+/* Folder, pattern. A file in work has ".part" behind its name. */
+static const struct { const char *folder, *pattern; } ours[] = {
+    { "", "resolved.json" }, { "", "summary.json" }, { "", "history.csv" }, { "", "bodies.csv" },
+    { "", "*.pvd" },
+    { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
+    { "surfaces", "*_" SIX "*.vtp" }, { "surfaces", "*_" SIX "*.stl" },
+    { "frames", "frame_" SIX "*.png" },
+    { "checkpoints", "checkpoint_*.h5" }, { "checkpoints", "checkpoint_*.json" },
+};
+static const char *const folders[] = { "", "fluid", "bodies", "surfaces", "frames", "checkpoints" };
+
+char *tobi_record_path(const char *dir, const char *format, ...)
+{
+    char name[512], *path = NULL;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(name, sizeof name, format, args);
+    va_end(args);
+    return asprintf(&path, "%s/%s", dir, name) < 0 ? NULL : path;
+}
+
+/* 0: not ours; 1: finished; 2: in work. */
+static int classify(const char *folder, const char *name)
+{
+    char stem[300];
+    size_t n = strlen(name);
+    bool part = n > 5 && n < sizeof stem && strcmp(name + n - 5, ".part") == 0;
+    snprintf(stem, sizeof stem, "%.*s", (int)(part ? n - 5 : n), name);
+    for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
+        if (strcmp(ours[k].folder, folder) == 0 && fnmatch(ours[k].pattern, stem, 0) == 0)
+            return part ? 2 : 1;
+    return 0;
+}
+
+static tobi_status make_parents(const char *dir, tobi_error *err)
+{
+    char *path = strdup(dir);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    tobi_status status = TOBI_OK;
+    for (char *p = path + 1;; p++) {
+        if (*p != '/' && *p != '\0') continue;
+        char end = *p;
+        *p = '\0';
+        if (mkdir(path, 0777) != 0 && errno != EEXIST) {
+            status = tobi_fail(err, TOBI_IO, "cannot make the directory %s: %s", path, strerror(errno));
+            break;
+        }
+        *p = end;
+        if (end == '\0') break;
+    }
+    free(path);
+    return status;
+}
+
+tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
+{
+    if (!*dir) return tobi_fail(err, TOBI_INVALID, "the name of the output directory is empty");
+    TOBI_TRY(make_parents(dir, err));
+    int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, strerror(errno));
+    *lock = fd;
+    if (faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0)
+        return tobi_fail(err, TOBI_IO, "cannot write to the directory %s: %s", dir, strerror(errno));
+    if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        return tobi_fail(err, TOBI_IO, "%s: another run is writing to this directory", dir);
+    return TOBI_OK;
+}
+
+/* Calls visit for each of our files in dir; stops at the first that returns false. */
+static void visit_ours(const char *dir, bool (*visit)(void *user, const char *path, int kind), void *user)
+{
+    bool going = true;
+    for (size_t k = 0; going && k < sizeof folders / sizeof *folders; k++) {
+        char *folder = tobi_record_path(dir, "%s", folders[k]);
+        DIR *list = folder ? opendir(folder) : NULL;
+        const struct dirent *entry;
+        while (list && going && (entry = readdir(list))) {
+            int kind = classify(folders[k], entry->d_name);
+            char *path = kind ? tobi_record_path(folder, "%s", entry->d_name) : NULL;
+            if (path) going = visit(user, path, kind);
+            free(path);
+        }
+        if (list) closedir(list);
+        free(folder);
+    }
+}
+
+static bool note_result(void *user, const char *path, int kind)
+{
+    (void)path;
+    *(bool *)user |= kind == 1;
+    return kind != 1;
+}
+
+bool tobi_record_has_results(const char *dir)
+{
+    bool found = false;
+    visit_ours(dir, note_result, &found);
+    return found;
+}
+
+typedef struct clear_job { bool only_parts; tobi_status status; tobi_error *err; } clear_job;
+
+static bool remove_one(void *user, const char *path, int kind)
+{
+    clear_job *job = user;
+    if (job->only_parts && kind != 2) return true;
+    if (unlink(path) == 0 || errno == ENOENT) return true;
+    job->status = tobi_fail(job->err, TOBI_IO, "cannot remove %s: %s", path, strerror(errno));
+    return false;
+}
+
+tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err)
+{
+    clear_job job = { only_parts, TOBI_OK, err };
+    visit_ours(dir, remove_one, &job);
+    if (job.status != TOBI_OK || only_parts) return job.status;
+    for (size_t k = 1; k < sizeof folders / sizeof *folders; k++) {
+        char *folder = tobi_record_path(dir, "%s", folders[k]);
+        if (folder) rmdir(folder);      /* stays if the user keeps something in it */
+        free(folder);
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err)
+{
+    char *path = tobi_record_path(dir, "%s", name);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    tobi_status status = make_parents(path, err);
+    free(path);
+    return status;
+}
+
+static int compare_descending(const void *a, const void *b)
+{
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x < y) - (x > y);
+}
+
+int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit)
+{
+    char *folder = tobi_record_path(dir, "checkpoints");
+    DIR *list = folder ? opendir(folder) : NULL;
+    const struct dirent *entry;
+    int count = 0;
+    while (list && (entry = readdir(list))) {
+        long long step;
+        int end = 0;
+        if (sscanf(entry->d_name, "checkpoint_%lld.h5%n", &step, &end) != 1) continue;
+        if (end == 0 || entry->d_name[end] != '\0' || count == limit) continue;
+        steps[count++] = step;
+    }
+    if (list) closedir(list);
+    free(folder);
+    qsort(steps, (size_t)count, sizeof *steps, compare_descending);
+    return count;
+}

@@ -1,0 +1,194 @@
+/* The files per output: particles, surfaces, pictures, and the lists that give them their times. */
+#include "io/vtk.h"
+#include "world/record.h"
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- names ------------------------------------------------------------------------------------- */
+
+static tobi_status find_field(const char *name, size_t length, tobi_record_field *field)
+{
+    const char *known, *unit;
+    for (int k = 0; (known = tobi_world_field_name(k, &field->components, &unit)); k++) {
+        if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
+        field->name = known;
+        field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64
+                    : strcmp(known, "object_id") == 0 ? TOBI_I32 : TOBI_F32;
+        return TOBI_OK;
+    }
+    return TOBI_NOT_FOUND;
+}
+
+/* Reads "velocity,pressure" into run->field; a name twice counts once. */
+static tobi_status read_fields(tobi_run *run, tobi_error *err)
+{
+    run->field_count = 0;
+    for (const char *p = run->output.fields ? run->output.fields : ""; *p;) {
+        p += strspn(p, ", ");
+        size_t length = strcspn(p, ", ");
+        if (length == 0) break;
+        tobi_record_field field;
+        if (find_field(p, length, &field) != TOBI_OK)
+            return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s'", (int)length, p);
+        p += length;
+        bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
+        for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
+        if (again) continue;
+        if (run->field_count == TOBI_RECORD_FIELD_LIMIT)
+            return tobi_fail(err, TOBI_INVALID, "output.fields: more than %d", TOBI_RECORD_FIELD_LIMIT);
+        run->field[run->field_count++] = field;
+    }
+    return TOBI_OK;
+}
+
+static bool is_taken(const tobi_run *run, int count, const char *name)
+{
+    if (strcmp(name, "fluid") == 0 || strcmp(name, "bodies") == 0) return true;
+    for (int k = 0; k < count; k++)
+        if (strcmp(run->body_file[k], name) == 0) return true;
+    return false;
+}
+
+/* A file name for each body: its own name with odd characters as '_', and a number if taken. */
+static tobi_status name_bodies(tobi_run *run, tobi_error *err)
+{
+    int count = tobi_world_body_count(run->world);
+    run->body_file = calloc((size_t)count + 1, sizeof *run->body_file);
+    if (!run->body_file) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    for (int k = 0; k < count; k++) {
+        char stem[64] = "", name[80];
+        const char *own = tobi_world_body_name(run->world, k);
+        for (size_t n = 0; own[n] && n + 1 < sizeof stem; n++)
+            stem[n] = isalnum((unsigned char)own[n]) || strchr("-_", own[n]) ? own[n] : '_';
+        if (!*stem) strcpy(stem, "body");
+        snprintf(name, sizeof name, "%s", stem);
+        for (int i = 2; is_taken(run, k, name); i++) snprintf(name, sizeof name, "%s_%d", stem, i);
+        strcpy(run->body_file[k], name);
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
+{
+    TOBI_TRY(read_fields(run, err));
+    TOBI_TRY(name_bodies(run, err));
+    TOBI_TRY(tobi_record_make_dir(run->dir, "fluid", err));
+    TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
+    if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
+    if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
+    TOBI_TRY(tobi_record_make_dir(run->dir, "bodies", err));
+    return run->output.surfaces ? tobi_record_make_dir(run->dir, "surfaces", err) : TOBI_OK;
+}
+
+/* --- particles --------------------------------------------------------------------------------- */
+
+/* Turns n doubles into the type they have in files, in a new array. */
+static void *convert(const double *from, int64_t n, int type)
+{
+    void *to = malloc((size_t)n * tobi_type_size((tobi_vtk_type)type) + 1);
+    if (!to) return NULL;
+    if (type == TOBI_F32) for (int64_t i = 0; i < n; i++) ((float *)to)[i] = (float)from[i];
+    else if (type == TOBI_I32) for (int64_t i = 0; i < n; i++) ((int32_t *)to)[i] = (int32_t)from[i];
+    else for (int64_t i = 0; i < n; i++) ((int64_t *)to)[i] = (int64_t)from[i];
+    return to;
+}
+
+/* Reads every chosen field; arrays[k].data is owned by the caller, also after a failure. */
+static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int64_t n,
+                               tobi_vtk_array *arrays, tobi_error *err)
+{
+    for (int k = 0; k < run->field_count; k++) {
+        const tobi_record_field *f = &run->field[k];
+        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
+        arrays[k] = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
+                                      convert(buffer, n * f->components, f->type) };
+        if (!arrays[k].data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    }
+    return TOBI_OK;
+}
+
+static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name, tobi_error *err)
+{
+    int64_t n = tobi_world_count(run->world, set);
+    tobi_vtk_array arrays[TOBI_RECORD_FIELD_LIMIT] = { 0 };
+    char *path = tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
+    double *points = malloc((size_t)n * 3 * sizeof *points + 1);
+    double *buffer = malloc((size_t)n * 3 * sizeof *buffer + 1);
+    tobi_status status = TOBI_OK;
+    if (!path || !points || !buffer) status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, n, err);
+    if (status == TOBI_OK) status = read_arrays(run, set, buffer, n, arrays, err);
+    if (status == TOBI_OK)
+        status = tobi_vtu_write(path, (tobi_compression)run->output.compression, n,
+                                (const double (*)[3])points, arrays, run->field_count, err);
+    for (int k = 0; k < run->field_count; k++) free((void *)arrays[k].data);
+    free(buffer);
+    free(points);
+    free(path);
+    return status;
+}
+
+/* --- surfaces ---------------------------------------------------------------------------------- */
+
+static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
+{
+    tobi_vtk_surface s = { 0 };
+    TOBI_TRY(tobi_world_surface(run->world, body, &s.vertex_count, &s.vertices, &s.triangle_count,
+                                &s.triangles));
+    long long k = (long long)run->outputs;
+    char *vtp = tobi_record_path(run->dir, "surfaces/%s_%06lld.vtp", run->body_file[body], k);
+    char *stl = tobi_record_path(run->dir, "surfaces/%s_%06lld.stl", run->body_file[body], k);
+    tobi_status status = vtp && stl ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (status == TOBI_OK)
+        status = tobi_vtp_write(vtp, (tobi_compression)run->output.compression, &s, err);
+    if (status == TOBI_OK)
+        status = tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
+    free(vtp);
+    free(stl);
+    return status;
+}
+
+/* --- lists ------------------------------------------------------------------------------------- */
+
+/* NAME.pvd for files folder/NAME_000000.extension of the first `count` outputs. */
+static tobi_status write_list(const tobi_run *run, const char *name, const char *folder,
+                              const char *extension, int64_t count, tobi_error *err)
+{
+    enum { ROOM = 128 };
+    tobi_pvd_entry *entries = malloc((size_t)count * sizeof *entries + 1);
+    char (*files)[ROOM] = malloc((size_t)count * sizeof *files + 1);
+    char *path = tobi_record_path(run->dir, "%s.pvd", name);
+    tobi_status status = TOBI_OK;
+    if (!entries || !files || !path) status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    for (int64_t k = 0; status == TOBI_OK && k < count; k++) {
+        snprintf(files[k], ROOM, "%s/%s_%06lld.%s", folder, name, (long long)k, extension);
+        entries[k] = (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[k], .name = name };
+    }
+    if (status == TOBI_OK) status = tobi_pvd_write(path, entries, count, err);
+    free(path);
+    free(files);
+    free(entries);
+    return status;
+}
+
+static tobi_status write_lists(const tobi_run *run, int64_t count, tobi_error *err)
+{
+    int bodies = tobi_world_body_count(run->world);
+    TOBI_TRY(write_list(run, "fluid", "fluid", "vtu", count, err));
+    if (bodies) TOBI_TRY(write_list(run, "bodies", "bodies", "vtu", count, err));
+    for (int b = 0; run->output.surfaces && b < bodies; b++)
+        TOBI_TRY(write_list(run, run->body_file[b], "surfaces", "vtp", count, err));
+    return TOBI_OK;
+}
+
+tobi_status tobi_series_lists(tobi_run *run, tobi_error *err) { return write_lists(run, run->outputs, err); }
+
+tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
+{
+    int bodies = tobi_world_body_count(run->world);
+    TOBI_TRY(write_particles(run, TOBI_FLUID, "fluid", err));
+    if (bodies) TOBI_TRY(write_particles(run, TOBI_BODIES, "bodies", err));
+    for (int b = 0; run->output.surfaces && b < bodies; b++) TOBI_TRY(write_surface(run, b, err));
+    return write_lists(run, run->outputs + 1, err);
+}

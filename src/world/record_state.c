@@ -1,0 +1,155 @@
+/* Checkpoints: the world's state in checkpoint_<step>.h5, the recorder's in checkpoint_<step>.json.
+
+   The small file is written first, so that a state file always has its companion; both appear whole
+   or not at all. The two newest are kept, because the newest may turn out damaged. */
+#include "io/file.h"
+#include "world/record.h"
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { KEEP = 2, LIMIT = 256 };
+
+static char *checkpoint_path(const tobi_run *run, int64_t step, const char *extension)
+{
+    return tobi_record_path(run->dir, "checkpoints/checkpoint_%08lld.%s", (long long)step, extension);
+}
+
+static json_t *tally_to_json(const tobi_tally *t)
+{
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "steps", (json_int_t)t->steps,
+                     "unconverged", (json_int_t)t->unconverged, "density_iterations", t->density_iterations,
+                     "divergence_iterations", t->divergence_iterations,
+                     "density_error_mean", t->density_error_mean, "density_error_max", t->density_error_max);
+}
+
+static bool tally_from_json(json_t *json, tobi_tally *t)
+{
+    json_int_t steps = 0, unconverged = 0;
+    int answer = json_unpack(json, "{s:I, s:I, s:F, s:F, s:F, s:F}", "steps", &steps,
+                             "unconverged", &unconverged, "density_iterations", &t->density_iterations,
+                             "divergence_iterations", &t->divergence_iterations,
+                             "density_error_mean", &t->density_error_mean,
+                             "density_error_max", &t->density_error_max);
+    t->steps = steps;
+    t->unconverged = unconverged;
+    return answer == 0;
+}
+
+static tobi_status write_json(const char *path, const json_t *json, tobi_error *err)
+{
+    char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
+    if (!text || !path) {
+        free(text);
+        return tobi_fail(err, TOBI_NO_MEMORY, "checkpoint: out of memory");
+    }
+    tobi_file file;
+    tobi_status status = tobi_file_open(&file, path, err);
+    if (status == TOBI_OK) {
+        tobi_file_write(&file, text, strlen(text));
+        tobi_file_write(&file, "\n", 1);
+        status = tobi_file_commit(&file, err);
+    }
+    free(text);
+    return status;
+}
+
+static void remove_checkpoint(const tobi_run *run, int64_t step)
+{
+    static const char *const extensions[] = { "h5", "json" };
+    for (int k = 0; k < 2; k++) {
+        char *path = checkpoint_path(run, step, extensions[k]);
+        if (path) unlink(path);
+        free(path);
+    }
+}
+
+static void drop_old(const tobi_run *run, int64_t newest)
+{
+    int64_t steps[LIMIT];
+    int count = tobi_record_checkpoints(run->dir, steps, LIMIT), kept = 0;
+    for (int k = 0; k < count; k++) {
+        /* Steps beyond this one are left from a run that went further before it was cut back. */
+        bool keep = steps[k] <= newest && kept < KEEP;
+        if (keep) kept++;
+        else remove_checkpoint(run, steps[k]);
+    }
+}
+
+tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
+{
+    int64_t step = tobi_world_info(run->world)->step;
+    json_t *json = json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o}", "step", (json_int_t)step,
+                             "time", tobi_world_time(run->world), "outputs", (json_int_t)run->outputs,
+                             "wall_s", run->wall + tobi_record_clock() - run->begun,
+                             "step_wall_s", run->step_wall, "particle_steps", run->particle_steps,
+                             "since_output", tally_to_json(&run->since), "total", tally_to_json(&run->total));
+    char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
+    tobi_status status = write_json(companion, json, err);
+    if (status == TOBI_OK)
+        status = state ? tobi_world_save(run->world, state, err)
+                       : tobi_fail(err, TOBI_NO_MEMORY, "checkpoint: out of memory");
+    json_decref(json);
+    free(companion);
+    free(state);
+    if (status != TOBI_OK) return status;
+    run->checkpoint_step = step;
+    drop_old(run, step);
+    return TOBI_OK;
+}
+
+/* The recorder's part; it must fit the world's, which is loaded already. */
+static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *err)
+{
+    json_error_t where;
+    json_t *json = json_load_file(path, 0, &where);
+    json_t *since = NULL, *total = NULL;
+    json_int_t outputs = 0;
+    double time = NAN;
+    bool good = json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o}", "time", &time, "outputs", &outputs,
+                            "wall_s", &run->wall, "step_wall_s", &run->step_wall,
+                            "particle_steps", &run->particle_steps, "since_output", &since,
+                            "total", &total) == 0;
+    good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total);
+    run->outputs = outputs;
+    json_decref(json);
+    if (!good) return tobi_fail(err, TOBI_DAMAGED, "%s: damaged or missing", path);
+    if (time != tobi_world_time(run->world) || outputs < 1)
+        return tobi_fail(err, TOBI_DAMAGED, "%s: does not belong to its checkpoint", path);
+    return TOBI_OK;
+}
+
+static tobi_status load_one(tobi_run *run, int64_t step, tobi_error *err)
+{
+    char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
+    tobi_status status = companion && state ? TOBI_OK
+                                            : tobi_fail(err, TOBI_NO_MEMORY, "checkpoint: out of memory");
+    if (status == TOBI_OK) status = tobi_world_load(run->world, state, err);
+    if (status == TOBI_OK) status = read_companion(run, companion, err);
+    free(companion);
+    free(state);
+    return status;
+}
+
+tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
+{
+    int64_t steps[LIMIT];
+    int count = tobi_record_checkpoints(run->dir, steps, LIMIT);
+    tobi_error first = { 0 }, why;
+    *found = count > 0;
+    for (int k = 0; k < count; k++) {
+        tobi_status status = load_one(run, steps[k], &why);
+        if (k == 0 && status != TOBI_OK) first = why;
+        if (status != TOBI_OK && status != TOBI_DAMAGED) return tobi_fail(err, status, "%s", why.text);
+        if (status != TOBI_OK) continue;
+        run->checkpoint_step = steps[k];
+        snprintf(run->note, sizeof run->note, "resumed at t = %.9g s, step %lld%s%.800s",
+                 tobi_world_time(run->world), (long long)steps[k],
+                 k ? "; a newer checkpoint is damaged: " : "", first.text);
+        return TOBI_OK;
+    }
+    if (count == 0) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "no whole checkpoint is left: %.1900s", first.text);
+}

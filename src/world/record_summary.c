@@ -1,0 +1,80 @@
+/* summary.json: the totals of a run, over all its sessions. */
+#include "io/file.h"
+#include "world/record.h"
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+static double mean(double sum, const tobi_tally *t) { return t->steps ? sum / (double)t->steps : 0.0; }
+
+/* JSON has no NaN; a diverged run may have some. */
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static json_int_t peak_rss(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (json_int_t)usage.ru_maxrss * 1024 : 0;
+}
+
+static json_t *make_stages(const tobi_run *run)
+{
+    json_t *stages = json_object();
+    const char *name;
+    double seconds;
+    for (int k = 0; (name = tobi_world_stage(run->world, k, &seconds)); k++)
+        json_object_set_new(stages, name, json_real(seconds));
+    return stages;
+}
+
+/* density_error_mean: mean over steps and particles; density_error_max: largest of any step.
+   particle_steps_per_s counts the time in steps, wall_s everything including files. */
+static json_t *make_summary(const tobi_run *run, const char *outcome)
+{
+    const tobi_tally *t = &run->total;
+    const tobi_step_info *info = tobi_world_info(run->world);
+    char hash[32];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)tobi_world_hash(run->world));
+    double rate = run->step_wall > 0.0 ? run->particle_steps / run->step_wall : 0.0;
+    json_t *json = json_pack("{s:s, s:s, s:I, s:o, s:o, s:o, s:I, s:I, s:o}",
+        "version", tobi_version(), "outcome", outcome, "steps", (json_int_t)t->steps,
+        "time", number(tobi_world_time(run->world)),
+        "wall_s", number(run->wall + tobi_record_clock() - run->begun),
+        "step_wall_s", number(run->step_wall),
+        "fluid_particles", (json_int_t)tobi_world_count(run->world, TOBI_FLUID),
+        "body_particles", (json_int_t)tobi_world_count(run->world, TOBI_BODIES),
+        "particle_steps_per_s", number(rate));
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:i, s:I, s:s, s:o}",
+        "density_iterations_mean", number(mean(t->density_iterations, t)),
+        "divergence_iterations_mean", number(mean(t->divergence_iterations, t)),
+        "density_error_mean", number(mean(t->density_error_mean, t)),
+        "density_error_max", number(t->density_error_max),
+        "unconverged_steps", (json_int_t)t->unconverged,
+        "particles_lost", (json_int_t)info->particles_lost,
+        "world_bytes", (json_int_t)tobi_world_bytes(run->world), "peak_rss_bytes", peak_rss(),
+        "threads", run->threads, "outputs", (json_int_t)run->outputs, "state_hash", hash,
+        "stages_s", make_stages(run));
+    if (json && more) json_object_update(json, more);
+    json_decref(more);
+    return json;
+}
+
+tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err)
+{
+    json_t *json = make_summary(run, outcome);
+    char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) : NULL;
+    char *path = tobi_record_path(run->dir, "summary.json");
+    tobi_status status = text && path ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "summary: out of memory");
+    tobi_file file;
+    if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
+    if (status == TOBI_OK) {
+        tobi_file_write(&file, text, strlen(text));
+        tobi_file_write(&file, "\n", 1);
+        status = tobi_file_commit(&file, err);
+    }
+    json_decref(json);
+    free(text);
+    free(path);
+    return status;
+}

@@ -1,0 +1,125 @@
+/* history.csv and bodies.csv: the columns are lists, so that header and row cannot disagree. */
+#include "world/record.h"
+#include <math.h>
+#include <stdlib.h>
+
+#define DIGITS 9
+
+/* H(column, kind, value): one line per column of history.csv. `i` is the last step's info, `s` the
+   sums since the last output. Means are over the steps since the last output; other values are of
+   the last step. wall_force_ratio: |force of the fluid on the walls| / weight of the fluid. */
+#define HISTORY(H)                                                                  \
+    H("time",                       real, i->time)                                  \
+    H("step",                       int,  i->step)                                  \
+    H("dt",                         real, i->dt)                                    \
+    H("density_iterations",         int,  i->density_iterations)                    \
+    H("density_iterations_mean",    real, mean(s->density_iterations, s))           \
+    H("divergence_iterations",      int,  i->divergence_iterations)                 \
+    H("divergence_iterations_mean", real, mean(s->divergence_iterations, s))        \
+    H("unconverged_steps",          int,  s->unconverged)                           \
+    H("density_error_mean",         real, i->density_error_mean)                    \
+    H("density_error_max",          real, i->density_error_max)                     \
+    H("divergence_mean",            real, i->divergence_mean)                       \
+    H("divergence_max",             real, i->divergence_max)                        \
+    H("pressure_residual",          real, i->pressure_residual)                     \
+    H("wall_force_x",               real, i->wall_force[0])                         \
+    H("wall_force_y",               real, i->wall_force[1])                         \
+    H("wall_force_z",               real, i->wall_force[2])                         \
+    H("weight",                     real, i->weight)                                \
+    H("wall_force_ratio",           real, i->weight > 0.0 ? norm(i->wall_force) / i->weight : 0.0) \
+    H("kinetic_energy",             real, i->kinetic_energy)                        \
+    H("potential_energy",           real, i->potential_energy)                      \
+    H("momentum_x",                 real, i->momentum[0])                           \
+    H("momentum_y",                 real, i->momentum[1])                           \
+    H("momentum_z",                 real, i->momentum[2])                           \
+    H("force_sum",                  real, i->force_sum)                             \
+    H("speed_max",                  real, i->speed_max)                             \
+    H("fluid_particles",            int,  i->fluid_particles)                       \
+    H("particles_lost",             int,  i->particles_lost)                        \
+    H("contacts",                   int,  i->contacts)
+
+/* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those of the
+   fluid on the body, torques about its position (centre of mass). */
+#define V3(B, name, v) B(name "_x", v[0]) B(name "_y", v[1]) B(name "_z", v[2])
+#define BODY(B)                                             \
+    V3(B, "position", b.position)                           \
+    B("orientation_w", b.orientation[0])                    \
+    B("orientation_x", b.orientation[1])                    \
+    B("orientation_y", b.orientation[2])                    \
+    B("orientation_z", b.orientation[3])                    \
+    V3(B, "velocity", b.velocity)                           \
+    V3(B, "angular_velocity", b.angular_velocity)           \
+    V3(B, "pressure_force", b.pressure_force)               \
+    V3(B, "viscous_force", b.viscous_force)                 \
+    V3(B, "pressure_torque", b.pressure_torque)             \
+    V3(B, "viscous_torque", b.viscous_torque)
+
+static double mean(double sum, const tobi_tally *s) { return s->steps ? sum / (double)s->steps : 0.0; }
+
+static double norm(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
+{
+    tally->steps++;
+    tally->unconverged += !info->density_converged || !info->divergence_converged;
+    tally->density_iterations += info->density_iterations;
+    tally->divergence_iterations += info->divergence_iterations;
+    tally->density_error_mean += info->density_error_mean;
+    tally->density_error_max = fmax(tally->density_error_max, info->density_error_max);
+}
+
+static tobi_status open_table(const tobi_run *run, const char *name, bool continued,
+                              const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err)
+{
+    char *path = tobi_record_path(run->dir, "%s", name);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    tobi_status status = TOBI_OK;
+    if (continued) status = tobi_csv_truncate(path, tobi_world_time(run->world), err);
+    if (status == TOBI_OK || status == TOBI_NOT_FOUND)
+        status = tobi_csv_open(path, continued ? TOBI_CSV_APPEND : TOBI_CSV_NEW, DIGITS, columns, count,
+                               csv, err);
+    free(path);
+    return status;
+}
+
+tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
+{
+#define H(column, kind, value) { column, NULL },
+    static const tobi_csv_column history[] = { HISTORY(H) };
+#undef H
+#define B(column, value) { column, NULL },
+    static const tobi_csv_column bodies[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
+#undef B
+    TOBI_TRY(open_table(run, "history.csv", continued, history,
+                        (int)(sizeof history / sizeof *history), &run->history, err));
+    if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
+    return open_table(run, "bodies.csv", continued, bodies, (int)(sizeof bodies / sizeof *bodies),
+                      &run->bodies, err);
+}
+
+static tobi_status write_bodies(tobi_run *run, tobi_error *err)
+{
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        tobi_body_info b;
+        TOBI_TRY(tobi_world_body(run->world, k, &b));
+        tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
+        tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
+#define B(column, value) tobi_csv_add_real(run->bodies, value);
+        BODY(B)
+#undef B
+        TOBI_TRY(tobi_csv_end_row(run->bodies, err));
+    }
+    return TOBI_OK;
+}
+
+/* The history row comes last: a row there says that everything of this output is on disk. */
+tobi_status tobi_tables_write(tobi_run *run, tobi_error *err)
+{
+    const tobi_step_info *i = tobi_world_info(run->world);
+    const tobi_tally *s = &run->since;
+    TOBI_TRY(write_bodies(run, err));
+#define H(column, kind, value) tobi_csv_add_##kind(run->history, value);
+    HISTORY(H)
+#undef H
+    return tobi_csv_end_row(run->history, err);
+}
