@@ -1,0 +1,33 @@
+/* Fills a definition struct from a JSON object by its parameter table. No key of a scene is
+   known here: the tables know them all. */
+#pragma once
+#include "scene/source.h"
+#include "base/param.h"
+
+/* Texts that must outlive the JSON they were made from. */
+typedef struct tobi_texts { struct tobi_text_node *first; } tobi_texts;
+void tobi_texts_free(tobi_texts *texts);
+/* Keeps a malloc'd text (NULL is fine) and returns it. */
+char *tobi_texts_keep(tobi_texts *texts, char *text);
+
+typedef struct tobi_binder {
+    tobi_source *source;
+    tobi_texts *texts;
+    const char *directory;     /* absolute, where relative paths start             */
+    int dimension;             /* 2: vectors may have two components               */
+} tobi_binder;
+
+/* Binds object to def, which must hold the defaults. Keys listed in also (ended by NULL) belong to
+   somebody else. Reports unknown keys, wrong types, values out of range and missing keys; members
+   with a mistake keep their default. Names are borrowed from the JSON. Returns one bit per row that
+   the object gives. */
+uint64_t tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
+                   const tobi_place *place, const char *const *also, void *def);
+/* Whether the row `key` is among the given ones. */
+int tobi_bind_has(const tobi_param_table *table, uint64_t given, const char *key);
+
+/* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip". */
+void tobi_bind_limits(const tobi_param *row, char *text, size_t size);
+
+/* "is a text", "is a number", ... */
+const char *tobi_json_kind(const json_t *value);

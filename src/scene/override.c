@@ -1,0 +1,141 @@
+#define _GNU_SOURCE 1
+#include "scene/override.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Splits "fluids[0].density" into ["fluids", 0, "density"]; NULL if it is not a path. */
+static json_t *split_path(const char *path, size_t length)
+{
+    json_t *steps = json_array();
+    const char *end = path + length;
+    for (const char *c = path; c < end;) {
+        if (*c == '[') {
+            char *stop;
+            long long index = strtoll(c + 1, &stop, 10);
+            if (stop == c + 1 || *stop != ']' || index < 0 || index > TOBI_SOURCE_LIMIT) break;
+            json_array_append_new(steps, json_integer(index));
+            c = stop + 1;
+        } else {
+            if (*c == '.' && c > path) c++;
+            size_t n = strcspn(c, ".[=");
+            if (n == 0 || c + n > end) break;
+            json_array_append_new(steps, json_stringn(c, n));
+            c += n;
+        }
+        if (c == end && json_array_size(steps) > 0 && json_array_size(steps) < 16) return steps;
+    }
+    json_decref(steps);
+    return NULL;
+}
+
+/* The value as JSON; a number written loosely (".008") counts, anything else is a text. */
+static json_t *read_value(const char *text)
+{
+    json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
+    if (value) return value;
+    char *stop;
+    double number = strtod(text, &stop);
+    if (stop != text && *stop == '\0' && isfinite(number)) return json_real(number);
+    return json_string(text);
+}
+
+/* Turns the name of a list's entry into its number. */
+static int find_named(const json_t *list, const char *name)
+{
+    size_t i;
+    json_t *entry;
+    json_array_foreach(list, i, entry) {
+        const char *its = json_string_value(json_object_get(entry, "name"));
+        if (its && strcmp(its, name) == 0) return (int)i;
+    }
+    return -1;
+}
+
+/* Checks step `at` against the container `node` and makes it a number where node is a list. */
+static int settle_step(tobi_source *source, const char *text, json_t *node, json_t *steps, size_t at)
+{
+    json_t *step = json_array_get(steps, at);
+    if (json_is_object(node)) {
+        if (json_is_string(step)) return 1;
+        tobi_report_add(source->report, "--set %s: [%lld] stands where a key must stand", text,
+                        (long long)json_integer_value(step));
+        return 0;
+    }
+    if (!json_is_array(node)) {
+        tobi_report_add(source->report, "--set %s: there is nothing below this value to set", text);
+        return 0;
+    }
+    long long size = (long long)json_array_size(node), index = json_integer_value(step);
+    if (json_is_string(step)) {
+        index = find_named(node, json_string_value(step));
+        if (index < 0) {
+            tobi_report_add(source->report, "--set %s: no entry is named \"%s\"", text,
+                            json_string_value(step));
+            return 0;
+        }
+        json_array_set_new(steps, at, json_integer(index));
+    }
+    if (index < size) return 1;
+    tobi_report_add(source->report, "--set %s: there is no entry [%lld], the list has %lld", text, index, size);
+    return 0;
+}
+
+static json_t *get_child(json_t *node, const json_t *step)
+{
+    return json_is_object(node) ? json_object_get(node, json_string_value(step))
+                                : json_array_get(node, (size_t)json_integer_value(step));
+}
+
+/* Puts value at the end of the path; takes the value over. */
+static int put_value(tobi_source *source, const char *text, json_t *steps, json_t *value)
+{
+    json_t *node = source->root;
+    size_t last = json_array_size(steps) - 1;
+    for (size_t i = 0; i <= last; i++) {
+        if (!settle_step(source, text, node, steps, i)) {
+            json_decref(value);
+            return 0;
+        }
+        json_t *step = json_array_get(steps, i);
+        if (i == last) {
+            if (json_is_object(node)) json_object_set_new(node, json_string_value(step), value);
+            else json_array_set_new(node, (size_t)json_integer_value(step), value);
+            break;
+        }
+        json_t *child = get_child(node, step);
+        if (!child) {
+            child = json_object();
+            json_object_set_new(node, json_string_value(step), child);
+        }
+        node = child;
+    }
+    return 1;
+}
+
+static void apply_one(tobi_source *source, const char *text)
+{
+    const char *equals = strchr(text, '=');
+    json_t *steps = equals ? split_path(text, (size_t)(equals - text)) : NULL;
+    if (!steps) {
+        tobi_report_add(source->report, "--set %s: must be path=value, such as dfsph.support=3 or "
+                        "fluids[0].viscosity=0.1", text);
+        return;
+    }
+    json_t *value = read_value(equals + 1);
+    if (!value) tobi_report_add(source->report, "--set %s: the value is not UTF-8", text);
+    if (value && put_value(source, text, steps, value))
+        source->overrides[source->override_count++] = (tobi_override){ text, steps };
+    else
+        json_decref(steps);
+}
+
+tobi_status tobi_override_apply(tobi_source *source, const char *const *overrides, tobi_error *err)
+{
+    size_t count = 0;
+    while (overrides && overrides[count]) count++;
+    source->overrides = calloc(count + 1, sizeof *source->overrides);
+    if (!source->overrides) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    for (size_t i = 0; i < count; i++) apply_one(source, overrides[i]);
+    return TOBI_OK;
+}

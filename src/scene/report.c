@@ -1,0 +1,104 @@
+#define _GNU_SOURCE 1
+#include "scene/report.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct tobi_report {
+    char **lines;
+    int count;             /* lines stored                    */
+    int capacity;
+    int64_t left_out;      /* counted, not stored             */
+    int no_memory;         /* a line was lost                 */
+};
+
+tobi_report *tobi_report_create(void) { return calloc(1, sizeof(tobi_report)); }
+
+int tobi_report_count(const tobi_report *report) { return report ? report->count : 0; }
+
+const char *tobi_report_line(const tobi_report *report, int line)
+{
+    return report && line >= 0 && line < report->count ? report->lines[line] : NULL;
+}
+
+void tobi_report_free(tobi_report *report)
+{
+    if (!report) return;
+    for (int i = 0; i < report->count; i++) free(report->lines[i]);
+    free(report->lines);
+    free(report);
+}
+
+int tobi_report_full(const tobi_report *report) { return report->count >= TOBI_REPORT_LIMIT; }
+
+static void store_line(tobi_report *report, const char *format, va_list args)
+{
+    if (report->count == report->capacity) {
+        int capacity = report->capacity ? 2*report->capacity : 16;
+        char **lines = realloc(report->lines, (size_t)capacity*sizeof *lines);
+        if (!lines) {
+            report->no_memory = 1;
+            return;
+        }
+        report->lines = lines;
+        report->capacity = capacity;
+    }
+    char *line = NULL;
+    if (vasprintf(&line, format, args) < 0) {
+        report->no_memory = 1;
+        return;
+    }
+    for (char *c = line; *c; c++)
+        if (iscntrl((unsigned char)*c)) *c = '?';      /* no escape sequences on a terminal */
+    report->lines[report->count++] = line;
+}
+
+void tobi_report_add(tobi_report *report, const char *format, ...)
+{
+    if (tobi_report_full(report)) {
+        report->left_out++;
+        return;
+    }
+    va_list args;
+    va_start(args, format);
+    store_line(report, format, args);
+    va_end(args);
+}
+
+static void store_text(tobi_report *report, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    store_line(report, format, args);
+    va_end(args);
+}
+
+void tobi_report_close(tobi_report *report)
+{
+    if (report->left_out)
+        store_text(report, "... and %lld more mistakes", (long long)report->left_out);
+    report->left_out = 0;
+}
+
+tobi_status tobi_report_fail(const tobi_report *report, tobi_error *err)
+{
+    if (report->no_memory || report->count == 0)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the report of a scene's mistakes");
+    if (!err) return TOBI_INVALID;
+    err->status = TOBI_INVALID;
+    size_t used = 0, room = sizeof err->text - 40;     /* leaves place for the last line */
+    int i = 0;
+    for (; i < report->count; i++) {
+        size_t length = strlen(report->lines[i]);
+        if (used + length + 1 > room) break;
+        if (i) err->text[used++] = '\n';
+        memcpy(err->text + used, report->lines[i], length);
+        used += length;
+    }
+    err->text[used] = '\0';
+    if (i < report->count)
+        snprintf(err->text + used, sizeof err->text - used, "%s... and %d more lines", i ? "\n" : "",
+                 report->count - i);
+    return TOBI_INVALID;
+}

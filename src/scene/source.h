@@ -1,0 +1,50 @@
+/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no positions,
+   so a place is found again by walking the text along its path; that costs a scan per mistake and
+   no memory for scenes that have none. */
+#pragma once
+#include "scene/report.h"
+#include <jansson.h>
+
+/* A way through a JSON value, from the leaf up to the root: a linked list on the stack. */
+typedef struct tobi_place {
+    const struct tobi_place *up;   /* NULL: this is the root          */
+    const char *key;               /* key of an object, or NULL       */
+    size_t index;                  /* entry of a list if key is NULL  */
+} tobi_place;
+
+/* Longest path that has a text; longer ones are cut. */
+enum { TOBI_PATH_TEXT = 256, TOBI_SOURCE_LIMIT = 16*1024*1024 };
+
+/* Values that came from the command line and not from the file. */
+typedef struct tobi_override {
+    const char *text;              /* "path=value"                    */
+    json_t *steps;                 /* list of keys and indices        */
+} tobi_override;
+
+typedef struct tobi_source {
+    char *name;                    /* path as given, for messages     */
+    char *text;                    /* comments blanked, NUL at end    */
+    size_t size;
+    json_t *root;                  /* an object                       */
+    tobi_override *overrides;      /* those that were applied         */
+    int override_count;
+    tobi_report *report;           /* borrowed                        */
+} tobi_source;
+
+/* Blanks comments, parses and reports duplicate keys. The text is copied. TOBI_INVALID if it is not
+   a JSON object; the reason is in the report. Clear the source in any case. */
+tobi_status tobi_source_parse(tobi_source *source, const char *name, const char *text, size_t size,
+                              tobi_report *report, tobi_error *err);
+/* Reads a file of at most TOBI_SOURCE_LIMIT bytes; *text is NUL-terminated and owned by the caller. */
+tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err);
+void tobi_source_clear(tobi_source *source);
+
+/* Reports a mistake: "file:line:column: path: message", or "--set path=value: path: message". */
+void tobi_source_mistake(tobi_source *source, const tobi_place *place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* The same at the place of a key instead of its value: for keys that should not be there. */
+void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Writes "fluids[0].density" into text (at least TOBI_PATH_TEXT bytes); "" for the root. */
+void tobi_place_text(const tobi_place *place, char *text);

@@ -1,0 +1,178 @@
+#define _GNU_SOURCE 1
+#include "scene/write.h"
+#include "world/params.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static json_t *write_number(const tobi_param *row, const void *member)
+{
+    double real;
+    int whole;
+    if (row->type == TOBI_PARAM_REAL) {
+        memcpy(&real, member, sizeof real);
+        return real == 0 && row->text ? json_string(row->text) : json_real(real);
+    }
+    memcpy(&whole, member, sizeof whole);
+    return whole == 0 && row->text ? json_string(row->text) : json_integer(whole);
+}
+
+/* "a,b" as ["a", "b"]. */
+static json_t *write_names(const char *names)
+{
+    json_t *list = json_array();
+    for (const char *c = names; *c;) {
+        size_t length = strcspn(c, ",");
+        json_array_append_new(list, json_stringn(c, length));
+        c += length + (c[length] == ',');
+    }
+    return list;
+}
+
+/* NULL for a text that is NULL. */
+static json_t *write_value(const tobi_param *row, const void *member)
+{
+    double v[3];
+    const char *text;
+    int whole, length;
+    switch (row->type) {
+    case TOBI_PARAM_VEC3:
+        memcpy(v, member, sizeof v);
+        return json_pack("[fff]", v[0], v[1], v[2]);
+    case TOBI_PARAM_TEXT:
+        memcpy(&text, member, sizeof text);
+        return !text ? NULL : strcmp(row->unit, "names") == 0 ? write_names(text) : json_string(text);
+    case TOBI_PARAM_CHOICE:
+        memcpy(&whole, member, sizeof whole);
+        text = tobi_choice_word(row->choices, whole, &length);
+        return text ? json_stringn(text, (size_t)length) : NULL;
+    case TOBI_PARAM_BOOL:
+        memcpy(&whole, member, sizeof whole);
+        return json_boolean(whole);
+    default:
+        return write_number(row, member);
+    }
+}
+
+/* Goes down to the object that "a.b.c" belongs to, making what is missing; *last is "c". */
+static json_t *descend(json_t *object, const char *key, const char **last)
+{
+    for (const char *dot; object && (dot = strchr(key, '.')); key = dot + 1) {
+        char name[48];
+        snprintf(name, sizeof name, "%.*s", (int)(dot - key), key);
+        json_t *child = json_object_get(object, name);
+        if (!child) {
+            child = json_object();
+            json_object_set_new(object, name, child);
+        }
+        object = child;
+    }
+    *last = key;
+    return object;
+}
+
+json_t *tobi_write_def(const tobi_param_table *table, const void *def)
+{
+    json_t *object = json_object();
+    for (const tobi_param *row = table->rows; object && row->key; row++) {
+        const char *last;
+        json_t *value = write_value(row, (const char *)def + row->offset);
+        json_t *parent = descend(object, row->key, &last);
+        if (!value) continue;
+        if (!strchr(last, '[')) {
+            json_object_set_new(parent, last, value);
+            continue;
+        }
+        char name[48];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(last, "["), last);
+        if (!json_object_get(parent, name)) json_object_set_new(parent, name, json_array());
+        json_array_append_new(json_object_get(parent, name), value);
+    }
+    return object;
+}
+
+/* The shortest decimal number that reads back to the same bits. */
+static void write_real(FILE *out, double v)
+{
+    char text[40];
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, v);
+        if (strtod(text, NULL) == v) break;
+    }
+    for (char *c = text; *c; c++)
+        if (*c == ',') *c = '.';        /* a locale with decimal commas */
+    fputs(text, out);
+    if (!strpbrk(text, ".e")) fputs(".0", out);
+}
+
+static int is_short(const json_t *list)
+{
+    size_t i;
+    json_t *entry;
+    if (json_array_size(list) > 16) return 0;
+    json_array_foreach(list, i, entry)
+        if (json_is_object(entry) || json_is_array(entry)) return 0;
+    return 1;
+}
+
+static void write_indent(FILE *out, int depth) { fprintf(out, "\n%*s", 2*depth, ""); }
+
+static void write_text(FILE *out, const json_t *value)
+{
+    char *text = json_dumps(value, JSON_ENCODE_ANY);
+    fputs(text ? text : "null", out);
+    free(text);
+}
+
+static void write_json(FILE *out, const json_t *value, int depth)
+{
+    size_t i;
+    const char *key;
+    json_t *entry;
+    if (json_is_object(value)) {
+        const char *gap = "";
+        fputc('{', out);
+        json_object_foreach((json_t *)value, key, entry) {
+            json_t *name = json_string(key);
+            fputs(gap, out);
+            write_indent(out, depth + 1);
+            write_text(out, name);
+            json_decref(name);
+            fputs(": ", out);
+            write_json(out, entry, depth + 1);
+            gap = ",";
+        }
+        if (json_object_size(value)) write_indent(out, depth);
+        fputc('}', out);
+    } else if (json_is_array(value)) {
+        int brief = is_short(value);
+        fputc('[', out);
+        json_array_foreach(value, i, entry) {
+            if (i) fputs(brief ? ", " : ",", out);
+            if (!brief) write_indent(out, depth + 1);
+            write_json(out, entry, depth + 1);
+        }
+        if (!brief) write_indent(out, depth);
+        fputc(']', out);
+    } else if (json_is_real(value)) {
+        write_real(out, json_real_value(value));
+    } else {
+        write_text(out, value);
+    }
+}
+
+char *tobi_write_json(const json_t *value)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    write_json(out, value, 0);
+    fputc('\n', out);
+    int failed = ferror(out);
+    if (fclose(out) != 0 || failed) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
