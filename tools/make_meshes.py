@@ -167,9 +167,10 @@ BODY = [
 ]
 # middle of the station, upper and lower tip of the tail fin at it, half width, how far the tips trail
 FIN = [
-    (65.0, 5.0, -5.4, 2.1, 0.8), (68.0, 7.2, -8.0, 2.0, 2.2), (71.0, 10.2, -11.6, 2.0, 4.2),
-    (74.0, 13.6, -15.8, 2.0, 6.5), (77.0, 17.2, -20.4, 2.0, 9.2), (80.0, 20.8, -25.2, 2.0, 12.0),
-    (82.0, 23.2, -28.4, 2.0, 13.9), (83.6, 25.0, -30.8, 1.9, 15.4), (84.5, 26.0, -32.0, 1.2, 15.5),
+    (65.0, 5.0, -5.4, 2.1, 0.6), (68.0, 7.4, -8.2, 2.0, 1.4), (71.0, 10.6, -12.0, 2.0, 2.7),
+    (74.0, 14.0, -16.2, 2.0, 4.3), (77.0, 17.4, -20.6, 2.0, 6.1), (80.0, 20.4, -24.6, 2.0, 8.0),
+    (83.0, 22.9, -28.0, 2.0, 9.7), (85.8, 24.6, -30.3, 2.0, 11.0), (87.6, 25.5, -31.4, 1.9, 11.7),
+    (88.6, 26.0, -32.0, 1.2, 11.4),
 ]
 LEAD, CHORD, SPAN, WIDTH = -60.0, 40.0, 100.0, 10.0       # wing: leading edge, chord, half span, root
 STRIP = 2.0                                               # half thickness of the wing
@@ -272,12 +273,12 @@ def add_wing(half, rings, first, row):
     for inner, outer in zip(loops, loops[1:]):
         for i in range(len(inner)):
             j = (i + 1) % len(inner)
-            half.quad(inner[i], inner[j], outer[j], outer[i])
+            half.quad(inner[i], outer[i], outer[j], inner[j])
     tip, n = loops[-1], len(loops[-1])
     for k in range(last):
-        half.quad(tip[k], tip[k + 1], tip[n - 3 - k], tip[n - 2 - k])
-    half.triangle(tip[0], tip[n - 2], tip[n - 1])
-    half.triangle(tip[last], tip[last + 1], tip[last + 2])
+        half.quad(tip[k], tip[n - 2 - k], tip[n - 3 - k], tip[k + 1])
+    half.triangle(tip[0], tip[n - 1], tip[n - 2])
+    half.triangle(tip[last], tip[last + 2], tip[last + 1])
 
 
 def fish():
