@@ -154,7 +154,8 @@ static void test_mathematics_only(void **state)
     static const char *const names[] = { "io", "os", "require", "load", "loadstring", "loadfile", "dofile",
         "ffi", "debug", "jit", "package", "module", "getfenv", "setfenv", "rawset", "rawget", "rawequal",
         "setmetatable", "getmetatable", "pcall", "xpcall", "coroutine", "collectgarbage", "print", "_G",
-        "newproxy", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump", "math.random" };
+        "newproxy", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump",
+        "math.random" };
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char text[200];
         snprintf(text, sizeof text, "if %s ~= nil then error('FOUND') end", names[k]);

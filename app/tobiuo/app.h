@@ -1,0 +1,58 @@
+/* The program: one file per command, each a function of its own argc and argv that returns the exit
+   code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 130 after Ctrl-C. */
+#pragma once
+#include "tobiuo/run.h"
+#include "tobiuo/scene.h"
+#include <argp.h>
+
+enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
+
+int tobiuo_run(int argc, char **argv);
+int tobiuo_resume(int argc, char **argv);
+int tobiuo_check(int argc, char **argv);
+int tobiuo_describe(int argc, char **argv);
+int tobiuo_bench(int argc, char **argv);
+int tobiuo_info(int argc, char **argv);
+
+/* complain.c: "tobiuo: ..." on stderr, one line; returns EXIT_ERROR. */
+int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */
+int complain_scene(tobi_report *report, const tobi_error *err);
+
+/* overrides.c: "path=value" texts for tobi_scene_load, ended by NULL. */
+typedef struct overrides { char **text; int count; } overrides;
+/* Exits with a message when memory is short. */
+void overrides_add(overrides *o, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void overrides_free(overrides *o);
+
+/* options.c: parsing of numbers; a usage error ends the program as argp does. */
+double parse_positive(struct argp_state *state, const char *option, const char *text);
+int parse_threads(struct argp_state *state, const char *text);
+/* The scene file meant by a path: a directory stands for its scene.json. Owned by the caller. */
+char *scene_path(const char *path);
+
+/* drive.c: steps a run to its end with progress and Ctrl-C. */
+typedef struct drive_options {
+    const char *dir;      /* where the results go, for messages  */
+    double end;           /* s                                   */
+    int quiet;            /* 1: no progress line                 */
+} drive_options;
+/* Catches Ctrl-C and SIGTERM from here on. */
+void drive_catch_signals(void);
+/* Returns the exit code; the run is finished, not freed. */
+int drive(tobi_world *world, tobi_run *run, const drive_options *options);
+
+/* progress.c */
+typedef struct progress {
+    int shown, terminal, columns;    /* is there a line; is stderr a terminal; its width       */
+    double begun, start_time;        /* s of wall clock; s of simulated time                   */
+    double last;                     /* s of wall clock of the last line                       */
+    double particle_steps;           /* since the last line                                    */
+} progress;
+void progress_begin(progress *p, double time, int quiet);
+void progress_step(progress *p, const tobi_step_info *info, double end);
+/* Ends the rewritten line, so that other text can follow. */
+void progress_end(progress *p);
+double wall_clock(void);
+/* "1:02:03", "2:03" or "4 s"; buffer of 32. */
+const char *duration_text(double seconds, char *buffer);

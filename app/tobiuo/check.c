@@ -1,0 +1,112 @@
+/* tobiuo check SCENE: what a run would be, without running. */
+#include "app.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct check_options { const char *scene; overrides set; } check_options;
+
+enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET };
+
+static const struct argp_option options[] = {
+    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
+    { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 },
+    { "set", KEY_SET, "PATH=VALUE", 0, "change any value of the scene", 0 },
+    { 0 }
+};
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    check_options *o = state->input;
+    switch (key) {
+    case KEY_UNTIL:
+        overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value));
+        break;
+    case KEY_SPACING:
+        overrides_add(&o->set, "spacing=%.17g", parse_positive(state, "--spacing", value));
+        break;
+    case KEY_SET:
+        if (!strchr(value, '=') || value[0] == '=')
+            argp_error(state, "--set wants PATH=VALUE, not '%s'", value);
+        overrides_add(&o->set, "%s", value);
+        break;
+    case ARGP_KEY_ARG:
+        if (o->scene) argp_error(state, "one SCENE only");
+        o->scene = value;
+        break;
+    case ARGP_KEY_END:
+        if (!o->scene) argp_error(state, "which SCENE?");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+/* The step the CFL condition allows at the speed of a fall through the domain, the fastest that
+   gravity alone can make: a run is seldom slower than this. Without gravity there is no guess. */
+static double guess_step(const tobi_world_def *d)
+{
+    if (d->time_step > 0.0) return d->time_step;
+    double work = 0.0;
+    for (int a = 0; a < d->dimension; a++)
+        work += fabs(d->gravity[a]) * (d->domain_max[a] - d->domain_min[a]);
+    double step = work > 0.0 ? d->cfl * d->spacing / sqrt(2.0 * work) : 0.0;
+    return d->time_step_max > 0.0 && (step == 0.0 || step > d->time_step_max) ? d->time_step_max : step;
+}
+
+static void print_scene(const tobi_scene *scene)
+{
+    const tobi_world_def *d = tobi_scene_world_def(scene);
+    const tobi_output_def *out = tobi_scene_output_def(scene);
+    printf("scene            %s (%s, %d-D)\n", tobi_scene_name(scene), d->method, d->dimension);
+    const double *low = d->domain_min, *high = d->domain_max;
+    printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1], high[2]);
+    printf("spacing          %g m\n", d->spacing);
+    double step = guess_step(d);
+    if (step > 0.0)
+        printf("time step        %s%.3g s, about %.0f steps to %g s\n",
+               d->time_step > 0.0 ? "" : "about ", step, ceil(d->end_time / step), d->end_time);
+    else
+        printf("time step        adaptive, to %g s\n", d->end_time);
+    double outputs = floor(d->end_time / out->interval * (1.0 + 1e-9)) + 1.0;
+    printf("outputs          %.0f, every %g s\n", outputs, out->interval);
+}
+
+static int check_world(tobi_scene *scene)
+{
+    tobi_error err = { 0 };
+    tobi_world *world = NULL;
+    int64_t fluid = 0, bodies = 0, bytes = 0;
+    tobi_status status = tobi_scene_build(scene, &world, &err);
+    if (status == TOBI_OK) status = tobi_world_estimate(world, &fluid, &bodies, &bytes, &err);
+    tobi_world_destroy(world);
+    if (status != TOBI_OK) return complain("%s", err.text);
+    print_scene(scene);
+    double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    printf("fluid particles  %lld\n", (long long)fluid);
+    printf("body particles   %lld\n", (long long)bodies);
+    printf("memory           %.1f MB of %.0f MB\n", (double)bytes * 1e-6, machine * 1e-6);
+    if (fluid + bodies == 0) return complain("there is no particle at all");
+    if ((double)bytes > machine) return complain("more particles than this machine has memory for");
+    return 0;
+}
+
+int tobiuo_check(int argc, char **argv)
+{
+    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "SCENE",
+        .doc = "Check a scene without running it: every mistake, particle counts, memory, time step." };
+    check_options o = { 0 };
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    tobi_scene *scene = NULL;
+    tobi_report *report = NULL;
+    tobi_error err = { 0 };
+    char *path = scene_path(o.scene);
+    tobi_status status = tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
+    int code = status == TOBI_OK ? check_world(scene) : complain_scene(report, &err);
+    tobi_scene_free(scene);
+    overrides_free(&o.set);
+    free(path);
+    return code;
+}

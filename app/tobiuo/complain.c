@@ -1,0 +1,25 @@
+/* Messages on stderr. */
+#include "app.h"
+#include <stdarg.h>
+#include <stdio.h>
+
+int complain(const char *format, ...)
+{
+    va_list args;
+    fputs("tobiuo: ", stderr);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+    return EXIT_ERROR;
+}
+
+int complain_scene(tobi_report *report, const tobi_error *err)
+{
+    int count = tobi_report_count(report);
+    for (int k = 0; k < count; k++) fprintf(stderr, "tobiuo: %s\n", tobi_report_line(report, k));
+    if (count > 1) fprintf(stderr, "tobiuo: %d mistakes\n", count);
+    if (count == 0) complain("%s", err->text);
+    tobi_report_free(report);
+    return EXIT_ERROR;
+}

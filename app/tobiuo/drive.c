@@ -1,0 +1,67 @@
+/* Stepping to the end. Ctrl-C (or SIGTERM) asks for a clean end after the step in work; a second one
+   ends the program at once, which costs nothing but the time since the last checkpoint. */
+#include "app.h"
+#include <signal.h>
+#include <stdio.h>
+
+static volatile sig_atomic_t caught;
+
+static void note_signal(int number) { caught = number; }
+
+void drive_catch_signals(void)
+{
+    struct sigaction action = { .sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND };
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+typedef struct counts { int64_t steps, unconverged; tobi_step_info last; } counts;
+
+static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *p, counts *c, tobi_error *err)
+{
+    while (!caught && !tobi_run_done(run, o->end)) {
+        tobi_step_info info = { 0 };
+        tobi_status status = tobi_run_step(run, o->end, &info, err);
+        if (status != TOBI_OK) return status;
+        c->steps++;
+        c->unconverged += !info.density_converged || !info.divergence_converged;
+        c->last = info;
+        progress_step(p, &info, o->end);
+    }
+    return TOBI_OK;
+}
+
+static void print_end(const drive_options *o, const counts *c, double time, double wall)
+{
+    char text[32];
+    if (c->unconverged)
+        complain("the solver did not converge in %lld of %lld steps", (long long)c->unconverged,
+                 (long long)c->steps);
+    if (c->last.particles_lost)
+        complain("%lld particles left the domain", (long long)c->last.particles_lost);
+    if (o->quiet) return;
+    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done", time,
+           (long long)c->steps, duration_text(wall, text), o->dir);
+    if (caught) printf("go on with: tobiuo resume %s\n", o->dir);
+}
+
+int drive(tobi_world *world, tobi_run *run, const drive_options *o)
+{
+    progress p;
+    counts c = { 0 };
+    tobi_error err = { 0 }, more;
+    progress_begin(&p, tobi_world_time(world), o->quiet);
+    tobi_status status = step_to_end(run, o, &p, &c, &err);
+    progress_end(&p);
+    if (status != TOBI_OK) {
+        complain("%s", err.text);
+        tobi_run_finish(run, status == TOBI_DIVERGED ? "diverged" : "failed", &more);
+        return complain("the results up to t = %.9g s are in %s", tobi_world_time(world), o->dir);
+    }
+    status = tobi_run_checkpoint(run, &err);
+    if (status == TOBI_OK) status = tobi_run_finish(run, caught ? "interrupted" : "complete", &err);
+    if (status != TOBI_OK) return complain("%s", err.text);
+    print_end(o, &c, tobi_world_time(world), wall_clock() - p.begun);
+    return caught ? EXIT_INTERRUPTED : 0;
+}

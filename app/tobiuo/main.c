@@ -1,0 +1,52 @@
+/* tobiuo: picks the command. */
+#include "app.h"
+#include <stdio.h>
+#include <string.h>
+
+static const struct command {
+    const char *name, *arguments, *doc;
+    int (*run)(int argc, char **argv);
+} commands[] = {
+    { "run", "SCENE", "simulate a scene", tobiuo_run },
+    { "resume", "DIR", "go on with a run that was stopped", tobiuo_resume },
+    { "check", "SCENE", "say what a scene would do, and all its mistakes, without running", tobiuo_check },
+    { "describe", "[TOPIC]", "parameters with units, defaults and ranges", tobiuo_describe },
+    { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench },
+    { "info", "", "version, machine, libraries, methods", tobiuo_info },
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void print_usage(FILE *file)
+{
+    fprintf(file, "usage: tobiuo COMMAND [ARGUMENTS]\n\n");
+    for (int k = 0; k < COMMAND_COUNT; k++)
+        fprintf(file, "  %-8s %-8s %s\n", commands[k].name, commands[k].arguments, commands[k].doc);
+    fprintf(file, "\n\"tobiuo COMMAND --help\" lists the options of a command.\n");
+}
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = EXIT_USAGE;
+    if (argc < 2) {
+        print_usage(stderr);
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+        print_usage(stdout);
+        return 0;
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        printf("tobiuo %s\n", tobi_version());
+        return 0;
+    }
+    for (int k = 0; k < COMMAND_COUNT; k++) {
+        if (strcmp(argv[1], commands[k].name) != 0) continue;
+        char name[32];
+        snprintf(name, sizeof name, "tobiuo %s", commands[k].name);
+        argv[1] = name;                       /* argp's messages begin with it */
+        return commands[k].run(argc - 1, argv + 1);
+    }
+    fprintf(stderr, "tobiuo: there is no command '%s'\n", argv[1]);
+    print_usage(stderr);
+    return EXIT_USAGE;
+}

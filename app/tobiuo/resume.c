@@ -1,0 +1,84 @@
+/* tobiuo resume DIR */
+#include "app.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+typedef struct resume_options {
+    const char *dir;
+    overrides set;
+    double until;       /* s, 0 = as the scene says */
+    int quiet;
+} resume_options;
+
+enum { KEY_UNTIL = 256 };
+
+static const struct argp_option options[] = {
+    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
+    { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
+    { "quiet", 'q', NULL, 0, "no progress line", 0 },
+    { 0 }
+};
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    resume_options *o = state->input;
+    switch (key) {
+    case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
+    case 'q': o->quiet = 1; break;
+    case KEY_UNTIL: o->until = parse_positive(state, "--until", value); break;
+    case ARGP_KEY_ARG:
+        if (o->dir) argp_error(state, "one DIR only");
+        o->dir = value;
+        break;
+    case ARGP_KEY_END:
+        if (!o->dir) argp_error(state, "which DIR?");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static int resume_scene(tobi_scene *scene, const resume_options *o)
+{
+    tobi_error err = { 0 };
+    tobi_world *world = NULL;
+    tobi_run *run = NULL;
+    if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
+    drive_catch_signals();
+    int code;
+    if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
+        code = complain("%s", err.text);
+    } else {
+        double end = o->until > 0.0 ? o->until : tobi_scene_world_def(scene)->end_time;
+        drive_options d = { o->dir, end, o->quiet };
+        if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
+        code = drive(world, run, &d);
+    }
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+    return code;
+}
+
+int tobiuo_resume(int argc, char **argv)
+{
+    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
+        .doc = "Go on with the run in DIR from its last whole checkpoint." };
+    resume_options o = { 0 };
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    char *path = NULL;
+    if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
+    if (access(path, F_OK) != 0) {
+        free(path);
+        return complain("%s: there is no run to resume (no resolved.json)", o.dir);
+    }
+    tobi_scene *scene = NULL;
+    tobi_report *report = NULL;
+    tobi_error err = { 0 };
+    tobi_status status = tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
+    int code = status == TOBI_OK ? resume_scene(scene, &o) : complain_scene(report, &err);
+    tobi_scene_free(scene);
+    overrides_free(&o.set);
+    free(path);
+    return code;
+}
