@@ -72,7 +72,7 @@ void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
     }
     if (row->positive && isnan(row->max)) snprintf(numbers, sizeof numbers, "greater than 0");
     else if (row->positive) snprintf(numbers, sizeof numbers, "greater than 0, up to %.10g", row->max);
-    else if (isnan(row->min) && isnan(row->max)) snprintf(numbers, sizeof numbers, "any number");
+    else if (isnan(row->min) && isnan(row->max)) snprintf(numbers, sizeof numbers, gap[0] ? "any number in" : "any number");
     else if (isnan(row->max)) snprintf(numbers, sizeof numbers, "at least %.10g", row->min);
     else if (isnan(row->min)) snprintf(numbers, sizeof numbers, "at most %.10g", row->max);
     else snprintf(numbers, sizeof numbers, "%.10g to %.10g", row->min, row->max);
@@ -99,7 +99,9 @@ static void report_kind(const slot *s, const char *must)
     char limits[200];
     tobi_bind_limits(s->row, limits, sizeof limits);
     const char *shown = json_string_value(s->value);
-    if (shown && strlen(shown) < 60)
+    if (s->row->type == TOBI_PARAM_BOOL)
+        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s", tobi_json_kind(s->value), must);
+    else if (shown && strlen(shown) < 60)
         tobi_source_mistake(s->binder->source, s->place, "is the text \"%s\", must be %s (%s)", shown, must,
                             limits);
     else
@@ -293,7 +295,7 @@ typedef struct pass {
     const tobi_param_table *table;
     const char *const *also;
     char *def;
-    uint64_t given;
+    tobi_bound bound;
 } pass;
 
 /* How a row's key continues after prefix and key: NULL if it does not begin with them. */
@@ -340,8 +342,11 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
 
 static void bind_row(pass *p, const tobi_param *row, json_t *value, const tobi_place *place)
 {
+    int64_t before = tobi_report_total(p->binder->source->report);
+    uint64_t bit = UINT64_C(1) << (row - p->table->rows);
     bind_value(&(slot){ p->binder, row, place, value, p->def + row->offset });
-    p->given |= UINT64_C(1) << (row - p->table->rows);
+    p->bound.given |= bit;
+    if (tobi_report_total(p->binder->source->report) == before) p->bound.good |= bit;
 }
 
 /* Rows "key[0]", "key[1]": a list with one entry for each, or one value for all. */
@@ -421,23 +426,23 @@ static void report_missing(const tobi_binder *binder, const tobi_param *row, con
         tobi_source_mistake(binder->source, &inner, "is missing (%s): %s", limits, row->doc);
 }
 
-uint64_t tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
+tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
                    const tobi_place *place, const char *const *also, void *def)
 {
-    pass p = { binder, table, also, def, 0 };
+    pass p = { binder, table, also, def, { 0, 0 } };
     if (!json_is_object(object)) {
         tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }", tobi_json_kind(object));
-        return 0;
+        return p.bound;
     }
     bind_members(&p, "", object, place);
     for (const tobi_param *row = table->rows; row->key; row++)
-        if (row->required && !(p.given >> (row - table->rows) & 1)) report_missing(binder, row, place);
-    return p.given;
+        if (row->required && !(p.bound.given >> (row - table->rows) & 1)) report_missing(binder, row, place);
+    return p.bound;
 }
 
-int tobi_bind_has(const tobi_param_table *table, uint64_t given, const char *key)
+int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key)
 {
     for (const tobi_param *row = table->rows; row->key; row++)
-        if (strcmp(row->key, key) == 0) return given >> (row - table->rows) & 1;
+        if (strcmp(row->key, key) == 0) return rows >> (row - table->rows) & 1;
     return 0;
 }

@@ -17,14 +17,19 @@ typedef struct tobi_binder {
     int dimension;             /* 2: vectors may have two components               */
 } tobi_binder;
 
+/* What an object gives: one bit per row of the table. */
+typedef struct tobi_bound {
+    uint64_t given;            /* its key is there       */
+    uint64_t good;             /* and its value is right */
+} tobi_bound;
+
 /* Binds object to def, which must hold the defaults. Keys listed in also (ended by NULL) belong to
    somebody else. Reports unknown keys, wrong types, values out of range and missing keys; members
-   with a mistake keep their default. Names are borrowed from the JSON. Returns one bit per row that
-   the object gives. */
-uint64_t tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
+   with a mistake keep their default. Names are borrowed from the JSON. */
+tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, json_t *object,
                    const tobi_place *place, const char *const *also, void *def);
-/* Whether the row `key` is among the given ones. */
-int tobi_bind_has(const tobi_param_table *table, uint64_t given, const char *key);
+/* Whether the row `key` is among rows, which is one half of a tobi_bound. */
+int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key);
 
 /* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip". */
 void tobi_bind_limits(const tobi_param *row, char *text, size_t size);

@@ -58,26 +58,26 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
     json_t *step = json_array_get(steps, at);
     if (json_is_object(node)) {
         if (json_is_string(step)) return 1;
-        tobi_report_add(source->report, "--set %s: [%lld] stands where a key must stand", text,
+        tobi_report_add(source->report, 0, "--set %s: [%lld] stands where a key must stand", text,
                         (long long)json_integer_value(step));
         return 0;
     }
     if (!json_is_array(node)) {
-        tobi_report_add(source->report, "--set %s: there is nothing below this value to set", text);
+        tobi_report_add(source->report, 0, "--set %s: there is nothing below this value to set", text);
         return 0;
     }
     long long size = (long long)json_array_size(node), index = json_integer_value(step);
     if (json_is_string(step)) {
         index = find_named(node, json_string_value(step));
         if (index < 0) {
-            tobi_report_add(source->report, "--set %s: no entry is named \"%s\"", text,
+            tobi_report_add(source->report, 0, "--set %s: no entry is named \"%s\"", text,
                             json_string_value(step));
             return 0;
         }
         json_array_set_new(steps, at, json_integer(index));
     }
     if (index < size) return 1;
-    tobi_report_add(source->report, "--set %s: there is no entry [%lld], the list has %lld", text, index, size);
+    tobi_report_add(source->report, 0, "--set %s: there is no entry [%lld], the list has %lld", text, index, size);
     return 0;
 }
 
@@ -118,12 +118,12 @@ static void apply_one(tobi_source *source, const char *text)
     const char *equals = strchr(text, '=');
     json_t *steps = equals ? split_path(text, (size_t)(equals - text)) : NULL;
     if (!steps) {
-        tobi_report_add(source->report, "--set %s: must be path=value, such as dfsph.support=3 or "
+        tobi_report_add(source->report, 0, "--set %s: must be path=value, such as dfsph.support=3 or "
                         "fluids[0].viscosity=0.1", text);
         return;
     }
     json_t *value = read_value(equals + 1);
-    if (!value) tobi_report_add(source->report, "--set %s: the value is not UTF-8", text);
+    if (!value) tobi_report_add(source->report, 0, "--set %s: the value is not UTF-8", text);
     if (value && put_value(source, text, steps, value))
         source->overrides[source->override_count++] = (tobi_override){ text, steps };
     else

@@ -8,11 +8,15 @@ enum { TOBI_REPORT_LIMIT = 200 };
 
 /* NULL when out of memory. */
 tobi_report *tobi_report_create(void);
-/* Adds a formatted line; over the limit it is only counted. */
-void tobi_report_add(tobi_report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Adds a formatted line; over the limit it is only counted. rank is the place to sort by, an offset
+   in the scene's text; 0 comes first. */
+void tobi_report_add(tobi_report *report, size_t rank, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* True once further lines are only counted: looking for more detail is then a waste. */
 int tobi_report_full(const tobi_report *report);
-/* Adds the last line that says how many were left out, if any. */
+/* Mistakes so far, those that were only counted included. */
+int64_t tobi_report_total(const tobi_report *report);
+/* Sorts the lines and adds the one that says how many were left out, if any. */
 void tobi_report_close(tobi_report *report);
 /* Writes as many lines as fit into err and returns TOBI_INVALID, or TOBI_NO_MEMORY if a line could
    not be stored. */

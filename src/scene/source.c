@@ -225,7 +225,7 @@ static void add_mistake(tobi_source *source, size_t offset, const tobi_place *pl
     int line, column;
     tobi_place_text(place, path);
     count_lines(source->text, offset, &line, &column);
-    tobi_report_add(source->report, "%s:%d:%d: %s%s%s", source->name, line, column, path,
+    tobi_report_add(source->report, offset, "%s:%d:%d: %s%s%s", source->name, line, column, path,
                     path[0] ? ": " : "", what);
 }
 
@@ -235,7 +235,7 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
         if (!override_covers(&source->overrides[i], place)) continue;
         char path[TOBI_PATH_TEXT];
         tobi_place_text(place, path);
-        tobi_report_add(source->report, "--set %s: %s: %s", source->overrides[i].text, path, what);
+        tobi_report_add(source->report, 0, "--set %s: %s: %s", source->overrides[i].text, path, what);
         return;
     }
     spot at = locate(source, place);
@@ -248,7 +248,7 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
     va_start(args, format);                                              \
     int length = vasprintf(&what, format, args);                         \
     va_end(args);                                                        \
-    if (tobi_report_full(source->report)) tobi_report_add(source->report, "%s", "");  \
+    if (tobi_report_full(source->report)) tobi_report_add(source->report, 0, "%s", "");  \
     else tell(source, place, at_key, length < 0 ? "out of memory" : what);            \
     if (length >= 0) free(what)
 
@@ -278,7 +278,7 @@ static void report_equal_keys(tobi_source *source, const tobi_place *place, seen
     for (size_t i = 1; i < n; i++) {
         if (strcmp(keys[i].key, keys[i - 1].key) != 0) continue;
         if (tobi_report_full(source->report)) {
-            tobi_report_add(source->report, "%s", "");
+            tobi_report_add(source->report, 0, "%s", "");
             continue;
         }
         int line, column;
@@ -338,7 +338,7 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);
     if (!source->root) {
-        tobi_report_add(report, "%s:%d:%d: not valid JSON: %s", name, mistake.line > 0 ? mistake.line : 1,
+        tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s", name, mistake.line > 0 ? mistake.line : 1,
                         mistake.column > 0 ? mistake.column : 1, mistake.text);
         return TOBI_INVALID;
     }

@@ -1,0 +1,87 @@
+/* Help texts, made from the parameter tables alone. */
+#define _GNU_SOURCE 1
+#include "scene/bind.h"
+#include "scene/motions.h"
+#include "world/params.h"
+#include "tobiuo/scene.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void write_default(const tobi_param *row, char *text, size_t size)
+{
+    int length = 0;
+    const char *word;
+    if (row->required) snprintf(text, size, "required");
+    else if (row->type == TOBI_PARAM_TEXT) snprintf(text, size, "%s", row->text ? row->text : "none");
+    else if (row->type == TOBI_PARAM_BOOL) snprintf(text, size, "%s", row->def[0] != 0 ? "true" : "false");
+    else if (row->type == TOBI_PARAM_CHOICE) {
+        word = tobi_choice_word(row->choices, (int)row->def[0], &length);
+        snprintf(text, size, "%.*s", length, word);
+    } else if (row->type == TOBI_PARAM_VEC3)
+        snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
+    else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
+    else snprintf(text, size, "%.10g", row->def[0]);
+}
+
+static const char *type_name(const tobi_param *row)
+{
+    switch (row->type) {
+    case TOBI_PARAM_REAL: return "number";
+    case TOBI_PARAM_INT: return "whole number";
+    case TOBI_PARAM_VEC3: return row->positive ? "number or vector" : "vector";
+    case TOBI_PARAM_TEXT: return "text";
+    default: return "word";
+    }
+}
+
+static void describe_row(FILE *out, const tobi_param *row)
+{
+    char limits[200], def[200];
+    tobi_bind_limits(row, limits, sizeof limits);
+    write_default(row, def, sizeof def);
+    fprintf(out, "  %s\n      %s\n      ", row->key, row->doc);
+    if (row->type == TOBI_PARAM_TEXT) fprintf(out, "%s; ", row->unit);
+    else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL) fprintf(out, "%s; ", limits);
+    else fprintf(out, "%s, unit %s; allowed: %s; ", type_name(row), row->unit, limits);
+    fprintf(out, row->required ? "%s\n" : "default: %s\n", def);
+}
+
+static void describe_table(FILE *out, const tobi_param_table *table)
+{
+    fprintf(out, "%s: %s\n", table->name, table->doc);
+    for (const tobi_param *row = table->rows; row->key; row++) describe_row(out, row);
+}
+
+static void list_topics(FILE *out)
+{
+    const tobi_param_table *table;
+    fprintf(out, "Topics:\n");
+    for (int i = 0; (table = tobi_param_table_at(i)); i++)
+        fprintf(out, "  %-8s %s\n", table->name, table->doc);
+    fprintf(out, "  %-8s %s\n", "motion", "The motion of a body: a script, or one by numbers.");
+}
+
+static const tobi_param_table *find_table(const char *topic)
+{
+    const tobi_param_table *table;
+    for (int i = 0; (table = tobi_param_table_at(i)); i++)
+        if (strcmp(table->name, topic) == 0) return table;
+    return NULL;
+}
+
+char *tobi_scene_describe(const char *topic)
+{
+    char *text = NULL;
+    size_t size = 0;
+    int is_motion = topic && strcmp(topic, "motion") == 0;
+    const tobi_param_table *table = topic ? find_table(topic) : NULL;
+    if (topic && !table && !is_motion) return NULL;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    if (!topic) list_topics(out);
+    else if (table) describe_table(out, table);
+    for (int i = 0; is_motion && (table = tobi_motion_table(i)); i++) describe_table(out, table);
+    fclose(out);
+    return text;
+}

@@ -1,0 +1,292 @@
+/* From the text of a scene to its definitions, and from the definitions to a world. */
+#define _GNU_SOURCE 1
+#include "scene/scene.h"
+#include "scene/override.h"
+#include "scene/write.h"
+#include "world/params.h"
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FLUID_LIMIT = 64, FILL_LIMIT = 256, BODY_LIMIT = 1024 };
+
+/* A list of objects at `key` of `object`, and the memory for what they become. NULL if there is
+   none; mistakes are reported. */
+static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_place *place, int limit)
+{
+    json_t *list = json_object_get(object, place->key);
+    if (!list) return NULL;
+    if (!json_is_array(list)) {
+        tobi_source_mistake(binder->source, place, "is %s, must be a list [ { ... } ]", tobi_json_kind(list));
+        return NULL;
+    }
+    if (json_array_size(list) <= (size_t)limit) return list;
+    tobi_source_mistake(binder->source, place, "has %zu entries, allowed are %d", json_array_size(list), limit);
+    return NULL;
+}
+
+static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const tobi_place *place,
+                              tobi_scene_fluid *fluid)
+{
+    static const char *const also[] = { "fill", NULL };
+    fluid->def = tobi_default_fluid_def();
+    tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
+    tobi_place fill = { place, "fill", 0 };
+    json_t *list = open_list(binder, value, &fill, FILL_LIMIT);
+    if (json_array_size(list) == 0) {
+        if (json_is_object(value) && (list || !json_object_get(value, "fill")))
+            tobi_source_mistake(binder->source, &fill, "is missing or empty: a list of the regions this fluid "
+                                "fills, [ { \"box\": { \"min\": [..], \"max\": [..] } } ]");
+        return TOBI_OK;
+    }
+    fluid->fills = calloc(json_array_size(list), sizeof *fluid->fills);
+    if (!fluid->fills) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &fill, NULL, i };
+        tobi_scene_fill *f = &fluid->fills[fluid->fill_count++];
+        f->def = tobi_default_fill_def();
+        f->bound = tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    tobi_place place = { root, "fluids", 0 };
+    json_t *list = open_list(binder, scene->root, &place, FLUID_LIMIT);
+    if (!list) return TOBI_OK;
+    scene->fluids = calloc(json_array_size(list) + 1, sizeof *scene->fluids);
+    if (!scene->fluids) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry, &scene->fluids[scene->fluid_count++]));
+    }
+    return TOBI_OK;
+}
+
+static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    static const char *const also[] = { "motion", NULL };
+    tobi_place place = { root, "bodies", 0 };
+    json_t *list = open_list(binder, scene->root, &place, BODY_LIMIT);
+    if (!list) return TOBI_OK;
+    scene->bodies = calloc(json_array_size(list) + 1, sizeof *scene->bodies);
+    if (!scene->bodies) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        json_t *value = json_array_get(list, i);
+        tobi_place entry = { &place, NULL, i }, motion = { &entry, "motion", 0 };
+        tobi_scene_body *body = &scene->bodies[scene->body_count++];
+        body->def = tobi_default_body_def();
+        tobi_bind(binder, &tobi_body_table, value, &entry, also, &body->def);
+        json_t *moves = json_object_get(value, "motion");
+        if (!moves) continue;
+        body->motion = tobi_motion_bind(binder, moves, &motion, &body->motion_def);
+        if (!body->motion) continue;
+        body->def.motion = tobi_motion_positions;
+        body->def.motion_user = body->motion;
+        body->def.motion_rigid = tobi_motion_is_rigid(body->motion);
+    }
+    return TOBI_OK;
+}
+
+/* Parameters of methods that are not chosen are checked too. */
+static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    const char *name;
+    scene->method = tobi_method_table(scene->world.method);        /* NULL: the check reports it */
+    for (int i = 0; (name = tobi_method_name(i)); i++) {
+        const tobi_param_table *table = tobi_method_table(name);
+        json_t *value = json_object_get(scene->root, name);
+        tobi_place place = { root, name, 0 };
+        void *def = malloc(table->size);
+        if (!def) return TOBI_NO_MEMORY;
+        tobi_param_defaults(table, def);
+        if (value) tobi_bind(binder, table, value, &place, NULL, def);
+        if (table == scene->method) scene->method_def = def;
+        else free(def);
+    }
+    return TOBI_OK;
+}
+
+/* A plane flow lies in z = 0 and falls along y unless it is told otherwise. */
+static void flatten_world(tobi_scene *scene)
+{
+    tobi_world_def *w = &scene->world;
+    if (w->dimension != 2) return;
+    w->domain_min[2] = w->domain_max[2] = 0;
+    if (tobi_bind_has(&tobi_world_table, scene->world_bound.given, "gravity")) return;
+    w->gravity[0] = w->gravity[2] = 0;
+    w->gravity[1] = -9.81;
+}
+
+static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
+{
+    enum { METHODS = 16 };
+    const char *also[METHODS + 4] = { "fluids", "bodies", "output" };
+    for (int i = 0; i < METHODS && tobi_method_name(i); i++) also[3 + i] = tobi_method_name(i);
+    tobi_place root = { 0 }, output = { &root, "output", 0 };
+
+    tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
+    if (json_integer_value(json_object_get(scene->root, "dimension")) == 2) binder.dimension = 2;
+    scene->world = tobi_default_world_def();
+    scene->world_bound = tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
+    flatten_world(scene);
+    TOBI_TRY(read_method(scene, &binder, &root));
+    TOBI_TRY(read_fluids(scene, &binder, &root));
+    TOBI_TRY(read_bodies(scene, &binder, &root));
+    scene->output = tobi_default_output_def();
+    json_t *value = json_object_get(scene->root, "output");
+    if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
+    tobi_scene_check(scene, source);
+    return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
+}
+
+/* The directory's own name for a scene.json, or else the file's without its extension. */
+static char *name_scene(const char *directory, const char *path)
+{
+    const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+    if (strcmp(file, "scene.json") == 0) {
+        slash = strrchr(directory, '/');
+        if (slash && slash[1]) return strdup(slash + 1);
+    }
+    const char *dot = strrchr(file, '.');
+    return strndup(file, dot && dot > file ? (size_t)(dot - file) : strlen(file));
+}
+
+/* The absolute directory of a file that may not exist. */
+static char *find_directory(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *directory = slash == path ? strdup("/") : slash ? strndup(path, (size_t)(slash - path)) : strdup(".");
+    char *absolute = directory ? realpath(directory, NULL) : NULL;
+    if (absolute) free(directory);
+    return absolute ? absolute : directory;
+}
+
+static tobi_status parse_source(tobi_scene *scene, tobi_source *source, const char *const *overrides,
+                                tobi_error *err)
+{
+    scene->root = json_incref(source->root);
+    TOBI_TRY(tobi_override_apply(source, overrides, err));
+    tobi_status status = read_scene(scene, source);
+    return status == TOBI_NO_MEMORY ? tobi_fail(err, status, "no memory for the scene") : status;
+}
+
+tobi_status tobi_scene_parse(const char *path, const char *text, size_t size, const char *const *overrides,
+                             tobi_scene **out, tobi_report **report_out, tobi_error *err)
+{
+    *out = NULL;
+    if (report_out) *report_out = NULL;
+    tobi_scene *scene = calloc(1, sizeof *scene);
+    tobi_report *report = tobi_report_create();
+    tobi_source source = { 0 };
+    if (scene) scene->directory = find_directory(path);
+    if (scene && scene->directory) scene->name = name_scene(scene->directory, path);
+    tobi_status status = TOBI_NO_MEMORY;
+    if (!scene || !report || !scene->name) tobi_fail(err, status, "no memory for the scene");
+    else status = tobi_source_parse(&source, path, text, size, report, err);
+    if (status == TOBI_OK) status = parse_source(scene, &source, overrides, err);
+    if (status == TOBI_INVALID) {
+        tobi_report_close(report);
+        status = tobi_report_fail(report, err);
+    }
+    tobi_source_clear(&source);
+    if (status == TOBI_INVALID && report_out) {
+        *report_out = report;
+        report = NULL;
+    }
+    tobi_report_free(report);
+    if (status == TOBI_OK) *out = scene;
+    else tobi_scene_free(scene);
+    return status;
+}
+
+tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi_scene **scene,
+                            tobi_report **report, tobi_error *err)
+{
+    char *text;
+    size_t size;
+    *scene = NULL;
+    if (report) *report = NULL;
+    TOBI_TRY(tobi_source_read_file(path, &text, &size, err));
+    tobi_status status = tobi_scene_parse(path, text, size, overrides, scene, report, err);
+    free(text);
+    return status;
+}
+
+void tobi_scene_free(tobi_scene *scene)
+{
+    if (!scene) return;
+    for (int i = 0; i < scene->fluid_count; i++) free(scene->fluids[i].fills);
+    for (int i = 0; i < scene->body_count; i++) tobi_motion_free(scene->bodies[i].motion);
+    free(scene->fluids);
+    free(scene->bodies);
+    free(scene->method_def);
+    tobi_texts_free(&scene->texts);
+    json_decref(scene->root);
+    free(scene->directory);
+    free(scene->name);
+    free(scene);
+}
+
+static tobi_status add_fluid(tobi_world *world, const tobi_scene_fluid *fluid, tobi_error *err)
+{
+    tobi_fill_def *fills = malloc((size_t)fluid->fill_count*sizeof *fills);
+    if (!fills) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    for (int i = 0; i < fluid->fill_count; i++) fills[i] = fluid->fills[i].def;
+    tobi_status status = tobi_world_add_fluid(world, &fluid->def, fills, fluid->fill_count, err);
+    free(fills);
+    return status;
+}
+
+tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
+{
+    tobi_world *world;
+    *out = NULL;
+    TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
+    tobi_status status = TOBI_OK;
+    for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
+        status = tobi_world_add_body(world, &scene->bodies[i].def, err);
+    for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
+        status = add_fluid(world, &scene->fluids[i], err);
+    if (status == TOBI_OK) *out = world;
+    else tobi_world_destroy(world);
+    return status;
+}
+
+const char *tobi_scene_name(const tobi_scene *scene) { return scene->name; }
+const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return &scene->world; }
+const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene) { return &scene->output; }
+
+static json_t *write_fluid(const tobi_scene_fluid *fluid)
+{
+    json_t *object = tobi_write_def(&tobi_fluid_table, &fluid->def), *fills = json_array();
+    for (int i = 0; i < fluid->fill_count; i++) {
+        json_t *fill = tobi_write_def(&tobi_fill_table, &fluid->fills[i].def);
+        json_object_del(fill, fluid->fills[i].def.mesh ? "box" : "scale");
+        if (!fluid->fills[i].def.mesh) json_object_del(fill, "translation");
+        json_array_append_new(fills, fill);
+    }
+    json_object_set_new(object, "fill", fills);
+    return object;
+}
+
+char *tobi_scene_resolved(const tobi_scene *scene)
+{
+    json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
+    json_t *fluids = json_array(), *bodies = json_array();
+    json_object_set_new(root, scene->method->name, tobi_write_def(scene->method, scene->method_def));
+    for (int i = 0; i < scene->fluid_count; i++) json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
+    for (int i = 0; i < scene->body_count; i++) {
+        json_t *body = tobi_write_def(&tobi_body_table, &scene->bodies[i].def);
+        json_t *motion = tobi_motion_write(&scene->bodies[i].motion_def);
+        if (motion) json_object_set_new(body, "motion", motion);
+        json_array_append_new(bodies, body);
+    }
+    json_object_set_new(root, "fluids", fluids);
+    json_object_set_new(root, "bodies", bodies);
+    json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
+    char *text = root ? tobi_write_json(root) : NULL;
+    json_decref(root);
+    return text;
+}

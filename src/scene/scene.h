@@ -1,0 +1,45 @@
+/* Inside of a tobi_scene: the definitions that its file makes, and what they borrow from. */
+#pragma once
+#include "scene/motions.h"
+#include "tobiuo/scene.h"
+
+typedef struct tobi_scene_fill {
+    tobi_fill_def def;
+    tobi_bound bound;              /* rows of the fill table that the file gives  */
+} tobi_scene_fill;
+
+typedef struct tobi_scene_fluid {
+    tobi_fluid_def def;
+    tobi_scene_fill *fills;
+    int fill_count;
+} tobi_scene_fluid;
+
+typedef struct tobi_scene_body {
+    tobi_body_def def;
+    tobi_motion_def motion_def;
+    tobi_motion *motion;           /* owned; NULL = fixed                         */
+} tobi_scene_body;
+
+struct tobi_scene {
+    char *name;
+    char *directory;               /* absolute                                    */
+    json_t *root;                  /* owner of names                              */
+    tobi_texts texts;              /* owner of paths and lists                    */
+    tobi_world_def world;
+    tobi_bound world_bound;
+    const tobi_param_table *method;
+    void *method_def;              /* method->size bytes                          */
+    tobi_scene_fluid *fluids;
+    int fluid_count;
+    tobi_scene_body *bodies;
+    int body_count;
+    tobi_output_def output;
+};
+
+/* tobi_scene_load from text in memory: path is its name in messages and tells where relative paths
+   start. For tests and fuzzing. */
+tobi_status tobi_scene_parse(const char *path, const char *text, size_t size, const char *const *overrides,
+                             tobi_scene **scene, tobi_report **report, tobi_error *err);
+
+/* Reports what no table can see: corners, pairs of walls, regions, names, files. */
+void tobi_scene_check(const tobi_scene *scene, tobi_source *source);
