@@ -73,7 +73,8 @@ def box(x=1.0, y=1.0, z=1.0, edge=0.25):
         for side in (0, 1):
             def corner(i, j):
                 p = [0.0, 0.0, 0.0]
-                p[axis], p[u], p[v] = size[axis] * (side - 0.5), size[u] * (i / n[u] - 0.5), size[v] * (j / n[v] - 0.5)
+                p[axis] = size[axis] * (side - 0.5)
+                p[u], p[v] = size[u] * (i / n[u] - 0.5), size[v] * (j / n[v] - 0.5)
                 return mesh.vertex(*p)
             for i in range(n[u]):
                 for j in range(n[v]):
@@ -119,7 +120,8 @@ def cylinder(radius=0.5, length=1.0, sides=48, edge=0.25):
     for i in range(sides):
         for k in range(layers):
             z0, z1 = (length * (m / layers - 0.5) for m in (k, k + 1))
-            mesh.quad(point(i, radius, z0), point(i + 1, radius, z0), point(i + 1, radius, z1), point(i, radius, z1))
+            mesh.quad(point(i, radius, z0), point(i + 1, radius, z0),
+                      point(i + 1, radius, z1), point(i, radius, z1))
         for k in range(rings):
             r0, r1 = radius * k / rings, radius * (k + 1) / rings
             for z, turn in ((length / 2, 1), (-length / 2, -1)):
@@ -193,18 +195,23 @@ def interpolate(table, x, column):
 def chord_stations():
     """x and half thickness along the wing root: a blunt round nose, a thinner rounded end."""
     inner = [(LEAD + 3.0 + 2.5 * k, STRIP) for k in range(14)]
-    return ([(LEAD + 0.2, 0.9), (LEAD + 1.2, 1.65)] + inner + [(LEAD + CHORD - 2.0, 1.75), (LEAD + CHORD - 0.2, 1.0)])
+    rear = [(LEAD + CHORD - 2.0, 1.75), (LEAD + CHORD - 0.2, 1.0)]
+    return [(LEAD + 0.2, 0.9), (LEAD + 1.2, 1.65)] + inner + rear
 
 
 def body_stations():
     """x and half height of the side strip at every ring of the body."""
-    nose = [-99.5, -98.6, -97.2, -95.2, -92.8, -90.1, -87.2, -84.2, -81.2, -78.2, -75.2, -72.2, -69.2, -66.2, -63.2]
+    nose = [-99.5, -98.6, -97.2, -95.2, -92.8, -90.1] + [-87.2 + 3.0 * k for k in range(9)]
     rear = [-20.0 + 2.93 * k for k in range(1, 29)]
-    result = [(x, min(STRIP, 0.25 * (interpolate(BODY, x, 1) - interpolate(BODY, x, 4)))) for x in nose]
+
+    def quarter(x):
+        return 0.25 * (interpolate(BODY, x, 1) - interpolate(BODY, x, 4))
+
+    result = [(x, min(STRIP, quarter(x))) for x in nose]
     result[-1] = (-63.2, 1.3)
     result += chord_stations()
     for k, x in enumerate(rear):
-        result.append((x, min(1.1 + 0.3 * k, STRIP, 0.25 * (interpolate(BODY, x, 1) - interpolate(BODY, x, 4)))))
+        result.append((x, min(1.1 + 0.3 * k, STRIP, quarter(x))))
     return result
 
 
@@ -226,10 +233,12 @@ def fish_rings():
     rings = []
     for x, strip in body_stations():
         top, bottom, width, line = (interpolate(BODY, x, c) for c in (1, 2, 3, 4))
-        rings.append([(x, y, z) for y, z in side_points(top, bottom, width, line, strip, 2.2, 0.0)])
-    for n, (x, top, bottom, width, trail) in enumerate(FIN):
-        flat = min(1.0, 0.3 + 0.2 * n)
-        points = side_points(top, bottom, width, 0.0, 0.12 * top, 2.5 + 0.5 * n, flat)
+        even = max(0.0, min(1.0, (-96.0 - x) / 2.0))      # no crowded points on the small rings of the nose
+        rings.append([(x, y, z) for y, z in side_points(top, bottom, width, line, strip, 2.2, even)])
+    for x in [65.0 + 2.1 * k for k in range(11)] + [87.6, 88.6]:
+        top, bottom, width, trail = (interpolate(FIN, x, c) for c in (1, 2, 3, 4))
+        grown = (x - 65.0) / 3.0        # from a round section to a flat one
+        points = side_points(top, bottom, width, 0.0, 0.12 * top, 2.5 + 0.5 * grown, min(1.0, 0.3 + 0.2 * grown))
         rings.append([(x + trail * abs(z / (top if z > 0 else bottom)) ** 1.4, y, z) for y, z in points])
     return rings
 
@@ -267,7 +276,8 @@ def add_wing(half, rings, first, row):
             return half.vertex(x / 1000, y / 1000, (line + sign * t * thin) / 1000)
         nose = half.vertex(lead / 1000, y / 1000, line / 1000)
         rear = half.vertex((lead + chord) / 1000, y / 1000, line / 1000)
-        return [at(k, -1) for k in range(last + 1)] + [rear] + [at(k, 1) for k in range(last, -1, -1)] + [nose]
+        lower, upper = ([at(k, sign) for k in range(last + 1)] for sign in (-1, 1))
+        return lower + [rear] + upper[::-1] + [nose]
 
     loops = [section(y) for y in spans]
     for inner, outer in zip(loops, loops[1:]):
@@ -306,7 +316,8 @@ SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "tor
 
 def main(arguments):
     if not arguments or arguments[0] == "--root":
-        root = arguments[1] if len(arguments) > 1 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        root = arguments[1] if len(arguments) > 1 else here
         fish().write(os.path.join(root, "scenes/flying_fish/meshes/fish.obj"), "flying fish, 0.2 m")
         for name in ("box", "sphere", "cylinder", "torus", "wedge"):
             SHAPES[name]().write(os.path.join(root, "test/meshes", name + ".obj"), name)

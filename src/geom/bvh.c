@@ -39,7 +39,8 @@ static void measure_edges_and_vertices(tobi_bvh *b)
         for (int k = 0; k < 3; k++) {
             static const double none[3] = {0, 0, 0};
             int32_t twin = b->opposite[t][k];
-            vec3_add_scaled(b->edge_normal[t][k], b->face_normal[t], 1, twin < 0 ? none : b->face_normal[twin/3]);
+            const double *other = twin < 0 ? none : b->face_normal[twin/3];
+            vec3_add_scaled(b->edge_normal[t][k], b->face_normal[t], 1, other);
             vec3_normalize(b->edge_normal[t][k]);
         }
 #pragma omp parallel for schedule(static) if (b->vertex_count > 4096)
@@ -71,7 +72,8 @@ static void box_leaf(const tobi_bvh *b, int32_t first, int32_t count, double box
         box[3 + k] = -INFINITY;
         for (int32_t i = first; i < first + count; i++) {
             const bvh_corners *t = &b->corners[i];
-            double low = t->a[k] < t->b[k] ? t->a[k] : t->b[k], high = t->a[k] < t->b[k] ? t->b[k] : t->a[k];
+            double low = t->a[k] < t->b[k] ? t->a[k] : t->b[k];
+            double high = t->a[k] < t->b[k] ? t->b[k] : t->a[k];
             if (t->c[k] < low) low = t->c[k];
             if (t->c[k] > high) high = t->c[k];
             if (low < box[k]) box[k] = low;
@@ -221,7 +223,8 @@ static inline void measure_boxes(const bvh_node *node, const float p[3], float o
 }
 
 /* Pushes the children nearer than limit2, the nearest on top. */
-static inline int push_children(const bvh_node *node, const float p[3], double limit2, stacked *stack, int top)
+static inline int push_children(const bvh_node *node, const float p[3], double limit2, stacked *stack,
+                                int top)
 {
     float d2[BVH_WIDTH];
     measure_boxes(node, p, d2);
@@ -332,7 +335,7 @@ static inline int touch_boxes(const bvh_node *node, const float m[3], const floa
         float4 noise = (magnitude(c[i])*size[j] + magnitude(c[j])*size[i])*1e-6f;
         apart |= magnitude(c[i]*h[j] - c[j]*h[i]) > bound + noise;
     }
-    return !apart[0] | !apart[1] << 1 | !apart[2] << 2 | !apart[3] << 3;
+    return (apart[0] ? 0 : 1) | (apart[1] ? 0 : 2) | (apart[2] ? 0 : 4) | (apart[3] ? 0 : 8);
 }
 
 int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3])

@@ -146,10 +146,13 @@ static int32_t widen_node(tobi_bvh *bvh, const builder *b, int32_t source)
     int32_t lanes[BVH_WIDTH] = {source}, used = 1, me = (int32_t)bvh->node_count++;
     while (used < BVH_WIDTH) {
         int widest = -1;
-        for (int i = 0; i < used; i++)
-            if (b->nodes[lanes[i]].left >= 0 &&
-                (widest < 0 || measure_box(b->nodes[lanes[i]].box) > measure_box(b->nodes[lanes[widest]].box)))
-                widest = i;
+        double width = -1;
+        for (int i = 0; i < used; i++) {
+            const binary_node *node = &b->nodes[lanes[i]];
+            if (node->left < 0 || !(measure_box(node->box) > width)) continue;
+            width = measure_box(node->box);
+            widest = i;
+        }
         if (widest < 0) break;
         lanes[used++] = b->nodes[lanes[widest]].right;
         lanes[widest] = b->nodes[lanes[widest]].left;

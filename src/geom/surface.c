@@ -42,7 +42,8 @@ static void place_point(double out[3], const double bary[3], const double *const
 }
 
 /* Cuts one triangle; writes pieces from *count on if out is given, and counts them. */
-static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_surface *out, int64_t *count)
+static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_surface *out,
+                         int64_t *count)
 {
     piece stack[64 + 1] = {{.corner = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .fraction = 1}};
     int top = 1;
