@@ -1,0 +1,49 @@
+/* A PNG picture of a moment, drawn in software: particles as a water surface, bodies, the domain's box.
+
+   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen space, lit, and
+   blended over the bodies by its thickness (van der Laan, Green & Sainz 2009; smoothing: the narrow-range
+   filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by value.
+   The same input gives the same picture for any number of threads. Needs about 40 bytes per sample of the
+   picture (width x height x samples^2) and 30 per particle while it runs. */
+#pragma once
+#include "base/error.h"
+
+typedef struct tobi_frame_mesh {
+    int64_t vertex_count;
+    const double (*vertices)[3];       /* m                            */
+    int64_t triangle_count;
+    const int32_t (*triangles)[3];
+    float color[3];                    /* sRGB, 0 to 1                 */
+} tobi_frame_mesh;
+
+/* Everything borrowed for the call. Obtain from tobi_default_frame and change members. */
+typedef struct tobi_frame {
+    int width, height;                 /* pixels, 16 to 8192                                            */
+    int samples;                       /* per pixel and axis, 1 to 4                                    */
+    int dimension;                     /* 2 or 3                                                        */
+
+    double box_min[3], box_max[3];     /* m, the domain: drawn as lines and, without a camera, fitted   */
+    double up[3];                      /* direction against gravity; zero = z in 3-D (unused in 2-D)    */
+    int    has_camera;                 /* 0: the view fits the box                                      */
+    double eye[3], target[3];          /* m, 3-D only                                                   */
+    double field_of_view;              /* degrees, vertical                                             */
+
+    int64_t particle_count;
+    const double (*positions)[3];      /* m; not finite = not drawn                                     */
+    const float *values;               /* colour of each particle, e.g. speed; NULL = lowest colour     */
+    double radius;                     /* m, half the particle spacing                                  */
+    double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
+    double clarity;                    /* m of water after which 1/e of the light is left; 0 = automatic */
+
+    const tobi_frame_mesh *meshes;
+    int mesh_count;
+
+    float background_top[3], background_bottom[3];   /* sRGB */
+    const char *title;                 /* ASCII, upper left, "t = 0.25 s"; NULL = none                  */
+    const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */
+} tobi_frame;
+
+tobi_frame tobi_default_frame(void);
+
+/* TOBI_INVALID for sizes, ranges or indices out of bounds, TOBI_NO_MEMORY, TOBI_IO. The file appears whole or not at all. */
+tobi_status tobi_frame_write(const char *path, const tobi_frame *frame, tobi_error *err);

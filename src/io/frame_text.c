@@ -1,0 +1,130 @@
+/* Letters as strokes on a small grid, drawn with round pens; a title and a colour bar. */
+#define _GNU_SOURCE 1
+#include "io/frame_draw.h"
+#include <stdio.h>
+#include <string.h>
+
+/* Points are two digits, x to the right and y up: baseline 2, small letters to 6, capitals to 8, tails to 0.
+   A space lifts the pen. */
+static const char *const strokes[128] = {
+    ['0'] = "123243473818070312", ['1'] = "172822 1232", ['2'] = "07183847460242", ['3'] = "07183847463515 354443321203",
+    ['4'] = "32380444", ['5'] = "480805354443321203", ['6'] = "473818070312324344351504", ['7'] = "084812",
+    ['8'] = "15060718384746351504031232434435", ['9'] = "031232434738180706153546",
+    ['a'] = "4332120305163645 4642", ['b'] = "0802 0312324345361605", ['c'] = "4536160503123243",
+    ['d'] = "4842 4332120305163645", ['e'] = "04444536160503123243", ['f'] = "38281712 0636",
+    ['g'] = "4332120305163645 46413010", ['h'] = "0802 0516364542", ['i'] = "0602 0808", ['j'] = "161100 1818",
+    ['k'] = "0802 3603 1432", ['l'] = "0802", ['m'] = "0602 0516263532 3546566562", ['n'] = "0602 0516364542",
+    ['o'] = "123243453616050312", ['p'] = "0600 0312324345361605", ['q'] = "4640 4332120305163645", ['r'] = "0602 051636",
+    ['s'] = "45361605143443321203", ['t'] = "18132232 0636", ['u'] = "0603123243 4642", ['v'] = "062246",
+    ['w'] = "0612355266", ['x'] = "0642 4602", ['y'] = "0622 4610", ['z'] = "06460242",
+    ['A'] = "022842 1434", ['B'] = "02083847463505 3544433202", ['C'] = "4738180703123243", ['D'] = "02082846442202",
+    ['E'] = "48080242 0535", ['F'] = "480802 0535", ['G'] = "47381807031232434525", ['H'] = "0208 4248 0545",
+    ['I'] = "0208", ['J'] = "3833221203", ['K'] = "0208 4804 1542", ['L'] = "080242", ['M'] = "0208346862",
+    ['N'] = "02084248", ['O'] = "123243473818070312", ['P'] = "02083847463505", ['Q'] = "123243473818070312 2442",
+    ['R'] = "02083847463505 2542", ['S'] = "473818070615354443321203", ['T'] = "0848 2822", ['U'] = "080312324348",
+    ['V'] = "082248", ['W'] = "0812365268", ['X'] = "0842 4802", ['Y'] = "082548 2522", ['Z'] = "08480242",
+    ['.'] = "0202", [','] = "1201", [':'] = "0202 0505", [';'] = "1201 1515", ['-'] = "0535", ['+'] = "0545 2723",
+    ['='] = "0444 0646", ['/'] = "0148", ['('] = "28060321", [')'] = "08262301", ['['] = "28080121", [']'] = "08282101",
+    ['^'] = "062846", ['_'] = "0141", ['*'] = "2723 0644 0446", ['%'] = "0248 0707 4343", ['<'] = "470543",
+    ['>'] = "074503", ['|'] = "0901", ['\''] = "0807", ['"'] = "0807 2827", ['!'] = "0804 0202", ['~'] = "05163445",
+    ['?'] = "07183847462524 2222", [' '] = ""
+};
+
+static const char *find_strokes(char letter)
+{
+    const char *s = letter > 0 ? strokes[(int)letter] : NULL;
+    return s ? s : "0242480802";       /* an empty box for what has no glyph */
+}
+
+/* Grid units to the next letter. Digits are equally wide, so that numbers stand still in a film. */
+static int advance(char letter)
+{
+    int widest = letter == ' ' ? 2 : 0;
+    if (letter >= '0' && letter <= '9') return 6;
+    for (const char *s = find_strokes(letter); *s; s += *s == ' ' ? 1 : 2)
+        if (*s != ' ' && *s - '0' > widest) widest = *s - '0';
+    return widest + 2;
+}
+
+static float text_width(const char *text, float unit)
+{
+    float width = 0;
+    for (; *text; text++) width += (float)advance(*text);
+    return width > 0 ? (width - 2)*unit : 0;
+}
+
+static void draw_stroke(image *i, const float a[2], const float b[2], float pen, vec color)
+{
+    float reach = 0.5f*pen + 1, d[2] = { b[0] - a[0], b[1] - a[1] }, square = d[0]*d[0] + d[1]*d[1];
+    int x0 = (int)fmaxf(fminf(a[0], b[0]) - reach, 0), x1 = (int)fminf(fmaxf(a[0], b[0]) + reach, (float)i->width - 1);
+    int y0 = (int)fmaxf(fminf(a[1], b[1]) - reach, 0), y1 = (int)fminf(fmaxf(a[1], b[1]) + reach, (float)i->height - 1);
+    for (int y = y0; y <= y1; y++)
+        for (int x = x0; x <= x1; x++) {
+            float p[2] = { (float)x + 0.5f - a[0], (float)y + 0.5f - a[1] };
+            float t = square > 0 ? clampf((p[0]*d[0] + p[1]*d[1])/square, 0, 1) : 0;
+            float off = hypotf(p[0] - t*d[0], p[1] - t*d[1]);
+            float cover = clampf(0.5f*pen + 0.5f - off, 0, 1);
+            vec *at = &i->color[(size_t)y*(size_t)i->width + (size_t)x];
+            *at = vec_mix(*at, color, cover);
+        }
+}
+
+/* x, y: left end of the baseline; unit: pixels of a grid step. */
+static void draw_text(image *i, float x, float y, float unit, const char *text, vec color)
+{
+    for (; *text; text++) {
+        const char *s = find_strokes(*text);
+        float last[2] = { 0, 0 };
+        int points = 0;
+        for (; *s; s += *s == ' ' ? 1 : 2) {
+            if (*s == ' ') {
+                points = 0;
+                continue;
+            }
+            float at[2] = { x + (float)(s[0] - '0')*unit, y - (float)(s[1] - '0' - 2)*unit };
+            if (points++ > 0) draw_stroke(i, last, at, 0.85f*unit, color);
+            memcpy(last, at, sizeof last);
+        }
+        x += (float)advance(*text)*unit;
+    }
+}
+
+static const vec ink = { 0.02f, 0.03f, 0.05f };
+
+static float letter_unit(const image *i) { return fmaxf((float)(i->height < i->width ? i->height : i->width)/300, 1); }
+
+void draw_title(image *i, const char *text)
+{
+    float unit = 1.15f*letter_unit(i);
+    draw_text(i, 9*unit, 14*unit, unit, text, ink);
+}
+
+static double tick_step(double range)
+{
+    double step = pow(10, floor(log10(range))), n = range/step;
+    return n < 2 ? step/2 : n > 5 ? 2*step : step;
+}
+
+/* On the right: colours from low to high, ticks at round values. */
+void draw_color_bar(image *i, const char *label, double low, double high)
+{
+    float unit = 0.9f*letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
+    float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
+    for (int row = 0; row < (int)height; row++)
+        for (int column = 0; column < (int)width; column++) {
+            int px = (int)x + column, py = (int)bottom - 1 - row;
+            bool edge = row == 0 || row == (int)height - 1 || column == 0 || column == (int)width - 1;
+            i->color[(size_t)py*(size_t)i->width + (size_t)px] = edge ? ink : map_color((float)row/(height - 1));
+        }
+    double step = tick_step(high - low);
+    for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
+        char text[32];
+        snprintf(text, sizeof text, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
+        float y = bottom - (float)((v - low)/(high - low))*height;
+        draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
+        draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);
+    }
+    float right = (float)i->width - 6*unit, wide = text_width(label, unit);
+    float left = fminf(x - 2*unit, right - wide);
+    draw_text(i, left, bottom - height - 7*unit, unit, label, ink);
+}

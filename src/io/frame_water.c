@@ -1,0 +1,360 @@
+/* Particles: splatted into depth, thickness and value; the depth smoothed; the surface lit. */
+#include "io/frame_draw.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct splat {
+    float x, y, z, radius;   /* samples, m, samples; radius 0 = not drawn */
+    float value;             /* 0 to 1 */
+} splat;
+
+enum { REACH_MAX = 40 };     /* samples, of the smoothing filter to one side */
+static const float water_radius = 1.7f;    /* in particle radii: neighbours' spheres overlap into a surface */
+
+/* From deep blue over light blue to white. */
+vec map_color(float value)
+{
+    static const float stop[5][3] = { { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f },
+                                      { 0.62f, 0.85f, 0.96f }, { 0.98f, 0.99f, 1.00f } };
+    float t = clampf(value, 0, 1)*4;
+    int i = t < 3 ? (int)t : 3;
+    return vec_mix(linear_color(stop[i]), linear_color(stop[i + 1]), t - (float)i);
+}
+
+static bool splat_rect(const void *items, int64_t i, int rect[4])
+{
+    const splat *s = &((const splat *)items)[i];
+    if (!(s->radius > 0)) return false;
+    rect[0] = (int)floorf(s->x - s->radius), rect[1] = (int)floorf(s->y - s->radius);
+    rect[2] = (int)ceilf(s->x + s->radius), rect[3] = (int)ceilf(s->y + s->radius);
+    return true;
+}
+
+/* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
+static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, double low, double high)
+{
+    splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
+    if (!splats) return NULL;
+    #pragma omp parallel for
+    for (int64_t i = 0; i < f->particle_count; i++) {
+        vec p = view_point(&c->camera, f->positions[i]);
+        splat s = { 0 };
+        if (p.z > c->camera.near + radius && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f) {
+            spot at = project(&c->camera, p);
+            float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
+            s = (splat){ at.x, at.y, at.z, radius*scale_at(&c->camera, at.z), value == value ? clampf(value, 0, 1) : 1 };
+            if (!(fabsf(at.x) < 1e6f && fabsf(at.y) < 1e6f && s.radius < 1e4f)) s.radius = 0;
+        }
+        splats[i] = s;
+    }
+    return splats;
+}
+
+/* What a tile's loops need. */
+typedef struct brush {
+    canvas *c;
+    float   radius;       /* m */
+    float   weight;       /* of a sphere's chord as thickness */
+    bool    discs;
+} brush;
+
+/* Clips a splat's row to the tile and the circle: samples [*x0, *x1). */
+static bool clip_row(const splat *s, int y, const int tile[4], int *x0, int *x1)
+{
+    float dy = (float)y + 0.5f - s->y, rest = s->radius*s->radius - dy*dy;
+    if (rest <= 0) return false;
+    float half = sqrtf(rest);
+    float a = ceilf(s->x - half - 0.5f), b = floorf(s->x + half - 0.5f) + 1;
+    *x0 = a > (float)tile[0] ? (int)a : tile[0];
+    *x1 = b < (float)tile[2] + 1 ? (int)b : tile[2] + 1;
+    return *x0 < *x1;
+}
+
+static void clip_rows(const splat *s, const int tile[4], int *y0, int *y1)
+{
+    float a = floorf(s->y - s->radius), b = ceilf(s->y + s->radius);
+    *y0 = a > (float)tile[1] ? (int)a : tile[1];
+    *y1 = b < (float)tile[3] ? (int)b : tile[3];
+}
+
+static void splat_depth(const brush *b, const splat *s, const int tile[4])
+{
+    canvas *c = b->c;
+    int y0, y1, x0, x1;
+    float inverse = 1/(s->radius*s->radius);
+    clip_rows(s, tile, &y0, &y1);
+    for (int y = y0; y <= y1; y++) {
+        if (!clip_row(s, y, tile, &x0, &x1)) continue;
+        size_t row = (size_t)y*(size_t)c->width;
+        const float *opaque = c->depth + row;
+        float *surface = c->surface + row, *thickness = c->thickness + row;
+        float dy = (float)y + 0.5f - s->y, high = b->radius, weight = 2*b->radius*b->weight, z = s->z, sx = s->x - 0.5f;
+        #pragma omp simd
+        for (int x = x0; x < x1; x++) {
+            float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
+            float h = sqrtf(q > 0 ? q : 0), front = z - high*h;
+            float seen = front < opaque[x] ? 1.0f : 0.0f;
+            surface[x] = seen != 0 && front < surface[x] ? front : surface[x];
+            thickness[x] += seen*weight*h;
+        }
+    }
+}
+
+/* Mean value of the particles near the front; scratch holds the weights. */
+static void splat_value(const brush *b, const splat *s, const int tile[4])
+{
+    canvas *c = b->c;
+    int y0, y1, x0, x1;
+    float inverse = 1/(s->radius*s->radius), reach = 2*b->radius;
+    clip_rows(s, tile, &y0, &y1);
+    for (int y = y0; y <= y1; y++) {
+        if (!clip_row(s, y, tile, &x0, &x1)) continue;
+        size_t row = (size_t)y*(size_t)c->width;
+        const float *surface = c->surface + row;
+        float *value = c->value + row, *sum = c->scratch + row;
+        float dy = (float)y + 0.5f - s->y, z = s->z, own = s->value, sx = s->x - 0.5f;
+        #pragma omp simd
+        for (int x = x0; x < x1; x++) {
+            float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
+            float behind = (z - surface[x])/reach, w = q*q*(behind < 1 ? 1 - behind : 0);
+            w = w > 0 ? w : 0;
+            value[x] += w*own;
+            sum[x] += w;
+        }
+    }
+}
+
+static void splat_disc(const brush *b, const splat *s, const int tile[4])
+{
+    canvas *c = b->c;
+    vec color = map_color(s->value);
+    int y0, y1, x0, x1;
+    clip_rows(s, tile, &y0, &y1);
+    for (int y = y0; y <= y1; y++) {
+        if (!clip_row(s, y, tile, &x0, &x1)) continue;
+        for (int x = x0; x < x1; x++) c->color[(size_t)y*(size_t)c->width + (size_t)x] = color;
+    }
+}
+
+/* Every tile: all its splats in their order. */
+static void paint(const brush *b, const tiles *t, const splat *splats)
+{
+    canvas *c = b->c;
+    #pragma omp parallel for schedule(dynamic)
+    for (int k = 0; k < t->across*t->down; k++) {
+        int x = k%t->across*TILE, y = k/t->across*TILE;
+        int rect[4] = { x, y, x + TILE <= c->width ? x + TILE - 1 : c->width - 1,
+                        y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
+        for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
+            const splat *s = &splats[t->item[i]];
+            if (b->discs) splat_disc(b, s, rect);
+            else splat_depth(b, s, rect);
+        }
+        for (int64_t i = t->first[k]; i < t->first[k + 1] && !b->discs; i++) splat_value(b, &splats[t->item[i]], rect);
+    }
+}
+
+static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2], bool discs,
+                                   tobi_error *err)
+{
+    splat *splats = make_splats(c, f, radius, range[0], range[1]);
+    if (!splats) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %lld particles", (long long)f->particle_count);
+    tiles t;
+    tobi_status status = tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
+    if (status == TOBI_OK) {
+        /* Chords of spheres of radius R at one per (2 r)^3 add up to this much per metre of water. */
+        float r = (float)f->radius, per_meter = 4.0f/3*(float)3.14159265*radius*radius*radius/(8*r*r*r);
+        brush b = { c, radius, 1/per_meter, discs };
+        paint(&b, &t, splats);
+        tiles_free(&t);
+    }
+    free(splats);
+    return status;
+}
+
+tobi_status draw_discs(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+{
+    return splat_particles(c, f, (float)f->radius, (double[2]){ low, high }, true, err);
+}
+
+/* One row of the narrow-range filter. Neighbours in front by more than `narrow` are other water and do not
+   count (nor does their mirror image, so that slopes stay); those behind count as `narrow` behind. */
+static void smooth_row(const float *in, float *out, int n, float reach_at_1m, bool flat, float narrow,
+                       float (*gauss)[REACH_MAX + 1])
+{
+    for (int x = 0; x < n; x++) {
+        float z = in[x];
+        out[x] = z;
+        if (!(z < INFINITY)) continue;
+        int reach = (int)(flat ? reach_at_1m : reach_at_1m/z);
+        if (reach > REACH_MAX) reach = REACH_MAX;
+        if (reach > x) reach = x;
+        if (reach > n - 1 - x) reach = n - 1 - x;
+        const float *g = gauss[reach];
+        float sum = 0, weight = 1;
+        for (int k = 1; k <= reach; k++) {
+            float l = in[x - k] - z, r = in[x + k] - z;
+            float w = l < -narrow || r < -narrow ? 0 : g[k];
+            sum += w*((l > narrow ? narrow : l) + (r > narrow ? narrow : r));
+            weight += 2*w;
+        }
+        out[x] = z + sum/weight;
+    }
+}
+
+static void blur_row(const float *in, float *out, int n, int reach)
+{
+    double sum = 0;
+    for (int x = -reach; x < n; x++) {
+        if (x + reach < n) sum += in[x + reach];
+        if (x - reach - 1 >= 0) sum -= in[x - reach - 1];
+        if (x >= 0) out[x] = (float)(sum/(2*reach + 1));
+    }
+}
+
+static void transpose(const float *in, float *out, int width, int height)
+{
+    enum { B = 32 };
+    #pragma omp parallel for schedule(static)
+    for (int y0 = 0; y0 < height; y0 += B)
+        for (int x0 = 0; x0 < width; x0 += B)
+            for (int y = y0; y < y0 + B && y < height; y++)
+                for (int x = x0; x < x0 + B && x < width; x++)
+                    out[(size_t)x*(size_t)height + (size_t)y] = in[(size_t)y*(size_t)width + (size_t)x];
+}
+
+typedef struct filter {
+    float reach;             /* samples at 1 m, or anywhere if flat; of a blur: samples */
+    float narrow;            /* m; 0 = plain blur                                       */
+    bool  flat;
+    float gauss[REACH_MAX + 1][REACH_MAX + 1];
+} filter;
+
+static void filter_rows(filter *f, const float *in, float *out, int width, int height)
+{
+    #pragma omp parallel for schedule(dynamic, 16)
+    for (int y = 0; y < height; y++) {
+        size_t row = (size_t)y*(size_t)width;
+        if (f->narrow > 0) smooth_row(in + row, out + row, width, f->reach, f->flat, f->narrow, f->gauss);
+        else blur_row(in + row, out + row, width, (int)f->reach);
+    }
+}
+
+/* Rows, then columns, with the result back in data. */
+static void filter_plane(filter *f, float *data, float *scratch, int width, int height)
+{
+    filter_rows(f, data, scratch, width, height);
+    transpose(scratch, data, width, height);
+    filter_rows(f, data, scratch, height, width);
+    transpose(scratch, data, height, width);
+}
+
+static void smooth_water(canvas *c, float radius)
+{
+    static const int rounds = 3;
+    filter *f = calloc(1, sizeof *f);
+    if (!f) return;       /* a rougher picture, not a failure */
+    for (int r = 1; r <= REACH_MAX; r++)
+        for (int k = 0; k <= r; k++) f->gauss[r][k] = expf(-3.0f*(float)(k*k)/(float)(r*r));
+    f->flat = c->camera.orthographic;
+    f->reach = 2.4f*radius*c->camera.focal;
+    f->narrow = 2.0f*radius;
+    for (int i = 0; i < rounds; i++) filter_plane(f, c->surface, c->scratch, c->width, c->height);
+    /* Thickness and value: plain blurs a particle wide, at the depth of the middle of the water. */
+    double sum = 0;
+    int64_t n = 0;
+    for (size_t k = 0; k < (size_t)c->width*(size_t)c->height; k += 61)
+        if (c->surface[k] < INFINITY) sum += c->surface[k], n++;
+    f->narrow = 0;
+    f->reach = n ? clampf(0.8f*radius*scale_at(&c->camera, (float)(sum/(double)n)), 1, 60) : 1;
+    for (int i = 0; i < 2; i++) filter_plane(f, c->thickness, c->scratch, c->width, c->height);
+    free(f);
+}
+
+/* Difference of the surface's view points along one axis, taken on the side where the depth changes less. */
+static vec slope(const canvas *c, int x, int y, int dx, int dy)
+{
+    size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+    int64_t step = (int64_t)dy*c->width + dx;
+    float z = c->surface[k];
+    bool first = dx ? x == 0 : y == 0, last = dx ? x == c->width - 1 : y == c->height - 1;
+    float before = first ? INFINITY : c->surface[(int64_t)k - step], after = last ? INFINITY : c->surface[(int64_t)k + step];
+    vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, z);
+    if (!(before < INFINITY) && !(after < INFINITY)) return (vec){ 0, 0, 0 };
+    if (fabsf(after - z) <= fabsf(before - z))
+        return vec_sub(unproject(&c->camera, (float)(x + dx) + 0.5f, (float)(y + dy) + 0.5f, after), p);
+    return vec_sub(p, unproject(&c->camera, (float)(x - dx) + 0.5f, (float)(y - dy) + 0.5f, before));
+}
+
+static vec surface_normal(const canvas *c, int x, int y, vec eye)
+{
+    vec n = vec_cross(slope(c, x, y, 0, 1), slope(c, x, y, 1, 0));
+    if (!(vec_dot(n, n) > 0)) return eye;
+    n = vec_unit(n);
+    return vec_dot(n, eye) < 0 ? vec_scale(-1, n) : n;
+}
+
+/* What lies behind the water, seen along the refracted ray: the picture shifted by the surface's tilt. */
+static vec look_through(const canvas *c, const vec *back, int x, int y, vec n, float thickness)
+{
+    size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+    float shift = 0.35f*thickness*scale_at(&c->camera, c->surface[k]);
+    shift = fminf(shift, 0.05f*(float)c->width);
+    int sx = (int)clampf((float)x - n.x*shift, 0, (float)c->width - 1), sy = (int)clampf((float)y + n.y*shift, 0, (float)c->height - 1);
+    size_t s = (size_t)sy*(size_t)c->width + (size_t)sx;
+    return back[c->depth[s] > c->surface[k] ? s : k];
+}
+
+/* Light through, scattered in and mirrored by the water at one sample; *through: how much passes. */
+static vec shade_water(const canvas *c, const vec *back, int x, int y, float clarity, float *through)
+{
+    size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+    vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
+    vec eye = to_eye(&c->camera, p), n = surface_normal(c, x, y, eye);
+    float thickness = fmaxf(c->thickness[k], 0), facing = clampf(vec_dot(n, eye), 0, 1), value = c->value[k];
+    float path = thickness/clarity, veil = 0.18f + 0.75f*value*value;      /* foam hides */
+    vec pass = { expf(-1.5f*path), expf(-1.0f*path), expf(-0.85f*path) };
+    pass = vec_scale(1 - veil, pass);
+    float lambert = vec_dot(n, c->light), wrap = clampf(0.35f + 0.65f*lambert, 0, 1), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
+    vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }), vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
+    vec scatter = vec_mul(map_color(value), light);
+    vec behind = look_through(c, back, x, y, n, thickness);
+    vec color = vec_add(vec_mul(pass, behind), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
+    /* Schlick 1994, water. */
+    float mirror = 0.02f + 0.98f*powf(1 - facing, 5);
+    vec r = vec_sub(vec_scale(2*vec_dot(n, eye), n), eye), half = vec_unit(vec_add(c->light, eye));
+    color = vec_mix(color, sky_color(c, r), 0.75f*mirror);
+    float shine = powf(clampf(vec_dot(n, half), 0, 1), 140);
+    *through = (pass.x + pass.y + pass.z)/3;
+    return vec_add(color, vec_scale(0.55f*shine, (vec){ 1, 1, 1 }));
+}
+
+static tobi_status light_water(canvas *c, float clarity, tobi_error *err)
+{
+    size_t n = (size_t)c->width*(size_t)c->height;
+    vec *back = malloc(n*sizeof *back);
+    if (!back) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
+    memcpy(back, c->color, n*sizeof *back);
+    #pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++) {
+            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+            if (c->surface[k] < INFINITY) c->color[k] = shade_water(c, back, x, y, clarity, &c->thickness[k]);
+        }
+    free(back);
+    return TOBI_OK;
+}
+
+tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+{
+    float radius = water_radius*(float)f->radius;
+    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, false, err));
+    size_t n = (size_t)c->width*(size_t)c->height;
+    #pragma omp parallel for
+    for (size_t k = 0; k < n; k++)
+        c->value[k] = c->scratch[k] > 0 ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
+    smooth_water(c, radius);
+    double size = 0;
+    for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
+    return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.14*sqrt(size)), err);
+}
