@@ -1,4 +1,5 @@
 /* Values of options. */
+#define _GNU_SOURCE
 #include "app.h"
 #include <math.h>
 #include <stdio.h>

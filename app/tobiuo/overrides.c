@@ -1,4 +1,5 @@
 /* The list of "path=value" texts that options turn into. */
+#define _GNU_SOURCE
 #include "app.h"
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* tobiuo run SCENE */
+#define _GNU_SOURCE
 #include "app.h"
 #include <stdio.h>
 #include <stdlib.h>

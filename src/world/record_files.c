@@ -2,6 +2,7 @@
 
    Ours is what matches the list of names below. Anything else in the directory is the user's and is
    never touched. */
+#define _GNU_SOURCE
 #include "world/record.h"
 #include <dirent.h>
 #include <errno.h>

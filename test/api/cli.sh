@@ -1,0 +1,224 @@
+#!/bin/bash
+# The program as users meet it: exit codes, messages, files, stopping and going on.
+# usage: cli.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+program=$(realpath "$1")
+python=/usr/bin/python3
+[ -x $python ] || python=python3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export OMP_WAIT_POLICY=passive
+passed=0 failed=0
+
+ok() { passed=$((passed + 1)); }
+bad() { failed=$((failed + 1)); echo "FAILED: $1"; [ -s err.txt ] && sed 's/^/    /' err.txt | head -n 8; }
+check() { local what=$1; shift; if "$@" > /dev/null 2>&1; then ok; else bad "$what"; fi; }
+# expect CODE TEXT ARGUMENTS...: exit code, and a text in stderr ("" = stderr must be empty)
+expect() {
+    local code=$1 text=$2 got=0
+    shift 2
+    "$program" "$@" > out.txt 2> err.txt || got=$?
+    if [ $got -ne "$code" ]; then bad "tobiuo $*: exit code $got, not $code"
+    elif [ -n "$text" ] && ! grep -qF -- "$text" err.txt; then bad "tobiuo $*: no '$text' on stderr"
+    elif [ -z "$text" ] && [ -s err.txt ]; then bad "tobiuo $*: unexpected text on stderr"
+    else ok; fi
+}
+value() { $python -c 'import json, sys; print(json.load(open(sys.argv[1]))[sys.argv[2]])' "$1" "$2"; }
+hash_of() { value "$1/summary.json" state_hash; }
+same_hash() { [ "$(hash_of "$1")" = "$(hash_of "$2")" ]; }
+# same_results A B: tables and every file of the series, byte for byte
+same_results() {
+    cmp "$1/history.csv" "$2/history.csv" && cmp "$1/bodies.csv" "$2/bodies.csv" || return 1
+    local part
+    for part in fluid bodies surfaces; do diff -r "$1/$part" "$2/$part" || return 1; done
+    for part in "$1"/*.pvd; do cmp "$part" "$2/$(basename "$part")" || return 1; done
+}
+no_parts() { [ -z "$(find "$1" -name '*.part')" ]; }
+# A step takes milliseconds here, so tests that stop a run in the middle need a run of about a second.
+cat > make_scene.py <<'END'
+import sys
+name, end, mesh = sys.argv[1:4]
+open(mesh, "w").write("\n".join(
+    ["v %g %g %g" % (x, y, z) for z in (-.02, .02) for y in (-.02, .02) for x in (-.02, .02)] +
+    ["f " + f for f in ("1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6")]) + "\n")
+open(name, "w").write("""{   # a small tank with a box that swings in it
+  "domain": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.2]},
+  "gravity": [0, 0, -9.81], "spacing": 0.01, "end_time": %s,
+  "fluids": [{"name": "water", "density": 1000, "viscosity": 0.001,
+              "fill": [{"box": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.1]}}]}],
+  "bodies": [{"name": "box", "mesh": "%s", "translation": [0, 0, 0.05], "density": 1000,
+              "motion": {"script": "swing.lua", "params": {"way": 0.02}}}],
+  "output": {"interval": 0.01, "checkpoint_interval": 0.02}
+}""" % (end, mesh))
+open("swing.lua", "w").write(
+    "function place(t) return params.way * math.sin(20 * t), 0, 0, 0, 0, 1, 100 * t end\n")
+END
+$python make_scene.py tank.json 0.1 box.obj
+
+# --- usage ------------------------------------------------------------------------------------------
+expect 2 "usage: tobiuo"
+expect 0 "" --help
+expect 0 "" --version
+expect 2 "no command 'fly'" fly
+expect 2 "which SCENE?" run
+expect 2 "--nonsense" run --nonsense tank.json
+expect 2 "not a positive number" run tank.json --until soon
+expect 2 "not a positive number" run tank.json --spacing -1
+expect 2 "--threads" run tank.json --threads many
+expect 2 "PATH=VALUE" run tank.json --set spacing
+expect 2 "which DIR?" resume
+expect 0 "" describe dfsph
+check "describe names the unit" grep -q "default" out.txt
+expect 1 "no topic 'magic'" describe magic
+expect 0 "" info
+check "info names the version" grep -q "^tobiuo " out.txt
+check "nothing was made so far" test ! -e out
+
+# --- broken input -----------------------------------------------------------------------------------
+expect 1 "nowhere.json" run nowhere.json
+expect 1 "nowhere.json" check nowhere.json
+echo '{ "domain": ' > broken.json
+expect 1 "broken.json:" run broken.json
+sed 's/"spacing"/"spacng"/; s/"density": 1000, "visc/"density": -5, "visc/' tank.json > wrong.json
+expect 1 "spacing" check wrong.json
+check "every mistake at once, with its line" test "$(grep -c 'wrong.json:[0-9]*:' err.txt)" -ge 2
+sed 's/box.obj/no_such.obj/' tank.json > no_mesh.json
+expect 1 "no_such.obj" run no_mesh.json
+sed 's/swing.lua/bad.lua/' tank.json > bad_script.json
+printf 'function place(t)\n  return oops, 0, 0\nend\n' > bad.lua
+expect 1 "bad.lua:2:" run bad_script.json --quiet
+printf 'function place(t) while true do end end\n' > bad.lua
+expect 1 "endless loop" run bad_script.json --quiet
+sed 's/"fill": .*/"fill": [] }],/' tank.json > dry.json
+expect 1 "fill" run dry.json
+expect 1 "memory" check tank.json --set spacing=1e-5
+expect 1 "memory" run tank.json --set spacing=1e-5
+expect 1 "viscosity" run tank.json --set 'fluids[0].viscosity=thick'
+check "nothing was made by runs that cannot start" test ! -e out/tank/fluid
+rm -rf out
+
+# --- check ------------------------------------------------------------------------------------------
+expect 0 "" check tank.json
+check "check counts particles" grep -q "fluid particles  [1-9]" out.txt
+
+# --- a run ------------------------------------------------------------------------------------------
+expect 0 "" run tank.json --quiet
+a=out/tank
+for file in resolved.json history.csv bodies.csv fluid.pvd bodies.pvd box.pvd summary.json \
+            fluid/fluid_000000.vtu fluid/fluid_000010.vtu bodies/bodies_000010.vtu \
+            surfaces/box_000010.vtp surfaces/box_000010.stl; do
+    check "a run leaves $file" test -s $a/$file
+done
+check "no output beyond the end" test ! -e $a/fluid/fluid_000011.vtu
+check "11 rows of history" test "$(wc -l < $a/history.csv)" = 12
+check "11 rows of bodies" test "$(wc -l < $a/bodies.csv)" = 12
+check "two checkpoints are kept" test "$(find $a/checkpoints -name '*.h5' | wc -l)" = 2
+check "no unfinished files" no_parts $a
+check "output times are exact" $python - <<END
+import csv
+rows = list(csv.DictReader(open("$a/history.csv")))
+assert [float(r["time"]) for r in rows] == [k * 0.01 for k in range(11)]
+END
+check "summary.json is whole" $python - <<END
+import json
+s = json.load(open("$a/summary.json"))
+for key in ("steps time wall_s fluid_particles body_particles particle_steps_per_s density_iterations_mean "
+            "divergence_iterations_mean density_error_mean density_error_max particles_lost peak_rss_bytes "
+            "threads version").split():
+    assert key in s, key
+assert s["outcome"] == "complete" and abs(s["time"] - 0.1) < 1e-12 and s["steps"] > 10
+assert s["fluid_particles"] > 100 and s["threads"] >= 1 and s["peak_rss_bytes"] > 1e6
+END
+
+# --- never over existing results --------------------------------------------------------------------
+before=$(hash_of $a)
+echo mine > $a/notes.txt
+expect 1 "holds the results of a run" run tank.json --quiet
+check "old results are untouched" test "$(hash_of $a)" = "$before" -a -s $a/history.csv
+expect 1 "broken.json:" run broken.json --quiet --force --out $a
+check "a broken scene costs nothing, even by force" test -s $a/summary.json
+expect 0 "" run tank.json --quiet --force --until 0.02
+check "force replaces" test "$(wc -l < $a/history.csv)" = 4 -a ! -e $a/fluid/fluid_000003.vtu
+check "force keeps what is not ours" grep -q mine $a/notes.txt
+touch a_file
+expect 1 "a_file" run tank.json --quiet --out a_file
+expect 1 "a_file" run tank.json --quiet --out a_file/below
+expect 1 "/proc" run tank.json --quiet --out /proc/tobiuo
+mkdir locked && chmod a-w locked
+if [ ! -w locked ]; then expect 1 "cannot" run tank.json --quiet --out locked/here; fi
+# A full disk, played by a limit on the size of files.
+got=0
+(trap '' XFSZ; ulimit -f 24; exec "$program" run tank.json --quiet --out full) > out.txt 2> err.txt || got=$?
+check "full disk: exit code 1 (was $got)" test $got = 1
+check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
+check "full disk: no unfinished files" no_parts full
+
+# --- the same bits ----------------------------------------------------------------------------------
+expect 0 "" run tank.json --quiet --out one --threads 1
+expect 0 "" run tank.json --quiet --out two --threads 2
+check "1 thread = 2 threads" same_results one two
+check "1 thread = 2 threads, state" same_hash one two
+expect 0 "" run one/resolved.json --quiet --out again
+check "resolved.json gives the same results" same_results one again
+check "resolved.json gives the same state" same_hash one again
+check "resolved.json resolves to itself" diff <(sed '/threads/d' one/resolved.json) <(sed '/threads/d' again/resolved.json)
+
+# --- stopping and going on --------------------------------------------------------------------------
+$python make_scene.py long.json 0.2 box.obj
+expect 0 "" run long.json --quiet --out whole
+expect 0 "" run long.json --quiet --out halves --until 0.1
+expect 0 "" resume halves --quiet --until 0.2
+check "run = run + resume" same_results whole halves
+check "run = run + resume, state" same_hash whole halves
+check "same number of steps" test "$(value whole/summary.json steps)" = "$(value halves/summary.json steps)"
+
+# start_run DIR OUTPUT: starts a run and waits for an output or for its end; pid in $pid
+start_run() {
+    "$program" run long.json --quiet --out "$1" > out.txt 2> err.txt &
+    pid=$!
+    while [ ! -e "$1/fluid/fluid_$2.vtu" ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+}
+for signal in INT TERM; do
+    start_run stopped_$signal 000007
+    kill -$signal $pid
+    got=0; wait $pid || got=$?
+    check "SIG$signal: exit code 130 (was $got)" test $got = 130
+    check "SIG$signal: summary says interrupted" grep -q '"interrupted"' stopped_$signal/summary.json
+    check "SIG$signal: no unfinished files" no_parts stopped_$signal
+    expect 0 "" resume stopped_$signal --quiet --threads 2
+    check "SIG$signal + resume = run" same_results whole stopped_$signal
+    check "SIG$signal + resume = run, state" same_hash whole stopped_$signal
+done
+for output in 000001 000005 000012; do
+    start_run killed_$output $output
+    sleep 0.0$((RANDOM % 10))
+    kill -KILL $pid 2> /dev/null
+    wait $pid 2> /dev/null
+    expect 0 "" resume killed_$output --quiet
+    check "kill -9 after $output + resume = run" same_results whole killed_$output
+    check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
+    check "kill -9 after $output: no unfinished files" no_parts killed_$output
+done
+start_run busy 000002
+expect 1 "another run" resume busy --quiet
+kill -INT $pid; wait $pid
+
+# --- damaged checkpoints ----------------------------------------------------------------------------
+newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
+expect 0 "" run long.json --quiet --out damaged --until 0.1
+truncate -s 1000 "$(newest damaged)"
+expect 0 "is damaged" resume damaged --until 0.2
+check "the checkpoint before is used" same_results whole damaged
+expect 0 "" run long.json --quiet --out ruined --until 0.1
+for file in ruined/checkpoints/*.h5; do echo nonsense > "$file"; done
+expect 1 "no whole checkpoint" resume ruined
+check "a ruined run keeps its finished files" cmp whole/fluid/fluid_000010.vtu ruined/fluid/fluid_000010.vtu
+expect 1 "no run to resume" resume nowhere
+mkdir empty
+expect 1 "no run to resume" resume empty
+expect 0 "" resume whole --quiet
+check "resuming a finished run changes nothing" same_results whole halves
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
