@@ -238,7 +238,8 @@ def fish_rings():
     for x in [65.0 + 2.1 * k for k in range(11)] + [87.6, 88.6]:
         top, bottom, width, trail = (interpolate(FIN, x, c) for c in (1, 2, 3, 4))
         grown = (x - 65.0) / 3.0        # from a round section to a flat one
-        points = side_points(top, bottom, width, 0.0, 0.12 * top, 2.5 + 0.5 * grown, min(1.0, 0.3 + 0.2 * grown))
+        even = min(1.0, 0.3 + 0.2 * grown)
+        points = side_points(top, bottom, width, 0.0, 0.12 * top, 2.5 + 0.5 * grown, even)
         rings.append([(x + trail * abs(z / (top if z > 0 else bottom)) ** 1.4, y, z) for y, z in points])
     return rings
 

@@ -292,29 +292,52 @@ int tobi_bvh_inside(const tobi_bvh *b, const double p[3])
 
 /* --- crossing ----------------------------------------------------------------------------- */
 
-/* Sign of the volume spanned by direction d and the edge from u to v, both relative to the segment's
-   start. Swapping u and v negates it exactly, so two triangles agree on their common edge. */
-static inline double edge_side(const double d[3], const double u[3], const double v[3])
+/* A segment seen along itself: axis[2] is the longest component of its direction, shear what the
+   other two gain per unit of it. */
+typedef struct sight {
+    const double *from, *to;
+    double shear[2];
+    int axis[3];
+} sight;
+
+/* 0 if the segment has no length. */
+static int aim(sight *s, const double from[3], const double to[3])
 {
-    double n[3];
-    vec3_cross(n, u, v);
-    return vec3_dot(d, n);
+    double d[3];
+    vec3_sub(d, to, from);
+    int k = fabs(d[0]) > fabs(d[1]) ? 0 : 1;
+    if (fabs(d[2]) > fabs(d[k])) k = 2;
+    *s = (sight){from, to, {d[(k + 1) % 3]/d[k], d[(k + 2) % 3]/d[k]}, {(k + 1) % 3, (k + 2) % 3, k}};
+    return d[k] != 0;
 }
 
-static int crosses(const bvh_corners *t, const double p[3], const double q[3], const double d[3])
+/* Where a vertex is in the plane across the line of sight; the same numbers whichever triangle asks. */
+static inline void project(const sight *s, const double vertex[3], double out[2])
 {
-    double u[3], v[3], w[3], ab[3], ac[3], n[3], uq[3];
-    vec3_sub(u, t->a, p);
-    vec3_sub(v, t->b, p);
-    vec3_sub(w, t->c, p);
-    double e0 = edge_side(d, u, v), e1 = edge_side(d, v, w), e2 = edge_side(d, w, u);
+    double depth = vertex[s->axis[2]] - s->from[s->axis[2]];
+    out[0] = vertex[s->axis[0]] - s->from[s->axis[0]] - s->shear[0]*depth;
+    out[1] = vertex[s->axis[1]] - s->from[s->axis[1]] - s->shear[1]*depth;
+}
+
+/* The line meets the triangle, edges included, if it lies on one side of all three projected edges
+   (Woop, Benthin & Wald, JCGT 2 (2013)). Rounding is monotonic, so the difference of two products
+   has the right sign or is 0, and 0 counts as met: nothing slips between neighbours. Needs products
+   that are not contracted into fused operations. */
+static int crosses(const bvh_corners *t, const sight *s)
+{
+    double a[2], b[2], c[2], ab[3], ac[3], n[3], u[3], v[3];
+    project(s, t->a, a);
+    project(s, t->b, b);
+    project(s, t->c, c);
+    double e0 = b[0]*c[1] - b[1]*c[0], e1 = c[0]*a[1] - c[1]*a[0], e2 = a[0]*b[1] - a[1]*b[0];
     if (!((e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0))) return 0;
     vec3_sub(ab, t->b, t->a);
     vec3_sub(ac, t->c, t->a);
     vec3_cross(n, ab, ac);
-    vec3_sub(uq, t->a, q);
-    double from = vec3_dot(n, u), to = vec3_dot(n, uq);
-    return (from < 0 && to > 0) || (from > 0 && to < 0);
+    vec3_sub(u, t->a, s->from);
+    vec3_sub(v, t->a, s->to);
+    double before = vec3_dot(n, u), behind = vec3_dot(n, v);
+    return (before < 0 && behind > 0) || (before > 0 && behind < 0);
 }
 
 /* Bit per lane: may the segment with middle m, half vector h and |h| touch the box? Separating axes:
@@ -342,12 +365,12 @@ int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3
 {
     int32_t stack[BVH_STACK];
     int top = 0;
-    double d[3];
+    sight line;
     float m[3], h[3], size[3];
-    vec3_sub(d, q, p);
+    if (!aim(&line, p, q)) return 0;
     for (int k = 0; k < 3; k++) {
         m[k] = (float)(0.5*(p[k] + q[k]) - b->origin[k]);
-        h[k] = (float)(0.5*d[k]);
+        h[k] = (float)(0.5*(q[k] - p[k]));
         size[k] = fabsf(h[k])*1.00001f + fabsf(m[k])*1e-6f;
     }
     stack[top++] = 0;
@@ -358,7 +381,7 @@ int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3
             if (!(mask >> lane & 1) || node->child[lane] < 0) continue;
             if (node->count[lane] == 0) stack[top++] = node->child[lane];
             for (int32_t i = node->child[lane]; i < node->child[lane] + node->count[lane]; i++)
-                if (crosses(&b->corners[i], p, q, d)) return 1;
+                if (crosses(&b->corners[i], &line)) return 1;
         }
     }
     return 0;
