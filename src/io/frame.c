@@ -177,6 +177,7 @@ static void free_canvas(canvas *c)
     free(c->thickness);
     free(c->value);
     free(c->scratch);
+    free(c->shadow.depth);
 }
 
 static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
@@ -252,6 +253,7 @@ static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double
         TOBI_TRY(draw_meshes(c, f, err));
     } else {
         TOBI_TRY(aim_camera(c, path, f, err));
+        TOBI_TRY(make_shadow(c, f, err));
         draw_floor(c, f);
         TOBI_TRY(draw_meshes(c, f, err));
         if (f->particle_count > 0) TOBI_TRY(draw_water(c, f, low, high, err));

@@ -35,15 +35,23 @@ typedef struct camera {
     bool   orthographic;
 } camera;
 
+/* Depth of the bodies seen from the key light; axes and centre in view space. */
+typedef struct shadow {
+    vec    center, right, up, forward;
+    float  focal;                /* samples of the map per m                                       */
+    float *depth;                /* NULL = everything is lit                                       */
+} shadow;
+
 typedef struct canvas {
     int     width, height;       /* samples                                                        */
     camera  camera;
     vec     light, sky_up;       /* unit vectors in view space: to the key light, against gravity  */
-    vec    *color;
+    shadow  shadow;
+    vec    *color;               /* NULL: only depth is drawn                                      */
     float  *depth;               /* of what is opaque, m; INFINITY = background                    */
     float  *surface;             /* of the water's front, m; INFINITY = none                       */
-    float  *thickness;           /* of the water, m; after shading the light it lets through       */
-    float  *value;               /* of the water at its front, 0 to 1                              */
+    float  *thickness;           /* of the water, m                                                */
+    float  *value;               /* of the water at its front, 0 to 1; once lit: the light it lets through */
     float  *scratch;
 } canvas;
 
@@ -105,6 +113,10 @@ tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err);
 void draw_floor(canvas *c, const tobi_frame *frame);
 void draw_box(canvas *c, const tobi_frame *frame);
 vec  sky_color(const canvas *c, vec direction);
+
+/* frame_shadow.c */
+tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err);
+float lit_at(const canvas *c, vec point);
 
 /* frame_water.c */
 tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, double value_max, tobi_error *err);

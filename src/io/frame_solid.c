@@ -31,9 +31,10 @@ static vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
 {
     vec eye = to_eye(&c->camera, p);
     if (vec_dot(n, eye) < 0) n = vec_scale(-1, n);
-    float lambert = fmaxf(vec_dot(n, c->light), 0), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
+    float lit = lit_at(c, vec_add(p, vec_scale(2/c->shadow.focal, n)));
+    float lambert = lit*fmaxf(vec_dot(n, c->light), 0), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec half = vec_unit(vec_add(c->light, eye));
-    float shine = 0.22f*powf(fmaxf(vec_dot(n, half), 0), 48), rim = powf(1 - fmaxf(vec_dot(n, eye), 0), 4);
+    float shine = lit*0.22f*powf(fmaxf(vec_dot(n, half), 0), 48), rim = powf(1 - fmaxf(vec_dot(n, eye), 0), 4);
     vec ambient = vec_mix((vec){ 0.20f, 0.19f, 0.19f }, (vec){ 0.42f, 0.46f, 0.52f }, fill);
     vec light = vec_add(ambient, vec_scale(0.85f*lambert, (vec){ 1, 0.97f, 0.92f }));
     vec color = vec_add(vec_mul(albedo, light), (vec){ shine, shine, shine });
@@ -75,9 +76,10 @@ static void fill_triangle(canvas *c, const triangle *t, const int tile[4])
             float z = (b[0]*w[0]*a[0].z + b[1]*w[1]*a[1].z + b[2]*w[2]*a[2].z)/sum;
             size_t k = (size_t)y*(size_t)c->width + (size_t)x;
             if (!(z < c->depth[k])) continue;
+            c->depth[k] = z;
+            if (!c->color) continue;
             vec n = vec_unit(vec_add(vec_add(vec_scale(b[0]*w[0], t->n[0]), vec_scale(b[1]*w[1], t->n[1])),
                                      vec_scale(b[2]*w[2], t->n[2])));
-            c->depth[k] = z;
             c->color[k] = shade_solid(c, unproject(&c->camera, px, py, z), n, t->color);
         }
 }
@@ -177,7 +179,7 @@ static void blend(canvas *c, int x, int y, float z, vec color, float alpha)
 {
     size_t k = (size_t)y*(size_t)c->width + (size_t)x;
     if (!(z <= c->depth[k])) return;
-    if (c->surface && z > c->surface[k]) alpha *= c->thickness[k];
+    if (c->surface && z > c->surface[k]) alpha *= c->value[k];
     c->color[k] = vec_mix(c->color[k], color, alpha);
 }
 
@@ -229,6 +231,15 @@ static int find_floor(const tobi_frame *f, double *level)
     return axis;
 }
 
+/* The floor's brightness where the ray through a sample meets it: the bodies' shadow. */
+static vec floor_tint(const canvas *c, float x, float y, const corner *plane)
+{
+    vec tint = { 0.80f, 0.82f, 0.83f }, ray = unproject(&c->camera, x, y, 1);
+    if (c->camera.orthographic) return tint;
+    float t = vec_dot(plane->p, plane->n)/vec_dot(ray, plane->n);
+    return vec_scale(0.45f + 0.55f*lit_at(c, vec_scale(t, ray)), tint);
+}
+
 /* 2-D: the box's area, a little lighter. 3-D: a floor with lines at round coordinates. */
 void draw_floor(canvas *c, const tobi_frame *f)
 {
@@ -240,13 +251,14 @@ void draw_floor(canvas *c, const tobi_frame *f)
         corner_at[i][u] = i == 1 || i == 2 ? f->box_max[u] : f->box_min[u];
         corner_at[i][v] = i >= 2 ? f->box_max[v] : f->box_min[v];
     }
-    vec tint = { 0.80f, 0.82f, 0.83f }, mark = { 0.40f, 0.44f, 0.48f };
+    vec mark = { 0.40f, 0.44f, 0.48f }, p[4];
     spot s[4];
     for (int i = 0; i < 4; i++) {
-        vec p = view_point(&c->camera, corner_at[i]);
-        if (p.z < c->camera.near) return;      /* the eye is over the floor: no floor then */
-        s[i] = project(&c->camera, p);
+        p[i] = view_point(&c->camera, corner_at[i]);
+        if (p[i].z < c->camera.near) return;      /* the eye is over the floor: no floor then */
+        s[i] = project(&c->camera, p[i]);
     }
+    corner plane = { p[0], vec_unit(vec_cross(vec_sub(p[1], p[0]), vec_sub(p[3], p[0]))) };
     #pragma omp parallel for
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
@@ -256,7 +268,7 @@ void draw_floor(canvas *c, const tobi_frame *f)
                 const spot *a = &s[i], *b = &s[(i + 1)%4];
                 left += (b->x - a->x)*(py - a->y) - (b->y - a->y)*(px - a->x) > 0;
             }
-            if (left == 0 || left == 4) blend(c, x, y, -INFINITY, tint, 0.55f);
+            if (left == 0 || left == 4) blend(c, x, y, -INFINITY, floor_tint(c, px, py, &plane), 0.6f);
         }
     for (int way = 0; way < 2 && f->dimension == 3; way++) {
         int along = way ? u : v, step_axis = way ? v : u;

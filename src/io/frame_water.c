@@ -30,6 +30,47 @@ static bool splat_rect(const void *items, int64_t i, int rect[4])
     return true;
 }
 
+enum { CELLS = 1 << 21 };
+
+static uint32_t cell_of(const double p[3], double size, const int shift[3])
+{
+    uint64_t h = 0;
+    for (int k = 0; k < 3; k++)
+        h = (h ^ (uint64_t)((int64_t)floor(p[k]/size) + shift[k]))*0x9e3779b97f4a7c15ull, h ^= h >> 29;
+    return (uint32_t)(h & (CELLS - 1));
+}
+
+static bool is_placed(const double p[3], double size)
+{
+    return fabs(p[0]) < 1e15*size && fabs(p[1]) < 1e15*size && fabs(p[2]) < 1e15*size;     /* also NaN */
+}
+
+/* Drops of spray would look like balls of the size of the smoothed water's spheres: a particle with little
+   company within three cells of four radii is drawn smaller. Cells are hashed; a clash only adds company. */
+static void shrink_spray(const tobi_frame *f, splat *splats)
+{
+    const double size = 4*f->radius;
+    const float enough = 24, least = 0.5f;       /* a straight edge of water has 24 or more */
+    uint16_t *count = calloc(CELLS, sizeof *count);
+    if (!count) return;
+    for (int64_t i = 0; i < f->particle_count; i++) {
+        if (!is_placed(f->positions[i], size)) continue;
+        uint16_t *cell = &count[cell_of(f->positions[i], size, (int[3]){ 0, 0, 0 })];
+        *cell += *cell < UINT16_MAX;
+    }
+    #pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < f->particle_count; i++) {
+        if (!(splats[i].radius > 0)) continue;
+        float company = 0;
+        for (int k = 0; k < 27 && company < enough; k++) {
+            int n = (k + 13)%27;      /* the own cell first: inside the water the search ends early */
+            company += count[cell_of(f->positions[i], size, (int[3]){ n%3 - 1, n/3%3 - 1, n/9 - 1 })];
+        }
+        splats[i].radius *= clampf(0.45f + 0.55f*company/enough, least, 1);
+    }
+    free(count);
+}
+
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
 static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, double low, double high)
 {
@@ -39,7 +80,7 @@ static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, do
     for (int64_t i = 0; i < f->particle_count; i++) {
         vec p = view_point(&c->camera, f->positions[i]);
         splat s = { 0 };
-        if (p.z > c->camera.near + radius && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f) {
+        if (is_placed(f->positions[i], f->radius) && p.z > c->camera.near + radius && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f) {
             spot at = project(&c->camera, p);
             float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
             s = (splat){ at.x, at.y, at.z, radius*scale_at(&c->camera, at.z), value == value ? clampf(value, 0, 1) : 1 };
@@ -55,7 +96,7 @@ typedef struct brush {
     canvas *c;
     float   radius;       /* m */
     float   weight;       /* of a sphere's chord as thickness */
-    bool    discs;
+    float   discs;        /* 0 = water; else discs of this brightness */
 } brush;
 
 /* Clips a splat's row to the tile and the circle: samples [*x0, *x1). */
@@ -88,7 +129,7 @@ static void splat_depth(const brush *b, const splat *s, const int tile[4])
         size_t row = (size_t)y*(size_t)c->width;
         const float *opaque = c->depth + row;
         float *surface = c->surface + row, *thickness = c->thickness + row;
-        float dy = (float)y + 0.5f - s->y, high = b->radius, weight = 2*b->radius*b->weight, z = s->z, sx = s->x - 0.5f;
+        float dy = (float)y + 0.5f - s->y, high = s->radius/scale_at(&c->camera, s->z), weight = 2*high*b->weight, z = s->z, sx = s->x - 0.5f;
         #pragma omp simd
         for (int x = x0; x < x1; x++) {
             float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
@@ -116,8 +157,8 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
         #pragma omp simd
         for (int x = x0; x < x1; x++) {
             float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
-            float behind = (z - surface[x])/reach, w = q*q*(behind < 1 ? 1 - behind : 0);
-            w = w > 0 ? w : 0;
+            float behind = (z - surface[x])/reach, w = q*q*(1 - behind);
+            w = q > 0 && behind > -2 && behind < 1 ? w : 0;      /* -inf where a body hides the water */
             value[x] += w*own;
             sum[x] += w;
         }
@@ -127,7 +168,7 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
 static void splat_disc(const brush *b, const splat *s, const int tile[4])
 {
     canvas *c = b->c;
-    vec color = map_color(s->value);
+    vec color = vec_scale(b->discs, map_color(s->value));
     int y0, y1, x0, x1;
     clip_rows(s, tile, &y0, &y1);
     for (int y = y0; y <= y1; y++) {
@@ -147,18 +188,19 @@ static void paint(const brush *b, const tiles *t, const splat *splats)
                         y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
             const splat *s = &splats[t->item[i]];
-            if (b->discs) splat_disc(b, s, rect);
+            if (b->discs > 0) splat_disc(b, s, rect);
             else splat_depth(b, s, rect);
         }
-        for (int64_t i = t->first[k]; i < t->first[k + 1] && !b->discs; i++) splat_value(b, &splats[t->item[i]], rect);
+        for (int64_t i = t->first[k]; i < t->first[k + 1] && b->discs == 0; i++) splat_value(b, &splats[t->item[i]], rect);
     }
 }
 
-static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2], bool discs,
+static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2], float discs,
                                    tobi_error *err)
 {
     splat *splats = make_splats(c, f, radius, range[0], range[1]);
     if (!splats) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %lld particles", (long long)f->particle_count);
+    if (discs == 0) shrink_spray(f, splats);
     tiles t;
     tobi_status status = tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
     if (status == TOBI_OK) {
@@ -174,7 +216,9 @@ static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius,
 
 tobi_status draw_discs(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
 {
-    return splat_particles(c, f, (float)f->radius, (double[2]){ low, high }, true, err);
+    /* A darker ground that closes the gaps, then the particles. */
+    TOBI_TRY(splat_particles(c, f, 1.45f*(float)f->radius, (double[2]){ low, high }, 0.8f, err));
+    return splat_particles(c, f, 0.95f*(float)f->radius, (double[2]){ low, high }, 1, err);
 }
 
 /* One row of the narrow-range filter. Neighbours in front by more than `narrow` are other water and do not
@@ -249,26 +293,96 @@ static void filter_plane(filter *f, float *data, float *scratch, int width, int 
     transpose(scratch, data, height, width);
 }
 
-static void smooth_water(canvas *c, float radius)
+/* The rows-then-columns filter leaves streaks along the axes where water is ragged; a small square one
+   takes them away. */
+static void filter_square(float *data, float *scratch, int width, int height, int reach, float narrow)
+{
+    memcpy(scratch, data, (size_t)width*(size_t)height*sizeof *data);
+    #pragma omp parallel for schedule(dynamic, 16)
+    for (int y = reach; y < height - reach; y++)
+        for (int x = reach; x < width - reach; x++) {
+            const float *in = scratch + (size_t)y*(size_t)width + (size_t)x;
+            float z = *in, sum = 0, weight = 0;
+            if (!(z < INFINITY)) continue;
+            for (int j = -reach; j <= reach; j++)
+                for (int i = -reach; i <= reach; i++) {
+                    float d = in[(int64_t)j*width + i] - z, w = fabsf(d) < narrow ? 1.0f : 0.0f;
+                    sum += w > 0 ? d : 0;
+                    weight += w;
+                }
+            data[(size_t)y*(size_t)width + (size_t)x] = z + sum/weight;
+        }
+}
+
+/* One direction of a blur of the thickness: neighbours over another solid (or none) do not count, or bodies
+   under water would glow around their edges. */
+static void blur_along(const canvas *c, const float *in, float *out, int dx, int dy, int reach, float same)
+{
+    #pragma omp parallel for schedule(static)
+    for (int y = 0; y < c->height; y++) {
+        int low = dy && y < reach ? -y : -reach, high = dy && y + reach >= c->height ? c->height - 1 - y : reach;
+        const float *solid = c->depth + (size_t)y*(size_t)c->width;
+        for (int x = 0; x < c->width; x++) {
+            int first = dx && x < reach ? -x : low, last = dx && x + reach >= c->width ? c->width - 1 - x : high;
+            int64_t step = dx + (int64_t)dy*c->width, k = (int64_t)y*c->width + x;
+            float sum = 0, weight = 0, here = solid[x];
+            if (in[k] <= 0 && !(c->surface[k] < INFINITY)) {
+                out[k] = 0;
+                continue;
+            }
+            for (int i = first; i <= last; i++) {
+                float there = c->depth[k + i*step], w = there == here || fabsf(there - here) < same ? 1.0f : 0.0f;
+                sum += w*in[k + i*step];
+                weight += w;
+            }
+            out[k] = sum/weight;
+        }
+    }
+}
+
+/* The mean values: sums and weights are blurred apart, so that nothing bleeds in from beyond the water. */
+static void average_values(canvas *c, filter *f, float *room)
+{
+    size_t n = (size_t)c->width*(size_t)c->height;
+    filter_plane(f, c->value, room, c->width, c->height);
+    filter_plane(f, c->scratch, room, c->width, c->height);
+    #pragma omp parallel for
+    for (size_t k = 0; k < n; k++) c->value[k] = c->scratch[k] > 1e-6f ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
+}
+
+static tobi_status smooth_water(canvas *c, float radius, tobi_error *err)
 {
     static const int rounds = 3;
     filter *f = calloc(1, sizeof *f);
-    if (!f) return;       /* a rougher picture, not a failure */
+    float *room = malloc((size_t)c->width*(size_t)c->height*sizeof *room);
+    if (!f || !room) {
+        free(f);
+        free(room);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
+    }
     for (int r = 1; r <= REACH_MAX; r++)
         for (int k = 0; k <= r; k++) f->gauss[r][k] = expf(-3.0f*(float)(k*k)/(float)(r*r));
-    f->flat = c->camera.orthographic;
-    f->reach = 2.4f*radius*c->camera.focal;
-    f->narrow = 2.0f*radius;
-    for (int i = 0; i < rounds; i++) filter_plane(f, c->surface, c->scratch, c->width, c->height);
-    /* Thickness and value: plain blurs a particle wide, at the depth of the middle of the water. */
+    /* Blurs are as wide as a particle in the middle of the water. */
     double sum = 0;
     int64_t n = 0;
     for (size_t k = 0; k < (size_t)c->width*(size_t)c->height; k += 61)
         if (c->surface[k] < INFINITY) sum += c->surface[k], n++;
-    f->narrow = 0;
-    f->reach = n ? clampf(0.8f*radius*scale_at(&c->camera, (float)(sum/(double)n)), 1, 60) : 1;
-    for (int i = 0; i < 2; i++) filter_plane(f, c->thickness, c->scratch, c->width, c->height);
+    float size = n ? radius*scale_at(&c->camera, (float)(sum/(double)n)) : 1;
+    f->reach = clampf(0.5f*size, 1, 60);
+    average_values(c, f, room);
+    int reach = (int)clampf(0.6f*size, 1, 40);
+    for (int i = 0; i < 2; i++) {
+        blur_along(c, c->thickness, room, 1, 0, reach, 4*radius);
+        blur_along(c, room, c->thickness, 0, 1, reach, 4*radius);
+    }
+    f->flat = c->camera.orthographic;
+    f->reach = 2.4f*radius*c->camera.focal;
+    f->narrow = 3.0f*radius;
+    for (int i = 0; i < rounds; i++) filter_plane(f, c->surface, room, c->width, c->height);
+    filter_square(c->surface, room, c->width, c->height, (int)clampf(0.35f*size, 1, 5), 0.6f*radius);
     free(f);
+    free(room);
+    return TOBI_OK;
 }
 
 /* Difference of the surface's view points along one axis, taken on the side where the depth changes less. */
@@ -294,15 +408,19 @@ static vec surface_normal(const canvas *c, int x, int y, vec eye)
     return vec_dot(n, eye) < 0 ? vec_scale(-1, n) : n;
 }
 
-/* What lies behind the water, seen along the refracted ray: the picture shifted by the surface's tilt. */
-static vec look_through(const canvas *c, const vec *back, int x, int y, vec n, float thickness)
+/* Which sample lies behind the water: the picture shifted by the surface's tilt, the less the thinner the water is,
+   here or there, so that a body near the surface is not seen twice. */
+static size_t look_through(const canvas *c, int x, int y, vec n)
 {
-    size_t k = (size_t)y*(size_t)c->width + (size_t)x;
-    float shift = 0.35f*thickness*scale_at(&c->camera, c->surface[k]);
-    shift = fminf(shift, 0.05f*(float)c->width);
-    int sx = (int)clampf((float)x - n.x*shift, 0, (float)c->width - 1), sy = (int)clampf((float)y + n.y*shift, 0, (float)c->height - 1);
-    size_t s = (size_t)sy*(size_t)c->width + (size_t)sx;
-    return back[c->depth[s] > c->surface[k] ? s : k];
+    size_t k = (size_t)y*(size_t)c->width + (size_t)x, s = k;
+    float bend = 0.12f*scale_at(&c->camera, c->surface[k]), most = 0.012f*(float)c->width, shift = most;
+    for (int round = 0; round < 3; round++) {
+        shift = fminf(shift, bend*fmaxf(c->thickness[s], 0));
+        int sx = (int)clampf((float)x - n.x*shift, 0, (float)c->width - 1);
+        int sy = (int)clampf((float)y + n.y*shift, 0, (float)c->height - 1);
+        s = (size_t)sy*(size_t)c->width + (size_t)sx;
+    }
+    return c->depth[s] > c->surface[k] ? s : k;
 }
 
 /* Light through, scattered in and mirrored by the water at one sample; *through: how much passes. */
@@ -311,20 +429,20 @@ static vec shade_water(const canvas *c, const vec *back, int x, int y, float cla
     size_t k = (size_t)y*(size_t)c->width + (size_t)x;
     vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
     vec eye = to_eye(&c->camera, p), n = surface_normal(c, x, y, eye);
-    float thickness = fmaxf(c->thickness[k], 0), facing = clampf(vec_dot(n, eye), 0, 1), value = c->value[k];
+    size_t seen = look_through(c, x, y, n);
+    float thickness = fmaxf(c->thickness[seen], 0), facing = clampf(vec_dot(n, eye), 0, 1), value = c->value[k];
     float path = thickness/clarity, veil = 0.18f + 0.75f*value*value;      /* foam hides */
     vec pass = { expf(-1.5f*path), expf(-1.0f*path), expf(-0.85f*path) };
     pass = vec_scale(1 - veil, pass);
-    float lambert = vec_dot(n, c->light), wrap = clampf(0.35f + 0.65f*lambert, 0, 1), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
+    float lit = lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }), vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
     vec scatter = vec_mul(map_color(value), light);
-    vec behind = look_through(c, back, x, y, n, thickness);
-    vec color = vec_add(vec_mul(pass, behind), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
+    vec color = vec_add(vec_mul(pass, back[seen]), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
     /* Schlick 1994, water. */
     float mirror = 0.02f + 0.98f*powf(1 - facing, 5);
     vec r = vec_sub(vec_scale(2*vec_dot(n, eye), n), eye), half = vec_unit(vec_add(c->light, eye));
     color = vec_mix(color, sky_color(c, r), 0.75f*mirror);
-    float shine = powf(clampf(vec_dot(n, half), 0, 1), 140);
+    float shine = lit*powf(clampf(vec_dot(n, half), 0, 1), 140);
     *through = (pass.x + pass.y + pass.z)/3;
     return vec_add(color, vec_scale(0.55f*shine, (vec){ 1, 1, 1 }));
 }
@@ -339,7 +457,7 @@ static tobi_status light_water(canvas *c, float clarity, tobi_error *err)
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
             size_t k = (size_t)y*(size_t)c->width + (size_t)x;
-            if (c->surface[k] < INFINITY) c->color[k] = shade_water(c, back, x, y, clarity, &c->thickness[k]);
+            if (c->surface[k] < INFINITY) c->color[k] = shade_water(c, back, x, y, clarity, &c->value[k]);
         }
     free(back);
     return TOBI_OK;
@@ -348,12 +466,8 @@ static tobi_status light_water(canvas *c, float clarity, tobi_error *err)
 tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
 {
     float radius = water_radius*(float)f->radius;
-    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, false, err));
-    size_t n = (size_t)c->width*(size_t)c->height;
-    #pragma omp parallel for
-    for (size_t k = 0; k < n; k++)
-        c->value[k] = c->scratch[k] > 0 ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
-    smooth_water(c, radius);
+    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, 0, err));
+    TOBI_TRY(smooth_water(c, radius, err));
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
     return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.14*sqrt(size)), err);

@@ -1,0 +1,68 @@
+/* What the bodies keep from the key light: their depth seen from the light, once per picture. */
+#include "io/frame_draw.h"
+#include <stdlib.h>
+
+enum { SIDE = 1024 };
+
+static vec turn(const shadow *s, vec p)
+{
+    p = vec_sub(p, s->center);
+    return (vec){ vec_dot(p, s->right), vec_dot(p, s->up), vec_dot(p, s->forward) };
+}
+
+/* Camera of the light over the sphere around the box: orthographic, in world space. */
+static camera light_camera(const camera *view, const shadow *s, double radius)
+{
+    camera c = { .orthographic = true, .focal = (float)(0.5*SIDE/radius), .center_x = 0.5f*SIDE, .center_y = 0.5f*SIDE,
+                 .near = -INFINITY };
+    for (int k = 0; k < 3; k++) {
+        c.eye[k] = view->eye[k] + s->center.x*view->right[k] + s->center.y*view->up[k] + s->center.z*view->forward[k];
+        c.right[k] = s->right.x*view->right[k] + s->right.y*view->up[k] + s->right.z*view->forward[k];
+        c.up[k] = s->up.x*view->right[k] + s->up.y*view->up[k] + s->up.z*view->forward[k];
+        c.forward[k] = s->forward.x*view->right[k] + s->forward.y*view->up[k] + s->forward.z*view->forward[k];
+    }
+    return c;
+}
+
+tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
+{
+    if (frame->mesh_count == 0) return TOBI_OK;
+    double middle[3], size = 0;
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5*(frame->box_min[k] + frame->box_max[k]);
+        size += 0.25*(frame->box_max[k] - frame->box_min[k])*(frame->box_max[k] - frame->box_min[k]);
+    }
+    shadow *s = &c->shadow;
+    s->center = view_point(&c->camera, middle);
+    s->forward = vec_scale(-1, c->light);
+    s->right = vec_unit(vec_cross(s->forward, fabsf(s->forward.x) < 0.8f ? (vec){ 1, 0, 0 } : (vec){ 0, 1, 0 }));
+    s->up = vec_cross(s->right, s->forward);
+    canvas light = { .width = SIDE, .height = SIDE, .camera = light_camera(&c->camera, s, sqrt(size)) };
+    light.depth = malloc((size_t)SIDE*SIDE*sizeof(float));
+    if (!light.depth) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
+    for (size_t k = 0; k < (size_t)SIDE*SIDE; k++) light.depth[k] = INFINITY;
+    s->depth = light.depth;
+    s->focal = light.camera.focal;
+    return draw_meshes(&light, frame, err);
+}
+
+/* Share of the light that reaches a view point: 16 samples around it, softer edges than the map's. */
+float lit_at(const canvas *c, vec p)
+{
+    const shadow *s = &c->shadow;
+    if (!s->depth) return 1;
+    static const float ring[4][2] = { { 0.92f, 0.38f }, { -0.38f, 0.92f }, { -0.92f, -0.38f }, { 0.38f, -0.92f } };
+    vec q = turn(s, p);
+    float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
+    int lit = 0;
+    for (int k = 0; k < 16; k++) {
+        float r = 1 + 1.3f*(float)(k/4);
+        float sx = x + r*ring[k%4][k/4%2], sy = y + r*ring[k%4][1 - k/4%2];
+        if (!(sx >= 0 && sy >= 0 && sx < SIDE && sy < SIDE)) {
+            lit++;
+            continue;
+        }
+        lit += q.z - bias < s->depth[(size_t)sy*SIDE + (size_t)sx];
+    }
+    return (float)lit/16;
+}
