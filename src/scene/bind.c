@@ -172,6 +172,7 @@ static void bind_vector(const slot *s)
         tobi_source_mistake(s->binder->source, s->place, "has %zu entries, must be %s", n, must);
         return;
     }
+    if (n == 2 && !scale) v[2] = 0;
     int good = 1;
     for (size_t i = 0; i < n; i++) {
         tobi_place entry = { s->place, NULL, i };
