@@ -52,7 +52,7 @@ tobi_status tobi_massprops_volume(const tobi_mesh *mesh, tobi_massprops *out, to
 tobi_status tobi_massprops_section(const tobi_mesh *mesh, tobi_massprops *out, tobi_error *err)
 {
     tobi_section s;
-    double area = 0, first[2] = {0}, polar = 0, length = 0;
+    double area = 0, first[2] = {0}, second[2][2] = {{0}}, length = 0;
     memset(out, 0, sizeof *out);
     TOBI_TRY(tobi_section_cut(mesh, &s, err));
     const double origin[2] = {s.from[0][0], s.from[0][1]};
@@ -63,7 +63,8 @@ tobi_status tobi_massprops_section(const tobi_mesh *mesh, tobi_massprops *out, t
         area += det/2;
         for (int k = 0; k < 2; k++) {
             first[k] += det*(a[k] + b[k])/6;
-            polar += det*(a[k]*a[k] + a[k]*b[k] + b[k]*b[k])/12;
+            for (int j = 0; j < 2; j++)
+                second[k][j] += det*(2*a[k]*a[j] + a[k]*b[j] + b[k]*a[j] + 2*b[k]*b[j])/24;
         }
         length += hypot(b[0] - a[0], b[1] - a[1]);
     }
@@ -73,7 +74,13 @@ tobi_status tobi_massprops_section(const tobi_mesh *mesh, tobi_massprops *out, t
                          "must be closed and oriented outwards", area);
     out->volume = area;
     out->area = length;
-    for (int k = 0; k < 2; k++) out->centre[k] = origin[k] + first[k]/area;
-    out->inertia[8] = polar - (first[0]*first[0] + first[1]*first[1])/area;
+    for (int k = 0; k < 2; k++) {
+        out->centre[k] = origin[k] + first[k]/area;
+        for (int j = 0; j < 2; j++) second[k][j] -= first[k]*first[j]/area;
+    }
+    out->inertia[0] = second[1][1];
+    out->inertia[4] = second[0][0];
+    out->inertia[1] = out->inertia[3] = -second[0][1];
+    out->inertia[8] = second[0][0] + second[1][1];
     return TOBI_OK;
 }

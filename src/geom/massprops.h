@@ -8,7 +8,7 @@ typedef struct tobi_massprops {
     double area;          /* m2 of surface; 2-D: length of the outline, m                         */
     double centre[3];     /* m, centre of the volume (2-D: of the section, z = 0)                 */
     double inertia[9];    /* m5 about the centre, row-major; times density = kg m2.
-                             2-D: only the polar moment of the section [8], m4                    */
+                             2-D: of the section as a lamina, m4; [8] is the polar moment         */
 } tobi_massprops;
 
 /* Volume, centre and inertia of an oriented closed mesh by sums over the tetrahedra that its

@@ -227,55 +227,49 @@ static void count_run(void *to, const double xy[2], int64_t k0, int64_t k1)
     c->m.second[c->along] += n*(mean*mean + step*step*(n*n - 1)/12);
 }
 
+/* Means of x and x^2 over the body itself about the middle of the lines. */
+static moments measure_body(const lines *l, const tobi_massprops *p)
+{
+    moments m = {.count = 1};
+    double trace = p->inertia[0] + p->inertia[4] + p->inertia[8];
+    for (int k = 0; k < 3; k++) {
+        m.first[k] = p->centre[k] - l->middle[k];
+        m.second[k] = (0.5*trace - p->inertia[4*k])/p->volume + m.first[k]*m.first[k];
+    }
+    return m;
+}
+
 /* How badly the points of one shift stand for the body: volume first, then second moments and
-   centre against those of all shifts together. Each point stands for its cell, hence the spread. */
-static double score_shift(const lines *l, const moments *m, const moments *all, double volume_error)
+   centre. Each point stands for its cell, hence the spread. */
+static double score_shift(const lines *l, const moments *m, const moments *body, double volume_error)
 {
     double cell = l->fine*FINE, score = 2*volume_error + 20*fmax(0, volume_error - GOOD);
     if (m->count == 0) return INFINITY;
     for (int k = 0; k < l->dimension; k++) {
-        double mean = m->first[k]/m->count - all->first[k]/all->count;
-        double own = m->second[k]/m->count + cell*cell/12;
-        double whole = all->second[k]/all->count + l->fine*l->fine/12;
-        score += fabs(own/whole - 1)/l->dimension + 0.1*fabs(mean)/sqrt(whole);
+        double mean = m->first[k]/m->count - body->first[k];
+        double second = m->second[k]/m->count + cell*cell/12;
+        score += fabs(second/body->second[k] - 1)/l->dimension + 0.1*fabs(mean)/sqrt(body->second[k]);
     }
     return score;
 }
 
-static void decode_shift(int s, int shift[3])
+/* The best shift of the lattice for these lines; returns its relative volume error. */
+static double choose_shift(const lines *l, const tobi_massprops *whole, int best_shift[3])
 {
-    shift[0] = s/(FINE*FINE);
-    shift[1] = s/FINE % FINE;
-    shift[2] = s % FINE;
-}
-
-/* The best shift of the lattice for these lines and its relative volume error. */
-static double choose_shift(const lines *l, double volume, int best_shift[3])
-{
-    moments per_shift[FINE*FINE*FINE], all = {0};
+    moments body = measure_body(l, whole);
     double cell = pow(l->fine*FINE, l->dimension), best = INFINITY, best_error = INFINITY;
     for (int s = 0; s < FINE*FINE*FINE; s++) {
-        int shift[3];
-        decode_shift(s, shift);
-        per_shift[s] = (moments){0};
+        int shift[3] = {s/(FINE*FINE), s/FINE % FINE, s % FINE};
         if (l->dimension == 2 && shift[1]) continue;
         tally c = {.fine = l->fine, .shift = shift[2], .along = l->dimension - 1};
         visit_lattice(l, shift, count_run, &c);
-        per_shift[s] = c.m;
-        all.count += c.m.count;
-        for (int k = 0; k < 3; k++) {
-            all.first[k] += c.m.first[k];
-            all.second[k] += c.m.second[k];
-        }
-    }
-    for (int s = 0; s < FINE*FINE*FINE; s++) {
-        double error = fabs(per_shift[s].count*cell/volume - 1);
-        double score = score_shift(l, &per_shift[s], &all, error);
+        double error = fabs(c.m.count*cell/whole->volume - 1);
+        double score = score_shift(l, &c.m, &body, error);
         /* equal up to rounding: the earlier one, whatever the last bits of this pose */
         if (!(score < best - 1e-9)) continue;
         best = score;
         best_error = error;
-        decode_shift(s, best_shift);
+        memcpy(best_shift, shift, sizeof shift);
     }
     return best_error;
 }
@@ -346,7 +340,7 @@ static tobi_status try_pose(const tobi_mesh *mesh, const pose *p, double spacing
     if (status == TOBI_OK && dimension == 2) status = tobi_section_cut(&turned, &section, err);
     if (status == TOBI_OK)
         status = cut_lines(&l, &turned, dimension == 2 ? &section : NULL, spacing, err);
-    if (status == TOBI_OK) *error = choose_shift(&l, whole.volume, shift);
+    if (status == TOBI_OK) *error = choose_shift(&l, &whole, shift);
     if (status == TOBI_OK && points) {
         status = write_points(&l, shift, points, count, err);
         tobi_mesh cloud = {.vertex_count = *count, .vertices = *points};

@@ -260,7 +260,7 @@ static void touching_is_no_crossing(void **state)
     assert_false(tobi_bvh_segment_hits(bvh, (double[3]){2, 0.3, 0.1}, (double[3]){1, 0.3, 0.1}));
     assert_false(tobi_bvh_segment_hits(bvh, (double[3]){1, 0.3, 0.1}, (double[3]){0, 0.3, 0.1}));
     assert_true(tobi_bvh_segment_hits(bvh, (double[3]){1.001, 0.3, 0.1}, (double[3]){0.999, 0.3, 0.1}));
-    assert_false(tobi_bvh_segment_hits(bvh, (double[3]){1, -0.5, 0}, (double[3]){1, 0.5, 0.2}));   /* in a face */
+    assert_false(tobi_bvh_segment_hits(bvh, (double[3]){1, -0.5, 0}, (double[3]){1, 0.5, 0.2}));
     assert_false(tobi_bvh_segment_hits(bvh, (double[3]){-0.9, 0, 0}, (double[3]){0.9, 0.5, 0}));
     assert_false(tobi_bvh_segment_hits(bvh, (double[3]){0, 0, 0}, (double[3]){0, 0, 0}));
     /* both sides of a wing of 4 mm */
