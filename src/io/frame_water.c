@@ -470,5 +470,5 @@ tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, 
     TOBI_TRY(smooth_water(c, radius, err));
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
-    return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.14*sqrt(size)), err);
+    return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.18*sqrt(size)), err);
 }

@@ -1,0 +1,293 @@
+/* Pictures: valid PNG, things where they belong, the same for any number of threads and far from the origin,
+   nothing broken by strange input. */
+#define _GNU_SOURCE 1
+#include "io/frame.h"
+#include <math.h>
+#include <omp.h>
+#include <png.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+enum { SIDE = 24, N = SIDE*SIDE*SIDE, W = 320, H = 180 };
+
+static char folder[] = "/tmp/tobi_io_frame_XXXXXX";
+static char path[64];
+static double position[N][3];
+static float speed[N];
+static const double far_away[3] = { 10000, -10000, 7000 };
+
+static const double cube[8][3] = { { 0.4, 0.4, 0.1 }, { 0.6, 0.4, 0.1 }, { 0.4, 0.6, 0.1 }, { 0.6, 0.6, 0.1 },
+                                   { 0.4, 0.4, 0.8 }, { 0.6, 0.4, 0.8 }, { 0.4, 0.6, 0.8 }, { 0.6, 0.6, 0.8 } };
+static const int32_t side[12][3] = { { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
+                                     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 } };
+static const tobi_frame_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+
+/* A unit box, half full of water, cube through the surface. */
+static tobi_frame make_frame(void)
+{
+    tobi_frame f = tobi_default_frame();
+    f.width = W, f.height = H;
+    for (int k = 0; k < 3; k++) f.box_max[k] = 1;
+    f.positions = position, f.values = speed, f.particle_count = N;
+    f.radius = 0.5/SIDE, f.value_max = 1, f.clarity = 0.6;
+    f.meshes = &red_cube, f.mesh_count = 1;
+    f.has_camera = 1;
+    f.eye[0] = 0.5, f.eye[1] = -3, f.eye[2] = 0.7;
+    for (int k = 0; k < 3; k++) f.target[k] = 0.5;
+    return f;
+}
+
+static void fill(void)
+{
+    for (int i = 0; i < N; i++) {
+        position[i][0] = (i%SIDE + 0.5)/SIDE;
+        position[i][1] = (i/SIDE%SIDE + 0.5)/SIDE;
+        position[i][2] = (i/SIDE/SIDE + 0.5)/SIDE*0.5;
+        speed[i] = (float)(i%SIDE)/SIDE*0.3f;
+    }
+}
+
+static unsigned char *read_png(int *width, int *height)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    if (!png_image_begin_read_from_file(&image, path)) fail_msg("not a PNG: %s", image.message);
+    image.format = PNG_FORMAT_RGB;
+    unsigned char *pixels = malloc(PNG_IMAGE_SIZE(image));
+    assert_true(png_image_finish_read(&image, NULL, pixels, 0, NULL));
+    *width = (int)image.width;
+    *height = (int)image.height;
+    return pixels;
+}
+
+static unsigned char *draw(const tobi_frame *f)
+{
+    tobi_error err = { 0 };
+    int width, height;
+    tobi_status status = tobi_frame_write(path, f, &err);
+    if (status != TOBI_OK) fail_msg("%s", err.text);
+    unsigned char *pixels = read_png(&width, &height);
+    assert_int_equal(width, f->width);
+    assert_int_equal(height, f->height);
+    return pixels;
+}
+
+static const unsigned char *pixel(const unsigned char *pixels, int x, int y) { return pixels + 3*(y*W + x); }
+static int redness(const unsigned char *p) { return p[0] - (p[1] + p[2])/2; }
+static int blueness(const unsigned char *p) { return p[2] - p[0]; }
+
+static double mean_difference(const unsigned char *a, const unsigned char *b)
+{
+    double sum = 0;
+    for (int i = 0; i < 3*W*H; i++) sum += abs(a[i] - b[i]);
+    return sum/(3*W*H);
+}
+
+static void things_are_where_they_belong(void **state)
+{
+    (void)state;
+    tobi_frame f = make_frame();
+    unsigned char *all = draw(&f);
+    /* The camera looks level at the middle of the box: the cube's upper part is at the centre's top. */
+    const unsigned char *dry = pixel(all, W/2, H/2 - 18), *wet = pixel(all, W/2, H/2 + 26), *water = pixel(all, W/2 - 40, H/2 + 26);
+    assert_true(redness(dry) > 60);
+    assert_true(blueness(water) > 60);
+    f.particle_count = 0;
+    unsigned char *drained = draw(&f);
+    const unsigned char *bare = pixel(drained, W/2, H/2 + 26);
+    assert_true(redness(bare) > 60);
+    /* Under water the cube shows through, bluer than bare and redder than the water beside it. */
+    assert_true(redness(wet) > redness(water) + 10);
+    assert_true(redness(wet) < redness(bare) - 10);
+    f.mesh_count = 0;
+    unsigned char *empty = draw(&f);
+    assert_true(abs(redness(pixel(empty, W/2, H/2 - 18))) < 20);
+    f = make_frame();
+    f.mesh_count = 0;
+    unsigned char *water_only = draw(&f);
+    assert_true(redness(pixel(water_only, W/2, H/2 - 18)) < 20);
+    assert_true(blueness(pixel(water_only, W/2, H/2 + 26)) > 60);
+    /* Nothing of it in the corners. */
+    assert_int_equal(memcmp(pixel(all, 3, 3), pixel(empty, 3, 3), 3), 0);
+    assert_int_equal(memcmp(pixel(all, W - 4, H - 4), pixel(empty, W - 4, H - 4), 3), 0);
+    free(all), free(drained), free(empty), free(water_only);
+}
+
+static void threads_do_not_matter(void **state)
+{
+    (void)state;
+    tobi_frame f = make_frame();
+    int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    unsigned char *one = draw(&f);
+    omp_set_num_threads(4);
+    unsigned char *four = draw(&f);
+    omp_set_num_threads(threads);
+    assert_memory_equal(one, four, 3*W*H);
+    free(one), free(four);
+}
+
+static void place_does_not_matter(void **state)
+{
+    (void)state;
+    static double moved[N][3], moved_cube[8][3];
+    tobi_frame f = make_frame();
+    f.has_camera = 0;
+    unsigned char *here = draw(&f);
+    for (int k = 0; k < 3; k++) {
+        f.box_min[k] += far_away[k], f.box_max[k] += far_away[k];
+        for (int i = 0; i < N; i++) moved[i][k] = position[i][k] + far_away[k];
+        for (int i = 0; i < 8; i++) moved_cube[i][k] = cube[i][k] + far_away[k];
+    }
+    tobi_frame_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+    f.positions = moved, f.meshes = &m;
+    unsigned char *there = draw(&f);
+    double difference = mean_difference(here, there);
+    print_message("mean difference at 10 km: %.4f of 255\n", difference);
+    assert_true(difference < 0.2);      /* grid lines of the floor fall elsewhere; depths differ in the last bit */
+    free(here), free(there);
+}
+
+static void flat_scenes_are_discs(void **state)
+{
+    (void)state;
+    static const double disc[2][3] = { { 0.5, 0.25, 0 }, { 1.5, 0.75, 0 } };
+    static const float value[2] = { 0, 1 };
+    tobi_frame f = tobi_default_frame();
+    f.width = W, f.height = H, f.dimension = 2;
+    f.box_max[0] = 2, f.box_max[1] = 1;
+    f.positions = disc, f.values = value, f.particle_count = 2, f.radius = 0.1, f.value_max = 1;
+    unsigned char *p = draw(&f);
+    double scale = fmin(0.92*W/2, 0.92*H);
+    const unsigned char *low = pixel(p, (int)(W/2 - 0.5*scale), (int)(H/2 + 0.25*scale));
+    const unsigned char *high = pixel(p, (int)(W/2 + 0.5*scale), (int)(H/2 - 0.25*scale));
+    assert_true(low[0] < 10 && abs(low[1] - 41) < 3 && abs(low[2] - 107) < 3);
+    assert_true(high[0] > 247 && high[1] > 250 && high[2] > 252);
+    f.title = "t = 0.125 s ?%&", f.label = "speed [m/s]";
+    unsigned char *labelled = draw(&f);
+    assert_true(mean_difference(p, labelled) > 0.5);
+    free(p), free(labelled);
+}
+
+/* Not finite, enormous, behind the eye, a camera inside the water, every direction of up: a picture all the same. */
+static void strange_input_is_drawn(void **state)
+{
+    (void)state;
+    static double wild[64][3];
+    const double odd[] = { NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e30, 1e9, -1e5, 0.5 };
+    for (int i = 0; i < 64; i++)
+        for (int k = 0; k < 3; k++) wild[i][k] = odd[(i*7 + k*(i%5 + 1))%9];
+    static float values[64];
+    for (int i = 0; i < 64; i++) values[i] = (float)odd[i%9];
+    tobi_frame f = make_frame();
+    f.positions = wild, f.values = values, f.particle_count = 64;
+    f.value_min = f.value_max = 0;
+    free(draw(&f));
+    double wild_cube[8][3];
+    memcpy(wild_cube, cube, sizeof cube);
+    wild_cube[0][0] = NAN, wild_cube[1][1] = 1e300, wild_cube[2][2] = -INFINITY, wild_cube[3][0] = 1e8;
+    tobi_frame_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN } };
+    f.meshes = &m;
+    free(draw(&f));
+    f = make_frame();
+    f.eye[1] = 0.3, f.eye[2] = 0.25;
+    free(draw(&f));
+    f.eye[0] = 0.5, f.eye[1] = 0.5, f.eye[2] = 5;      /* straight down, along up */
+    free(draw(&f));
+    f.has_camera = 0;
+    for (int k = 0; k < 6; k++) {
+        f.up[0] = f.up[1] = f.up[2] = 0;
+        f.up[k/2] = k%2 ? -1 : 1;
+        free(draw(&f));
+    }
+    f.samples = 1;
+    f.values = NULL;
+    f.radius = 3;
+    free(draw(&f));
+}
+
+static void wrong_arguments_are_refused(void **state)
+{
+    (void)state;
+    tobi_error err;
+    remove(path);
+    tobi_frame f = make_frame();
+    f.width = 8;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "8 x 180 pixels"));
+    f = make_frame(), f.samples = 9;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.dimension = 4;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.box_max[1] = 0;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.radius = 0;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.positions = NULL;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.field_of_view = 0;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), memcpy(f.eye, f.target, sizeof f.eye);
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    tobi_frame_mesh m = { 7, cube, 12, side, { 0, 0, 0 } };
+    f = make_frame(), f.meshes = &m;
+    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "uses vertex 7 of 7"));
+    f = make_frame();
+    assert_int_equal(tobi_frame_write("/no/such/a.png", &f, &err), TOBI_IO);
+    assert_string_equal(err.text, "cannot write /no/such/a.png: No such file or directory");
+    assert_int_not_equal(access(path, F_OK), 0);
+}
+
+static void full_disk_leaves_nothing(void **state)
+{
+    (void)state;
+    signal(SIGXFSZ, SIG_IGN);
+    struct rlimit before;
+    getrlimit(RLIMIT_FSIZE, &before);
+    tobi_frame f = make_frame();
+    remove(path);
+    for (rlim_t size = 0; size < 10000; size += 2500) {
+        struct rlimit limit = { size, before.rlim_max };
+        tobi_error err;
+        setrlimit(RLIMIT_FSIZE, &limit);
+        tobi_status status = tobi_frame_write(path, &f, &err);
+        setrlimit(RLIMIT_FSIZE, &before);
+        assert_int_equal(status, TOBI_IO);
+        assert_non_null(strstr(err.text, "a.png: File too large"));
+        assert_int_not_equal(access(path, F_OK), 0);
+    }
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    fill();
+    if (!mkdtemp(folder)) return -1;
+    snprintf(path, sizeof path, "%s/a.png", folder);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    remove(path);
+    return rmdir(folder);     /* fails if a .part file was left */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(things_are_where_they_belong), cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(place_does_not_matter), cmocka_unit_test(flat_scenes_are_discs),
+        cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(full_disk_leaves_nothing)
+    };
+    return cmocka_run_group_tests_name("io/frame", tests, set_up, tear_down);
+}
