@@ -204,8 +204,8 @@ static int load_protected(lua_State *lua)
 
 static const char *message(lua_State *lua)
 {
-    const char *text = lua_tostring(lua, -1);
-    return text ? text : "an error without a text";
+    /* Numbers are left out: converting one allocates, unprotected here. */
+    return lua_type(lua, -1) == LUA_TSTRING ? lua_tostring(lua, -1) : "an error without a text";
 }
 
 static tobi_status load(load_job *job, tobi_error *err)

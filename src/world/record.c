@@ -58,10 +58,9 @@ static tobi_status write_text(const char *dir, const char *name, const char *tex
     return status;
 }
 
-/* Results that belong to nobody else: tables from the start, output 0. */
+/* From a started world in a directory without results to output 0. */
 static tobi_status begin(tobi_run *run, tobi_error *err)
 {
-    TOBI_TRY(tobi_world_start(run->world, err));
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, false, err));
     run->next_checkpoint = next_checkpoint_after(run, 0.0);
@@ -101,6 +100,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_state_load(run, &found, err));
     if (!found) {
         snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0", run->dir);
+        TOBI_TRY(tobi_world_start(run->world, err));
         return begin(run, err);
     }
     TOBI_TRY(tobi_series_prepare(run, err));
