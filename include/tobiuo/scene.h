@@ -22,11 +22,12 @@ TOBI_API void        tobi_report_free(tobi_report *report);                 /* N
 
 /* Reads and checks a scene, without creating a world.
    overrides: "path=value" texts ended by NULL, or NULL; applied in order before the check, for
-   example "spacing=0.008", "dfsph.support=3", "fluids[0].viscosity=0.1" or "fluids.water.viscosity=0.1"
-   (entries of a list by number or by name). The value is JSON; anything that is not JSON is a text.
-   On success *scene is owned by the caller and *report is NULL. On failure *scene is NULL;
-   TOBI_INVALID comes with all mistakes in *report (owned by the caller; report may be NULL) and as
-   many of them as fit in err; TOBI_NOT_FOUND, TOBI_IO and TOBI_NO_MEMORY with a text in err. */
+   example "spacing=0.008", "dfsph.support=3", "fluids[0].viscosity=0.1" or
+   "fluids.water.viscosity=0.1" (entries of a list by number or by name). The value is JSON;
+   anything that is not JSON is a text. On success *scene is owned by the caller and *report is
+   NULL. On failure *scene is NULL; TOBI_INVALID comes with all mistakes in *report (owned by the
+   caller; report may be NULL) and as many of them as fit in err; TOBI_NOT_FOUND, TOBI_IO and
+   TOBI_NO_MEMORY with a text in err. */
 TOBI_API tobi_status tobi_scene_load(const char *path, const char *const *overrides,
                                      tobi_scene **scene, tobi_report **report, tobi_error *err);
 /* NULL is fine. Frees the motions too, so a world built from the scene must be destroyed before. */

@@ -71,8 +71,10 @@ void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
         return;
     }
     if (row->positive && isnan(row->max)) snprintf(numbers, sizeof numbers, "greater than 0");
-    else if (row->positive) snprintf(numbers, sizeof numbers, "greater than 0, up to %.10g", row->max);
-    else if (isnan(row->min) && isnan(row->max)) snprintf(numbers, sizeof numbers, gap[0] ? "any number in" : "any number");
+    else if (row->positive)
+        snprintf(numbers, sizeof numbers, "greater than 0, up to %.10g", row->max);
+    else if (isnan(row->min) && isnan(row->max))
+        snprintf(numbers, sizeof numbers, gap[0] ? "any number in" : "any number");
     else if (isnan(row->max)) snprintf(numbers, sizeof numbers, "at least %.10g", row->min);
     else if (isnan(row->min)) snprintf(numbers, sizeof numbers, "at most %.10g", row->max);
     else snprintf(numbers, sizeof numbers, "%.10g to %.10g", row->min, row->max);
@@ -100,13 +102,14 @@ static void report_kind(const slot *s, const char *must)
     tobi_bind_limits(s->row, limits, sizeof limits);
     const char *shown = json_string_value(s->value);
     if (s->row->type == TOBI_PARAM_BOOL)
-        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s", tobi_json_kind(s->value), must);
+        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
+                            tobi_json_kind(s->value), must);
     else if (shown && strlen(shown) < 60)
-        tobi_source_mistake(s->binder->source, s->place, "is the text \"%s\", must be %s (%s)", shown, must,
-                            limits);
+        tobi_source_mistake(s->binder->source, s->place, "is the text \"%s\", must be %s (%s)",
+                            shown, must, limits);
     else
-        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s (%s)", tobi_json_kind(s->value),
-                            must, limits);
+        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s (%s)",
+                            tobi_json_kind(s->value), must, limits);
 }
 
 static int check_range(const slot *s, const tobi_place *place, double v)
@@ -206,15 +209,16 @@ static void bind_choice(const slot *s)
     }
     char limits[200];
     tobi_bind_limits(s->row, limits, sizeof limits);
-    const char *near = word ? tobi_suggest(word, list, (size_t)(count < MOST ? count : MOST)) : NULL;
+    const char *near =
+        word ? tobi_suggest(word, list, (size_t)(count < MOST ? count : MOST)) : NULL;
     if (near)
-        tobi_source_mistake(s->binder->source, s->place, "is \"%s\", allowed is %s; did you mean \"%s\"?",
-                            word, limits, near);
+        tobi_source_mistake(s->binder->source, s->place,
+                            "is \"%s\", allowed is %s; did you mean \"%s\"?", word, limits, near);
     else if (word)
         tobi_source_mistake(s->binder->source, s->place, "is \"%s\", allowed is %s", word, limits);
     else
-        tobi_source_mistake(s->binder->source, s->place, "is %s, allowed is %s", tobi_json_kind(s->value),
-                            limits);
+        tobi_source_mistake(s->binder->source, s->place, "is %s, allowed is %s",
+                            tobi_json_kind(s->value), limits);
 }
 
 /* Names become parts of file names. */
@@ -230,7 +234,9 @@ static char *join_path(const char *directory, const char *path)
 {
     char *joined;
     if (path[0] == '/') return strdup(path);
-    return asprintf(&joined, "%s/%s", strcmp(directory, "/") == 0 ? "" : directory, path) < 0 ? NULL : joined;
+    return asprintf(&joined, "%s/%s", strcmp(directory, "/") == 0 ? "" : directory, path) < 0
+               ? NULL
+               : joined;
 }
 
 /* A list of texts as one text with commas. */
@@ -258,20 +264,25 @@ static void bind_text(const slot *s)
     const char *given = json_string_value(s->value), *kept = given;
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
     if (!given && !(is_list && json_is_array(s->value))) {
-        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s", tobi_json_kind(s->value),
-                            is_path ? "the path of a file" : is_list ? "a list of names" : "a name");
+        tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
+                            tobi_json_kind(s->value),
+                            is_path   ? "the path of a file"
+                            : is_list ? "a list of names"
+                                      : "a name");
         return;
     }
     if (is_path) {
         if (!given[0]) {
-            tobi_source_mistake(s->binder->source, s->place, "is empty, must be the path of a file");
+            tobi_source_mistake(s->binder->source, s->place,
+                                "is empty, must be the path of a file");
             return;
         }
         kept = tobi_texts_keep(s->binder->texts, join_path(s->binder->directory, given));
     } else if (!given) {
         kept = tobi_texts_keep(s->binder->texts, join_names(s));
     } else if (!is_list && !is_name(given)) {
-        tobi_source_mistake(s->binder->source, s->place, "is not usable as a name: 1 to 100 characters, no "
+        tobi_source_mistake(s->binder->source, s->place,
+                            "is not usable as a name: 1 to 100 characters, no "
                             "dot in front and none of / \\ : * ? \" < > | ,");
         return;
     }
@@ -303,7 +314,8 @@ typedef struct pass {
 static const char *key_rest(const tobi_param *row, const char *prefix, const char *key)
 {
     size_t n = strlen(prefix), m = strlen(key);
-    if (m == 0 || strncmp(row->key, prefix, n) != 0 || strncmp(row->key + n, key, m) != 0) return NULL;
+    if (m == 0 || strncmp(row->key, prefix, n) != 0 || strncmp(row->key + n, key, m) != 0)
+        return NULL;
     const char *rest = row->key + n + m;
     return *rest == '\0' || *rest == '.' || *rest == '[' ? rest : NULL;
 }
@@ -333,7 +345,8 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
     for (size_t i = 0; i < count; i++) list[i] = keys[i];
     const char *near = tobi_suggest(place->key, list, count);
     if (near) {
-        tobi_source_mistake_at_key(p->binder->source, place, "unknown key; did you mean \"%s\"?", near);
+        tobi_source_mistake_at_key(p->binder->source, place, "unknown key; did you mean \"%s\"?",
+                                   near);
         return;
     }
     for (size_t i = 0; i < count && used < sizeof all; i++)
@@ -357,8 +370,10 @@ static void bind_entries(pass *p, const char *prefix, json_t *value, const tobi_
     const tobi_param *row;
     for (row = p->table->rows; row->key; row++) count += key_rest(row, prefix, place->key) != NULL;
     if (json_is_array(value) && json_array_size(value) != count) {
-        tobi_source_mistake(p->binder->source, place, "has %zu entries, must have %zu [lower, upper] or be one "
-                            "value for both", json_array_size(value), count);
+        tobi_source_mistake(p->binder->source, place,
+                            "has %zu entries, must have %zu [lower, upper] or be one "
+                            "value for both",
+                            json_array_size(value), count);
         return;
     }
     for (row = p->table->rows; row->key; row++) {
@@ -413,7 +428,8 @@ static void bind_members(pass *p, const char *prefix, json_t *object, const tobi
 }
 
 /* Reports a required row that is not there, at the place of the object that lacks it. */
-static void report_missing(const tobi_binder *binder, const tobi_param *row, const tobi_place *place)
+static void report_missing(const tobi_binder *binder, const tobi_param *row,
+                           const tobi_place *place)
 {
     char first[48] = "", limits[200];
     const char *dot = strchr(row->key, '.');
@@ -432,12 +448,14 @@ tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, j
 {
     pass p = { binder, table, also, def, { 0, 0 } };
     if (!json_is_object(object)) {
-        tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }", tobi_json_kind(object));
+        tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }",
+                            tobi_json_kind(object));
         return p.bound;
     }
     bind_members(&p, "", object, place);
     for (const tobi_param *row = table->rows; row->key; row++)
-        if (row->required && !(p.bound.given >> (row - table->rows) & 1)) report_missing(binder, row, place);
+        if (row->required && !(p.bound.given >> (row - table->rows) & 1))
+            report_missing(binder, row, place);
     return p.bound;
 }
 

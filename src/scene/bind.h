@@ -31,7 +31,8 @@ tobi_bound tobi_bind(const tobi_binder *binder, const tobi_param_table *table, j
 /* Whether the row `key` is among rows, which is one half of a tobi_bound. */
 int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key);
 
-/* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip". */
+/* The allowed values of a row in words: "2 to 4 spacings", "greater than 0 m", "slip or no-slip".
+ */
 void tobi_bind_limits(const tobi_param *row, char *text, size_t size);
 
 /* "is a text", "is a number", ... */

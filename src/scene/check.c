@@ -19,11 +19,12 @@ static void check_method(const tobi_scene *scene, tobi_source *source)
     tobi_place place = { &root, "method", 0 };
     const char *names[16];
     size_t count = 0;
-    for (; count < 16 && tobi_method_name((int)count); count++) names[count] = tobi_method_name((int)count);
+    for (; count < 16 && tobi_method_name((int)count); count++)
+        names[count] = tobi_method_name((int)count);
     if (scene->method) return;
     const char *near = tobi_suggest(scene->world.method, names, count);
-    tobi_source_mistake(source, &place, "there is no method \"%s\"; did you mean \"%s\"?", scene->world.method,
-                        near ? near : names[0]);
+    tobi_source_mistake(source, &place, "there is no method \"%s\"; did you mean \"%s\"?",
+                        scene->world.method, near ? near : names[0]);
 }
 
 static void check_dfsph(const tobi_scene *scene, tobi_source *source)
@@ -37,7 +38,8 @@ static void check_dfsph(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &density, "is %d, must not be above density_iterations_max, %d",
                             d->density_iterations_min, d->density_iterations_max);
     if (d->divergence_iterations_min > d->divergence_iterations_max)
-        tobi_source_mistake(source, &divergence, "is %d, must not be above divergence_iterations_max, %d",
+        tobi_source_mistake(source, &divergence,
+                            "is %d, must not be above divergence_iterations_max, %d",
                             d->divergence_iterations_min, d->divergence_iterations_max);
 }
 
@@ -50,26 +52,30 @@ static int has_domain(const tobi_scene *scene)
 static void check_domain(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
-    tobi_place domain = { &root, "domain", 0 }, corner = { &domain, "max", 0 }, walls = { &domain, "walls", 0 };
+    tobi_place domain = { &root, "domain", 0 }, corner = { &domain, "max", 0 },
+               walls = { &domain, "walls", 0 };
     tobi_place spacing = { &root, "spacing", 0 };
     for (int a = 0; a < w->dimension; a++) {
         char name[2] = { axis_name[a], 0 };
         tobi_place wall = { &walls, name, 0 };
         double length = w->domain_max[a] - w->domain_min[a];
         if ((w->wall_min[a] == TOBI_WALL_PERIODIC) != (w->wall_max[a] == TOBI_WALL_PERIODIC))
-            tobi_source_mistake(source, &wall, "is periodic on one side only; write \"%s\": \"periodic\"", name);
+            tobi_source_mistake(source, &wall,
+                                "is periodic on one side only; write \"%s\": \"periodic\"", name);
         if (!has_domain(scene)) continue;
         tobi_place entry = { &corner, NULL, (size_t)a };
         if (!(length > 0))
-            tobi_source_mistake(source, &entry, "is %.10g in %s, must be greater than domain.min there, %.10g",
+            tobi_source_mistake(source, &entry,
+                                "is %.10g in %s, must be greater than domain.min there, %.10g",
                                 w->domain_max[a], name, w->domain_min[a]);
         else if (w->spacing > length)
-            tobi_source_mistake(source, &spacing, "is %.10g m, the domain has only %.10g m in %s", w->spacing,
-                                length, name);
+            tobi_source_mistake(source, &spacing, "is %.10g m, the domain has only %.10g m in %s",
+                                w->spacing, length, name);
     }
     tobi_place gravity = { &root, "gravity", 0 };
     if (w->dimension == 2 && w->gravity[2] != 0)
-        tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene", w->gravity[2]);
+        tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene",
+                            w->gravity[2]);
 }
 
 /* A region may touch the domain's sides; rounding of decimal numbers is forgiven. */
@@ -85,13 +91,16 @@ static void check_box(const tobi_scene *scene, tobi_source *source, const tobi_f
     tobi_place box = { place, "box", 0 };
     for (int a = 0; a < w->dimension; a++) {
         if (!(fill->box_max[a] > fill->box_min[a])) {
-            tobi_source_mistake(source, &box, "min is %.10g and max is %.10g in %c, max must be greater",
+            tobi_source_mistake(source, &box,
+                                "min is %.10g and max is %.10g in %c, max must be greater",
                                 fill->box_min[a], fill->box_max[a], axis_name[a]);
         } else if (has_domain(scene) && (fill->box_min[a] < w->domain_min[a] - slack(w, a) ||
                                          fill->box_max[a] > w->domain_max[a] + slack(w, a))) {
-            tobi_source_mistake(source, &box, "reaches from %.10g to %.10g m in %c, the domain only from %.10g "
-                                "to %.10g m", fill->box_min[a], fill->box_max[a], axis_name[a],
-                                w->domain_min[a], w->domain_max[a]);
+            tobi_source_mistake(source, &box,
+                                "reaches from %.10g to %.10g m in %c, the domain only from %.10g "
+                                "to %.10g m",
+                                fill->box_min[a], fill->box_max[a], axis_name[a], w->domain_min[a],
+                                w->domain_max[a]);
         }
     }
     if (w->dimension == 2 && fill->velocity[2] != 0)
@@ -114,19 +123,23 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
 {
     const tobi_param_table *t = &tobi_fill_table;
     tobi_place mesh = { place, "mesh", 0 };
-    int lower = tobi_bind_has(t, fill->bound.given, "box.min"), upper = tobi_bind_has(t, fill->bound.given, "box.max");
+    int lower = tobi_bind_has(t, fill->bound.given, "box.min"),
+        upper = tobi_bind_has(t, fill->bound.given, "box.max");
     int has_mesh = tobi_bind_has(t, fill->bound.given, "mesh"), has_box = lower || upper;
     if (has_box == has_mesh) {
-        tobi_source_mistake(source, place, "must have either a box or a mesh, it has %s", has_box ? "both" : "none");
+        tobi_source_mistake(source, place, "must have either a box or a mesh, it has %s",
+                            has_box ? "both" : "none");
     } else if (has_mesh) {
         check_file(source, &mesh, fill->def.mesh);
     } else if (!lower || !upper) {
         tobi_place box = { place, "box", 0 }, corner = { &box, lower ? "max" : "min", 0 };
         tobi_source_mistake(source, &corner, "is missing: a box has min and max");
-    } else if (tobi_bind_has(t, fill->bound.good, "box.min") && tobi_bind_has(t, fill->bound.good, "box.max")) {
+    } else if (tobi_bind_has(t, fill->bound.good, "box.min") &&
+               tobi_bind_has(t, fill->bound.good, "box.max")) {
         check_box(scene, source, &fill->def, place);
     }
-    if (!has_mesh && (tobi_bind_has(t, fill->bound.given, "scale") || tobi_bind_has(t, fill->bound.given, "translation")))
+    if (!has_mesh && (tobi_bind_has(t, fill->bound.given, "scale") ||
+                      tobi_bind_has(t, fill->bound.given, "translation")))
         tobi_source_mistake(source, place, "scale and translation belong to a mesh, not to a box");
 }
 
@@ -136,7 +149,8 @@ typedef struct region { const tobi_fill_def *fill; int fluid, index; } region;
 static int do_overlap(const tobi_world_def *w, const tobi_fill_def *a, const tobi_fill_def *b)
 {
     for (int k = 0; k < w->dimension; k++)
-        if (fmin(a->box_max[k], b->box_max[k]) - fmax(a->box_min[k], b->box_min[k]) <= slack(w, k)) return 0;
+        if (fmin(a->box_max[k], b->box_max[k]) - fmax(a->box_min[k], b->box_min[k]) <= slack(w, k))
+            return 0;
     return 1;
 }
 
@@ -148,8 +162,8 @@ static int order_regions(const void *a, const void *b)
     return p->fluid != q->fluid ? p->fluid - q->fluid : p->index - q->index;
 }
 
-/* Two boxes in the same place would put particles on top of each other. Sorted along x, so that many
-   boxes side by side cost little. */
+/* Two boxes in the same place would put particles on top of each other. Sorted along x, so that
+   many boxes side by side cost little. */
 static void check_overlaps(const tobi_scene *scene, tobi_source *source)
 {
     size_t count = 0;
@@ -163,33 +177,38 @@ static void check_overlaps(const tobi_scene *scene, tobi_source *source)
                 list[count++] = (region){ &scene->fluids[i].fills[j].def, i, j };
     qsort(list, count, sizeof *list, order_regions);
     for (size_t i = 0; i < count && !tobi_report_full(source->report); i++) {
-        for (size_t j = i + 1; j < count && list[j].fill->box_min[0] < list[i].fill->box_max[0]; j++) {
+        for (size_t j = i + 1; j < count && list[j].fill->box_min[0] < list[i].fill->box_max[0];
+             j++) {
             if (!do_overlap(&scene->world, list[i].fill, list[j].fill)) continue;
-            tobi_place fluids = { &root, "fluids", 0 }, fluid = { &fluids, NULL, (size_t)list[j].fluid };
+            tobi_place fluids = { &root, "fluids", 0 },
+                       fluid = { &fluids, NULL, (size_t)list[j].fluid };
             tobi_place fill = { &fluid, "fill", 0 }, entry = { &fill, NULL, (size_t)list[j].index };
-            tobi_source_mistake(source, &entry, "overlaps the box fluids[%d].fill[%d]", list[i].fluid,
-                                list[i].index);
+            tobi_source_mistake(source, &entry, "overlaps the box fluids[%d].fill[%d]",
+                                list[i].fluid, list[i].index);
         }
     }
     free(list);
 }
 
 /* A name must be the only one of its kind in fluids and bodies. */
-static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry, int fluid, int body)
+static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
+                       int fluid, int body)
 {
     tobi_place place = { entry, "name", 0 };
     const char *name = fluid >= 0 ? scene->fluids[fluid].def.name : scene->bodies[body].def.name;
     json_t *list = json_object_get(scene->root, fluid >= 0 ? "fluids" : "bodies");
     json_t *entry_value = json_array_get(list, (size_t)(fluid >= 0 ? fluid : body));
-    if (!json_is_string(json_object_get(entry_value, "name"))) return;     /* missing: already told */
+    if (!json_is_string(json_object_get(entry_value, "name"))) return; /* missing: already told */
     for (int i = 0; i < (fluid >= 0 ? fluid : scene->fluid_count); i++)
         if (strcmp(scene->fluids[i].def.name, name) == 0) {
-            tobi_source_mistake(source, &place, "\"%s\" is already the name of fluids[%d]", name, i);
+            tobi_source_mistake(source, &place, "\"%s\" is already the name of fluids[%d]", name,
+                                i);
             return;
         }
     for (int i = 0; i < body; i++)
         if (strcmp(scene->bodies[i].def.name, name) == 0) {
-            tobi_source_mistake(source, &place, "\"%s\" is already the name of bodies[%d]", name, i);
+            tobi_source_mistake(source, &place, "\"%s\" is already the name of bodies[%d]", name,
+                                i);
             return;
         }
 }
@@ -199,7 +218,8 @@ static void check_fluids(const tobi_scene *scene, tobi_source *source)
     tobi_place fluids = { &root, "fluids", 0 };
     json_t *given = json_object_get(scene->root, "fluids");
     if (!given || (json_is_array(given) && json_array_size(given) == 0))
-        tobi_source_mistake(source, &fluids, "is missing or empty: a scene needs at least one fluid");
+        tobi_source_mistake(source, &fluids,
+                            "is missing or empty: a scene needs at least one fluid");
     for (int i = 0; i < scene->fluid_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &fluids, NULL, (size_t)i }, fill = { &entry, "fill", 0 };
         check_name(scene, source, &entry, i, -1);
@@ -240,7 +260,9 @@ static void check_field(tobi_source *source, const tobi_place *place, const char
         snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[count]);
     }
     const char *near = tobi_suggest(field, names, count);
-    if (near) tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field, near);
+    if (near)
+        tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field,
+                            near);
     else tobi_source_mistake(source, place, "there is no field \"%s\"; allowed are %s", field, all);
 }
 
@@ -250,7 +272,8 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
     tobi_place output = { &root, "output", 0 }, interval = { &output, "interval", 0 };
     tobi_place fields = { &output, "fields", 0 };
     if (scene->world.end_time/scene->output.interval > MOST_OUTPUTS)
-        tobi_source_mistake(source, &interval, "is %.10g s and makes more than %d outputs until end_time, %.10g s",
+        tobi_source_mistake(source, &interval,
+                            "is %.10g s and makes more than %d outputs until end_time, %.10g s",
                             scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
     char *copy = strdup(scene->output.fields ? scene->output.fields : ""), *next = copy;
     for (char *field; copy && (field = strsep(&next, ",")) != NULL;)

@@ -13,8 +13,10 @@ static void write_default(const tobi_param *row, char *text, size_t size)
     int length = 0;
     const char *word;
     if (row->required) snprintf(text, size, "required");
-    else if (row->type == TOBI_PARAM_TEXT) snprintf(text, size, "%s", row->text ? row->text : "none");
-    else if (row->type == TOBI_PARAM_BOOL) snprintf(text, size, "%s", row->def[0] != 0 ? "true" : "false");
+    else if (row->type == TOBI_PARAM_TEXT)
+        snprintf(text, size, "%s", row->text ? row->text : "none");
+    else if (row->type == TOBI_PARAM_BOOL)
+        snprintf(text, size, "%s", row->def[0] != 0 ? "true" : "false");
     else if (row->type == TOBI_PARAM_CHOICE) {
         word = tobi_choice_word(row->choices, (int)row->def[0], &length);
         snprintf(text, size, "%.*s", length, word);
@@ -42,7 +44,8 @@ static void describe_row(FILE *out, const tobi_param *row)
     write_default(row, def, sizeof def);
     fprintf(out, "  %s\n      %s\n      ", row->key, row->doc);
     if (row->type == TOBI_PARAM_TEXT) fprintf(out, "%s; ", row->unit);
-    else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL) fprintf(out, "%s; ", limits);
+    else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL)
+        fprintf(out, "%s; ", limits);
     else fprintf(out, "%s, unit %s; allowed: %s; ", type_name(row), row->unit, limits);
     fprintf(out, row->required ? "%s\n" : "default: %s\n", def);
 }

@@ -6,13 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REAL(def_, member_) .type = TOBI_PARAM_REAL, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
-#define VEC3(def_, member_) .type = TOBI_PARAM_VEC3, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
+#define REAL(def_, member_)                                                                        \
+    .type = TOBI_PARAM_REAL, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
+#define VEC3(def_, member_)                                                                        \
+    .type = TOBI_PARAM_VEC3, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
 
 static const tobi_param script_rows[] = {
-    { .key = "script", .type = TOBI_PARAM_TEXT, .offset = offsetof(tobi_script_def, script), .unit = "path",
-      .required = true, .doc = "A Lua file that says where every point of the body is at a time; the object "
-      "`params` beside this key is handed to it." },
+    { .key = "script",
+      .type = TOBI_PARAM_TEXT,
+      .offset = offsetof(tobi_script_def, script),
+      .unit = "path",
+      .required = true,
+      .doc = "A Lua file that says where every point of the body is at a time; the object "
+             "`params` beside this key is handed to it." },
     { 0 }
 };
 static const tobi_param translation_rows[] = {
@@ -33,17 +39,20 @@ static const tobi_param oscillation_rows[] = {
     { .key = "direction", VEC3(tobi_oscillation_def, direction), .unit = "1", .required = true,
       .doc = "Direction of the movement, of any length." },
     { .key = "amplitude", REAL(tobi_oscillation_def, amplitude), .unit = "m", .required = true,
-      .doc = "Largest distance from the rest position: it moves by amplitude sin(2 pi frequency t + phase)." },
+      .doc = "Largest distance from the rest position: it moves by amplitude sin(2 pi frequency t "
+             "+ phase)." },
     { .key = "frequency", REAL(tobi_oscillation_def, frequency), .unit = "Hz", .required = true,
       .doc = "Cycles per second." },
-    { .key = "phase", REAL(tobi_oscillation_def, phase), .unit = "degrees", .doc = "Phase at time 0." },
+    { .key = "phase", REAL(tobi_oscillation_def, phase), .unit = "degrees",
+      .doc = "Phase at time 0." },
     { 0 }
 };
 
 static const tobi_param_table tables[] = {
     { "script", "motion: a user's program in Lua, for rigid and deforming bodies.",
       sizeof(tobi_script_def), script_rows },
-    { "translation", "motion.translation: constant velocity.", sizeof(tobi_translation_def), translation_rows },
+    { "translation", "motion.translation: constant velocity.", sizeof(tobi_translation_def),
+      translation_rows },
     { "rotation", "motion.rotation: a constant turn about a fixed axis.", sizeof(tobi_rotation_def),
       rotation_rows },
     { "oscillation", "motion.oscillation: to and fro along a line.", sizeof(tobi_oscillation_def),
@@ -57,9 +66,11 @@ const tobi_param_table *tobi_motion_table(int index)
 }
 
 /* Finds which motion the object is; reports unknown keys and none or several motions. */
-static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *value, const tobi_place *place)
+static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *value,
+                                            const tobi_place *place)
 {
-    static const char *const keys[] = { "script", "translation", "rotation", "oscillation", "params" };
+    static const char *const keys[] = { "script", "translation", "rotation", "oscillation",
+                                        "params" };
     const tobi_param_table *chosen = NULL;
     int count = 0, unknown = 0;
     const char *key;
@@ -76,14 +87,20 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
         if (known || json_object_get(value, "script")) continue;     /* a script checks its own */
         unknown = 1;
         const char *near = tobi_suggest(key, keys, sizeof keys / sizeof keys[0]);
-        if (near) tobi_source_mistake_at_key(binder->source, &at, "unknown key; did you mean \"%s\"?", near);
-        else tobi_source_mistake_at_key(binder->source, &at, "unknown key; allowed here: script with params, "
-                                        "translation, rotation, oscillation");
+        if (near)
+            tobi_source_mistake_at_key(binder->source, &at, "unknown key; did you mean \"%s\"?",
+                                       near);
+        else
+            tobi_source_mistake_at_key(binder->source, &at,
+                                       "unknown key; allowed here: script with params, "
+                                       "translation, rotation, oscillation");
     }
     if (count == 1) return chosen;
     if (count > 1 || !unknown)
-        tobi_source_mistake(binder->source, place, "must have exactly one of script, translation, rotation, "
-                            "oscillation; it has %d", count);
+        tobi_source_mistake(binder->source, place,
+                            "must have exactly one of script, translation, rotation, "
+                            "oscillation; it has %d",
+                            count);
     return NULL;
 }
 
@@ -101,11 +118,12 @@ static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motio
     const tobi_rotation_def *turn = &def->as.rotation;
     const tobi_oscillation_def *swing = &def->as.oscillation;
     if (def->table == &tables[0]) return create_script(def, motion, err);
-    if (def->table == &tables[1]) return tobi_motion_translation(def->as.translation.velocity, motion, err);
+    if (def->table == &tables[1])
+        return tobi_motion_translation(def->as.translation.velocity, motion, err);
     if (def->table == &tables[2])
         return tobi_motion_rotation(turn->center, turn->axis, turn->rate, motion, err);
-    return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency, swing->phase, motion,
-                                   err);
+    return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency,
+                                   swing->phase, motion, err);
 }
 
 tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
@@ -115,7 +133,8 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
     *def = (tobi_motion_def){ 0 };
     int64_t before = tobi_report_total(binder->source->report);
     if (!json_is_object(value)) {
-        tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }", tobi_json_kind(value));
+        tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }",
+                            tobi_json_kind(value));
         return NULL;
     }
     const tobi_param_table *table = choose_table(binder, value, place);
@@ -126,8 +145,8 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
     if (table == &tables[0]) tobi_bind(binder, table, value, place, beside_script, &def->as);
     else tobi_bind(binder, table, json_object_get(value, table->name), &inner, NULL, &def->as);
     if (def->params && table != &tables[0])
-        tobi_source_mistake_at_key(binder->source, &params, "params belong to a script; %s takes none",
-                                   table->name);
+        tobi_source_mistake_at_key(binder->source, &params,
+                                   "params belong to a script; %s takes none", table->name);
     else if (def->params && !json_is_object(def->params))
         tobi_source_mistake(binder->source, &params, "is %s, must be an object { ... }",
                             tobi_json_kind(def->params));
@@ -136,7 +155,8 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
     tobi_motion *motion = NULL;
     tobi_error err = { 0 };
     def->table = table;
-    if (create_motion(def, &motion, &err) != TOBI_OK) tobi_source_mistake(binder->source, &inner, "%s", err.text);
+    if (create_motion(def, &motion, &err) != TOBI_OK)
+        tobi_source_mistake(binder->source, &inner, "%s", err.text);
     return motion;
 }
 

@@ -53,7 +53,8 @@ static int find_named(const json_t *list, const char *name)
 }
 
 /* Checks step `at` against the container `node` and makes it a number where node is a list. */
-static int settle_step(tobi_source *source, const char *text, json_t *node, json_t *steps, size_t at)
+static int settle_step(tobi_source *source, const char *text, json_t *node, json_t *steps,
+                       size_t at)
 {
     json_t *step = json_array_get(steps, at);
     if (json_is_object(node)) {
@@ -63,7 +64,8 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
         return 0;
     }
     if (!json_is_array(node)) {
-        tobi_report_add(source->report, 0, "--set %s: there is nothing below this value to set", text);
+        tobi_report_add(source->report, 0, "--set %s: there is nothing below this value to set",
+                        text);
         return 0;
     }
     long long size = (long long)json_array_size(node), index = json_integer_value(step);
@@ -77,7 +79,8 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
         json_array_set_new(steps, at, json_integer(index));
     }
     if (index < size) return 1;
-    tobi_report_add(source->report, 0, "--set %s: there is no entry [%lld], the list has %lld", text, index, size);
+    tobi_report_add(source->report, 0, "--set %s: there is no entry [%lld], the list has %lld",
+                    text, index, size);
     return 0;
 }
 
@@ -118,8 +121,10 @@ static void apply_one(tobi_source *source, const char *text)
     const char *equals = strchr(text, '=');
     json_t *steps = equals ? split_path(text, (size_t)(equals - text)) : NULL;
     if (!steps) {
-        tobi_report_add(source->report, 0, "--set %s: must be path=value, such as dfsph.support=3 or "
-                        "fluids[0].viscosity=0.1", text);
+        tobi_report_add(source->report, 0,
+                        "--set %s: must be path=value, such as dfsph.support=3 or "
+                        "fluids[0].viscosity=0.1",
+                        text);
         return;
     }
     json_t *value = read_value(equals + 1);

@@ -3,6 +3,7 @@
 #pragma once
 #include "scene/source.h"
 
-/* Applies "path=value" texts (ended by NULL, or NULL) in order. A path is keys with dots, entries of
-   lists by [number] or by .name; missing objects on the way are made. Mistakes go to the report. */
+/* Applies "path=value" texts (ended by NULL, or NULL) in order. A path is keys with dots, entries
+   of lists by [number] or by .name; missing objects on the way are made. Mistakes go to the report.
+ */
 tobi_status tobi_override_apply(tobi_source *source, const char *const *overrides, tobi_error *err);

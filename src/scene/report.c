@@ -91,7 +91,8 @@ static int order_lines(const void *a, const void *b)
 
 void tobi_report_close(tobi_report *report)
 {
-    if (report->count) qsort(report->lines, (size_t)report->count, sizeof *report->lines, order_lines);
+    if (report->count)
+        qsort(report->lines, (size_t)report->count, sizeof *report->lines, order_lines);
     if (report->left_out)
         store_last(report, "... and %lld more mistakes", (long long)report->left_out);
     report->left_out = 0;
@@ -114,7 +115,7 @@ tobi_status tobi_report_fail(const tobi_report *report, tobi_error *err)
     }
     err->text[used] = '\0';
     if (i < report->count)
-        snprintf(err->text + used, sizeof err->text - used, "%s... and %d more lines", i ? "\n" : "",
-                 report->count - i);
+        snprintf(err->text + used, sizeof err->text - used, "%s... and %d more lines",
+                 i ? "\n" : "", report->count - i);
     return TOBI_INVALID;
 }

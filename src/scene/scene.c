@@ -12,16 +12,19 @@ enum { FLUID_LIMIT = 64, FILL_LIMIT = 256, BODY_LIMIT = 1024 };
 
 /* A list of objects at `key` of `object`, and the memory for what they become. NULL if there is
    none; mistakes are reported. */
-static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_place *place, int limit)
+static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
+                         int limit)
 {
     json_t *list = json_object_get(object, place->key);
     if (!list) return NULL;
     if (!json_is_array(list)) {
-        tobi_source_mistake(binder->source, place, "is %s, must be a list [ { ... } ]", tobi_json_kind(list));
+        tobi_source_mistake(binder->source, place, "is %s, must be a list [ { ... } ]",
+                            tobi_json_kind(list));
         return NULL;
     }
     if (json_array_size(list) <= (size_t)limit) return list;
-    tobi_source_mistake(binder->source, place, "has %zu entries, allowed are %d", json_array_size(list), limit);
+    tobi_source_mistake(binder->source, place, "has %zu entries, allowed are %d",
+                        json_array_size(list), limit);
     return NULL;
 }
 
@@ -35,7 +38,8 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
     json_t *list = open_list(binder, value, &fill, FILL_LIMIT);
     if (json_array_size(list) == 0) {
         if (json_is_object(value) && (list || !json_object_get(value, "fill")))
-            tobi_source_mistake(binder->source, &fill, "is missing or empty: a list of the regions this fluid "
+            tobi_source_mistake(binder->source, &fill,
+                                "is missing or empty: a list of the regions this fluid "
                                 "fills, [ { \"box\": { \"min\": [..], \"max\": [..] } } ]");
         return TOBI_OK;
     }
@@ -45,7 +49,8 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
         tobi_place entry = { &fill, NULL, i };
         tobi_scene_fill *f = &fluid->fills[fluid->fill_count++];
         f->def = tobi_default_fill_def();
-        f->bound = tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
+        f->bound =
+            tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
     }
     return TOBI_OK;
 }
@@ -59,7 +64,8 @@ static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, con
     if (!scene->fluids) return TOBI_NO_MEMORY;
     for (size_t i = 0; i < json_array_size(list); i++) {
         tobi_place entry = { &place, NULL, i };
-        TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry, &scene->fluids[scene->fluid_count++]));
+        TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry,
+                            &scene->fluids[scene->fluid_count++]));
     }
     return TOBI_OK;
 }
@@ -129,7 +135,8 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
     if (json_integer_value(json_object_get(scene->root, "dimension")) == 2) binder.dimension = 2;
     scene->world = tobi_default_world_def();
-    scene->world_bound = tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
+    scene->world_bound =
+        tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
     flatten_world(scene);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
@@ -157,14 +164,16 @@ static char *name_scene(const char *directory, const char *path)
 static char *find_directory(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *directory = slash == path ? strdup("/") : slash ? strndup(path, (size_t)(slash - path)) : strdup(".");
+    char *directory = slash == path ? strdup("/")
+                      : slash       ? strndup(path, (size_t)(slash - path))
+                                    : strdup(".");
     char *absolute = directory ? realpath(directory, NULL) : NULL;
     if (absolute) free(directory);
     return absolute ? absolute : directory;
 }
 
-static tobi_status parse_source(tobi_scene *scene, tobi_source *source, const char *const *overrides,
-                                tobi_error *err)
+static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
+                                const char *const *overrides, tobi_error *err)
 {
     scene->root = json_incref(source->root);
     TOBI_TRY(tobi_override_apply(source, overrides, err));
@@ -172,8 +181,9 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source, const ch
     return status == TOBI_NO_MEMORY ? tobi_fail(err, status, "no memory for the scene") : status;
 }
 
-tobi_status tobi_scene_parse(const char *path, const char *text, size_t size, const char *const *overrides,
-                             tobi_scene **out, tobi_report **report_out, tobi_error *err)
+tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
+                             const char *const *overrides, tobi_scene **out,
+                             tobi_report **report_out, tobi_error *err)
 {
     *out = NULL;
     if (report_out) *report_out = NULL;
@@ -275,8 +285,10 @@ char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
     json_t *fluids = json_array(), *bodies = json_array();
-    json_object_set_new(root, scene->method->name, tobi_write_def(scene->method, scene->method_def));
-    for (int i = 0; i < scene->fluid_count; i++) json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
+    json_object_set_new(root, scene->method->name,
+                        tobi_write_def(scene->method, scene->method_def));
+    for (int i = 0; i < scene->fluid_count; i++)
+        json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->body_count; i++) {
         json_t *body = tobi_write_def(&tobi_body_table, &scene->bodies[i].def);
         json_t *motion = tobi_motion_write(&scene->bodies[i].motion_def);

@@ -38,8 +38,9 @@ struct tobi_scene {
 
 /* tobi_scene_load from text in memory: path is its name in messages and tells where relative paths
    start. For tests and fuzzing. */
-tobi_status tobi_scene_parse(const char *path, const char *text, size_t size, const char *const *overrides,
-                             tobi_scene **scene, tobi_report **report, tobi_error *err);
+tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
+                             const char *const *overrides, tobi_scene **scene, tobi_report **report,
+                             tobi_error *err);
 
 /* Reports what no table can see: corners, pairs of walls, regions, names, files. */
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source);

@@ -19,7 +19,8 @@ tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, t
         return tobi_fail(err, TOBI_INVALID, "%s: has %lld bytes, a scene has at most %d", path,
                          (long long)info.st_size, TOBI_SOURCE_LIMIT);
     FILE *file = fopen(path, "rb");
-    if (!file) return tobi_fail(err, TOBI_IO, "%s: cannot open the scene: %s", path, strerror(errno));
+    if (!file)
+        return tobi_fail(err, TOBI_IO, "%s: cannot open the scene: %s", path, strerror(errno));
     char *bytes = malloc((size_t)info.st_size + 1);
     if (!bytes) {
         fclose(file);
@@ -219,7 +220,8 @@ static int override_covers(const tobi_override *override, const tobi_place *plac
     return 1;
 }
 
-static void add_mistake(tobi_source *source, size_t offset, const tobi_place *place, const char *what)
+static void add_mistake(tobi_source *source, size_t offset, const tobi_place *place,
+                        const char *what)
 {
     char path[TOBI_PATH_TEXT];
     int line, column;
@@ -235,7 +237,8 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
         if (!override_covers(&source->overrides[i], place)) continue;
         char path[TOBI_PATH_TEXT];
         tobi_place_text(place, path);
-        tobi_report_add(source->report, 0, "--set %s: %s: %s", source->overrides[i].text, path, what);
+        tobi_report_add(source->report, 0, "--set %s: %s: %s", source->overrides[i].text, path,
+                        what);
         return;
     }
     spot at = locate(source, place);
@@ -257,7 +260,8 @@ void tobi_source_mistake(tobi_source *source, const tobi_place *place, const cha
     TELL(0);
 }
 
-void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format, ...)
+void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format,
+                                ...)
 {
     TELL(1);
 }
@@ -272,7 +276,8 @@ static int order_keys(const void *a, const void *b)
     return order ? order : (x->at > y->at) - (x->at < y->at);
 }
 
-static void report_equal_keys(tobi_source *source, const tobi_place *place, seen_key *keys, size_t n)
+static void report_equal_keys(tobi_source *source, const tobi_place *place, seen_key *keys,
+                              size_t n)
 {
     if (n > 1) qsort(keys, n, sizeof *keys, order_keys);
     for (size_t i = 1; i < n; i++) {
@@ -330,7 +335,8 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     *source = (tobi_source){ .report = report, .size = size };
     source->name = strdup(name);
     source->text = malloc(size + 1);
-    if (!source->name || !source->text) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    if (!source->name || !source->text)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
     memcpy(source->text, text, size);
     source->text[size] = '\0';
     blank_comments(source->text, size);
@@ -338,7 +344,8 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);
     if (!source->root) {
-        tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s", name, mistake.line > 0 ? mistake.line : 1,
+        tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s", name,
+                        mistake.line > 0 ? mistake.line : 1,
                         mistake.column > 0 ? mistake.column : 1, mistake.text);
         return TOBI_INVALID;
     }

@@ -1,6 +1,6 @@
-/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no positions,
-   so a place is found again by walking the text along its path; that costs a scan per mistake and
-   no memory for scenes that have none. */
+/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no
+   positions, so a place is found again by walking the text along its path; that costs a scan per
+   mistake and no memory for scenes that have none. */
 #pragma once
 #include "scene/report.h"
 #include <jansson.h>
@@ -35,7 +35,8 @@ typedef struct tobi_source {
    a JSON object; the reason is in the report. Clear the source in any case. */
 tobi_status tobi_source_parse(tobi_source *source, const char *name, const char *text, size_t size,
                               tobi_report *report, tobi_error *err);
-/* Reads a file of at most TOBI_SOURCE_LIMIT bytes; *text is NUL-terminated and owned by the caller. */
+/* Reads a file of at most TOBI_SOURCE_LIMIT bytes; *text is NUL-terminated and owned by the caller.
+ */
 tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err);
 void tobi_source_clear(tobi_source *source);
 
@@ -43,8 +44,8 @@ void tobi_source_clear(tobi_source *source);
 void tobi_source_mistake(tobi_source *source, const tobi_place *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* The same at the place of a key instead of its value: for keys that should not be there. */
-void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format,
+                                ...) __attribute__((format(printf, 3, 4)));
 
 /* Writes "fluids[0].density" into text (at least TOBI_PATH_TEXT bytes); "" for the root. */
 void tobi_place_text(const tobi_place *place, char *text);

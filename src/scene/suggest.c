@@ -20,7 +20,8 @@ static int measure_distance(const char *a, const char *b)
         for (int j = 1; j <= m; j++) {
             int same = fold(a[i - 1]) == fold(b[j - 1]);
             now[j] = least(least(last[j], now[j - 1]) + 1, last[j - 1] + !same);
-            if (i > 1 && j > 1 && fold(a[i - 1]) == fold(b[j - 2]) && fold(a[i - 2]) == fold(b[j - 1]))
+            if (i > 1 && j > 1 && fold(a[i - 1]) == fold(b[j - 2]) &&
+                fold(a[i - 2]) == fold(b[j - 1]))
                 now[j] = least(now[j], before[j - 2] + 1);
         }
     }

@@ -41,7 +41,9 @@ static json_t *write_value(const tobi_param *row, const void *member)
         return json_pack("[fff]", v[0], v[1], v[2]);
     case TOBI_PARAM_TEXT:
         memcpy(&text, member, sizeof text);
-        return !text ? NULL : strcmp(row->unit, "names") == 0 ? write_names(text) : json_string(text);
+        return !text                             ? NULL
+               : strcmp(row->unit, "names") == 0 ? write_names(text)
+                                                 : json_string(text);
     case TOBI_PARAM_CHOICE:
         memcpy(&whole, member, sizeof whole);
         text = tobi_choice_word(row->choices, whole, &length);

@@ -1,4 +1,5 @@
-/* The parameter tables: they cover the definition structs, agree with themselves and with the enums. */
+/* The parameter tables: they cover the definition structs, agree with themselves and with the
+ * enums. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -56,7 +57,8 @@ static void check_row(const tobi_param_table *table, const tobi_param *row)
     assert_true(strlen(row->doc) > 10);
     assert_true(row->doc[strlen(row->doc) - 1] == '.');
     assert_int_equal(row->choices != NULL, row->type == TOBI_PARAM_CHOICE);
-    if (row->choices) assert_true(tobi_choice_count(row->choices) == (int)row->max + 1 && row->min == 0);
+    if (row->choices)
+        assert_true(tobi_choice_count(row->choices) == (int)row->max + 1 && row->min == 0);
     for (const tobi_param *other = table->rows; other < row; other++)
         assert_string_not_equal(other->key, row->key);
     if (row->type == TOBI_PARAM_TEXT || row->required) return;
@@ -102,7 +104,8 @@ static void words_follow_the_enums(void **state)
 {
     (void)state;
     const char *walls = find_row(&tobi_world_table, "domain.walls.y[1]")->choices;
-    assert_true(word_is(walls, TOBI_WALL_SLIP, "slip") && word_is(walls, TOBI_WALL_NO_SLIP, "no-slip"));
+    assert_true(word_is(walls, TOBI_WALL_SLIP, "slip") &&
+                word_is(walls, TOBI_WALL_NO_SLIP, "no-slip"));
     assert_true(word_is(walls, TOBI_WALL_PERIODIC, "periodic"));
     const char *kernels = find_row(&tobi_dfsph_table, "kernel")->choices;
     assert_true(word_is(kernels, TOBI_KERNEL_WENDLAND_C2, "wendland-c2"));
@@ -110,7 +113,8 @@ static void words_follow_the_enums(void **state)
     const char *friction = find_row(&tobi_body_table, "friction")->choices;
     assert_true(word_is(friction, TOBI_SLIP, "slip") && word_is(friction, TOBI_NO_SLIP, "no-slip"));
     const char *forms = find_row(&tobi_output_table, "compression")->choices;
-    assert_true(word_is(forms, TOBI_COMPRESS_NONE, "none") && word_is(forms, TOBI_COMPRESS_ZLIB, "zlib"));
+    assert_true(word_is(forms, TOBI_COMPRESS_NONE, "none") &&
+                word_is(forms, TOBI_COMPRESS_ZLIB, "zlib"));
     assert_true(word_is(forms, TOBI_COMPRESS_LZ4, "lz4") && word_is(forms, TOBI_ASCII, "ascii"));
     int length;
     assert_null(tobi_choice_word(forms, 4, &length));
@@ -122,10 +126,13 @@ static void defaults_are_water_on_earth(void **state)
     tobi_world_def w = tobi_default_world_def();
     assert_string_equal(w.method, "dfsph");
     assert_true(w.dimension == 3 && w.gravity[2] == -9.81 && w.cfl == 0.4 && w.time_step == 0);
-    assert_true(w.wall_min[0] == TOBI_WALL_SLIP && w.wall_max[2] == TOBI_WALL_SLIP && w.threads == 0);
+    assert_true(w.wall_min[0] == TOBI_WALL_SLIP && w.wall_max[2] == TOBI_WALL_SLIP &&
+                w.threads == 0);
     tobi_dfsph_def d = tobi_default_dfsph_def();
-    assert_true(d.kernel == TOBI_KERNEL_WENDLAND_C2 && d.support == 2 && d.density_tolerance == 5e-4);
-    assert_true(d.density_iterations_min == 2 && d.divergence_iterations_min == 1 && d.shifting == 0);
+    assert_true(d.kernel == TOBI_KERNEL_WENDLAND_C2 && d.support == 2 &&
+                d.density_tolerance == 5e-4);
+    assert_true(d.density_iterations_min == 2 && d.divergence_iterations_min == 1 &&
+                d.shifting == 0);
     tobi_fluid_def f = tobi_default_fluid_def();
     assert_true(f.density == 1000 && f.viscosity == 1.0e-3);
     tobi_fill_def fill = tobi_default_fill_def();
@@ -133,7 +140,8 @@ static void defaults_are_water_on_earth(void **state)
     tobi_body_def b = tobi_default_body_def();
     assert_true(b.scale[2] == 1 && b.density == 1000 && b.spacing == 0 && b.motion == NULL);
     tobi_output_def o = tobi_default_output_def();
-    assert_true(o.interval == 0.01 && o.compression == TOBI_COMPRESS_ZLIB && o.surfaces == 1 && o.frames == 0);
+    assert_true(o.interval == 0.01 && o.compression == TOBI_COMPRESS_ZLIB && o.surfaces == 1 &&
+                o.frames == 0);
     assert_string_equal(o.fields, "velocity,pressure,density,object_id,particle_id");
 }
 
@@ -155,7 +163,8 @@ static void ranges_are_enforced(void **state)
     f.viscosity = NAN;
     assert_int_equal(tobi_param_check(&tobi_fluid_table, &f, &err), TOBI_INVALID);
     tobi_world_def w = tobi_default_world_def();
-    assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_INVALID);   /* spacing is 0 */
+    assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err),
+                     TOBI_INVALID); /* spacing is 0 */
     w.spacing = 0.01;
     assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_OK);
     w.wall_max[1] = 3;

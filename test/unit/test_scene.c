@@ -16,7 +16,8 @@ static tobi_scene *parse(const char *text, const char *const *overrides)
     tobi_scene *scene;
     tobi_report *report;
     tobi_error err = { 0 };
-    tobi_status status = tobi_scene_parse("memory.json", text, strlen(text), overrides, &scene, &report, &err);
+    tobi_status status =
+        tobi_scene_parse("memory.json", text, strlen(text), overrides, &scene, &report, &err);
     if (status != TOBI_OK) print_error("%s\n", err.text);
     assert_int_equal(status, TOBI_OK);
     assert_null(report);
@@ -31,9 +32,11 @@ static const char small[] =
     "  \"spacing\": 0.1, \"end_time\": 2, \"time_step\": \"adaptive\", \"threads\": 3,\n"
     "  \"dfsph\": { \"support\": 3, \"kernel\": \"cubic-spline\" },\n"
     "  \"fluids\": [ { \"name\": \"\xE6\xB0\xB4 # no comment\",\n"
-    "    \"fill\": [ { \"box\": { \"min\": [-1, -2, -3], \"max\": [1, 2, 0] }, \"velocity\": [1, 0, 0] },\n"
+    "    \"fill\": [ { \"box\": { \"min\": [-1, -2, -3], \"max\": [1, 2, 0] }, \"velocity\": [1, "
+    "0, 0] },\n"
     "              { \"box\": { \"min\": [-1, -2, 0], \"max\": [1, 2, 1] } } ] } ],\n"
-    "  \"output\": { \"fields\": [\"velocity\", \"density\"], \"compression\": \"lz4\", \"surfaces\": false }\n"
+    "  \"output\": { \"fields\": [\"velocity\", \"density\"], \"compression\": \"lz4\", "
+    "\"surfaces\": false }\n"
     "}\n";
 
 static void reads_what_is_written(void **state)
@@ -41,17 +44,20 @@ static void reads_what_is_written(void **state)
     (void)state;
     tobi_scene *scene = parse(small, NULL);
     const tobi_world_def *w = tobi_scene_world_def(scene);
-    assert_true(w->domain_min[2] == -3 && w->domain_max[1] == 2 && w->spacing == 0.1 && w->end_time == 2);
+    assert_true(w->domain_min[2] == -3 && w->domain_max[1] == 2 && w->spacing == 0.1 &&
+                w->end_time == 2);
     assert_true(w->wall_min[0] == TOBI_WALL_PERIODIC && w->wall_max[0] == TOBI_WALL_PERIODIC);
     assert_true(w->wall_min[1] == TOBI_WALL_SLIP && w->wall_max[1] == TOBI_WALL_NO_SLIP);
     assert_true(w->wall_min[2] == TOBI_WALL_SLIP && w->time_step == 0 && w->threads == 3);
     assert_true(w->gravity[2] == -9.81 && w->cfl == 0.4);
     const tobi_dfsph_def *d = scene->method_def;
-    assert_true(d->support == 3 && d->kernel == TOBI_KERNEL_CUBIC_SPLINE && d->density_tolerance == 5e-4);
+    assert_true(d->support == 3 && d->kernel == TOBI_KERNEL_CUBIC_SPLINE &&
+                d->density_tolerance == 5e-4);
     assert_int_equal(scene->fluid_count, 1);
     assert_string_equal(scene->fluids[0].def.name, "\xE6\xB0\xB4 # no comment");
     assert_int_equal(scene->fluids[0].fill_count, 2);
-    assert_true(scene->fluids[0].fills[0].def.velocity[0] == 1 && scene->fluids[0].def.density == 1000);
+    assert_true(scene->fluids[0].fills[0].def.velocity[0] == 1 &&
+                scene->fluids[0].def.density == 1000);
     const tobi_output_def *o = tobi_scene_output_def(scene);
     assert_string_equal(o->fields, "velocity,density");
     assert_true(o->compression == TOBI_COMPRESS_LZ4 && o->surfaces == 0);
@@ -62,26 +68,36 @@ static void reads_what_is_written(void **state)
 static void overrides_win_and_are_checked(void **state)
 {
     (void)state;
-    const char *overrides[] = {
-        "spacing=.05", "dfsph.kernel=wendland-c2", "fluids[0].fill[1].velocity=[0, 0, -2]",
-        "fluids[0].name=oil", "fluids.oil.viscosity=0.1", "domain.walls.z=no-slip", "dfsph.support=4",
-        "dfsph.support=2.5", "output.fields=velocity,pressure", "output.frames=true", "method=dfsph", NULL
-    };
+    const char *overrides[] = { "spacing=.05",
+                                "dfsph.kernel=wendland-c2",
+                                "fluids[0].fill[1].velocity=[0, 0, -2]",
+                                "fluids[0].name=oil",
+                                "fluids.oil.viscosity=0.1",
+                                "domain.walls.z=no-slip",
+                                "dfsph.support=4",
+                                "dfsph.support=2.5",
+                                "output.fields=velocity,pressure",
+                                "output.frames=true",
+                                "method=dfsph",
+                                NULL };
     tobi_scene *scene = parse(small, overrides);
     const tobi_world_def *w = tobi_scene_world_def(scene);
     const tobi_dfsph_def *d = scene->method_def;
-    assert_true(w->spacing == 0.05 && w->wall_min[2] == TOBI_WALL_NO_SLIP && w->wall_max[2] == TOBI_WALL_NO_SLIP);
+    assert_true(w->spacing == 0.05 && w->wall_min[2] == TOBI_WALL_NO_SLIP &&
+                w->wall_max[2] == TOBI_WALL_NO_SLIP);
     assert_true(d->kernel == TOBI_KERNEL_WENDLAND_C2 && d->support == 2.5);
     assert_string_equal(scene->fluids[0].def.name, "oil");
-    assert_true(scene->fluids[0].def.viscosity == 0.1 && scene->fluids[0].fills[1].def.velocity[2] == -2);
+    assert_true(scene->fluids[0].def.viscosity == 0.1 &&
+                scene->fluids[0].fills[1].def.velocity[2] == -2);
     assert_string_equal(scene->output.fields, "velocity,pressure");
     assert_int_equal(scene->output.frames, 1);
     tobi_scene_free(scene);
 }
 
-static const char plane[] =
-    "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
-    "  \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.5] } } ] } ] }";
+static const char plane[] = "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, "
+                            "\"spacing\": 0.1, \"end_time\": 1,\n"
+                            "  \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { "
+                            "\"min\": [0, 0], \"max\": [1, 0.5] } } ] } ] }";
 
 static void two_dimensions_take_two_numbers(void **state)
 {
@@ -123,17 +139,21 @@ static void compare_scenes(const tobi_scene *a, const tobi_scene *b)
     for (int i = 0; i < a->body_count; i++) {
         const tobi_body_def *x = &a->bodies[i].def, *y = &b->bodies[i].def;
         assert_string_equal(x->mesh, y->mesh);
-        assert_memory_equal(x->scale, y->scale, offsetof(tobi_body_def, motion) - offsetof(tobi_body_def, scale));
+        assert_memory_equal(x->scale, y->scale,
+                            offsetof(tobi_body_def, motion) - offsetof(tobi_body_def, scale));
         assert_true(x->motion == y->motion && x->motion_rigid == y->motion_rigid);
     }
-    assert_true(a->output.interval == b->output.interval && a->output.compression == b->output.compression);
+    assert_true(a->output.interval == b->output.interval &&
+                a->output.compression == b->output.compression);
     assert_string_equal(a->output.fields, b->output.fields);
 }
 
 /* A motion that is handed on must move points to the same bits. */
 static void compare_motions(const tobi_scene *a, const tobi_scene *b)
 {
-    const double rest[3][3] = { { 0.31, 0.15, 0.24 }, { 0.26, 0.22, 0.241 }, { 0.22, 0.153, 0.239 } };
+    const double rest[3][3] = { { 0.31, 0.15, 0.24 },
+                                { 0.26, 0.22, 0.241 },
+                                { 0.22, 0.153, 0.239 } };
     double x[3][3], y[3][3];
     for (int step = 0; step < 8; step++) {
         double t = 0.1*step + 0.013;
@@ -147,17 +167,24 @@ static void compare_motions(const tobi_scene *a, const tobi_scene *b)
 static void resolved_gives_the_same_scene(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=0.0081234567890123", "time_step=1e-5", "cfl=0.1", "gravity=[1e-300,-0.0,3]",
-                                "bodies.fish.scale=0.9", "bodies[0].motion.params.freq=7.3", NULL };
+    const char *overrides[] = { "spacing=0.0081234567890123",
+                                "time_step=1e-5",
+                                "cfl=0.1",
+                                "gravity=[1e-300,-0.0,3]",
+                                "bodies.fish.scale=0.9",
+                                "bodies[0].motion.params.freq=7.3",
+                                NULL };
     tobi_scene *first, *second;
     tobi_error err = { 0 };
     assert_int_equal(tobi_scene_load(FISH, overrides, &first, NULL, &err), TOBI_OK);
     char *text = tobi_scene_resolved(first);
     assert_non_null(text);
-    assert_non_null(strstr(text, "\"density_tolerance\": 0.0005"));     /* defaults are explicit, and short */
+    assert_non_null(
+        strstr(text, "\"density_tolerance\": 0.0005")); /* defaults are explicit, and short */
     assert_non_null(strstr(text, "\"spacing\": 0.0081234567890123"));
-    assert_int_equal(tobi_scene_parse("/elsewhere/resolved.json", text, strlen(text), NULL, &second, NULL, &err),
-                     TOBI_OK);
+    assert_int_equal(
+        tobi_scene_parse("/elsewhere/resolved.json", text, strlen(text), NULL, &second, NULL, &err),
+        TOBI_OK);
     compare_scenes(first, second);
     compare_motions(first, second);
     char *again = tobi_scene_resolved(second);
@@ -179,8 +206,8 @@ static void resolved_gives_the_same_scene(void **state)
 static void every_shipped_scene_loads(void **state)
 {
     (void)state;
-    static const char *const names[] = { "flying_fish", "dam_break", "dam_break_2d", "hydrostatic_tank", "poiseuille",
-                                         "towed_sphere" };
+    static const char *const names[] = { "flying_fish",      "dam_break",  "dam_break_2d",
+                                         "hydrostatic_tank", "poiseuille", "towed_sphere" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[1024];
         tobi_scene *scene;
@@ -201,7 +228,8 @@ static void the_fish_is_the_described_one(void **state)
     assert_int_equal(tobi_scene_load(FISH, NULL, &scene, NULL, NULL), TOBI_OK);
     const tobi_world_def *w = tobi_scene_world_def(scene);
     assert_true(w->spacing == 0.004 && w->end_time == 0.8 && w->domain_max[0] == 0.6);
-    assert_true(scene->bodies[0].def.spacing == 0.002 && scene->bodies[0].def.translation[2] == 0.24);
+    assert_true(scene->bodies[0].def.spacing == 0.002 &&
+                scene->bodies[0].def.translation[2] == 0.24);
     assert_int_equal(scene->bodies[0].def.motion_rigid, 0);
     json_t *lag = json_object_get(scene->bodies[0].motion_def.params, "lagAngle");
     assert_true(json_number_value(lag) == 80);
@@ -213,9 +241,10 @@ static void the_fish_is_the_described_one(void **state)
 static void motions_by_numbers(void **state)
 {
     (void)state;
-    const char *overrides[] = {
-        "bodies.fish.motion={\"oscillation\": {\"direction\": [0, 0, 2], \"amplitude\": 0.5, \"frequency\": 1, "
-        "\"phase\": 90}}", NULL };
+    const char *overrides[] = { "bodies.fish.motion={\"oscillation\": {\"direction\": [0, 0, 2], "
+                                "\"amplitude\": 0.5, \"frequency\": 1, "
+                                "\"phase\": 90}}",
+                                NULL };
     tobi_scene *scene;
     tobi_error err = { 0 };
     tobi_status status = tobi_scene_load(FISH, overrides, &scene, NULL, &err);
@@ -224,7 +253,9 @@ static void motions_by_numbers(void **state)
     assert_int_equal(scene->bodies[0].def.motion_rigid, 1);
     const double rest[1][3] = { { 1, 2, 3 } };
     double moved[1][3];
-    assert_int_equal(scene->bodies[0].def.motion(scene->bodies[0].def.motion_user, 0, 1, rest, moved, NULL), TOBI_OK);
+    assert_int_equal(
+        scene->bodies[0].def.motion(scene->bodies[0].def.motion_user, 0, 1, rest, moved, NULL),
+        TOBI_OK);
     assert_true(moved[0][0] == 1 && moved[0][2] > 3.4999 && moved[0][2] < 3.5001);
     char *text = tobi_scene_resolved(scene);
     assert_non_null(strstr(text, "\"oscillation\""));

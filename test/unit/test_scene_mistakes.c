@@ -1,4 +1,5 @@
-/* Bad scenes: every class of mistake with its place, all at once, and input made to break the reader. */
+/* Bad scenes: every class of mistake with its place, all at once, and input made to break the
+ * reader. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,18 +27,20 @@ static tobi_report *fail_text(const char *text, size_t size, const char *const *
     return report;
 }
 
-/* Checks the lines of a report in order: each must begin with the first and contain the second text. */
+/* Checks the lines of a report in order: each must begin with the first and contain the second
+ * text. */
 typedef struct expected { const char *begin, *contains; } expected;
 
-static void check_report(const char *text, const char *const *overrides, const expected *lines, int count)
+static void check_report(const char *text, const char *const *overrides, const expected *lines,
+                         int count)
 {
     tobi_report *report = fail_text(text, strlen(text), overrides);
     for (int i = 0; i < tobi_report_count(report); i++) {
         const char *line = tobi_report_line(report, i);
         if (i < count && strncmp(line, lines[i].begin, strlen(lines[i].begin)) == 0 &&
             strstr(line, lines[i].contains)) continue;
-        print_error("line %d is\n  %s\nexpected\n  %s ... %s\n", i, line, i < count ? lines[i].begin : "(nothing)",
-                    i < count ? lines[i].contains : "");
+        print_error("line %d is\n  %s\nexpected\n  %s ... %s\n", i, line,
+                    i < count ? lines[i].begin : "(nothing)", i < count ? lines[i].contains : "");
         fail();
     }
     assert_int_equal(tobi_report_count(report), count);
@@ -73,8 +76,10 @@ static void unknown_keys(void **state)
     CHECK(make("\"spacng\": 0.1, \"spacing\": 0.1, \"colour_of_sky\": 1,", box, ""),
           { "s.json:2:1: spacng: ", "unknown key; did you mean \"spacing\"?" },
           { "s.json:2:32: colour_of_sky: ", "allowed here: method, dimension, domain, gravity" });
-    CHECK(make(spacing, "\"Viscosity \": 1, \"viscocity\": 2, \"fill\": [ { \"box\": { \"min\": [0,0,0],\n"
-               "  \"max\": [1,1,0.5], \"centre\": 1 }, \"velcoity\": [0,0,0] } ]", ""),
+    CHECK(make(spacing,
+               "\"Viscosity \": 1, \"viscocity\": 2, \"fill\": [ { \"box\": { \"min\": [0,0,0],\n"
+               "  \"max\": [1,1,0.5], \"centre\": 1 }, \"velcoity\": [0,0,0] } ]",
+               ""),
           { "s.json:4:1: fluids[0].Viscosity : ", "did you mean \"viscosity\"" },
           { "s.json:4:18: fluids[0].viscocity: ", "did you mean \"viscosity\"" },
           { "s.json:5:21: fluids[0].fill[0].box.centre: ", "allowed here: min, max" },
@@ -87,16 +92,20 @@ static void unknown_keys(void **state)
 static void wrong_types(void **state)
 {
     (void)state;
-    CHECK(make("\"spacing\": \"0.1\",", box, ",\n\"gravity\": 9.81, \"threads\": 1.5, \"time_step\": \"adaptiv\",\n"
-               "\"dfsph\": [], \"output\": { \"surfaces\": 1, \"fields\": { }, \"compression\": 3 }"),
-          { "s.json:2:12: spacing: ", "is the text \"0.1\", must be a number (greater than 0 m)" },
-          { "s.json:7:12: gravity: ", "is a number, must be a list of 3 numbers" },
-          { "s.json:7:29: threads: ", "must be a whole number (0 to 4096, or \"all\")" },
-          { "s.json:7:47: time_step: ", "is the text \"adaptiv\", must be a number (at least 0 s, or \"adaptive\")" },
-          { "s.json:8:10: dfsph: ", "is a list, must be an object" },
-          { "s.json:8:38: output.surfaces: ", "is a number, must be true or false" },
-          { "s.json:8:51: output.fields: ", "is an object, must be a list of names" },
-          { "s.json:8:71: output.compression: ", "is a number, allowed is none, zlib, lz4 or ascii" });
+    CHECK(
+        make("\"spacing\": \"0.1\",", box,
+             ",\n\"gravity\": 9.81, \"threads\": 1.5, \"time_step\": \"adaptiv\",\n"
+             "\"dfsph\": [], \"output\": { \"surfaces\": 1, \"fields\": { }, \"compression\": 3 }"),
+        { "s.json:2:12: spacing: ", "is the text \"0.1\", must be a number (greater than 0 m)" },
+        { "s.json:7:12: gravity: ", "is a number, must be a list of 3 numbers" },
+        { "s.json:7:29: threads: ", "must be a whole number (0 to 4096, or \"all\")" },
+        { "s.json:7:47: time_step: ",
+          "is the text \"adaptiv\", must be a number (at least 0 s, or \"adaptive\")" },
+        { "s.json:8:10: dfsph: ", "is a list, must be an object" },
+        { "s.json:8:38: output.surfaces: ", "is a number, must be true or false" },
+        { "s.json:8:51: output.fields: ", "is an object, must be a list of names" },
+        { "s.json:8:71: output.compression: ",
+          "is a number, allowed is none, zlib, lz4 or ascii" });
     CHECK(make("\"spacing\": 0.1, \"gravity\": [0, 0],", "\"fill\": { }", ", \"bodies\": 3"),
           { "s.json:2:28: gravity: ", "has 2 entries, must be a list of 3 numbers" },
           { "s.json:4:9: fluids[0].fill: ", "is an object, must be a list" },
@@ -110,18 +119,22 @@ static void wrong_types(void **state)
 static void values_out_of_range(void **state)
 {
     (void)state;
-    CHECK(make("\"spacing\": -0.1,", "\"density\": 0, \"viscosity\": -1e-3,\n"
-               "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.5] } } ]",
-               ", \"dfsph\": { \"support\": 9, \"kernel\": \"cubic\", \"density_iterations_min\": 5,\n"
-               "\"density_iterations_max\": 4 }, \"dimension\": 4, \"cfl\": 1e300"),
-          { "s.json:2:12: spacing: ", "is -0.1, allowed is greater than 0 m" },
-          { "s.json:4:12: fluids[0].density: ", "is 0, allowed is greater than 0 kg/m3" },
-          { "s.json:4:28: fluids[0].viscosity: ", "is -0.001, allowed is at least 0 Pa s" },
-          { "s.json:7:25: dfsph.support: ", "is 9, allowed is 2 to 4 spacings" },
-          { "s.json:7:38: dfsph.kernel: ", "is \"cubic\", allowed is wendland-c2 or cubic-spline" },
-          { "s.json:7:73: dfsph.density_iterations_min: ", "must not be above density_iterations_max, 4" },
-          { "s.json:8:45: dimension: ", "is 4, allowed is 2 to 3" },
-          { "s.json:8:55: cfl: ", "is 1e+300, allowed is greater than 0, up to 1" });
+    CHECK(
+        make(
+            "\"spacing\": -0.1,",
+            "\"density\": 0, \"viscosity\": -1e-3,\n"
+            "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.5] } } ]",
+            ", \"dfsph\": { \"support\": 9, \"kernel\": \"cubic\", \"density_iterations_min\": 5,\n"
+            "\"density_iterations_max\": 4 }, \"dimension\": 4, \"cfl\": 1e300"),
+        { "s.json:2:12: spacing: ", "is -0.1, allowed is greater than 0 m" },
+        { "s.json:4:12: fluids[0].density: ", "is 0, allowed is greater than 0 kg/m3" },
+        { "s.json:4:28: fluids[0].viscosity: ", "is -0.001, allowed is at least 0 Pa s" },
+        { "s.json:7:25: dfsph.support: ", "is 9, allowed is 2 to 4 spacings" },
+        { "s.json:7:38: dfsph.kernel: ", "is \"cubic\", allowed is wendland-c2 or cubic-spline" },
+        { "s.json:7:73: dfsph.density_iterations_min: ",
+          "must not be above density_iterations_max, 4" },
+        { "s.json:8:45: dimension: ", "is 4, allowed is 2 to 3" },
+        { "s.json:8:55: cfl: ", "is 1e+300, allowed is greater than 0, up to 1" });
 }
 
 static void missing_keys(void **state)
@@ -148,22 +161,28 @@ static void missing_keys(void **state)
 static void duplicates(void **state)
 {
     (void)state;
-    CHECK(make("\"spacing\": 0.1,\n\"spac\\u0069ng\": 0.1,", box, ", \"output\": { \"frames\": true,\n\"frames\": true }"),
+    CHECK(make("\"spacing\": 0.1,\n\"spac\\u0069ng\": 0.1,", box,
+               ", \"output\": { \"frames\": true,\n\"frames\": true }"),
           { "s.json:3:1: spacing: ", "duplicate key, already given in line 2" },
           { "s.json:8:1: output.frames: ", "duplicate key, already given in line 7" });
-    CHECK("{ \"domain\": { \"min\": [0,0,0], \"max\": [1,1,1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
-          "\"fluids\": [ { \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0], \"max\": [1,1,0.5] } } ] },\n"
-          "{ \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0.4], \"max\": [1,1,1] } } ] } ] }",
-          { "s.json:3:11: fluids[1].name: ", "\"a\" is already the name of fluids[0]" },
-          { "s.json:3:26: fluids[1].fill[0]: ", "overlaps the box fluids[0].fill[0]" });
+    CHECK(
+        "{ \"domain\": { \"min\": [0,0,0], \"max\": [1,1,1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
+        "\"fluids\": [ { \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0], \"max\": "
+        "[1,1,0.5] } } ] },\n"
+        "{ \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0.4], \"max\": [1,1,1] } } ] } "
+        "] }",
+        { "s.json:3:11: fluids[1].name: ", "\"a\" is already the name of fluids[0]" },
+        { "s.json:3:26: fluids[1].fill[0]: ", "overlaps the box fluids[0].fill[0]" });
 }
 
 static void domain_and_regions(void **state)
 {
     (void)state;
-    CHECK("{ \"domain\": { \"min\": [0,1,0], \"max\": [1,\n1,-1],\n \"walls\": { \"x\": [\"periodic\", \"slip\"],\n"
+    CHECK("{ \"domain\": { \"min\": [0,1,0], \"max\": [1,\n1,-1],\n \"walls\": { \"x\": "
+          "[\"periodic\", \"slip\"],\n"
           "\"y\": [\"slip\"], \"z\": \"periodc\" } }, \"spacing\": 0.1, \"end_time\": 1,\n"
-          "\"fluids\": [ { \"name\": \"a\", \"fill\": [ { \"mesh\": \"none.stl\", \"box\": { } }, { } ] } ] }",
+          "\"fluids\": [ { \"name\": \"a\", \"fill\": [ { \"mesh\": \"none.stl\", \"box\": { } }, "
+          "{ } ] } ] }",
           { "s.json:2:1: domain.max[1]: ", "is 1 in y, must be greater than domain.min there, 1" },
           { "s.json:2:3: domain.max[2]: ", "is -1 in z" },
           { "s.json:3:18: domain.walls.x: ", "is periodic on one side only" },
@@ -171,12 +190,15 @@ static void domain_and_regions(void **state)
           { "s.json:4:21: domain.walls.z: ", "did you mean \"periodic\"?" },
           { "s.json:5:48: fluids[0].fill[0].mesh: ", "cannot find" },
           { "s.json:5:74: fluids[0].fill[1]: ", "must have either a box or a mesh, it has none" });
-    CHECK(make(spacing, "\"fill\": [ { \"box\": { \"min\": [0, 0.5, -0.1], \"max\": [1, 0.5, 0.5] } },\n"
+    CHECK(make(spacing,
+               "\"fill\": [ { \"box\": { \"min\": [0, 0.5, -0.1], \"max\": [1, 0.5, 0.5] } },\n"
                "{ \"box\": { \"min\": [0, 0, 0] } },\n"
                "{ \"box\": { \"min\": [0, 0, 0.9], \"max\": [1, 1, 1] }, \"mesh\": \"a.obj\" },\n"
-               "{ \"box\": { \"min\": [0, 0, 0.6], \"max\": [1, 1, 0.7] }, \"scale\": 2 } ]", ""),
+               "{ \"box\": { \"min\": [0, 0, 0.6], \"max\": [1, 1, 0.7] }, \"scale\": 2 } ]",
+               ""),
           { "s.json:4:20: fluids[0].fill[0].box: ", "must be greater" },
-          { "s.json:4:20: fluids[0].fill[0].box: ", "reaches from -0.1 to 0.5 m in z, the domain only from 0 to 1 m" },
+          { "s.json:4:20: fluids[0].fill[0].box: ",
+            "reaches from -0.1 to 0.5 m in z, the domain only from 0 to 1 m" },
           { "s.json:5:10: fluids[0].fill[1].box.max: ", "is missing" },
           { "s.json:6:1: fluids[0].fill[2]: ", "either a box or a mesh, it has both" },
           { "s.json:7:1: fluids[0].fill[3]: ", "scale and translation belong to a mesh" });
@@ -189,11 +211,16 @@ static void domain_and_regions(void **state)
 static void bodies_and_motions(void **state)
 {
     (void)state;
-    CHECK(make(spacing, box, ", \"method\": \"dfsp\", \"bodies\": [\n"
-               "{ \"name\": \"../x\", \"mesh\": \"no.obj\", \"scale\": [1, 0, 1], \"rotation\": { \"angel\": 3 } },\n"
-               "{ \"name\": \"water\", \"mesh\": \"\", \"motion\": { \"script\": \"no.lua\", \"params\": 3 } },\n"
-               "{ \"name\": \"b\", \"mesh\": \"/\", \"motion\": { \"rotation\": { \"centre\": [0, 0, 0] } } },\n"
-               "{ \"name\": \"c\", \"mesh\": \"/\", \"motion\": { \"script\": \"no.lua\", \"speed\": 3 } },\n"
+    CHECK(make(spacing, box,
+               ", \"method\": \"dfsp\", \"bodies\": [\n"
+               "{ \"name\": \"../x\", \"mesh\": \"no.obj\", \"scale\": [1, 0, 1], \"rotation\": { "
+               "\"angel\": 3 } },\n"
+               "{ \"name\": \"water\", \"mesh\": \"\", \"motion\": { \"script\": \"no.lua\", "
+               "\"params\": 3 } },\n"
+               "{ \"name\": \"b\", \"mesh\": \"/\", \"motion\": { \"rotation\": { \"centre\": [0, "
+               "0, 0] } } },\n"
+               "{ \"name\": \"c\", \"mesh\": \"/\", \"motion\": { \"script\": \"no.lua\", "
+               "\"speed\": 3 } },\n"
                "{ \"name\": \"d\", \"mesh\": \"/\", \"motion\": { \"script\": \"no.lua\" } } ],\n"
                "\"output\": { \"fields\": [\"presure\", 3] }"),
           { "s.json:6:13: method: ", "there is no method \"dfsp\"; did you mean \"dfsph\"?" },
@@ -213,16 +240,26 @@ static void bodies_and_motions(void **state)
           { "s.json:10:61: bodies[3].motion.speed: ", "allowed here: script, params" },
           { "s.json:11:24: bodies[4].mesh: ", "is not a file" },
           { "s.json:11:51: bodies[4].motion.script: ", "no.lua" },
-          { "s.json:12:23: output.fields: ", "there is no field \"presure\"; did you mean \"pressure\"?" },
+          { "s.json:12:23: output.fields: ",
+            "there is no field \"presure\"; did you mean \"pressure\"?" },
           { "s.json:12:35: output.fields[1]: ", "is a number, must be a name" });
 }
 
 static void overrides_name_themselves(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=-1", "nonsense", "fluids[3].density=1", "fluids.oil.density=1",
-                                "spacing.deep=1", "dfsph.suport=3", "fluids.water.viscosity=thick",
-                                "[0]=1", "a..b=1", "=1", "fluids[=1", NULL };
+    const char *overrides[] = { "spacing=-1",
+                                "nonsense",
+                                "fluids[3].density=1",
+                                "fluids.oil.density=1",
+                                "spacing.deep=1",
+                                "dfsph.suport=3",
+                                "fluids.water.viscosity=thick",
+                                "[0]=1",
+                                "a..b=1",
+                                "=1",
+                                "fluids[=1",
+                                NULL };
     const expected lines[] = {
         { "--set nonsense: ", "must be path=value" },
         { "--set fluids[3].density=1: ", "there is no entry [3], the list has 1" },
@@ -274,7 +311,8 @@ static void truncated_anywhere(void **state)
 {
     (void)state;
     char text[4096];
-    snprintf(text, sizeof text, "%s", make(spacing, box, ", \"output\": { \"fields\": [\"vel\\u006fcity\"] } # end"));
+    snprintf(text, sizeof text, "%s",
+             make(spacing, box, ", \"output\": { \"fields\": [\"vel\\u006fcity\"] } # end"));
     for (size_t n = 0; n + 8 < strlen(text); n++) tobi_report_free(fail_text(text, n, NULL));
 }
 
@@ -285,7 +323,8 @@ static void damaged_anywhere(void **state)
     static const char bytes[] = "\"{}[]:,#/\\-1e\0\x80\xFF";
     char text[4096];
     int good = 0, bad = 0;
-    snprintf(text, sizeof text, "%s", make(spacing, box, ", \"output\": { \"fields\": [\"vel\\u006fcity\"] }"));
+    snprintf(text, sizeof text, "%s",
+             make(spacing, box, ", \"output\": { \"fields\": [\"vel\\u006fcity\"] }"));
     size_t size = strlen(text);
     for (size_t i = 0; i < size; i++) {
         char kept = text[i];
@@ -293,8 +332,10 @@ static void damaged_anywhere(void **state)
             tobi_scene *scene;
             tobi_report *report;
             text[i] = bytes[k];
-            tobi_status status = tobi_scene_parse("s.json", text, size, NULL, &scene, &report, NULL);
-            assert_true((status == TOBI_OK) == (scene != NULL) && (status == TOBI_OK) == (report == NULL));
+            tobi_status status =
+                tobi_scene_parse("s.json", text, size, NULL, &scene, &report, NULL);
+            assert_true((status == TOBI_OK) == (scene != NULL) &&
+                        (status == TOBI_OK) == (report == NULL));
             assert_true(status == TOBI_OK || status == TOBI_INVALID);
             good += status == TOBI_OK;
             bad += status != TOBI_OK;
@@ -351,7 +392,8 @@ static void files_that_are_none(void **state)
     tobi_scene *scene;
     tobi_report *report;
     tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_load("no/such/scene.json", NULL, &scene, &report, &err), TOBI_NOT_FOUND);
+    assert_int_equal(tobi_scene_load("no/such/scene.json", NULL, &scene, &report, &err),
+                     TOBI_NOT_FOUND);
     assert_non_null(strstr(err.text, "no/such/scene.json"));
     assert_null(scene);
     assert_null(report);
