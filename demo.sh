@@ -17,7 +17,7 @@ mkdir -p out
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 program=build/release/tobiuo
 code=0
-"$program" run scenes/flying_fish --spacing 0.008 --set output.frames=true --out "$out" "$@" || code=$?
+"$program" run scenes/flying_fish --spacing 0.008 --frames --out "$out" "$@" || code=$?
 if [ $code -ne 0 ]; then
     echo "demo: the run ended early (exit code $code)." >&2
     [ -d "$out" ] && echo "demo: what is finished is in $out; go on with: $program resume $out" >&2
@@ -26,14 +26,16 @@ fi
 
 echo
 echo "Results: $out"
-first_line="Look at them in ParaView (File > Open):"
+echo "In ParaView open (File > Open; then Apply and play, times are simulated seconds):"
+echo "    $out/fluid.pvd    the water; Representation: Point Gaussian, colour by velocity or pressure"
 for series in "$out"/*.pvd; do
-    [ -e "$series" ] || continue
-    echo "${first_line}"
-    first_line="                     and"
-    echo "    paraview $series"
+    case $(basename "$series" .pvd) in
+    fluid) ;;
+    bodies) echo "    $series   the body's own particles" ;;
+    *) echo "    $series     the body's moving surface" ;;
+    esac
 done
-echo "Tables:   $out/history.csv (time, iterations, errors, energies), $out/bodies.csv (forces on the fish)"
+echo "Tables:   $out/history.csv (iterations, errors, wall force, energies), $out/bodies.csv (forces)"
 
 frames=$(find "$out" -name '*.png' | sort | head -n 1)
 if [ -n "$frames" ]; then
