@@ -2,7 +2,7 @@
 #pragma once
 #include "geom/bvh.h"
 
-enum { BVH_WIDTH = 4, BVH_LEAF = 4, BVH_STACK = 256, BVH_DEPTH = 40 };
+enum { BVH_WIDTH = 4, BVH_LEAF = 2, BVH_STACK = 256, BVH_DEPTH = 40 };
 
 /* Four children, their boxes as centre and half width in float relative to the tree's origin,
    widened so that rounding never loses a triangle. count 0: child is a node; else: child is the

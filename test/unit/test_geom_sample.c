@@ -167,7 +167,8 @@ static void pieces_cover_the_surface(void **state)
         tobi_surface s;
         OK(tobi_surface_build(&mesh, spacings[i], 3, &s, err));
         double (*x)[3] = malloc((size_t)s.count*sizeof *x), (*n)[3] = malloc((size_t)s.count*sizeof *n);
-        double *area = malloc((size_t)s.count*sizeof *area), sum = 0, largest = 0, closed[3] = {0}, volume = 0;
+        double *area = malloc((size_t)s.count*sizeof *area);
+        double sum = 0, largest = 0, closed[3] = {0}, volume = 0;
         const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
         tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, x, n, area);
         for (int64_t k = 0; k < s.count; k++) {
