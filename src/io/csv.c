@@ -97,7 +97,8 @@ tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err)
     csv->filled = csv->no_memory = 0;
     if (no_memory || filled != csv->columns) csv->length = 0;
     if (filled != csv->columns)
-        return tobi_fail(err, TOBI_INVALID, "%s: a row of %d values in a table of %d columns", csv->path, filled, csv->columns);
+        return tobi_fail(err, TOBI_INVALID, "%s: a row of %d values in a table of %d columns", csv->path,
+                         filled, csv->columns);
     append(csv, "\n", 1);
     if (no_memory || csv->no_memory) {
         csv->length = 0;
@@ -111,7 +112,8 @@ static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
     for (int i = 0; i < csv->columns; i++) {
         const char *unit = columns[i].unit;
         char text[256];
-        if (unit && unit[0] && strcmp(unit, "1") != 0) snprintf(text, sizeof text, "%s [%s]", columns[i].name, unit);
+        if (unit && unit[0] && strcmp(unit, "1") != 0)
+            snprintf(text, sizeof text, "%s [%s]", columns[i].name, unit);
         else snprintf(text, sizeof text, "%s", columns[i].name);
         tobi_csv_add_text(csv, text);
     }
@@ -172,7 +174,8 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
     return status;
 }
 
-static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode, tobi_error *err)
+static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode,
+                               tobi_error *err)
 {
     int empty = 1;
     csv->fd = open(csv->path, O_RDWR | O_CREAT | O_CLOEXEC | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
@@ -192,7 +195,8 @@ tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, cons
 {
     *csv = NULL;
     if (column_count < 1 || digits < 1 || digits > 17)
-        return tobi_fail(err, TOBI_INVALID, "%s: a table of %d columns with %d digits", path, column_count, digits);
+        return tobi_fail(err, TOBI_INVALID, "%s: a table of %d columns with %d digits", path, column_count,
+                         digits);
     tobi_csv *c = calloc(1, sizeof *c);
     if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
     c->fd = -1;
@@ -229,7 +233,8 @@ tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
 {
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
+                         strerror(errno));
     char *text;
     size_t bytes, n;
     tobi_status status = read_all(fd, path, &text, &bytes, err);

@@ -17,28 +17,33 @@ static tobi_status check_mesh(const char *path, const tobi_frame_mesh *m, int nu
     for (int64_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++)
             if (m->triangles[t][k] < 0 || m->triangles[t][k] >= m->vertex_count)
-                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " of body %d uses vertex %d of %" PRId64, path,
-                                 t, number, (int)m->triangles[t][k], m->vertex_count);
+                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " of body %d uses vertex %d of %"
+                                 PRId64, path, t, number, (int)m->triangles[t][k], m->vertex_count);
     return TOBI_OK;
 }
 
 static tobi_status check_frame(const char *path, const tobi_frame *f, tobi_error *err)
 {
     if (f->width < 16 || f->height < 16 || f->width > 8192 || f->height > 8192)
-        return tobi_fail(err, TOBI_INVALID, "%s: a picture of %d x %d pixels, allowed are 16 to 8192", path, f->width, f->height);
+        return tobi_fail(err, TOBI_INVALID, "%s: a picture of %d x %d pixels, allowed are 16 to 8192", path,
+                         f->width, f->height);
     if (f->samples < 1 || f->samples > 4)
-        return tobi_fail(err, TOBI_INVALID, "%s: %d samples per pixel and axis, allowed are 1 to 4", path, f->samples);
+        return tobi_fail(err, TOBI_INVALID, "%s: %d samples per pixel and axis, allowed are 1 to 4", path,
+                         f->samples);
     if (f->dimension != 2 && f->dimension != 3)
         return tobi_fail(err, TOBI_INVALID, "%s: dimension %d, allowed are 2 and 3", path, f->dimension);
     for (int k = 0; k < f->dimension; k++)
         if (!isfinite(f->box_min[k]) || !isfinite(f->box_max[k]) || !(f->box_min[k] < f->box_max[k]))
             return tobi_fail(err, TOBI_INVALID, "%s: the box is empty along %c", path, "xyz"[k]);
     if (f->particle_count < 0 || f->particle_count > INT32_MAX || (f->particle_count > 0 && !f->positions))
-        return tobi_fail(err, TOBI_INVALID, "%s: %" PRId64 " particles cannot be drawn", path, f->particle_count);
+        return tobi_fail(err, TOBI_INVALID, "%s: %" PRId64 " particles cannot be drawn", path,
+                         f->particle_count);
     if (f->particle_count > 0 && !(f->radius > 0 && isfinite(f->radius)))
-        return tobi_fail(err, TOBI_INVALID, "%s: a particle radius of %g m, must be greater than 0", path, f->radius);
+        return tobi_fail(err, TOBI_INVALID, "%s: a particle radius of %g m, must be greater than 0", path,
+                         f->radius);
     if (f->dimension == 3 && !(f->field_of_view >= 1 && f->field_of_view <= 150))
-        return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path, f->field_of_view);
+        return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path,
+                         f->field_of_view);
     for (int i = 0; i < f->mesh_count; i++) TOBI_TRY(check_mesh(path, &f->meshes[i], i, err));
     return TOBI_OK;
 }
@@ -90,8 +95,8 @@ static void box_corner(const tobi_frame *f, int i, double out[3])
     for (int k = 0; k < 3; k++) out[k] = i >> k & 1 ? f->box_max[k] : f->box_min[k];
 }
 
-/* Moves the eye until the eight corners fill the picture with a margin: the distance from the tightest corner,
-   the sideways place from the extent of the projections, a few times in turn. */
+/* Moves the eye until the eight corners fill the picture with a margin: the distance from the tightest
+   corner, the sideways place from the extent of the projections, a few times in turn. */
 static void fit_box(camera *c, const tobi_frame *f, double half_width, double half_height)
 {
     const double margin = 0.90;
@@ -134,7 +139,8 @@ static tobi_status aim_camera(canvas *v, const char *path, const tobi_frame *f, 
             c->eye[k] = f->eye[k];
             c->forward[k] = f->target[k] - f->eye[k];
         }
-        if (!normalize(c->forward)) return tobi_fail(err, TOBI_INVALID, "%s: the camera's eye and target are the same point", path);
+        if (!normalize(c->forward))
+            return tobi_fail(err, TOBI_INVALID, "%s: the camera's eye and target are the same point", path);
         orient(c, up);
     } else {
         choose_direction(up, c->forward);
@@ -195,7 +201,8 @@ static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
     }
     if (!c->color || !c->depth || (water && (!c->surface || !c->thickness || !c->value || !c->scratch))) {
         free_canvas(c);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d samples", c->width, c->height);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d samples", c->width,
+                         c->height);
     }
     vec top = linear_color(f->background_top), bottom = linear_color(f->background_bottom);
     #pragma omp parallel for
@@ -244,7 +251,8 @@ static void find_range(const tobi_frame *f, double *low, double *high)
     if (!(*low < *high)) *high = *low + 1;
 }
 
-static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double low, double high, tobi_error *err)
+static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double low, double high,
+                        tobi_error *err)
 {
     if (f->dimension == 2) {
         aim_front(c, f);

@@ -1,7 +1,7 @@
 /* A PNG picture of a moment, drawn in software: particles as a water surface, bodies, the domain's box.
 
-   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen space, lit, and
-   blended over the bodies by its thickness (van der Laan, Green & Sainz 2009; smoothing: the narrow-range
+   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen space, lit,
+   and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009; smoothing: the narrow-range
    filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by value.
    The same input gives the same picture for any number of threads. Needs about 40 bytes per sample of the
    picture (width x height x samples^2) and 30 per particle while it runs. */
@@ -45,5 +45,6 @@ typedef struct tobi_frame {
 
 tobi_frame tobi_default_frame(void);
 
-/* TOBI_INVALID for sizes, ranges or indices out of bounds, TOBI_NO_MEMORY, TOBI_IO. The file appears whole or not at all. */
+/* TOBI_INVALID for sizes, ranges or indices out of bounds, TOBI_NO_MEMORY, TOBI_IO. The file appears whole
+   or not at all. */
 tobi_status tobi_frame_write(const char *path, const tobi_frame *frame, tobi_error *err);

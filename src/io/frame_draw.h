@@ -105,7 +105,8 @@ typedef struct tiles {
 } tiles;
 /* Samples that item i touches: {x0, y0, x1, y1}, both ends included; false = none. */
 typedef bool (*tile_rect)(const void *items, int64_t i, int rect[4]);
-tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect, tobi_error *err);
+tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
+                        tobi_error *err);
 void tiles_free(tiles *t);
 
 /* frame_solid.c */
@@ -119,8 +120,10 @@ tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err);
 float lit_at(const canvas *c, vec point);
 
 /* frame_water.c */
-tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, double value_max, tobi_error *err);
-tobi_status draw_discs(canvas *c, const tobi_frame *frame, double value_min, double value_max, tobi_error *err);
+tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+                       tobi_error *err);
+tobi_status draw_discs(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+                       tobi_error *err);
 vec  map_color(float value);
 
 /* frame_text.c: pixels, after the samples have been averaged. */

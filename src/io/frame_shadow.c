@@ -13,10 +13,11 @@ static vec turn(const shadow *s, vec p)
 /* Camera of the light over the sphere around the box: orthographic, in world space. */
 static camera light_camera(const camera *view, const shadow *s, double radius)
 {
-    camera c = { .orthographic = true, .focal = (float)(0.5*SIDE/radius), .center_x = 0.5f*SIDE, .center_y = 0.5f*SIDE,
-                 .near = -INFINITY };
+    camera c = { .orthographic = true, .focal = (float)(0.5*SIDE/radius), .center_x = 0.5f*SIDE,
+                 .center_y = 0.5f*SIDE, .near = -INFINITY };
     for (int k = 0; k < 3; k++) {
-        c.eye[k] = view->eye[k] + s->center.x*view->right[k] + s->center.y*view->up[k] + s->center.z*view->forward[k];
+        c.eye[k] = view->eye[k] + s->center.x*view->right[k] + s->center.y*view->up[k]
+            + s->center.z*view->forward[k];
         c.right[k] = s->right.x*view->right[k] + s->right.y*view->up[k] + s->right.z*view->forward[k];
         c.up[k] = s->up.x*view->right[k] + s->up.y*view->up[k] + s->up.z*view->forward[k];
         c.forward[k] = s->forward.x*view->right[k] + s->forward.y*view->up[k] + s->forward.z*view->forward[k];
@@ -35,7 +36,8 @@ tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
     shadow *s = &c->shadow;
     s->center = view_point(&c->camera, middle);
     s->forward = vec_scale(-1, c->light);
-    s->right = vec_unit(vec_cross(s->forward, fabsf(s->forward.x) < 0.8f ? (vec){ 1, 0, 0 } : (vec){ 0, 1, 0 }));
+    vec aside = fabsf(s->forward.x) < 0.8f ? (vec){ 1, 0, 0 } : (vec){ 0, 1, 0 };
+    s->right = vec_unit(vec_cross(s->forward, aside));
     s->up = vec_cross(s->right, s->forward);
     canvas light = { .width = SIDE, .height = SIDE, .camera = light_camera(&c->camera, s, sqrt(size)) };
     light.depth = malloc((size_t)SIDE*SIDE*sizeof(float));
@@ -51,7 +53,9 @@ float lit_at(const canvas *c, vec p)
 {
     const shadow *s = &c->shadow;
     if (!s->depth) return 1;
-    static const float ring[4][2] = { { 0.92f, 0.38f }, { -0.38f, 0.92f }, { -0.92f, -0.38f }, { 0.38f, -0.92f } };
+    static const float ring[4][2] = {
+        { 0.92f, 0.38f }, { -0.38f, 0.92f }, { -0.92f, -0.38f }, { 0.38f, -0.92f }
+    };
     vec q = turn(s, p);
     float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
     int lit = 0;

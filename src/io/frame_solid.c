@@ -24,7 +24,8 @@ vec sky_color(const canvas *c, vec direction)
 {
     float t = clampf(0.5f + 0.5f*vec_dot(direction, c->sky_up), 0, 1);
     vec ground = { 0.30f, 0.29f, 0.27f }, horizon = { 0.88f, 0.92f, 0.95f }, zenith = { 0.42f, 0.58f, 0.78f };
-    return t < 0.5f ? vec_mix(ground, horizon, clampf(t*2.2f - 0.1f, 0, 1)) : vec_mix(horizon, zenith, 2*t - 1);
+    if (t < 0.5f) return vec_mix(ground, horizon, clampf(t*2.2f - 0.1f, 0, 1));
+    return vec_mix(horizon, zenith, 2*t - 1);
 }
 
 static vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
@@ -34,7 +35,8 @@ static vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
     float lit = lit_at(c, vec_add(p, vec_scale(2/c->shadow.focal, n)));
     float lambert = lit*fmaxf(vec_dot(n, c->light), 0), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec half = vec_unit(vec_add(c->light, eye));
-    float shine = lit*0.22f*powf(fmaxf(vec_dot(n, half), 0), 48), rim = powf(1 - fmaxf(vec_dot(n, eye), 0), 4);
+    float shine = lit*0.22f*powf(fmaxf(vec_dot(n, half), 0), 48);
+    float rim = powf(1 - fmaxf(vec_dot(n, eye), 0), 4);
     vec ambient = vec_mix((vec){ 0.20f, 0.19f, 0.19f }, (vec){ 0.42f, 0.46f, 0.52f }, fill);
     vec light = vec_add(ambient, vec_scale(0.85f*lambert, (vec){ 1, 0.97f, 0.92f }));
     vec color = vec_add(vec_mul(albedo, light), (vec){ shine, shine, shine });
@@ -93,7 +95,8 @@ static vec *make_normals(const tobi_frame_mesh *m, const vec *p)
         const int32_t *v = m->triangles[t];
         vec face = vec_unit(vec_cross(vec_sub(p[v[1]], p[v[0]]), vec_sub(p[v[2]], p[v[0]])));
         for (int k = 0; k < 3; k++) {
-            vec a = vec_unit(vec_sub(p[v[(k + 1)%3]], p[v[k]])), b = vec_unit(vec_sub(p[v[(k + 2)%3]], p[v[k]]));
+            vec a = vec_unit(vec_sub(p[v[(k + 1)%3]], p[v[k]]));
+            vec b = vec_unit(vec_sub(p[v[(k + 2)%3]], p[v[k]]));
             float angle = acosf(clampf(vec_dot(a, b), -1, 1));
             normal[v[k]] = vec_add(normal[v[k]], vec_scale(angle, face));
         }
@@ -142,7 +145,8 @@ static bool add_mesh(const canvas *c, triangle_list *list, const tobi_frame_mesh
         const int32_t *v = m->triangles[t];
         vec face = vec_unit(vec_cross(vec_sub(p[v[1]], p[v[0]]), vec_sub(p[v[2]], p[v[0]])));
         corner a[3];
-        for (int k = 0; k < 3; k++) a[k] = (corner){ p[v[k]], vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face };
+        for (int k = 0; k < 3; k++)
+            a[k] = (corner){ p[v[k]], vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face };
         clip_triangle(c, list, a, color);
     }
     free(p);
@@ -166,7 +170,8 @@ tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err)
             int x = k%t.across*TILE, y = k/t.across*TILE;
             int rect[4] = { x, y, x + TILE <= c->width ? x + TILE - 1 : c->width - 1,
                             y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
-            for (int64_t i = t.first[k]; i < t.first[k + 1]; i++) fill_triangle(c, &list.item[t.item[i]], rect);
+            for (int64_t i = t.first[k]; i < t.first[k + 1]; i++)
+                fill_triangle(c, &list.item[t.item[i]], rect);
         }
         tiles_free(&t);
     }
@@ -184,7 +189,8 @@ static void blend(canvas *c, int x, int y, float z, vec color, float alpha)
 }
 
 /* A line of a width in samples with soft edges, walked along its longer axis. */
-static void draw_line(canvas *c, const double from[3], const double to[3], float width, vec color, float alpha)
+static void draw_line(canvas *c, const double from[3], const double to[3], float width, vec color,
+                      float alpha)
 {
     vec p = view_point(&c->camera, from), q = view_point(&c->camera, to);
     float near = c->camera.near;
@@ -240,24 +246,11 @@ static vec floor_tint(const canvas *c, float x, float y, const corner *plane)
     return vec_scale(0.45f + 0.55f*lit_at(c, vec_scale(t, ray)), tint);
 }
 
-/* 2-D: the box's area, a little lighter. 3-D: a floor with lines at round coordinates. */
-void draw_floor(canvas *c, const tobi_frame *f)
+/* Fills the quadrangle of the four view points. */
+static void fill_floor(canvas *c, const vec p[4])
 {
-    double level = 0;
-    int axis = f->dimension == 2 ? 2 : find_floor(f, &level), u = (axis + 1)%3, v = (axis + 2)%3;
-    double corner_at[4][3];
-    for (int i = 0; i < 4; i++) {
-        corner_at[i][axis] = level;
-        corner_at[i][u] = i == 1 || i == 2 ? f->box_max[u] : f->box_min[u];
-        corner_at[i][v] = i >= 2 ? f->box_max[v] : f->box_min[v];
-    }
-    vec mark = { 0.40f, 0.44f, 0.48f }, p[4];
     spot s[4];
-    for (int i = 0; i < 4; i++) {
-        p[i] = view_point(&c->camera, corner_at[i]);
-        if (p[i].z < c->camera.near) return;      /* the eye is over the floor: no floor then */
-        s[i] = project(&c->camera, p[i]);
-    }
+    for (int i = 0; i < 4; i++) s[i] = project(&c->camera, p[i]);
     corner plane = { p[0], vec_unit(vec_cross(vec_sub(p[1], p[0]), vec_sub(p[3], p[0]))) };
     #pragma omp parallel for
     for (int y = 0; y < c->height; y++)
@@ -270,19 +263,44 @@ void draw_floor(canvas *c, const tobi_frame *f)
             }
             if (left == 0 || left == 4) blend(c, x, y, -INFINITY, floor_tint(c, px, py, &plane), 0.6f);
         }
-    for (int way = 0; way < 2 && f->dimension == 3; way++) {
-        int along = way ? u : v, step_axis = way ? v : u;
-        double step = grid_step(fmax(f->box_max[u] - f->box_min[u], f->box_max[v] - f->box_min[v]));
-        double start = ceil(f->box_min[step_axis]/step)*step;
-        for (int64_t i = 0; i < 100 && start + (double)i*step < f->box_max[step_axis]; i++) {
+}
+
+/* Lines on the floor at round coordinates: across[0] and across[1] are its axes. */
+static void draw_grid(canvas *c, const tobi_frame *f, int axis, double level, const int across[2])
+{
+    const vec mark = { 0.40f, 0.44f, 0.48f };
+    double size = 0;
+    for (int k = 0; k < 2; k++) size = fmax(size, f->box_max[across[k]] - f->box_min[across[k]]);
+    double step = grid_step(size);
+    for (int way = 0; way < 2; way++) {
+        int fixed = across[way], along = across[1 - way];
+        double start = ceil(f->box_min[fixed]/step)*step;
+        for (int i = 0; i < 100 && start + i*step < f->box_max[fixed]; i++) {
             double a[3], b[3];
             a[axis] = b[axis] = level;
-            a[step_axis] = b[step_axis] = start + (double)i*step;
+            a[fixed] = b[fixed] = start + i*step;
             a[along] = f->box_min[along];
             b[along] = f->box_max[along];
-            draw_line(c, a, b, 1.2f*(float)f->samples, mark, 0.35f);
+            draw_line(c, a, b, 1.2f*(float)c->width/(float)f->width, mark, 0.35f);
         }
     }
+}
+
+/* 2-D: the box's area, a little lighter. 3-D: the box's bottom with a grid. */
+void draw_floor(canvas *c, const tobi_frame *f)
+{
+    double level = 0, at[3];
+    int axis = f->dimension == 2 ? 2 : find_floor(f, &level), across[2] = { (axis + 1)%3, (axis + 2)%3 };
+    vec p[4];
+    for (int i = 0; i < 4; i++) {
+        at[axis] = level;
+        at[across[0]] = i == 1 || i == 2 ? f->box_max[across[0]] : f->box_min[across[0]];
+        at[across[1]] = i >= 2 ? f->box_max[across[1]] : f->box_min[across[1]];
+        p[i] = view_point(&c->camera, at);
+        if (p[i].z < c->camera.near) return;      /* the eye is over the floor: no floor then */
+    }
+    fill_floor(c, p);
+    if (f->dimension == 3) draw_grid(c, f, axis, level, across);
 }
 
 void draw_box(canvas *c, const tobi_frame *f)

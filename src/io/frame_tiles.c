@@ -3,7 +3,8 @@
 #include <string.h>
 
 /* Tiles {x0, y0, x1, y1} of item i; false if it is off the canvas. */
-static bool find_tiles(const tiles *t, const canvas *c, const void *items, int64_t i, tile_rect rect, int out[4])
+static bool find_tiles(const tiles *t, const canvas *c, const void *items, int64_t i, tile_rect rect,
+                       int out[4])
 {
     int r[4];
     if (!rect(items, i, r)) return false;
@@ -16,7 +17,8 @@ static bool find_tiles(const tiles *t, const canvas *c, const void *items, int64
 }
 
 /* A counting sort: sizes, offsets, then the items in their order. */
-tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect, tobi_error *err)
+tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
+                        tobi_error *err)
 {
     *t = (tiles){ .across = (c->width + TILE - 1)/TILE, .down = (c->height + TILE - 1)/TILE };
     size_t count = (size_t)t->across*(size_t)t->down;

@@ -14,8 +14,10 @@ static const float water_radius = 1.7f;    /* in particle radii: neighbours' sph
 /* From deep blue over light blue to white. */
 vec map_color(float value)
 {
-    static const float stop[5][3] = { { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f },
-                                      { 0.62f, 0.85f, 0.96f }, { 0.98f, 0.99f, 1.00f } };
+    static const float stop[5][3] = {
+        { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f }, { 0.62f, 0.85f, 0.96f },
+        { 0.98f, 0.99f, 1.00f }
+    };
     float t = clampf(value, 0, 1)*4;
     int i = t < 3 ? (int)t : 3;
     return vec_mix(linear_color(stop[i]), linear_color(stop[i + 1]), t - (float)i);
@@ -80,10 +82,12 @@ static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, do
     for (int64_t i = 0; i < f->particle_count; i++) {
         vec p = view_point(&c->camera, f->positions[i]);
         splat s = { 0 };
-        if (is_placed(f->positions[i], f->radius) && p.z > c->camera.near + radius && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f) {
+        bool near = is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
+        if (near && p.z > c->camera.near + radius) {
             spot at = project(&c->camera, p);
             float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
-            s = (splat){ at.x, at.y, at.z, radius*scale_at(&c->camera, at.z), value == value ? clampf(value, 0, 1) : 1 };
+            value = value == value ? clampf(value, 0, 1) : 1;
+            s = (splat){ at.x, at.y, at.z, radius*scale_at(&c->camera, at.z), value };
             if (!(fabsf(at.x) < 1e6f && fabsf(at.y) < 1e6f && s.radius < 1e4f)) s.radius = 0;
         }
         splats[i] = s;
@@ -129,7 +133,8 @@ static void splat_depth(const brush *b, const splat *s, const int tile[4])
         size_t row = (size_t)y*(size_t)c->width;
         const float *opaque = c->depth + row;
         float *surface = c->surface + row, *thickness = c->thickness + row;
-        float dy = (float)y + 0.5f - s->y, high = s->radius/scale_at(&c->camera, s->z), weight = 2*high*b->weight, z = s->z, sx = s->x - 0.5f;
+        float dy = (float)y + 0.5f - s->y, sx = s->x - 0.5f, z = s->z;
+        float high = s->radius/scale_at(&c->camera, z), weight = 2*high*b->weight;
         #pragma omp simd
         for (int x = x0; x < x1; x++) {
             float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
@@ -191,15 +196,19 @@ static void paint(const brush *b, const tiles *t, const splat *splats)
             if (b->discs > 0) splat_disc(b, s, rect);
             else splat_depth(b, s, rect);
         }
-        for (int64_t i = t->first[k]; i < t->first[k + 1] && b->discs == 0; i++) splat_value(b, &splats[t->item[i]], rect);
+        for (int64_t i = t->first[k]; i < t->first[k + 1] && b->discs == 0; i++)
+            splat_value(b, &splats[t->item[i]], rect);
     }
 }
 
-static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2], float discs,
+static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2],
+                                   float discs,
                                    tobi_error *err)
 {
     splat *splats = make_splats(c, f, radius, range[0], range[1]);
-    if (!splats) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %lld particles", (long long)f->particle_count);
+    if (!splats)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %lld particles",
+                         (long long)f->particle_count);
     if (discs == 0) shrink_spray(f, splats);
     tiles t;
     tobi_status status = tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
@@ -320,10 +329,12 @@ static void blur_along(const canvas *c, const float *in, float *out, int dx, int
 {
     #pragma omp parallel for schedule(static)
     for (int y = 0; y < c->height; y++) {
-        int low = dy && y < reach ? -y : -reach, high = dy && y + reach >= c->height ? c->height - 1 - y : reach;
+        int low = dy && y < reach ? -y : -reach;
+        int high = dy && y + reach >= c->height ? c->height - 1 - y : reach;
         const float *solid = c->depth + (size_t)y*(size_t)c->width;
         for (int x = 0; x < c->width; x++) {
-            int first = dx && x < reach ? -x : low, last = dx && x + reach >= c->width ? c->width - 1 - x : high;
+            int first = dx && x < reach ? -x : low;
+            int last = dx && x + reach >= c->width ? c->width - 1 - x : high;
             int64_t step = dx + (int64_t)dy*c->width, k = (int64_t)y*c->width + x;
             float sum = 0, weight = 0, here = solid[x];
             if (in[k] <= 0 && !(c->surface[k] < INFINITY)) {
@@ -331,7 +342,8 @@ static void blur_along(const canvas *c, const float *in, float *out, int dx, int
                 continue;
             }
             for (int i = first; i <= last; i++) {
-                float there = c->depth[k + i*step], w = there == here || fabsf(there - here) < same ? 1.0f : 0.0f;
+                float there = c->depth[k + i*step];
+                float w = there == here || fabsf(there - here) < same ? 1.0f : 0.0f;
                 sum += w*in[k + i*step];
                 weight += w;
             }
@@ -347,7 +359,8 @@ static void average_values(canvas *c, filter *f, float *room)
     filter_plane(f, c->value, room, c->width, c->height);
     filter_plane(f, c->scratch, room, c->width, c->height);
     #pragma omp parallel for
-    for (size_t k = 0; k < n; k++) c->value[k] = c->scratch[k] > 1e-6f ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
+    for (size_t k = 0; k < n; k++)
+        c->value[k] = c->scratch[k] > 1e-6f ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
 }
 
 static tobi_status smooth_water(canvas *c, float radius, tobi_error *err)
@@ -392,7 +405,8 @@ static vec slope(const canvas *c, int x, int y, int dx, int dy)
     int64_t step = (int64_t)dy*c->width + dx;
     float z = c->surface[k];
     bool first = dx ? x == 0 : y == 0, last = dx ? x == c->width - 1 : y == c->height - 1;
-    float before = first ? INFINITY : c->surface[(int64_t)k - step], after = last ? INFINITY : c->surface[(int64_t)k + step];
+    float before = first ? INFINITY : c->surface[(int64_t)k - step];
+    float after = last ? INFINITY : c->surface[(int64_t)k + step];
     vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, z);
     if (!(before < INFINITY) && !(after < INFINITY)) return (vec){ 0, 0, 0 };
     if (fabsf(after - z) <= fabsf(before - z))
@@ -408,8 +422,8 @@ static vec surface_normal(const canvas *c, int x, int y, vec eye)
     return vec_dot(n, eye) < 0 ? vec_scale(-1, n) : n;
 }
 
-/* Which sample lies behind the water: the picture shifted by the surface's tilt, the less the thinner the water is,
-   here or there, so that a body near the surface is not seen twice. */
+/* Which sample lies behind the water: the picture shifted by the surface's tilt, the less the thinner the
+   water is, here or there, so that a body near the surface is not seen twice. */
 static size_t look_through(const canvas *c, int x, int y, vec n)
 {
     size_t k = (size_t)y*(size_t)c->width + (size_t)x, s = k;
@@ -430,12 +444,15 @@ static vec shade_water(const canvas *c, const vec *back, int x, int y, float cla
     vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
     vec eye = to_eye(&c->camera, p), n = surface_normal(c, x, y, eye);
     size_t seen = look_through(c, x, y, n);
-    float thickness = fmaxf(c->thickness[seen], 0), facing = clampf(vec_dot(n, eye), 0, 1), value = c->value[k];
+    float thickness = fmaxf(c->thickness[seen], 0), facing = clampf(vec_dot(n, eye), 0, 1);
+    float value = c->value[k];
     float path = thickness/clarity, veil = 0.18f + 0.75f*value*value;      /* foam hides */
     vec pass = { expf(-1.5f*path), expf(-1.0f*path), expf(-0.85f*path) };
     pass = vec_scale(1 - veil, pass);
-    float lit = lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
-    vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }), vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
+    float lit = lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1);
+    float fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
+    vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }),
+                        vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
     vec scatter = vec_mul(map_color(value), light);
     vec color = vec_add(vec_mul(pass, back[seen]), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
     /* Schlick 1994, water. */

@@ -122,7 +122,8 @@ static tobi_store *allocate(const char *path, int writing)
 static tobi_status reserve(tobi_store *store, size_t bytes, tobi_error *err)
 {
     hsize_t size = 0;
-    if (H5Fget_filesize(store->file, &size) < 0) return fail_hdf5(err, TOBI_IO, store, "measure", store->part);
+    if (H5Fget_filesize(store->file, &size) < 0)
+        return fail_hdf5(err, TOBI_IO, store, "measure", store->part);
     int code = posix_fallocate(store->fd, (off_t)size, (off_t)(bytes + bytes/256 + 2*CHUNK_BYTES));
     if (code == 0) return TOBI_OK;
     return tobi_fail(err, TOBI_IO, "cannot write %s: %s", store->path, strerror(code));
@@ -215,7 +216,8 @@ tobi_status tobi_store_commit(tobi_store *store, tobi_error *err)
     quiet q = begin_quiet();
     hsize_t bytes = 0;
     tobi_status status = reserve(store, 0, err);
-    if (status == TOBI_OK && (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(store->file, &bytes) < 0))
+    if (status == TOBI_OK &&
+        (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(store->file, &bytes) < 0))
         status = fail_hdf5(err, TOBI_IO, store, "write", store->part);
     if (H5Fclose(store->file) < 0 && status == TOBI_OK)
         status = fail_hdf5(err, TOBI_IO, store, "close", store->part);
@@ -246,11 +248,13 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
     ssize_t n = pread(fd, &s, sizeof s, 0);
     if (n < 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
     if (n >= (ssize_t)sizeof magic && memcmp(s.magic, magic, sizeof magic) != 0)
-        return tobi_fail(err, TOBI_DAMAGED, "%s is damaged or not a checkpoint: it does not start with '%.14s'", path, magic);
+        return tobi_fail(err, TOBI_DAMAGED,
+                         "%s is damaged or not a checkpoint: it does not start with '%.14s'", path, magic);
     if (n < (ssize_t)sizeof s)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: it ends after %zd bytes", path, n);
     if (s.seal_crc != crc32(crc32(0, NULL, 0), (const Bytef *)&s, offsetof(seal, seal_crc)))
-        return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its first %d bytes do not match their checksum", path, SEAL_BYTES);
+        return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its first %d bytes do not match their checksum",
+                         path, SEAL_BYTES);
     if (s.file_bytes != (uint64_t)info.st_size)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: it has %" PRIu64 " bytes of %" PRIu64, path,
                          (uint64_t)info.st_size, s.file_bytes);
@@ -266,7 +270,8 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     *store = NULL;
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
+                         strerror(errno));
     tobi_status status = check_seal(path, fd, err);
     close(fd);
     TOBI_TRY(status);
@@ -284,7 +289,8 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
 }
 
 /* Chunks of a quarter megabyte with a fletcher32 sum each; an empty array has no chunks. */
-static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n, int components)
+static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+                            int components)
 {
     size_t row = tobi_type_size(type)*(size_t)components;
     hsize_t size[2] = { (hsize_t)n, (hsize_t)components }, chunk[2] = { CHUNK_BYTES/row + 1, size[1] };
@@ -309,8 +315,8 @@ tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type ty
 {
     size_t row = tobi_type_size(type)*(size_t)(components > 0 ? components : 0);
     if (row == 0 || n < 0 || (n > 0 && !data))
-        return tobi_fail(err, TOBI_INVALID, "%s: array '%s' of %" PRId64 " rows x %d, type %d cannot be stored",
-                         store->path, name, n, components, (int)type);
+        return tobi_fail(err, TOBI_INVALID, "%s: array '%s' of %" PRId64 " rows x %d, type %d cannot "
+                         "be stored", store->path, name, n, components, (int)type);
     quiet q = begin_quiet();
     tobi_status status = reserve(store, (size_t)n*row, err);
     if (status == TOBI_OK) {
@@ -324,7 +330,8 @@ tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type ty
     return status;
 }
 
-static tobi_status put_value(tobi_store *store, const char *name, hid_t on_disk, hid_t in_memory, const void *value,
+static tobi_status put_value(tobi_store *store, const char *name, hid_t on_disk, hid_t in_memory,
+                             const void *value,
                              tobi_error *err)
 {
     tobi_status status = reserve(store, H5Tget_size(on_disk), err);
@@ -396,7 +403,8 @@ int tobi_store_has(tobi_store *store, const char *name)
 }
 
 /* Opens an array and reads its rows and components. */
-static tobi_status open_array(tobi_store *store, const char *name, hid_t *set, hsize_t size[2], tobi_error *err)
+static tobi_status open_array(tobi_store *store, const char *name, hid_t *set, hsize_t size[2],
+                              tobi_error *err)
 {
     if (!find_array(store, name))
         return tobi_fail(err, TOBI_DAMAGED, "%s has no array '%s'", store->path, name);
@@ -409,7 +417,8 @@ static tobi_status open_array(tobi_store *store, const char *name, hid_t *set, h
     if (space >= 0) H5Sclose(space);
     if (rank == 1 || rank == 2) return TOBI_OK;
     H5Dclose(*set);
-    return tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has %d dimensions, expected 1 or 2", store->path, name, rank);
+    return tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has %d dimensions, expected 1 or 2", store->path,
+                     name, rank);
 }
 
 tobi_status tobi_store_rows(tobi_store *store, const char *name, int64_t *n, tobi_error *err)
@@ -426,7 +435,8 @@ tobi_status tobi_store_rows(tobi_store *store, const char *name, int64_t *n, tob
     return status;
 }
 
-static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n, int components,
+static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+                              int components,
                               void *data, tobi_error *err)
 {
     hid_t set;
@@ -435,10 +445,12 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type
     hid_t stored = H5Dget_type(set);
     tobi_status status = TOBI_OK;
     if (size[0] != (hsize_t)n || size[1] != (hsize_t)components)
-        status = tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has %" PRIu64 " x %" PRIu64 " numbers, expected %" PRId64
-                           " x %d", store->path, name, (uint64_t)size[0], (uint64_t)size[1], n, components);
+        status = tobi_fail(err, TOBI_DAMAGED,
+                           "%s: array '%s' has %" PRIu64 " x %" PRIu64 " numbers, expected %" PRId64 " x %d",
+                           store->path, name, (uint64_t)size[0], (uint64_t)size[1], n, components);
     else if (stored < 0 || H5Tequal(stored, file_type(type)) <= 0)
-        status = tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has another number type than expected", store->path, name);
+        status = tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has another number type than expected",
+                           store->path, name);
     else if (n > 0 && H5Dread(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
         status = fail_hdf5(err, TOBI_DAMAGED, store, "read", name);
     if (stored >= 0) H5Tclose(stored);
@@ -464,8 +476,8 @@ static tobi_status open_value(tobi_store *store, const char *name, H5T_class_t c
     *attribute = H5Aopen(store->file, name, H5P_DEFAULT);
     if (*attribute < 0) return fail_hdf5(err, TOBI_DAMAGED, store, "open", name);
     hid_t type = H5Aget_type(*attribute), space = H5Aget_space(*attribute);
-    int fits = type >= 0 && space >= 0 && H5Tget_class(type) == class && H5Sget_simple_extent_npoints(space) == 1 &&
-               H5Tis_variable_str(type) <= 0;
+    int fits = type >= 0 && space >= 0 && H5Tget_class(type) == class &&
+               H5Sget_simple_extent_npoints(space) == 1 && H5Tis_variable_str(type) <= 0;
     *bytes = type >= 0 ? H5Tget_size(type) : 0;
     if (type >= 0) H5Tclose(type);
     if (space >= 0) H5Sclose(space);

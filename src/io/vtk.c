@@ -82,7 +82,8 @@ static size_t source_bytes(const source *s)
     return (size_t)s->rows*(size_t)s->components*tobi_type_size(s->type);
 }
 
-static size_t compress_block(tobi_compression compression, const void *in, size_t size, void *out, size_t room)
+static size_t compress_block(tobi_compression compression, const void *in, size_t size, void *out,
+                             size_t room)
 {
     if (compression == TOBI_COMPRESS_LZ4) {
         int n = LZ4_compress_default(in, out, (int)size, (int)room);
@@ -151,8 +152,9 @@ static tobi_status write_ascii(document *doc, const source *s, tobi_error *err)
         double real = s->type == TOBI_F32 ? (double)((const float *)s->data)[i]
                     : s->type == TOBI_F64 ? ((const double *)s->data)[i] : 0;
         if (!isfinite(real))
-            return tobi_fail(err, TOBI_INVALID, "%s: row %" PRId64 " of %s is not finite, which an ASCII file cannot "
-                             "hold; use a binary format", file->path, i/s->components, s->name);
+            return tobi_fail(err, TOBI_INVALID,
+                             "%s: row %" PRId64 " of %s is not finite, which an ASCII file cannot hold; "
+                             "use a binary format", file->path, i/s->components, s->name);
         const char *gap = i%LINE == LINE - 1 || i == count - 1 ? "\n" : " ";
         int64_t whole = !s->data ? s->first + s->step*i
                       : s->type == TOBI_I32 ? ((const int32_t *)s->data)[i]
@@ -186,7 +188,8 @@ static tobi_status add_source(document *doc, source s, tobi_error *err)
     return TOBI_OK;
 }
 
-static tobi_status add_arrays(document *doc, const tobi_vtk_array *arrays, int count, int64_t rows, tobi_error *err)
+static tobi_status add_arrays(document *doc, const tobi_vtk_array *arrays, int count, int64_t rows,
+                              tobi_error *err)
 {
     for (int i = 0; i < count; i++) {
         const tobi_vtk_array *a = &arrays[i];
@@ -199,7 +202,8 @@ static tobi_status add_arrays(document *doc, const tobi_vtk_array *arrays, int c
 static tobi_status check_arrays(const char *path, const tobi_vtk_array *arrays, int count, int64_t rows,
                                 tobi_error *err)
 {
-    if (rows < 0 || count < 0) return tobi_fail(err, TOBI_INVALID, "%s: a negative number of rows or arrays", path);
+    if (rows < 0 || count < 0)
+        return tobi_fail(err, TOBI_INVALID, "%s: a negative number of rows or arrays", path);
     for (int i = 0; i < count; i++) {
         const tobi_vtk_array *a = &arrays[i];
         if (!a->name || !a->name[0]) return tobi_fail(err, TOBI_INVALID, "%s: array %d has no name", path, i);
@@ -208,7 +212,8 @@ static tobi_status check_arrays(const char *path, const tobi_vtk_array *arrays, 
         if (a->components < 1)
             return tobi_fail(err, TOBI_INVALID, "%s: array %s has %d components, at least 1 is needed", path,
                              a->name, a->components);
-        if (!a->data && rows > 0) return tobi_fail(err, TOBI_INVALID, "%s: array %s has no data", path, a->name);
+        if (!a->data && rows > 0)
+            return tobi_fail(err, TOBI_INVALID, "%s: array %s has no data", path, a->name);
     }
     return TOBI_OK;
 }
@@ -221,12 +226,14 @@ static tobi_status check_triangles(const char *path, int64_t vertex_count, int64
     for (int64_t t = 0; t < triangle_count; t++)
         for (int k = 0; k < 3; k++)
             if (triangles[t][k] < 0 || triangles[t][k] >= vertex_count)
-                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " uses vertex %d of %" PRId64, path, t,
+                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " uses vertex %d of %" PRId64,
+                                 path, t,
                                  (int)triangles[t][k], vertex_count);
     return TOBI_OK;
 }
 
-static tobi_status open_document(document *doc, const char *path, tobi_compression compression, const char *type,
+static tobi_status open_document(document *doc, const char *path, tobi_compression compression,
+                                 const char *type,
                                  int array_room, tobi_error *err)
 {
     *doc = (document){ .compression = compression };
@@ -241,7 +248,8 @@ static tobi_status open_document(document *doc, const char *path, tobi_compressi
     }
     const char *compressor = compression == TOBI_COMPRESS_ZLIB ? " compressor=\"vtkZLibDataCompressor\""
                            : compression == TOBI_COMPRESS_LZ4 ? " compressor=\"vtkLZ4DataCompressor\"" : "";
-    tobi_file_print(&doc->file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+    tobi_file_print(&doc->file,
+                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
                     "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s>\n", type, compressor, type);
     return TOBI_OK;
 }
@@ -299,7 +307,8 @@ static tobi_status write_vertex_cells(document *doc, int64_t n, tobi_error *err)
 static tobi_status write_particles(document *doc, int64_t n, const double (*points)[3],
                                    const tobi_vtk_array *arrays, int array_count, tobi_error *err)
 {
-    tobi_file_print(&doc->file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<PointData>\n",
+    tobi_file_print(&doc->file,
+                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<PointData>\n",
                     n, n);
     TOBI_TRY(add_arrays(doc, arrays, array_count, n, err));
     tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
@@ -307,7 +316,8 @@ static tobi_status write_particles(document *doc, int64_t n, const double (*poin
     return write_vertex_cells(doc, n, err);
 }
 
-tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n, const double (*points)[3],
+tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n,
+                           const double (*points)[3],
                            const tobi_vtk_array *arrays, int array_count, tobi_error *err)
 {
     TOBI_TRY(check_arrays(path, arrays, array_count, n, err));
@@ -320,7 +330,8 @@ tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64
 
 static tobi_status write_surface(document *doc, const tobi_vtk_surface *s, tobi_error *err)
 {
-    tobi_file_print(&doc->file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+    tobi_file_print(&doc->file,
+                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
                     "NumberOfStrips=\"0\" NumberOfPolys=\"%" PRId64 "\">\n<PointData>\n",
                     s->vertex_count, s->triangle_count);
     TOBI_TRY(add_arrays(doc, s->point_arrays, s->point_array_count, s->vertex_count, err));
@@ -344,7 +355,8 @@ tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const
     TOBI_TRY(check_arrays(path, s->cell_arrays, s->cell_array_count, s->triangle_count, err));
     TOBI_TRY(check_triangles(path, s->vertex_count, s->triangle_count, s->triangles, err));
     document doc;
-    TOBI_TRY(open_document(&doc, path, compression, "PolyData", s->point_array_count + s->cell_array_count + 3, err));
+    int arrays = s->point_array_count + s->cell_array_count + 3;
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", arrays, err));
     tobi_status status = write_surface(&doc, s, err);
     return close_document(&doc, "PolyData", status, err);
 }
@@ -353,8 +365,8 @@ tobi_status tobi_pvd_write(const char *path, const tobi_pvd_entry *entries, int6
 {
     tobi_file file;
     TOBI_TRY(tobi_file_open(&file, path, err));
-    tobi_file_print(&file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-                    "byte_order=\"LittleEndian\">\n<Collection>\n");
+    tobi_file_print(&file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"Collection\" "
+                    "version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n");
     for (int64_t i = 0; i < n; i++) {
         tobi_file_print(&file, "<DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"", entries[i].time,
                         entries[i].part);
@@ -381,7 +393,8 @@ tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double 
     tobi_file_write(&file, title, sizeof title);
     tobi_file_write(&file, &count, sizeof count);
     for (int64_t t = 0; t < triangle_count && !file.error; t++) {
-        const double *a = vertices[triangles[t][0]], *b = vertices[triangles[t][1]], *c = vertices[triangles[t][2]];
+        const int32_t *i = triangles[t];
+        const double *a = vertices[i[0]], *b = vertices[i[1]], *c = vertices[i[2]];
         double u[3], v[3];
         for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k];
         double normal[3] = { u[1]*v[2] - u[2]*v[1], u[2]*v[0] - u[0]*v[2], u[0]*v[1] - u[1]*v[0] };

@@ -2,8 +2,8 @@
 
    VTU and VTP hold appended raw binary with a UInt64 header, optionally compressed in blocks by zlib or LZ4,
    or ASCII. Source: the VTK XML file format as its own readers define it. Every file appears whole or not
-   at all (io/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for arguments that no file can hold.
-   Arrays are borrowed for the call. Names and file names are UTF-8 and may hold any character. */
+   at all (io/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for arguments that no file can
+   hold. Arrays are borrowed for the call. Names and file names are UTF-8 and may hold any character. */
 #pragma once
 #include "tobiuo/types.h"
 #include "base/error.h"
@@ -17,7 +17,8 @@ typedef struct tobi_vtk_array {
 } tobi_vtk_array;
 
 /* Particles: one vertex cell per point. points in m; every array has n rows; n = 0 is fine. */
-tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n, const double (*points)[3],
+tobi_status tobi_vtu_write(const char *path, tobi_compression compression, int64_t n,
+                           const double (*points)[3],
                            const tobi_vtk_array *arrays, int array_count, tobi_error *err);
 
 typedef struct tobi_vtk_surface {

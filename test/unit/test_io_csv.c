@@ -14,7 +14,8 @@
 
 static char folder[] = "/tmp/tobi_io_csv_XXXXXX";
 static char path[64];
-static const tobi_csv_column columns[] = { { "time", "s" }, { "step", "1" }, { "force", "N" }, { "body", NULL } };
+static const tobi_csv_column columns[] = { { "time", "s" }, { "step", "1" }, { "force", "N" },
+                                           { "body", NULL } };
 
 static const char *content(void)
 {
@@ -33,7 +34,8 @@ static void put(const char *text)
     fclose(out);
 }
 
-static tobi_status add(tobi_csv *csv, double time, int64_t step, double force, const char *body, tobi_error *err)
+static tobi_status add(tobi_csv *csv, double time, int64_t step, double force, const char *body,
+                       tobi_error *err)
 {
     tobi_csv_add_real(csv, time);
     tobi_csv_add_int(csv, step);
@@ -53,7 +55,8 @@ static void rows_are_written_at_once(void **state)
     assert_string_equal(content(), "time [s],step,force [N],body\n0.10000000000000001,7,0.333333333,fish\n");
     assert_int_equal(add(csv, 0.2, INT64_MIN, -NAN, "a \"b\", c\nd", &err), 0);
     assert_int_equal(add(csv, 0.25, 0, -INFINITY, "", &err), 0);
-    assert_non_null(strstr(content(), "\n0.20000000000000001,-9223372036854775808,nan,\"a \"\"b\"\", c\nd\"\n0.25,0,-inf,\n"));
+    assert_non_null(strstr(content(), "\n0.20000000000000001,-9223372036854775808,nan,"
+                           "\"a \"\"b\"\", c\nd\"\n0.25,0,-inf,\n"));
     tobi_csv_add_real(csv, 1);
     assert_int_equal(tobi_csv_end_row(csv, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "1 values in a table of 4 columns"));

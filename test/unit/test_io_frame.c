@@ -23,10 +23,14 @@ static double position[N][3];
 static float speed[N];
 static const double far_away[3] = { 10000, -10000, 7000 };
 
-static const double cube[8][3] = { { 0.4, 0.4, 0.1 }, { 0.6, 0.4, 0.1 }, { 0.4, 0.6, 0.1 }, { 0.6, 0.6, 0.1 },
-                                   { 0.4, 0.4, 0.8 }, { 0.6, 0.4, 0.8 }, { 0.4, 0.6, 0.8 }, { 0.6, 0.6, 0.8 } };
-static const int32_t side[12][3] = { { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
-                                     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 } };
+static const double cube[8][3] = {
+    { 0.4, 0.4, 0.1 }, { 0.6, 0.4, 0.1 }, { 0.4, 0.6, 0.1 }, { 0.6, 0.6, 0.1 },
+    { 0.4, 0.4, 0.8 }, { 0.6, 0.4, 0.8 }, { 0.4, 0.6, 0.8 }, { 0.6, 0.6, 0.8 }
+};
+static const int32_t side[12][3] = {
+    { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
+    { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 }
+};
 static const tobi_frame_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f } };
 
 /* A unit box, half full of water, cube through the surface. */
@@ -95,7 +99,8 @@ static void things_are_where_they_belong(void **state)
     tobi_frame f = make_frame();
     unsigned char *all = draw(&f);
     /* The camera looks level at the middle of the box: the cube's upper part is at the centre's top. */
-    const unsigned char *dry = pixel(all, W/2, H/2 - 18), *wet = pixel(all, W/2, H/2 + 26), *water = pixel(all, W/2 - 40, H/2 + 26);
+    const unsigned char *dry = pixel(all, W/2, H/2 - 18), *wet = pixel(all, W/2, H/2 + 26);
+    const unsigned char *water = pixel(all, W/2 - 40, H/2 + 26);
     assert_true(redness(dry) > 60);
     assert_true(blueness(water) > 60);
     f.particle_count = 0;
@@ -150,7 +155,8 @@ static void place_does_not_matter(void **state)
     unsigned char *there = draw(&f);
     double difference = mean_difference(here, there);
     print_message("mean difference at 10 km: %.4f of 255\n", difference);
-    assert_true(difference < 0.2);      /* grid lines of the floor fall elsewhere; depths differ in the last bit */
+    /* Lines of the floor's grid fall elsewhere; depths differ in the last bit. */
+    assert_true(difference < 0.2);
     free(here), free(there);
 }
 
@@ -175,7 +181,8 @@ static void flat_scenes_are_discs(void **state)
     free(p), free(labelled);
 }
 
-/* Not finite, enormous, behind the eye, a camera inside the water, every direction of up: a picture all the same. */
+/* Not finite, enormous, behind the eye, a camera inside the water, every direction of up: a picture all the
+   same. */
 static void strange_input_is_drawn(void **state)
 {
     (void)state;

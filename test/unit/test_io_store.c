@@ -106,7 +106,8 @@ static void what_is_put_is_got(void **state)
     assert_int_equal(n, N);
     assert_int_equal(tobi_store_get_int(s, "step", &step, &err), 0);
     assert_true(step == INT64_MIN);
-    assert_true(tobi_store_has(s, "bodies/0/id") && !tobi_store_has(s, "bodies/1/id") && !tobi_store_has(s, "nothing"));
+    assert_true(tobi_store_has(s, "bodies/0/id") && !tobi_store_has(s, "bodies/1/id")
+                && !tobi_store_has(s, "nothing"));
     tobi_store_close(s);
     assert_true(H5Fis_hdf5(store_path) > 0);      /* other HDF5 programs can open it */
     char part[80];

@@ -49,8 +49,9 @@ static void fill(void)
 }
 
 static const tobi_vtk_array arrays[] = {
-    { "velocity", TOBI_F64, 3, velocity }, { "density", TOBI_F32, 1, density }, { "object <&\"'> id", TOBI_I32, 1, object },
-    { "particle_id", TOBI_I64, 1, id }, { "flag\xc3\xa9", TOBI_U8, 1, flag }
+    { "velocity", TOBI_F64, 3, velocity }, { "density", TOBI_F32, 1, density },
+    { "object <&\"'> id", TOBI_I32, 1, object }, { "particle_id", TOBI_I64, 1, id },
+    { "flag\xc3\xa9", TOBI_U8, 1, flag }
 };
 
 /* The script that reads files with VTK, by its place beside this source. */
@@ -103,14 +104,16 @@ static void print_particle_checks(FILE *out, const char *name, int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++) sum += (i + 1.0)*i;
-    fprintf(out, "{\"file\": \"%s\", \"points\": %d, \"cells\": %d, \"cell_type\": 1, \"connectivity\": %.0f", name, n, n, sum);
-    fprintf(out, ", \"arrays\": {\"velocity\": 3, \"density\": 1, \"object <&\\\"'> id\": 1, \"particle_id\": 1, "
-            "\"flag\xc3\xa9\": 1}, \"sums\": {\"Points\": %.17g, \"velocity\": %.17g, \"density\": %.17g, "
-            "\"object <&\\\"'> id\": %.17g, \"particle_id\": %.17g, \"flag\xc3\xa9\": %.17g}", weigh(n, 3, point_value),
-            weigh(n, 3, velocity_value), weigh(n, 1, density_value), weigh(n, 1, object_value), weigh(n, 1, id_value),
-            weigh(n, 1, flag_value));
-    if (n == N) fprintf(out, ", \"ranges\": {\"particle_id\": [%.17g, %.17g], \"flag\xc3\xa9\": [0, 250]}", (double)id[0],
-                        (double)id[N - 1]);
+    fprintf(out, "{\"file\": \"%s\", \"points\": %d, \"cells\": %d, \"cell_type\": 1, ", name, n, n);
+    fprintf(out, "\"connectivity\": %.0f, \"arrays\": {\"velocity\": 3, \"density\": 1, ", sum);
+    fprintf(out, "\"object <&\\\"'> id\": 1, \"particle_id\": 1, \"flag\xc3\xa9\": 1}, \"sums\": {");
+    fprintf(out, "\"Points\": %.17g, \"velocity\": %.17g, \"density\": %.17g, ", weigh(n, 3, point_value),
+            weigh(n, 3, velocity_value), weigh(n, 1, density_value));
+    fprintf(out, "\"object <&\\\"'> id\": %.17g, \"particle_id\": %.17g, \"flag\xc3\xa9\": %.17g}",
+            weigh(n, 1, object_value), weigh(n, 1, id_value), weigh(n, 1, flag_value));
+    if (n == N)
+        fprintf(out, ", \"ranges\": {\"particle_id\": [%.17g, %.17g], \"flag\xc3\xa9\": [0, 250]}",
+                (double)id[0], (double)id[N - 1]);
     fprintf(out, "}");
 }
 
@@ -127,7 +130,8 @@ static void vtu_is_read_by_vtk(void **state)
         for (int k = 0; k < 4; k++) {
             char name[64];
             snprintf(name, sizeof name, "%s_%d.vtu", names[c], counts[k]);
-            assert_int_equal(tobi_vtu_write(in_folder(name), (tobi_compression)c, counts[k], points, arrays, 5, &err), 0);
+            assert_int_equal(tobi_vtu_write(in_folder(name), (tobi_compression)c, counts[k], points, arrays,
+                                            5, &err), 0);
             fprintf(out, c + k ? ",\n" : "\n");
             print_particle_checks(out, name, counts[k]);
         }
@@ -149,7 +153,8 @@ static void surfaces_are_read_by_vtk(void **state)
     (void)state;
     const double pressure[4] = { 1, -2, 3.5, 1e5 };
     const float load[4][3] = { { 1, 2, 3 }, { 4, 5, 6 }, { 7, 8, 9 }, { 10, 11, 12 } };
-    tobi_vtk_array point_array = { "pressure", TOBI_F64, 1, pressure }, cell_array = { "load", TOBI_F32, 3, load };
+    tobi_vtk_array point_array = { "pressure", TOBI_F64, 1, pressure };
+    tobi_vtk_array cell_array = { "load", TOBI_F32, 3, load };
     tobi_vtk_surface surface = { 4, corner, 4, face, &point_array, 1, &cell_array, 1 }, nothing = { 0 };
     const char *names[] = { "none.vtp", "zlib.vtp", "lz4.vtp", "ascii.vtp" };
     tobi_error err;
@@ -157,14 +162,16 @@ static void surfaces_are_read_by_vtk(void **state)
     fprintf(out, "[");
     for (int c = 0; c < 4; c++) {
         assert_int_equal(tobi_vtp_write(in_folder(names[c]), (tobi_compression)c, &surface, &err), 0);
-        fprintf(out, "{\"file\": \"%s\", \"points\": 4, \"cells\": 4, \"cell_type\": 5, \"connectivity\": %d, "
-                "\"bounds\": [0, 2, 0, 3, -4, 0], \"arrays\": {\"pressure\": 1, \"load\": 3}, \"ranges\": "
-                "{\"pressure\": [-2, 1e5], \"load\": [1, 12]}, \"sums\": {\"load\": 240}},\n", names[c], 3 + 2*4 + 3*5 + 4*6);
+        fprintf(out, "{\"file\": \"%s\", \"points\": 4, \"cells\": 4, \"cell_type\": 5, "
+                "\"connectivity\": %d, \"bounds\": [0, 2, 0, 3, -4, 0], \"arrays\": "
+                "{\"pressure\": 1, \"load\": 3}, \"ranges\": {\"pressure\": [-2, 1e5], \"load\": [1, 12]}, \"sums\": {\"load\": 240}},\n", names[c],
+                3 + 2*4 + 3*5 + 4*6);
     }
     assert_int_equal(tobi_vtp_write(in_folder("nothing.vtp"), TOBI_COMPRESS_LZ4, &nothing, &err), 0);
     assert_int_equal(tobi_stl_write(in_folder("tetra.stl"), 4, corner, 4, face, &err), 0);
     fprintf(out, "{\"file\": \"nothing.vtp\", \"points\": 0, \"cells\": 0},\n"
-            "{\"file\": \"tetra.stl\", \"points\": 4, \"cells\": 4, \"cell_type\": 5, \"bounds\": [0, 2, 0, 3, -4, 0]},\n");
+            "{\"file\": \"tetra.stl\", \"points\": 4, \"cells\": 4, \"cell_type\": 5, "
+            "\"bounds\": [0, 2, 0, 3, -4, 0]},\n");
 
     /* A collection whose file and part names need escaping. */
     mkdir(in_folder("a&b"), 0777);
@@ -199,7 +206,8 @@ static void wrong_arguments_are_refused(void **state)
     (void)state;
     tobi_error err;
     const int32_t wild[1][3] = { { 0, 1, 4 } };
-    tobi_vtk_surface surface = { .vertex_count = 4, .vertices = corner, .triangle_count = 1, .triangles = wild };
+    tobi_vtk_surface surface = { .vertex_count = 4, .vertices = corner,
+                                 .triangle_count = 1, .triangles = wild };
     const char *path = in_folder("wrong.vtp");
     assert_int_equal(tobi_vtp_write(path, TOBI_COMPRESS_ZLIB, &surface, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "triangle 0 uses vertex 4 of 4"));
@@ -248,7 +256,8 @@ static void full_disk_leaves_nothing(void **state)
             struct rlimit limit = { (rlim_t)sizes[k], before.rlim_max };
             tobi_error err = { 0 };
             setrlimit(RLIMIT_FSIZE, &limit);
-            tobi_status status = tobi_vtu_write(in_folder("full.vtu"), (tobi_compression)c, N, points, arrays, 5, &err);
+            tobi_status status = tobi_vtu_write(in_folder("full.vtu"), (tobi_compression)c, N, points, arrays,
+                                                5, &err);
             setrlimit(RLIMIT_FSIZE, &before);
             assert_int_equal(status, TOBI_IO);
             assert_non_null(strstr(err.text, "full.vtu: File too large"));
