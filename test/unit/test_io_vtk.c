@@ -164,7 +164,8 @@ static void surfaces_are_read_by_vtk(void **state)
         assert_int_equal(tobi_vtp_write(in_folder(names[c]), (tobi_compression)c, &surface, &err), 0);
         fprintf(out, "{\"file\": \"%s\", \"points\": 4, \"cells\": 4, \"cell_type\": 5, "
                 "\"connectivity\": %d, \"bounds\": [0, 2, 0, 3, -4, 0], \"arrays\": "
-                "{\"pressure\": 1, \"load\": 3}, \"ranges\": {\"pressure\": [-2, 1e5], \"load\": [1, 12]}, \"sums\": {\"load\": 240}},\n", names[c],
+                "{\"pressure\": 1, \"load\": 3}, \"ranges\": {\"pressure\": [-2, 1e5], \"load\": [1, 12]}, "
+                "\"sums\": {\"load\": 240}},\n", names[c],
                 3 + 2*4 + 3*5 + 4*6);
     }
     assert_int_equal(tobi_vtp_write(in_folder("nothing.vtp"), TOBI_COMPRESS_LZ4, &nothing, &err), 0);
