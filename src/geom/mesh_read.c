@@ -9,6 +9,7 @@
    same float, so that 0.1 in a text file arrives as the double 0.1. */
 #define _GNU_SOURCE
 #include "geom/mesh.h"
+#include "geom/obj_scan.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -26,9 +27,18 @@
 #include <time.h>
 #include <unistd.h>
 
-#define IMPORT_SECONDS 60
-#define IMPORT_BYTES ((rlim_t)8 << 30)    /* beyond what the parent has mapped already */
+/* What an import may use, by the size of the file: measured needs are below 30 bytes and 0.2 us per
+   byte of OBJ text; files that claim more than they hold would go on for ever. */
+#define SECONDS_BASE 10
+#define SECONDS_PER_BYTE 1e-6
+#define BYTES_BASE ((rlim_t)1 << 30)      /* beyond what the parent has mapped already */
+#define BYTES_PER_BYTE 200
 #define MAX_NODE_DEPTH 1000
+
+typedef struct allowance {
+    double seconds;
+    rlim_t bytes;
+} allowance;
 
 typedef struct import_header {
     char magic[8];
@@ -106,9 +116,10 @@ static int write_all(int fd, const void *data, size_t size)
     return 1;
 }
 
-static void limit_child(void)
+static void limit_child(const allowance *allowed)
 {
-    struct rlimit none = {0, 0}, cpu = {IMPORT_SECONDS, IMPORT_SECONDS};
+    rlim_t seconds = (rlim_t)allowed->seconds + 1;
+    struct rlimit none = {0, 0}, cpu = {seconds, seconds};
     setrlimit(RLIMIT_CORE, &none);
     setrlimit(RLIMIT_CPU, &cpu);
 #ifndef __SANITIZE_ADDRESS__       /* its shadow memory maps terabytes */
@@ -116,7 +127,7 @@ static void limit_child(void)
     unsigned long pages = 0;
     if (f) {
         if (fscanf(f, "%lu", &pages) == 1) {
-            rlim_t bytes = (rlim_t)pages*(rlim_t)sysconf(_SC_PAGESIZE) + IMPORT_BYTES;
+            rlim_t bytes = (rlim_t)pages*(rlim_t)sysconf(_SC_PAGESIZE) + allowed->bytes;
             setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
         }
         fclose(f);
@@ -124,11 +135,11 @@ static void limit_child(void)
 #endif
 }
 
-static _Noreturn void run_child(const char *path, int fd)
+static _Noreturn void run_child(const char *path, int fd, const allowance *allowed)
 {
     static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     for (size_t i = 0; i < sizeof reset/sizeof *reset; i++) signal(reset[i], SIG_DFL);
-    limit_child();
+    limit_child(allowed);
     int null = open("/dev/null", O_RDWR);      /* the importer must not print either */
     if (null >= 0) {
         dup2(null, STDOUT_FILENO);
@@ -189,10 +200,24 @@ static int read_all(int fd, void *data, size_t size, double deadline)
     return 1;
 }
 
-static tobi_status receive_mesh(const char *path, int fd, tobi_mesh *out, int *finished, tobi_error *err)
+/* The importer's own complaint, made clearer where it says too little. */
+static tobi_status fail_refused(const char *path, const char *text, tobi_error *err)
+{
+    tobi_obj_fault fault;
+    const char *dot = strrchr(path, '.');
+    if (strstr(text, "bad_alloc"))
+        text = "it claims to hold far more than its size allows, or needs too much memory";
+    if (dot && !strcasecmp(dot, ".obj") && tobi_obj_scan(path, &fault))
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s', line %lld: a face uses vertex index %lld, out of "
+                         "range; allowed are 1 to %lld, or -1 and below counted back", path,
+                         (long long)fault.line, (long long)fault.index, (long long)fault.vertices);
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: %s", path, text);
+}
+
+static tobi_status receive_mesh(const char *path, int fd, double deadline, tobi_mesh *out, int *finished,
+                                tobi_error *err)
 {
     import_header header;
-    double deadline = now() + IMPORT_SECONDS;
     tobi_mesh raw = {0};
     *finished = read_all(fd, &header, sizeof header, deadline);
     if (*finished != 1) return TOBI_INVALID;
@@ -202,8 +227,7 @@ static tobi_status receive_mesh(const char *path, int fd, tobi_mesh *out, int *f
         *finished = 0;
         return TOBI_INVALID;
     }
-    if (header.text[0])
-        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: %s", path, header.text);
+    if (header.text[0]) return fail_refused(path, header.text, err);
     raw.vertices = malloc((size_t)(header.vertex_count + 1)*sizeof *raw.vertices);
     raw.triangles = malloc((size_t)(header.triangle_count + 1)*sizeof *raw.triangles);
     tobi_status status;
@@ -222,19 +246,21 @@ static tobi_status receive_mesh(const char *path, int fd, tobi_mesh *out, int *f
     return status;
 }
 
-static tobi_status fail_import(const char *path, int finished, int reaped, int state, tobi_error *err)
+static tobi_status fail_import(const char *path, int finished, const allowance *allowed, const int *state,
+                               tobi_error *err)
 {
     if (finished < 0)
-        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer took more than %d s; "
-                         "the file is damaged or far too large", path, IMPORT_SECONDS);
-    if (reaped && WIFSIGNALED(state))
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer took more than "
+                         "%.0f s; the file is damaged", path, allowed->seconds);
+    if (state && WIFSIGNALED(*state))
         return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer crashed (signal %d: "
-                         "%s); the file is damaged", path, WTERMSIG(state), strsignal(WTERMSIG(state)));
+                         "%s); the file is damaged", path, WTERMSIG(*state), strsignal(WTERMSIG(*state)));
     return tobi_fail(err, TOBI_INVALID, "mesh '%s' cannot be read: the importer ended early; the file is "
                      "damaged", path);
 }
 
-static tobi_status import_apart(const char *path, tobi_mesh *out, tobi_error *err)
+static tobi_status import_apart(const char *path, const allowance *allowed, tobi_mesh *out,
+                                tobi_error *err)
 {
     int ends[2], finished = 0, state = 0;
     if (pipe2(ends, O_CLOEXEC))
@@ -242,26 +268,26 @@ static tobi_status import_apart(const char *path, tobi_mesh *out, tobi_error *er
     pid_t child = fork();
     if (child == 0) {
         close(ends[0]);
-        run_child(path, ends[1]);
+        run_child(path, ends[1], allowed);
     }
     close(ends[1]);
     if (child < 0) {
         close(ends[0]);
         return tobi_fail(err, TOBI_IO, "mesh '%s': the importer cannot start: %s", path, strerror(errno));
     }
-    tobi_status status = receive_mesh(path, ends[0], out, &finished, err);
+    tobi_status status = receive_mesh(path, ends[0], now() + allowed->seconds, out, &finished, err);
     close(ends[0]);
     if (finished < 0) kill(child, SIGKILL);
     pid_t reaped;
     do reaped = waitpid(child, &state, 0);
     while (reaped < 0 && errno == EINTR);
-    if (finished != 1) return fail_import(path, finished, reaped == child, state, err);
+    if (finished != 1) return fail_import(path, finished, allowed, reaped == child ? &state : NULL, err);
     return status;
 }
 
-static tobi_status check_file(const char *path, tobi_error *err)
+static tobi_status check_file(const char *path, allowance *allowed, tobi_error *err)
 {
-    static const char *const allowed[] = {".obj", ".stl", ".ply"};
+    static const char *const formats[] = {".obj", ".stl", ".ply"};
     struct stat info;
     const char *dot = strrchr(path, '.');
     int known = 0;
@@ -270,19 +296,22 @@ static tobi_status check_file(const char *path, tobi_error *err)
                          "mesh '%s': %s", path, strerror(errno));
     if (!S_ISREG(info.st_mode))
         return tobi_fail(err, TOBI_IO, "mesh '%s' is not a regular file", path);
-    for (int i = 0; dot && i < 3; i++) known |= !strcasecmp(dot, allowed[i]);
+    for (int i = 0; dot && i < 3; i++) known |= !strcasecmp(dot, formats[i]);
     if (!known)
         return tobi_fail(err, TOBI_INVALID, "mesh '%s': unknown format; allowed are .obj, .stl and .ply",
                          path);
     if (access(path, R_OK))
         return tobi_fail(err, TOBI_IO, "mesh '%s': %s", path, strerror(errno));
     if (info.st_size == 0) return tobi_fail(err, TOBI_INVALID, "mesh '%s' is an empty file", path);
+    allowed->seconds = SECONDS_BASE + SECONDS_PER_BYTE*(double)info.st_size;
+    allowed->bytes = BYTES_BASE + BYTES_PER_BYTE*(rlim_t)info.st_size;
     return TOBI_OK;
 }
 
 tobi_status tobi_mesh_read(const char *path, tobi_mesh *out, tobi_error *err)
 {
     *out = (tobi_mesh){0};
-    TOBI_TRY(check_file(path, err));
-    return import_apart(path, out, err);
+    allowance allowed;
+    TOBI_TRY(check_file(path, &allowed, err));
+    return import_apart(path, &allowed, out, err);
 }

@@ -1,0 +1,11 @@
+/* Finding the line of an OBJ file that refers to a vertex that does not exist. */
+#pragma once
+#include <stdint.h>
+
+typedef struct tobi_obj_fault {
+    int64_t line;              /* counted from 1                                     */
+    int64_t index, vertices;   /* what it says, and how many vertices the file has   */
+} tobi_obj_fault;
+
+/* 1 and fills fault if a face of the file uses a vertex index that is 0 or out of range. */
+int tobi_obj_scan(const char *path, tobi_obj_fault *fault);
