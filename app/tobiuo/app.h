@@ -1,5 +1,6 @@
 /* The program: one file per command, each a function of its own argc and argv that returns the exit
-   code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 130 after Ctrl-C. */
+   code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 130 after Ctrl-C.
+ */
 #pragma once
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"

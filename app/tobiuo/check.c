@@ -53,7 +53,8 @@ static double guess_step(const tobi_world_def *d)
     for (int a = 0; a < d->dimension; a++)
         work += fabs(d->gravity[a]) * (d->domain_max[a] - d->domain_min[a]);
     double step = work > 0.0 ? d->cfl * d->spacing / sqrt(2.0 * work) : 0.0;
-    return d->time_step_max > 0.0 && (step == 0.0 || step > d->time_step_max) ? d->time_step_max : step;
+    return d->time_step_max > 0.0 && (step == 0.0 || step > d->time_step_max) ? d->time_step_max
+                                                                              : step;
 }
 
 static void print_scene(const tobi_scene *scene)
@@ -62,7 +63,8 @@ static void print_scene(const tobi_scene *scene)
     const tobi_output_def *out = tobi_scene_output_def(scene);
     printf("scene            %s (%s, %d-D)\n", tobi_scene_name(scene), d->method, d->dimension);
     const double *low = d->domain_min, *high = d->domain_max;
-    printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1], high[2]);
+    printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
+           high[2]);
     printf("spacing          %g m\n", d->spacing);
     double step = guess_step(d);
     if (step > 0.0)
@@ -95,15 +97,21 @@ static int check_world(tobi_scene *scene)
 
 int tobiuo_check(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "SCENE",
-        .doc = "Check a scene without running it: every mistake, particle counts, memory, time step." };
+    static const struct argp argp = {
+        .options = options,
+        .parser = parse,
+        .args_doc = "SCENE",
+        .doc =
+            "Check a scene without running it: every mistake, particle counts, memory, time step."
+    };
     check_options o = { 0 };
     argp_parse(&argp, argc, argv, 0, NULL, &o);
     tobi_scene *scene = NULL;
     tobi_report *report = NULL;
     tobi_error err = { 0 };
     char *path = scene_path(o.scene);
-    tobi_status status = tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
+    tobi_status status =
+        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
     int code = status == TOBI_OK ? check_world(scene) : complain_scene(report, &err);
     tobi_scene_free(scene);
     overrides_free(&o.set);

@@ -1,5 +1,5 @@
-/* Stepping to the end. Ctrl-C (or SIGTERM) asks for a clean end after the step in work; a second one
-   ends the program at once, which costs nothing but the time since the last checkpoint. */
+/* Stepping to the end. Ctrl-C (or SIGTERM) asks for a clean end after the step in work; a second
+   one ends the program at once, which costs nothing but the time since the last checkpoint. */
 #include "app.h"
 #include <signal.h>
 #include <stdio.h>
@@ -18,7 +18,8 @@ void drive_catch_signals(void)
 
 typedef struct counts { int64_t steps, unconverged; tobi_step_info last; } counts;
 
-static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *p, counts *c, tobi_error *err)
+static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *p, counts *c,
+                               tobi_error *err)
 {
     while (!caught && !tobi_run_done(run, o->end)) {
         tobi_step_info info = { 0 };
@@ -41,8 +42,8 @@ static void print_end(const drive_options *o, const counts *c, double time, doub
     if (c->last.particles_lost)
         complain("%lld particles left the domain", (long long)c->last.particles_lost);
     if (o->quiet) return;
-    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done", time,
-           (long long)c->steps, duration_text(wall, text), o->dir);
+    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done",
+           time, (long long)c->steps, duration_text(wall, text), o->dir);
     if (caught) printf("go on with: tobiuo resume %s\n", o->dir);
 }
 

@@ -24,7 +24,8 @@ static void print_processor(void)
     }
     if (file) fclose(file);
     printf("cores         %ld\n", sysconf(_SC_NPROCESSORS_ONLN));
-    printf("memory        %.1f GB\n", (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE) * 1e-9);
+    printf("memory        %.1f GB\n",
+           (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE) * 1e-9);
 }
 
 static void print_instruction_sets(void)
@@ -44,8 +45,8 @@ static void print_libraries(void)
 {
     unsigned major, minor, release;
     H5get_libversion(&major, &minor, &release);
-    printf("libraries     HDF5 %u.%u.%u, assimp %u.%u.%u,", major, minor, release, aiGetVersionMajor(),
-           aiGetVersionMinor(), aiGetVersionPatch());
+    printf("libraries     HDF5 %u.%u.%u, assimp %u.%u.%u,", major, minor, release,
+           aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch());
     printf(" jansson %s, %s, zlib %s, LZ4 %s, libpng %s\n", jansson_version_str(), LUAJIT_VERSION,
            zlibVersion(), LZ4_versionString(), png_get_libpng_ver(NULL));
 }

@@ -9,7 +9,8 @@ static const struct command {
 } commands[] = {
     { "run", "SCENE", "simulate a scene", tobiuo_run },
     { "resume", "DIR", "go on with a run that was stopped", tobiuo_resume },
-    { "check", "SCENE", "say what a scene would do, and all its mistakes, without running", tobiuo_check },
+    { "check", "SCENE", "say what a scene would do, and all its mistakes, without running",
+      tobiuo_check },
     { "describe", "[TOPIC]", "parameters with units, defaults and ranges", tobiuo_describe },
     { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench },
     { "info", "", "version, machine, libraries, methods", tobiuo_info },
@@ -31,7 +32,8 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return EXIT_USAGE;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+        strcmp(argv[1], "help") == 0) {
         print_usage(stdout);
         return 0;
     }

@@ -29,6 +29,7 @@ char *scene_path(const char *path)
     struct stat st;
     char *file = NULL;
     int directory = stat(path, &st) == 0 && S_ISDIR(st.st_mode);
-    if (asprintf(&file, "%s%s", path, directory ? "/scene.json" : "") < 0) exit(complain("out of memory"));
+    if (asprintf(&file, "%s%s", path, directory ? "/scene.json" : "") < 0)
+        exit(complain("out of memory"));
     return file;
 }

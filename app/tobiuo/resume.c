@@ -76,7 +76,8 @@ int tobiuo_resume(int argc, char **argv)
     tobi_scene *scene = NULL;
     tobi_report *report = NULL;
     tobi_error err = { 0 };
-    tobi_status status = tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
+    tobi_status status =
+        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
     int code = status == TOBI_OK ? resume_scene(scene, &o) : complain_scene(report, &err);
     tobi_scene_free(scene);
     overrides_free(&o.set);

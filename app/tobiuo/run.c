@@ -18,7 +18,8 @@ static const struct argp_option options[] = {
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 },
-    { "set", KEY_SET, "PATH=VALUE", 0, "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 },
+    { "set", KEY_SET, "PATH=VALUE", 0,
+      "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
@@ -64,8 +65,8 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     tobi_run *run = NULL;
     char *resolved = tobi_scene_resolved(scene);
     if (!resolved) return complain("out of memory");
-    tobi_status status = tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved,
-                                         &run, &err);
+    tobi_status status =
+        tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved, &run, &err);
     free(resolved);
     if (status != TOBI_OK) return complain("%s", err.text);
     drive_options d = { dir, tobi_scene_world_def(scene)->end_time, o->quiet };
@@ -80,7 +81,8 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     tobi_world *world = NULL;
     char *dir = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
-    int length = o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
+    int length =
+        o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
     drive_catch_signals();
     int code = length < 0 ? complain("out of memory") : record(scene, world, o, dir);
     free(dir);
@@ -98,7 +100,8 @@ int tobiuo_run(int argc, char **argv)
     tobi_report *report = NULL;
     tobi_error err = { 0 };
     char *path = scene_path(o.scene);
-    tobi_status status = tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
+    tobi_status status =
+        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
     int code = status == TOBI_OK ? run_scene(scene, &o) : complain_scene(report, &err);
     tobi_scene_free(scene);
     overrides_free(&o.set);

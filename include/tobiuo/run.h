@@ -30,30 +30,32 @@ typedef struct tobi_run tobi_run;
    command line). TOBI_INVALID if dir holds results and force is 0; with force, the files that a
    run writes are removed first, and nothing else. TOBI_INVALID for an unknown name in
    output->fields. TOBI_IO if dir cannot be written or another run is writing to it. */
-TOBI_API tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
-                                     int force, const char *resolved_json, tobi_run **run,
-                                     tobi_error *err);
+TOBI_API tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output,
+                                     const char *dir, int force, const char *resolved_json,
+                                     tobi_run **run, tobi_error *err);
 
 /* Goes on with the run in dir: loads its last whole checkpoint into the world (made by the same
-   definitions, not started) and cuts the tables and series back to that time. Without any checkpoint
-   the run begins again at time 0. TOBI_NOT_FOUND if dir holds no run, TOBI_DAMAGED if there are
-   checkpoints and none is whole. */
-TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
-                                     tobi_run **run, tobi_error *err);
+   definitions, not started) and cuts the tables and series back to that time. Without any
+   checkpoint the run begins again at time 0. TOBI_NOT_FOUND if dir holds no run, TOBI_DAMAGED if
+   there are checkpoints and none is whole. */
+TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output,
+                                     const char *dir, tobi_run **run, tobi_error *err);
 
 /* What tobi_run_resume found worth telling ("resumed at ..."), "" if nothing. Owned by the run. */
 TOBI_API const char *tobi_run_note(const tobi_run *run);
 
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
    NULL. When `end` is a multiple of the interval to within rounding, that multiple is the end. */
-TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err);
+TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
+                                   tobi_error *err);
 /* 1 when the world has reached `end`. */
 TOBI_API int tobi_run_done(const tobi_run *run, double end);
 
 /* Writes an output now. tobi_run_step does it when it is due; call it only when stepping the world
    without tobi_run_step, at the times k interval. */
 TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
-/* Writes a checkpoint now; the two newest are kept. Does nothing if the last one is of this step. */
+/* Writes a checkpoint now; the two newest are kept. Does nothing if the last one is of this step.
+ */
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
 
 /* Writes summary.json. outcome: "complete", "interrupted", "diverged" or another word. */

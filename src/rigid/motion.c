@@ -7,7 +7,12 @@
 
 #define PI 3.14159265358979323846
 
-typedef enum motion_kind { KIND_SCRIPT, KIND_TRANSLATION, KIND_ROTATION, KIND_OSCILLATION } motion_kind;
+typedef enum motion_kind {
+    KIND_SCRIPT,
+    KIND_TRANSLATION,
+    KIND_ROTATION,
+    KIND_OSCILLATION
+} motion_kind;
 
 struct tobi_motion {
     motion_kind kind;
@@ -34,7 +39,8 @@ static tobi_status check_finite(const char *what, const double *v, int n, tobi_e
     return TOBI_OK;
 }
 
-static tobi_status set_direction(const char *what, const double v[3], double out[3], tobi_error *err)
+static tobi_status set_direction(const char *what, const double v[3], double out[3],
+                                 tobi_error *err)
 {
     TOBI_TRY(check_finite(what, v, 3, err));
     double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -124,7 +130,8 @@ static void fill_rotation(const double axis[3], double degrees, double m[3][3])
 }
 
 /* position = pivot + shift + R (rest - pivot). */
-static void pose_points(const tobi_pose *pose, int64_t n, const double (*rest)[3], double (*position)[3])
+static void pose_points(const tobi_pose *pose, int64_t n, const double (*rest)[3],
+                        double (*position)[3])
 {
     double m[3][3];
     const double *p = pose->pivot;
@@ -137,13 +144,15 @@ static void pose_points(const tobi_pose *pose, int64_t n, const double (*rest)[3
 }
 
 /* Pure shifts keep the points' shape to the last bit, so they skip the matrix. */
-static void shift_points(const double shift[3], int64_t n, const double (*rest)[3], double (*position)[3])
+static void shift_points(const double shift[3], int64_t n, const double (*rest)[3],
+                         double (*position)[3])
 {
     for (int64_t i = 0; i < n; i++)
         for (int a = 0; a < 3; a++) position[i][a] = rest[i][a] + shift[a];
 }
 
-static void move_points(const tobi_pose *pose, int64_t n, const double (*rest)[3], double (*position)[3])
+static void move_points(const tobi_pose *pose, int64_t n, const double (*rest)[3],
+                        double (*position)[3])
 {
     if (pose->degrees == 0.0) shift_points(pose->shift, n, rest, position);
     else pose_points(pose, n, rest, position);

@@ -1,9 +1,9 @@
 /* Motion scripts on LuaJIT.
 
    Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
-   user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled into
-   it and runs at the speed of C. Endless loops end through the guards of script_guard.c, memory
-   through a counting allocator.
+   user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
+   into it and runs at the speed of C. Endless loops end through the guards of script_guard.c,
+   memory through a counting allocator.
 
    The optimiser's constant folding is off: it computes x^2 as x*x where the interpreter calls pow,
    and a restart, which begins interpreted, would not repeat the bits of a run that is compiled. */
@@ -34,7 +34,7 @@ struct tobi_script {
     double pivot[3];          /* m                                           */
 };
 
-/* Our side: gets the user's environment, returns the walks. `at` tells C which point was in work. */
+/* Our side: gets the user's environment, returns the walks. `at` tells C which point is in work. */
 static const char DRIVER[] =
     "local user, limit = ...\n"
     "local ffi, math, string = require('ffi'), math, string\n"
@@ -120,7 +120,8 @@ static void push_json(lua_State *lua, const json_t *value, int depth)
     if (depth > DEPTH_LIMIT) luaL_error(lua, "params are nested too deeply");
     if (json_is_number(value)) lua_pushnumber(lua, json_number_value(value));
     else if (json_is_boolean(value)) lua_pushboolean(lua, json_is_true(value));
-    else if (json_is_string(value)) lua_pushlstring(lua, json_string_value(value), json_string_length(value));
+    else if (json_is_string(value))
+        lua_pushlstring(lua, json_string_value(value), json_string_length(value));
     else if (json_is_array(value)) {
         lua_newtable(lua);
         for (size_t i = 0; i < json_array_size(value); i++) {
@@ -299,8 +300,9 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
     while (!failed && i < n && isfinite(position[i][0] + position[i][1] + position[i][2])) i++;
     if (!failed && i == n) return TOBI_OK;
     if (i >= n) return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s", script->path, why);
-    return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s (t = %.9g s, rest point %.6g %.6g %.6g)",
-                     script->path, why, t, rest[i][0], rest[i][1], rest[i][2]);
+    return tobi_fail(err, TOBI_SCRIPT,
+                     "motion script %s: %s (t = %.9g s, rest point %.6g %.6g %.6g)", script->path,
+                     why, t, rest[i][0], rest[i][1], rest[i][2]);
 }
 
 /* Axis to unit length; a turn needs one. */
@@ -311,8 +313,10 @@ static tobi_status set_turn(const tobi_script *script, double t, const double r[
     pose->degrees = r[6];
     if (r[6] == 0.0) return TOBI_OK;
     if (!(length > 0.0))
-        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: place returned a turn about a zero axis"
-                         " (t = %.9g s)", script->path, t);
+        return tobi_fail(err, TOBI_SCRIPT,
+                         "motion script %s: place returned a turn about a zero axis"
+                         " (t = %.9g s)",
+                         script->path, t);
     for (int a = 0; a < 3; a++) pose->axis[a] = r[3 + a] / length;
     return TOBI_OK;
 }
@@ -334,8 +338,10 @@ tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, to
         good = lua_type(lua, k + 1) == LUA_TNUMBER && isfinite(r[k]);
     }
     if (!good)
-        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: place must return three finite numbers "
-                         "(shift) or seven (shift, axis, degrees) (t = %.9g s)", script->path, t);
+        return tobi_fail(err, TOBI_SCRIPT,
+                         "motion script %s: place must return three finite numbers "
+                         "(shift) or seven (shift, axis, degrees) (t = %.9g s)",
+                         script->path, t);
     *pose = (tobi_pose){ .shift = { r[0], r[1], r[2] }, .axis = { 0.0, 0.0, 1.0 } };
     memcpy(pose->pivot, script->pivot, sizeof pose->pivot);
     return count == 7 ? set_turn(script, t, r, pose, err) : TOBI_OK;

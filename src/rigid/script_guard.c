@@ -1,9 +1,9 @@
 /* Loop guards by rewriting the text, token by token, before it is compiled.
 
-   LuaJIT's count hooks do not fire in compiled code, and timers are neither deterministic nor allowed
-   in a library. A call that counts works in both modes, costs about a nanosecond once compiled and
-   stops at the same place every time. Drawback: this file must know Lua's tokens (not its grammar).
-   The calls go on the same line, so line numbers in messages stay true. */
+   LuaJIT's count hooks do not fire in compiled code, and timers are neither deterministic nor
+   allowed in a library. A call that counts works in both modes, costs about a nanosecond once
+   compiled and stops at the same place every time. Drawback: this file must know Lua's tokens (not
+   its grammar). The calls go on the same line, so line numbers in messages stay true. */
 #include "rigid/script_guard.h"
 #include <ctype.h>
 #include <stdbool.h>
@@ -123,7 +123,8 @@ static void guard_word(scanner *s, const char *word, size_t length, bool *in_hea
         return;
     }
     emit(s, word, length);
-    if (equals(word, length, "do") || equals(word, length, "repeat")) emit(s, CALL, sizeof CALL - 1);
+    if (equals(word, length, "do") || equals(word, length, "repeat"))
+        emit(s, CALL, sizeof CALL - 1);
     if (equals(word, length, "function")) *in_header = true;
 }
 
@@ -139,7 +140,8 @@ char *tobi_script_guard(const char *text, size_t length, tobi_error *err)
         size_t n = (size_t)(s.p - from);
         if (is_word_start(*from) && equals(from, n, TOBI_SCRIPT_TICK)) {
             free(s.out);
-            tobi_fail(err, TOBI_SCRIPT, "line %d: the name '%s' is reserved", line, TOBI_SCRIPT_TICK);
+            tobi_fail(err, TOBI_SCRIPT, "line %d: the name '%s' is reserved", line,
+                      TOBI_SCRIPT_TICK);
             return NULL;
         }
         for (const char *q = from; q < s.p; q++) line += *q == '\n';

@@ -6,6 +6,6 @@
 /* Name of the counting function the guarded text calls; a script may not use it. */
 #define TOBI_SCRIPT_TICK "tick__"
 
-/* Returns the guarded copy of a Lua text (malloc, caller frees) with the same line numbers. NULL with
-   err set when memory is short or the text uses the reserved name. */
+/* Returns the guarded copy of a Lua text (malloc, caller frees) with the same line numbers. NULL
+   with err set when memory is short or the text uses the reserved name. */
 char *tobi_script_guard(const char *text, size_t length, tobi_error *err);

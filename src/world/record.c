@@ -99,7 +99,8 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_record_clear(run->dir, true, err));
     TOBI_TRY(tobi_state_load(run, &found, err));
     if (!found) {
-        snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0", run->dir);
+        snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0",
+                 run->dir);
         TOBI_TRY(tobi_world_start(run->world, err));
         return begin(run, err);
     }
@@ -159,7 +160,8 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
         if (info) *info = now;
     }
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
-    if (tobi_world_time(run->world) >= run->next_checkpoint) TOBI_TRY(tobi_run_checkpoint(run, err));
+    if (tobi_world_time(run->world) >= run->next_checkpoint)
+        TOBI_TRY(tobi_run_checkpoint(run, err));
     return TOBI_OK;
 }
 

@@ -1,7 +1,8 @@
 /* The recorder's insides, shared by record_*.c. See tobiuo/run.h for what it promises.
 
    What a resumed run must know besides the world itself is in two tobi_tally and a few totals;
-   record_state.c saves them beside each checkpoint. Everything else follows from the world's time. */
+   record_state.c saves them beside each checkpoint. Everything else follows from the world's time.
+ */
 #pragma once
 #include "base/error.h"
 #include "io/csv.h"
@@ -50,7 +51,8 @@ struct tobi_run {
 
 /* record_files.c: the directory. */
 /* dir/format..., owned by the caller; NULL without memory. */
-char *tobi_record_path(const char *dir, const char *format, ...) __attribute__((format(printf, 2, 3)));
+char *tobi_record_path(const char *dir, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 /* Makes dir and its parents, tells whether it holds results, locks it against other runs. */
 tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err);
 bool tobi_record_has_results(const char *dir);

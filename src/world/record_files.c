@@ -61,7 +61,8 @@ static tobi_status make_parents(const char *dir, tobi_error *err)
         char end = *p;
         *p = '\0';
         if (mkdir(path, 0777) != 0 && errno != EEXIST) {
-            status = tobi_fail(err, TOBI_IO, "cannot make the directory %s: %s", path, strerror(errno));
+            status =
+                tobi_fail(err, TOBI_IO, "cannot make the directory %s: %s", path, strerror(errno));
             break;
         }
         *p = end;
@@ -76,17 +77,20 @@ tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
     if (!*dir) return tobi_fail(err, TOBI_INVALID, "the name of the output directory is empty");
     TOBI_TRY(make_parents(dir, err));
     int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd < 0) return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, strerror(errno));
+    if (fd < 0)
+        return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, strerror(errno));
     *lock = fd;
     if (faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0)
-        return tobi_fail(err, TOBI_IO, "cannot write to the directory %s: %s", dir, strerror(errno));
+        return tobi_fail(err, TOBI_IO, "cannot write to the directory %s: %s", dir,
+                         strerror(errno));
     if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         return tobi_fail(err, TOBI_IO, "%s: another run is writing to this directory", dir);
     return TOBI_OK;
 }
 
 /* Calls visit for each of our files in dir; stops at the first that returns false. */
-static void visit_ours(const char *dir, bool (*visit)(void *user, const char *path, int kind), void *user)
+static void visit_ours(const char *dir, bool (*visit)(void *user, const char *path, int kind),
+                       void *user)
 {
     bool going = true;
     for (size_t k = 0; going && k < sizeof folders / sizeof *folders; k++) {

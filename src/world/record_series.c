@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- names ------------------------------------------------------------------------------------- */
+/* --- names ----------------------------------------------------------------------------- */
 
 static tobi_status find_field(const char *name, size_t length, tobi_record_field *field)
 {
@@ -30,13 +30,15 @@ static tobi_status read_fields(tobi_run *run, tobi_error *err)
         if (length == 0) break;
         tobi_record_field field;
         if (find_field(p, length, &field) != TOBI_OK)
-            return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s'", (int)length, p);
+            return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s'",
+                             (int)length, p);
         p += length;
         bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
         for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
         if (again) continue;
         if (run->field_count == TOBI_RECORD_FIELD_LIMIT)
-            return tobi_fail(err, TOBI_INVALID, "output.fields: more than %d", TOBI_RECORD_FIELD_LIMIT);
+            return tobi_fail(err, TOBI_INVALID, "output.fields: more than %d",
+                             TOBI_RECORD_FIELD_LIMIT);
         run->field[run->field_count++] = field;
     }
     return TOBI_OK;
@@ -81,7 +83,7 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
     return run->output.surfaces ? tobi_record_make_dir(run->dir, "surfaces", err) : TOBI_OK;
 }
 
-/* --- particles --------------------------------------------------------------------------------- */
+/* --- particles ------------------------------------------------------------------------- */
 
 /* Turns n doubles into the type they have in files, in a new array. */
 static void *convert(const double *from, int64_t n, int type)
@@ -89,7 +91,8 @@ static void *convert(const double *from, int64_t n, int type)
     void *to = malloc((size_t)n * tobi_type_size((tobi_vtk_type)type) + 1);
     if (!to) return NULL;
     if (type == TOBI_F32) for (int64_t i = 0; i < n; i++) ((float *)to)[i] = (float)from[i];
-    else if (type == TOBI_I32) for (int64_t i = 0; i < n; i++) ((int32_t *)to)[i] = (int32_t)from[i];
+    else if (type == TOBI_I32)
+        for (int64_t i = 0; i < n; i++) ((int32_t *)to)[i] = (int32_t)from[i];
     else for (int64_t i = 0; i < n; i++) ((int64_t *)to)[i] = (int64_t)from[i];
     return to;
 }
@@ -112,11 +115,13 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
 {
     int64_t n = tobi_world_count(run->world, set);
     tobi_vtk_array arrays[TOBI_RECORD_FIELD_LIMIT] = { 0 };
-    char *path = tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
+    char *path =
+        tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
     double *points = malloc((size_t)n * 3 * sizeof *points + 1);
     double *buffer = malloc((size_t)n * 3 * sizeof *buffer + 1);
     tobi_status status = TOBI_OK;
-    if (!path || !points || !buffer) status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (!path || !points || !buffer)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, n, err);
     if (status == TOBI_OK) status = read_arrays(run, set, buffer, n, arrays, err);
     if (status == TOBI_OK)
@@ -129,7 +134,7 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
     return status;
 }
 
-/* --- surfaces ---------------------------------------------------------------------------------- */
+/* --- surfaces -------------------------------------------------------------------------- */
 
 static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
 {
@@ -139,17 +144,19 @@ static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
     long long k = (long long)run->outputs;
     char *vtp = tobi_record_path(run->dir, "surfaces/%s_%06lld.vtp", run->body_file[body], k);
     char *stl = tobi_record_path(run->dir, "surfaces/%s_%06lld.stl", run->body_file[body], k);
-    tobi_status status = vtp && stl ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    tobi_status status =
+        vtp && stl ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     if (status == TOBI_OK)
         status = tobi_vtp_write(vtp, (tobi_compression)run->output.compression, &s, err);
     if (status == TOBI_OK)
-        status = tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
+        status =
+            tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
     free(vtp);
     free(stl);
     return status;
 }
 
-/* --- lists ------------------------------------------------------------------------------------- */
+/* --- lists ----------------------------------------------------------------------------- */
 
 /* NAME.pvd for files folder/NAME_000000.extension of the first `count` outputs. */
 static tobi_status write_list(const tobi_run *run, const char *name, const char *folder,
@@ -160,10 +167,12 @@ static tobi_status write_list(const tobi_run *run, const char *name, const char 
     char (*files)[ROOM] = malloc((size_t)count * sizeof *files + 1);
     char *path = tobi_record_path(run->dir, "%s.pvd", name);
     tobi_status status = TOBI_OK;
-    if (!entries || !files || !path) status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (!entries || !files || !path)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     for (int64_t k = 0; status == TOBI_OK && k < count; k++) {
         snprintf(files[k], ROOM, "%s/%s_%06lld.%s", folder, name, (long long)k, extension);
-        entries[k] = (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[k], .name = name };
+        entries[k] =
+            (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[k], .name = name };
     }
     if (status == TOBI_OK) status = tobi_pvd_write(path, entries, count, err);
     free(path);
@@ -182,7 +191,10 @@ static tobi_status write_lists(const tobi_run *run, int64_t count, tobi_error *e
     return TOBI_OK;
 }
 
-tobi_status tobi_series_lists(tobi_run *run, tobi_error *err) { return write_lists(run, run->outputs, err); }
+tobi_status tobi_series_lists(tobi_run *run, tobi_error *err)
+{
+    return write_lists(run, run->outputs, err);
+}
 
 tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
 {

@@ -14,25 +14,26 @@ enum { KEEP = 2, LIMIT = 256 };
 
 static char *checkpoint_path(const tobi_run *run, int64_t step, const char *extension)
 {
-    return tobi_record_path(run->dir, "checkpoints/checkpoint_%08lld.%s", (long long)step, extension);
+    return tobi_record_path(run->dir, "checkpoints/checkpoint_%08lld.%s", (long long)step,
+                            extension);
 }
 
 static json_t *tally_to_json(const tobi_tally *t)
 {
-    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "steps", (json_int_t)t->steps,
-                     "unconverged", (json_int_t)t->unconverged, "density_iterations", t->density_iterations,
-                     "divergence_iterations", t->divergence_iterations,
-                     "density_error_mean", t->density_error_mean, "density_error_max", t->density_error_max);
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "steps", (json_int_t)t->steps, "unconverged",
+                     (json_int_t)t->unconverged, "density_iterations", t->density_iterations,
+                     "divergence_iterations", t->divergence_iterations, "density_error_mean",
+                     t->density_error_mean, "density_error_max", t->density_error_max);
 }
 
 static bool tally_from_json(json_t *json, tobi_tally *t)
 {
     json_int_t steps = 0, unconverged = 0;
-    int answer = json_unpack(json, "{s:I, s:I, s:F, s:F, s:F, s:F}", "steps", &steps,
-                             "unconverged", &unconverged, "density_iterations", &t->density_iterations,
-                             "divergence_iterations", &t->divergence_iterations,
-                             "density_error_mean", &t->density_error_mean,
-                             "density_error_max", &t->density_error_max);
+    int answer =
+        json_unpack(json, "{s:I, s:I, s:F, s:F, s:F, s:F}", "steps", &steps, "unconverged",
+                    &unconverged, "density_iterations", &t->density_iterations,
+                    "divergence_iterations", &t->divergence_iterations, "density_error_mean",
+                    &t->density_error_mean, "density_error_max", &t->density_error_max);
     t->steps = steps;
     t->unconverged = unconverged;
     return answer == 0;
@@ -81,11 +82,12 @@ static void drop_old(const tobi_run *run, int64_t newest)
 tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 {
     int64_t step = tobi_world_info(run->world)->step;
-    json_t *json = json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o}", "step", (json_int_t)step,
-                             "time", tobi_world_time(run->world), "outputs", (json_int_t)run->outputs,
-                             "wall_s", run->wall + tobi_record_clock() - run->begun,
-                             "step_wall_s", run->step_wall, "particle_steps", run->particle_steps,
-                             "since_output", tally_to_json(&run->since), "total", tally_to_json(&run->total));
+    json_t *json =
+        json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o}", "step", (json_int_t)step, "time",
+                  tobi_world_time(run->world), "outputs", (json_int_t)run->outputs, "wall_s",
+                  run->wall + tobi_record_clock() - run->begun, "step_wall_s", run->step_wall,
+                  "particle_steps", run->particle_steps, "since_output", tally_to_json(&run->since),
+                  "total", tally_to_json(&run->total));
     char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
     tobi_status status = write_json(companion, json, err);
     if (status == TOBI_OK)
@@ -108,10 +110,10 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
     json_t *since = NULL, *total = NULL;
     json_int_t outputs = 0;
     double time = NAN;
-    bool good = json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o}", "time", &time, "outputs", &outputs,
-                            "wall_s", &run->wall, "step_wall_s", &run->step_wall,
-                            "particle_steps", &run->particle_steps, "since_output", &since,
-                            "total", &total) == 0;
+    bool good =
+        json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o}", "time", &time, "outputs", &outputs,
+                    "wall_s", &run->wall, "step_wall_s", &run->step_wall, "particle_steps",
+                    &run->particle_steps, "since_output", &since, "total", &total) == 0;
     good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total);
     run->outputs = outputs;
     json_decref(json);
@@ -124,8 +126,8 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
 static tobi_status load_one(tobi_run *run, int64_t step, tobi_error *err)
 {
     char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
-    tobi_status status = companion && state ? TOBI_OK
-                                            : tobi_fail(err, TOBI_NO_MEMORY, "checkpoint: out of memory");
+    tobi_status status =
+        companion && state ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "checkpoint: out of memory");
     if (status == TOBI_OK) status = tobi_world_load(run->world, state, err);
     if (status == TOBI_OK) status = read_companion(run, companion, err);
     free(companion);
@@ -142,7 +144,8 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
     for (int k = 0; k < count; k++) {
         tobi_status status = load_one(run, steps[k], &why);
         if (k == 0 && status != TOBI_OK) first = why;
-        if (status != TOBI_OK && status != TOBI_DAMAGED) return tobi_fail(err, status, "%s", why.text);
+        if (status != TOBI_OK && status != TOBI_DAMAGED)
+            return tobi_fail(err, status, "%s", why.text);
         if (status != TOBI_OK) continue;
         run->checkpoint_step = steps[k];
         snprintf(run->note, sizeof run->note, "resumed at t = %.9g s, step %lld%s%.800s",

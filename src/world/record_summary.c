@@ -7,7 +7,10 @@
 #include <string.h>
 #include <sys/resource.h>
 
-static double mean(double sum, const tobi_tally *t) { return t->steps ? sum / (double)t->steps : 0.0; }
+static double mean(double sum, const tobi_tally *t)
+{
+    return t->steps ? sum / (double)t->steps : 0.0;
+}
 
 /* JSON has no NaN; a diverged run may have some. */
 static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
@@ -65,7 +68,8 @@ tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_er
     json_t *json = make_summary(run, outcome);
     char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) : NULL;
     char *path = tobi_record_path(run->dir, "summary.json");
-    tobi_status status = text && path ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "summary: out of memory");
+    tobi_status status =
+        text && path ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "summary: out of memory");
     tobi_file file;
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {

@@ -54,7 +54,10 @@
     V3(B, "pressure_torque", b.pressure_torque)             \
     V3(B, "viscous_torque", b.viscous_torque)
 
-static double mean(double sum, const tobi_tally *s) { return s->steps ? sum / (double)s->steps : 0.0; }
+static double mean(double sum, const tobi_tally *s)
+{
+    return s->steps ? sum / (double)s->steps : 0.0;
+}
 
 static double norm(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
@@ -69,15 +72,16 @@ void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
 }
 
 static tobi_status open_table(const tobi_run *run, const char *name, bool continued,
-                              const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err)
+                              const tobi_csv_column *columns, int count, tobi_csv **csv,
+                              tobi_error *err)
 {
     char *path = tobi_record_path(run->dir, "%s", name);
     if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     tobi_status status = TOBI_OK;
     if (continued) status = tobi_csv_truncate(path, tobi_world_time(run->world), err);
     if (status == TOBI_OK || status == TOBI_NOT_FOUND)
-        status = tobi_csv_open(path, continued ? TOBI_CSV_APPEND : TOBI_CSV_NEW, DIGITS, columns, count,
-                               csv, err);
+        status = tobi_csv_open(path, continued ? TOBI_CSV_APPEND : TOBI_CSV_NEW, DIGITS, columns,
+                               count, csv, err);
     free(path);
     return status;
 }

@@ -1,5 +1,5 @@
-/* Motions: formulas against their definition, scripts against the same formulas in C, and everything
-   a script may not do. */
+/* Motions: formulas against their definition, scripts against the same formulas in C, and
+   everything a script may not do. */
 #include "rigid/motion.h"
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +41,8 @@ static void expect_bad(const char *text, const char *part)
     tobi_error err = { 0 };
     tobi_status status = load(text, NULL, &motion, &err);
     if (status != TOBI_SCRIPT || !strstr(err.text, part))
-        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
+        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text,
+                 part);
     assert_null(motion);
 }
 
@@ -56,7 +57,8 @@ static void expect_bad_at(const char *text, double t, const char *part)
         for (int a = 0; a < 3; a++) points[i][a] = 0.1 * i + a;
     tobi_status status = tobi_motion_positions(motion, t, 50, REST(points), moved, &err);
     if (status != TOBI_SCRIPT || !strstr(err.text, part))
-        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text, part);
+        fail_msg("script <%s>: status %d, message <%s>, expected <%s>", text, status, err.text,
+                 part);
     tobi_motion_free(motion);
 }
 
@@ -79,7 +81,7 @@ static void test_formulas(void **state)
     assert_int_equal(tobi_motion_rotation(pivot, axis, 45, &m, &err), TOBI_OK);
     assert_int_equal(tobi_motion_positions(m, 2.0, 2, rest, p, &err), TOBI_OK);
     assert_true(fabs(p[0][0] + 1) < 1e-14 && fabs(p[0][1]) < 1e-14 && fabs(p[0][2] - 3) < 1e-14);
-    assert_int_equal(tobi_motion_positions(m, 8.0, 2, rest, p, &err), TOBI_OK);   /* one full turn */
+    assert_int_equal(tobi_motion_positions(m, 8.0, 2, rest, p, &err), TOBI_OK); /* one full turn */
     assert_true(p[0][0] == 1 && p[0][1] == 2);
     tobi_motion_free(m);
 
@@ -88,7 +90,8 @@ static void test_formulas(void **state)
     assert_true(fabs(p[0][2] - (3 - 0.1 * sin(2 * PI * 4 * 0.3 + PI / 6))) < 1e-14 && p[0][0] == 1);
     tobi_motion_free(m);
 
-    assert_int_equal(tobi_motion_rotation((double[3]){ 0 }, (double[3]){ 0 }, 1, &m, &err), TOBI_INVALID);
+    assert_int_equal(tobi_motion_rotation((double[3]){ 0 }, (double[3]){ 0 }, 1, &m, &err),
+                     TOBI_INVALID);
     assert_int_equal(tobi_motion_translation((double[3]){ NAN, 0, 0 }, &m, &err), TOBI_INVALID);
     assert_null(m);
 }
@@ -137,7 +140,8 @@ static void test_mistakes_are_named(void **state)
     expect_bad_at("function deform(x, y, z, t)\n  return x, y\nend", 0, "three numbers");
     expect_bad_at("function deform(x, y, z, t) return x, y, z, 1 end", 0, "three numbers");
     expect_bad_at("function deform(x, y, z, t) return x, y, 'z' end", 0, "three numbers");
-    expect_bad_at("function deform(x, y, z, t) return x, y, z / (x - 1) * 0 end", 0, "rest point 1 2 3");
+    expect_bad_at("function deform(x, y, z, t) return x, y, z / (x - 1) * 0 end", 0,
+                  "rest point 1 2 3");
     expect_bad_at("function deform(x, y, z, t) return x, y, 1 / 0 end", 0.25, "t = 0.25 s");
     expect_bad_at("function deform(x, y, z, t)\n  return x, y, q\nend", 0, ":2: unknown name 'q'");
     expect_bad_at("function deform(x, y, z, t)\n  q = 1\n  return x, y, z\nend", 0, "write local");
@@ -151,11 +155,14 @@ static void test_mistakes_are_named(void **state)
 static void test_mathematics_only(void **state)
 {
     (void)state;
-    static const char *const names[] = { "io", "os", "require", "load", "loadstring", "loadfile", "dofile",
-        "ffi", "debug", "jit", "package", "module", "getfenv", "setfenv", "rawset", "rawget", "rawequal",
-        "setmetatable", "getmetatable", "pcall", "xpcall", "coroutine", "collectgarbage", "print", "_G",
-        "newproxy", "gcinfo", "string.dump", "string.rep", "string.gsub", "('x').rep", "('x').dump",
-        "math.random" };
+    static const char *const names[] = {
+        "io",           "os",         "require",    "load",        "loadstring",     "loadfile",
+        "dofile",       "ffi",        "debug",      "jit",         "package",        "module",
+        "getfenv",      "setfenv",    "rawset",     "rawget",      "rawequal",       "setmetatable",
+        "getmetatable", "pcall",      "xpcall",     "coroutine",   "collectgarbage", "print",
+        "_G",           "newproxy",   "gcinfo",     "string.dump", "string.rep",     "string.gsub",
+        "('x').rep",    "('x').dump", "math.random"
+    };
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char text[200];
         snprintf(text, sizeof text, "if %s ~= nil then error('FOUND') end", names[k]);
@@ -165,7 +172,8 @@ static void test_mathematics_only(void **state)
     expect_bad("local t = {} for i = 1, 1e12 do t[i] = {} end", "not enough memory");
 }
 
-/* Every kind of endless loop, at load, at once, and only later when the function is long compiled. */
+/* Every kind of endless loop, at load, at once, and only later when the function is long compiled.
+ */
 static void test_endless_loops_end(void **state)
 {
     (void)state;
@@ -178,7 +186,8 @@ static void test_endless_loops_end(void **state)
     expect_bad("local f = function(a, b) f2 = a return a(a, b) end f(f)", "endless");
     expect_bad("local s = [[ while ]] .. \"do ' \\\" \" while s do end", "endless");
     expect_bad_at("function deform(x, y, z, t) while true do end end", 0, "endless");
-    expect_bad_at("function place(t) repeat t = t + 1 until t < 0 return 0, 0, 0 end", 0, "endless");
+    expect_bad_at("function place(t) repeat t = t + 1 until t < 0 return 0, 0, 0 end", 0,
+                  "endless");
     expect_bad_at("function deform(x,y,z,t) if x > 3 then while true do end end return x,y,z end",
                   0, "endless");
 
@@ -206,8 +215,8 @@ static void test_endless_loops_end(void **state)
     tobi_motion_free(m);
 }
 
-/* Rewritten text must mean what it meant: jumps over locals, methods, strings and comments that look
-   like code. */
+/* Rewritten text must mean what it meant: jumps over locals, methods, strings and comments that
+   look like code. */
 static void test_guards_keep_the_meaning(void **state)
 {
     (void)state;
@@ -240,10 +249,11 @@ static void test_guards_keep_the_meaning(void **state)
 static void test_compiled_equals_interpreted(void **state)
 {
     (void)state;
-    const char *text = "local sin, sqrt, atan2 = math.sin, math.sqrt, math.atan2\n"
-                       "function deform(x, y, z, t)\n"
-                       "  return x ^ 2 + sin(7 * y) * x ^ 3, sqrt(x * x + z * z) % 0.3 + t ^ 2,\n"
-                       "         atan2(y, z) * math.exp(-x) + (1 - z) ^ 2 / 3 + x ^ 0.5 + 2 ^ y\nend";
+    const char *text =
+        "local sin, sqrt, atan2 = math.sin, math.sqrt, math.atan2\n"
+        "function deform(x, y, z, t)\n"
+        "  return x ^ 2 + sin(7 * y) * x ^ 3, sqrt(x * x + z * z) % 0.3 + t ^ 2,\n"
+        "         atan2(y, z) * math.exp(-x) + (1 - z) ^ 2 / 3 + x ^ 0.5 + 2 ^ y\nend";
     enum { N = 4000 };
     static double rest[N][3], batch[N][3];
     tobi_error err = { 0 };

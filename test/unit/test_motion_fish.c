@@ -1,5 +1,5 @@
-/* The flying fish's motion against the formulas it was written from, and its smoothness: a mesh that
-   follows it must not tear. */
+/* The flying fish's motion against the formulas it was written from, and its smoothness: a mesh
+   that follows it must not tear. */
 #include "rigid/motion.h"
 #include <math.h>
 #include <setjmp.h>
@@ -26,9 +26,11 @@ static tobi_motion *load_fish(double lag_angle)
     char params[600];
     snprintf(params, sizeof params,
              "{\"fishLength\": 0.2, \"fishWidth\": 0.02, \"LEPos\": 0.06, \"wingspan\": 0.2,"
-             "\"wingchord\": 0.04, \"waveLength\": 0.2, \"freq\": 10, \"amplitude\": 0.02, \"relax\": 0.2,"
+             "\"wingchord\": 0.04, \"waveLength\": 0.2, \"freq\": 10, \"amplitude\": 0.02, "
+             "\"relax\": 0.2,"
              "\"startPosition\": [0.4, 0.15, 0.08], \"swimmingPosition\": [0.227, 0.15, 0.22],"
-             "\"pitchAngle\": 30, \"lagAngle\": %g, \"translation\": [0.3, 0.15, 0.24]}", lag_angle);
+             "\"pitchAngle\": 30, \"lagAngle\": %g, \"translation\": [0.3, 0.15, 0.24]}",
+             lag_angle);
     tobi_motion *motion = NULL;
     tobi_error err = { 0 };
     if (tobi_motion_script(TOBI_SOURCE_DIR "/scenes/flying_fish/motion.lua", params, &motion, &err))
@@ -51,8 +53,8 @@ static double distance(const double a[3], const double b[3])
     return sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2));
 }
 
-/* At the nose there is no wave, and pitch turns it about the centre: the centre's path is that of the
-   point (0, 0, 0) without its y. */
+/* At the nose there is no wave, and pitch turns it about the centre: the centre's path is that of
+   the point (0, 0, 0) without its y. */
 static void test_path_and_speeds(void **state)
 {
     (void)state;
@@ -100,8 +102,8 @@ static void test_wave_and_pitch(void **state)
     tobi_motion_free(fish);
 }
 
-/* Angle of the leading edge against straight outward, seen in the fish at time t (wave removed by the
-   symmetry of both sides: its y shift is the same for both wings). */
+/* Angle of the leading edge against straight outward, seen in the fish at time t (wave removed by
+   the symmetry of both sides: its y shift is the same for both wings). */
 static double fold_angle(tobi_motion *fish, double t)
 {
     double right[3], left[3], root[3];
@@ -128,8 +130,8 @@ static void test_wings_fold_like_a_fan(void **state)
     tobi_motion_free(seed);
 }
 
-/* Points that are 10 um apart at rest, all over body and wings and over the wing root, stay close, and
-   no point jumps in time. */
+/* Points that are 10 um apart at rest, all over body and wings and over the wing root, stay close,
+   and no point jumps in time. */
 static void test_nothing_tears(void **state)
 {
     (void)state;
@@ -137,7 +139,8 @@ static void test_nothing_tears(void **state)
     double a[3], b[3], worst = 0;
     srand(1);
     for (int k = 0; k < 20000; k++) {
-        double t = 0.8 * rand() / RAND_MAX, u = (double)rand() / RAND_MAX, v = (double)rand() / RAND_MAX;
+        double t = 0.8 * rand() / RAND_MAX, u = (double)rand() / RAND_MAX,
+               v = (double)rand() / RAND_MAX;
         int wing = k % 3 != 0;
         double x = wing ? -LEAD + CHORD * u : -LENGTH / 2 + LENGTH * u;
         double y = wing ? HALF + WING * v * v * v : HALF * (2 * v - 1);
