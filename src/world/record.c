@@ -41,6 +41,7 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->begun = tobi_record_clock();
     if (!(output->interval > 0.0) || !isfinite(output->interval))
         return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
+    TOBI_TRY(tobi_series_fields(run, err));
     return tobi_record_open_dir(dir, &run->lock, err);
 }
 

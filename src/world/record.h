@@ -69,6 +69,9 @@ tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 
 /* record_series.c: VTU, VTP, STL, PNG and PVD. */
+/* Reads "velocity,pressure" of output.fields into run->field. */
+tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
+/* Names and folders. */
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
 /* The files of output run->outputs, then the lists including it. */
 tobi_status tobi_series_write(tobi_run *run, tobi_error *err);

@@ -20,8 +20,8 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
     return TOBI_NOT_FOUND;
 }
 
-/* Reads "velocity,pressure" into run->field; a name twice counts once. */
-static tobi_status read_fields(tobi_run *run, tobi_error *err)
+/* A name twice counts once. */
+tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 {
     run->field_count = 0;
     for (const char *p = run->output.fields ? run->output.fields : ""; *p;) {
@@ -73,7 +73,6 @@ static tobi_status name_bodies(tobi_run *run, tobi_error *err)
 
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
 {
-    TOBI_TRY(read_fields(run, err));
     TOBI_TRY(name_bodies(run, err));
     TOBI_TRY(tobi_record_make_dir(run->dir, "fluid", err));
     TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
