@@ -43,7 +43,7 @@ typedef struct tobi_dfsph_def {
     double pressure_tolerance;        /* 1, relative pressure residual both solves must also reach    */
     int    density_iterations_min, density_iterations_max;
     int    divergence_iterations_min, divergence_iterations_max;
-    double shifting;                  /* 1, particle shifting coefficient; 0 = off                    */
+    double filter;                    /* 1, share of the particle-scale motion taken out per step     */
 } tobi_dfsph_def;
 
 /* A fluid: one material. */

@@ -1,0 +1,209 @@
+#include "core/body.h"
+#include "base/error.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static tobi_status allocate(tobi_body *b, tobi_error *err)
+{
+    size_t v = (size_t)b->mesh.vertex_count, n = (size_t)b->surface.count, p = (size_t)b->particle_count;
+    b->vertex = malloc(v*sizeof *b->vertex);
+    b->next = malloc(v*sizeof *b->next);
+    b->vertex_velocity = calloc(v, sizeof *b->vertex_velocity);
+    b->point = malloc(n*sizeof *b->point);
+    b->normal = malloc(n*sizeof *b->normal);
+    b->point_velocity = calloc(n, sizeof *b->point_velocity);
+    b->area = malloc(n*sizeof *b->area);
+    b->particle = malloc(p*sizeof *b->particle);
+    if (b->vertex && b->next && b->vertex_velocity && b->point && b->normal && b->point_velocity && b->area && b->particle)
+        return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %zu surface points", b->name, n);
+}
+
+static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3], double (*out)[3], tobi_error *err)
+{
+    if (!b->motion) {
+        memcpy(out, rest, (size_t)n*sizeof *out);
+        return TOBI_OK;
+    }
+    return b->motion(b->motion_user, t, n, rest, out, err);
+}
+
+/* Vertices at t relative to the box. */
+static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3], tobi_error *err)
+{
+    TOBI_TRY(evaluate(b, t, b->mesh.vertex_count, (const double (*)[3])b->mesh.vertices, out, err));
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        for (int a = 0; a < 3; a++) out[i][a] -= b->lower[a];
+    return TOBI_OK;
+}
+
+/* Where the material at the rest centre is and how it is turned: three short axes through the motion,
+   made orthonormal. Exact for a rigid motion. */
+static tobi_status place_frame(tobi_body *b, double t, double centre[3], double frame[3][3], tobi_error *err)
+{
+    double arm = 0.01*cbrt(fabs(b->rest.volume)), rest[4][3], now[4][3];
+    for (int k = 0; k < 4; k++)
+        for (int a = 0; a < 3; a++) rest[k][a] = b->rest.centre[a] + (k == a + 1 ? arm : 0);
+    TOBI_TRY(evaluate(b, t, 4, (const double (*)[3])rest, now, err));
+    memcpy(centre, now[0], sizeof now[0]);
+    for (int k = 0; k < 3; k++) {
+        for (int a = 0; a < 3; a++) frame[k][a] = now[k + 1][a] - now[0][a];
+        for (int j = 0; j < k; j++) {
+            double dot = 0;
+            for (int a = 0; a < 3; a++) dot += frame[k][a]*frame[j][a];
+            for (int a = 0; a < 3; a++) frame[k][a] -= dot*frame[j][a];
+        }
+        double size = sqrt(frame[k][0]*frame[k][0] + frame[k][1]*frame[k][1] + frame[k][2]*frame[k][2]);
+        for (int a = 0; a < 3; a++) frame[k][a] = size > 0 ? frame[k][a]/size : (a == k);
+    }
+    return TOBI_OK;
+}
+
+/* Quaternion w x y z of the rotation whose columns are the frame's rows (Shepperd 1978). */
+static void to_quaternion(const double f[3][3], double q[4])
+{
+    double m[3][3], trace = f[0][0] + f[1][1] + f[2][2];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) m[r][c] = f[c][r];
+    if (trace > 0) {
+        double s = 2*sqrt(1 + trace);
+        q[0] = 0.25*s;
+        q[1] = (m[2][1] - m[1][2])/s; q[2] = (m[0][2] - m[2][0])/s; q[3] = (m[1][0] - m[0][1])/s;
+        return;
+    }
+    int i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2), j = (i + 1)%3, k = (i + 2)%3;
+    double s = 2*sqrt(fmax(1 + m[i][i] - m[j][j] - m[k][k], 1e-300));
+    q[0] = (m[k][j] - m[j][k])/s;
+    q[1 + i] = 0.25*s;
+    q[1 + j] = (m[j][i] + m[i][j])/s;
+    q[1 + k] = (m[k][i] + m[i][k])/s;
+}
+
+/* Angular velocity that turns frame `from` into `to` in dt: half the sum of axis cross products. */
+static void turn_rate(const double from[3][3], const double to[3][3], double dt, double omega[3])
+{
+    memset(omega, 0, 3*sizeof *omega);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) {
+            int b = (a + 1)%3, c = (a + 2)%3;
+            omega[a] += 0.5*(from[k][b]*to[k][c] - from[k][c]*to[k][b])/dt;
+        }
+}
+
+static void update_surface(tobi_body *b)
+{
+    tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
+    tobi_surface_update(&b->surface, (const double (*)[3])b->vertex, (const int32_t (*)[3])b->mesh.triangles,
+                        b->point, b->normal, b->area);
+}
+
+tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
+{
+    TOBI_TRY(move_vertices(b, t, b->vertex, err));
+    update_surface(b);
+    TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
+    memcpy(b->info.position, b->centre, sizeof b->centre);
+    to_quaternion((const double (*)[3])b->frame, b->info.orientation);
+    return TOBI_OK;
+}
+
+tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err)
+{
+    return evaluate(b, t, b->particle_count, (const double (*)[3])b->particle_rest, b->particle, err);
+}
+
+static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    TOBI_TRY(tobi_mesh_read(def->mesh, &b->mesh, err));
+    TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle, def->translation, err));
+    TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh, err));
+    if (def->motion && !def->motion_rigid) TOBI_TRY(tobi_mesh_refine(&b->mesh, 3*b->spacing, err));
+    return dimension == 3 ? tobi_massprops_volume(&b->mesh, &b->rest, err) : tobi_massprops_section(&b->mesh, &b->rest, err);
+}
+
+tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
+                             const double lower[3], tobi_error *err)
+{
+    memset(b, 0, sizeof *b);
+    if (!def->mesh || !def->mesh[0]) return tobi_fail(err, TOBI_INVALID, "body '%s' names no mesh", def->name ? def->name : "");
+    snprintf(b->name, sizeof b->name, "%s", def->name && def->name[0] ? def->name : "body");
+    b->density = def->density;
+    b->friction = def->friction;
+    b->spacing = def->spacing > 0 ? def->spacing : 2*point_spacing;
+    b->motion = def->motion;
+    b->motion_user = def->motion_user;
+    memcpy(b->lower, lower, sizeof b->lower);
+    tobi_status status = load_mesh(b, def, dimension, err);
+    if (status == TOBI_OK) status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
+    if (status == TOBI_OK)
+        status = tobi_sample_volume(&b->mesh, NULL, b->spacing, dimension, &b->particle_rest, &b->particle_count, err);
+    if (status == TOBI_OK) status = allocate(b, err);
+    if (status == TOBI_OK) status = move_vertices(b, 0, b->vertex, err);
+    if (status == TOBI_OK)
+        status = tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->vertex, b->mesh.triangle_count,
+                                (const int32_t (*)[3])b->mesh.triangles, &b->bvh, err);
+    if (status == TOBI_OK) status = tobi_body_place(b, 0, err);
+    if (status != TOBI_OK) {
+        tobi_body_free(b);
+        return status;
+    }
+    b->info.volume = b->rest.volume;
+    b->info.mass = b->density*b->rest.volume;
+    for (int k = 0; k < 9; k++) b->info.inertia[k] = b->density*b->rest.inertia[k];
+    b->info.particles = b->particle_count;
+    b->info.sampled_volume = (double)b->particle_count*pow(b->spacing, dimension);
+    return TOBI_OK;
+}
+
+void tobi_body_free(tobi_body *b)
+{
+    tobi_mesh_free(&b->mesh);
+    tobi_bvh_free(b->bvh);
+    tobi_surface_free(&b->surface);
+    free(b->vertex); free(b->next); free(b->vertex_velocity);
+    free(b->point); free(b->normal); free(b->point_velocity); free(b->area);
+    free(b->particle_rest); free(b->particle);
+    memset(b, 0, sizeof *b);
+}
+
+tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err)
+{
+    if (!b->motion) {
+        memcpy(b->next, b->vertex, (size_t)b->mesh.vertex_count*sizeof *b->next);
+        return TOBI_OK;
+    }
+    TOBI_TRY(move_vertices(b, t + dt, b->next, err));
+    double fastest = 0;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+        double v2 = 0;
+        for (int a = 0; a < 3; a++) {
+            b->vertex_velocity[i][a] = (b->next[i][a] - b->vertex[i][a])/dt;
+            v2 += b->vertex_velocity[i][a]*b->vertex_velocity[i][a];
+        }
+        fastest = fmax(fastest, v2);
+    }
+    *speed = fmax(*speed, sqrt(fastest));
+    tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
+                             (const double (*)[3])b->vertex_velocity, b->point_velocity);
+    return TOBI_OK;
+}
+
+tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err)
+{
+    if (!b->motion) return TOBI_OK;
+    double old_centre[3], old_frame[3][3];
+    memcpy(old_centre, b->centre, sizeof old_centre);
+    memcpy(old_frame, b->frame, sizeof old_frame);
+    double (*swap)[3] = b->vertex;
+    b->vertex = b->next;
+    b->next = swap;
+    update_surface(b);
+    TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
+    for (int a = 0; a < 3; a++) b->info.velocity[a] = (b->centre[a] - old_centre[a])/dt;
+    memcpy(b->info.position, b->centre, sizeof b->centre);
+    to_quaternion((const double (*)[3])b->frame, b->info.orientation);
+    turn_rate((const double (*)[3])old_frame, (const double (*)[3])b->frame, dt, b->info.angular_velocity);
+    return TOBI_OK;
+}

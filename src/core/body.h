@@ -1,0 +1,52 @@
+/* Bodies in the fluid: a closed surface of quadrature points that moves as its mesh moves, and the
+   body's own particles, which serve output only. */
+#pragma once
+#include "geom/bvh.h"
+#include "geom/massprops.h"
+#include "geom/mesh.h"
+#include "geom/sample.h"
+#include "geom/surface.h"
+#include "tobiuo/types.h"
+
+typedef struct tobi_body {
+    char name[64];
+    tobi_mesh mesh;                  /* rest pose, world coordinates                           */
+    tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
+    double density;                  /* kg/m3                                                  */
+    int friction;                    /* tobi_friction                                          */
+    double spacing;                  /* m, of the body's own particles                         */
+    tobi_motion_fn motion;           /* NULL = fixed                                           */
+    void *motion_user;
+    double lower[3];                 /* the box's lower corner: origin of what follows         */
+
+    double (*vertex)[3];             /* now                                                    */
+    double (*next)[3];               /* at the end of the step                                 */
+    double (*vertex_velocity)[3];    /* mean over the step                                     */
+    tobi_bvh *bvh;                   /* of `vertex`                                            */
+
+    tobi_surface surface;            /* quadrature points                                      */
+    double (*point)[3], (*normal)[3], (*point_velocity)[3];
+    double *area;
+
+    double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */
+    double (*particle)[3];           /* now, world coordinates                                 */
+    int64_t particle_count;
+
+    double centre[3];                /* centre of mass now, world coordinates                  */
+    double frame[3][3];              /* rows: where the rest axes point now, at the centre     */
+    tobi_body_info info;
+} tobi_body;
+
+/* Reads, places, checks and samples a body at time 0. point_spacing: of the quadrature points, m. */
+tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
+                             const double lower[3], tobi_error *err);
+void tobi_body_free(tobi_body *b);
+/* Puts the body where its motion has it at time t. */
+tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
+/* Moves the body's own particles to time t, for output. */
+tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
+/* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in
+   double: the central difference at its middle. *speed is raised to the fastest point. */
+tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err);
+/* Makes `next` the present pose at time t. */
+tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);

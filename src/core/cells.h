@@ -1,0 +1,73 @@
+/* The box, its cell grid, sorting by cell and the neighbour list.
+   A cell is at least one support radius wide, so neighbours lie in the 3^dim cells around. Cells along
+   x are contiguous; rows along x are grouped in strips along y, then z, so that the rows a sweep
+   touches stay in cache whatever the width of the domain. */
+#pragma once
+#include "core/particles.h"
+#include "exec/exec.h"
+
+/* The simulation box. Positions are measured from its lower corner. */
+typedef struct tobi_box {
+    int    dimension;
+    double lower[3];        /* m, world coordinates of the lower corner               */
+    double size[3];         /* m; z of a 2-D box is one support radius                */
+    int    periodic[3];
+    double to_fixed[3];     /* fixed-point units per metre                            */
+    float  from_fixed[3];   /* metres per fixed-point unit                            */
+    double centre[3];       /* m from the lower corner: fixed-point zero              */
+} tobi_box;
+
+void tobi_box_init(tobi_box *b, int dimension, const double lower[3], const double upper[3],
+                   const int periodic[3], double h);
+
+typedef struct tobi_cells {
+    int      n[3];          /* cells per axis                                         */
+    int      strip;         /* rows of cells along y kept together                    */
+    int      periodic[3];
+    double   inverse[3];    /* cells per metre                                        */
+    int64_t  total;         /* cells incl. padding of the last strip                  */
+    int32_t *start;         /* [total + 1] first particle of each cell                */
+    /* scratch of the sort; shares memory with the neighbour list */
+    int64_t *histogram;
+    int32_t *list;          /* neighbour indices, groups of 8 padded with the own index */
+    int64_t  list_capacity; /* in int32                                               */
+    int64_t  list_used;
+} tobi_cells;
+
+tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int64_t particles,
+                              const tobi_exec *x, tobi_error *err);
+void tobi_cells_free(tobi_cells *c);
+
+/* Wraps periodic positions, sorts all state fields by cell, fills start and the records. */
+void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi_exec *x);
+
+/* Index of the first cell of the row (y, z). */
+static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
+{
+    int strip = y/c->strip;
+    return (((int64_t)strip*c->n[2] + z)*c->strip + (y - strip*c->strip))*c->n[0];
+}
+
+/* What the neighbour search reads and writes. */
+typedef struct tobi_list_view {
+    const tobi_cells *cells;
+    const tobi_record *record;
+    const tobi_double3 *position;
+    int32_t  *list;
+    uint32_t *list_start;
+    uint16_t *list_groups;
+    int64_t   capacity;
+    int64_t  *used;         /* atomic counter, int32 entries                          */
+    int      *overflow;     /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
+    float     from_fixed[3];
+    float     h2;
+} tobi_list_view;
+
+/* Builds the list of all pairs nearer than h. TOBI_DIVERGED when particles crowd beyond sense. */
+tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
+                            tobi_error *err);
+
+/* The search kernel per instruction set (isa_neighbors.c). */
+void tobi_neighbors_v2(const void *view, int64_t begin, int64_t end, double *totals);
+void tobi_neighbors_v3(const void *view, int64_t begin, int64_t end, double *totals);
+void tobi_neighbors_v4(const void *view, int64_t begin, int64_t end, double *totals);

@@ -1,0 +1,448 @@
+/* Surface sums over the quadrature points a fluid particle sees (docs/theory/boundaries.md).
+   A point counts when it faces the particle and no part of the body lies between. For a function f(s)
+   of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
+   plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
+#include "core/simulation.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
+
+static double plane_value(const tobi_simulation *s, const float *table, double distance)
+{
+    double at = fmax(distance, 0)/s->smoothing.h*TOBI_PLANE_SAMPLES;
+    if (at >= TOBI_PLANE_SAMPLES) return 0;
+    int k = (int)at;
+    return table[k] + (at - k)*((double)table[k + 1] - table[k]);
+}
+
+static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, tobi_error *err)
+{
+    if (need <= *capacity) return TOBI_OK;
+    int64_t more = need + need/2 + 64;
+    void *q = realloc(*p, (size_t)more*size);
+    if (!q) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld entries near bodies", (long long)more);
+    *p = q;
+    *capacity = more;
+    return TOBI_OK;
+}
+
+static int bin_along(const tobi_near_bodies *n, int a, double x)
+{
+    double k = floor((x - n->bin_lower[a])/n->bin_width);
+    return k < 0 ? -1 : k >= n->bins[a] ? n->bins[a] : (int)k;
+}
+
+/* Sorts a body's points into cells of width h over its box. */
+static tobi_status fill_bins(tobi_simulation *s, const tobi_body *b, tobi_error *err)
+{
+    tobi_near_bodies *n = &s->near;
+    double lo[3], hi[3];
+    tobi_bvh_box(b->bvh, lo, hi);
+    int64_t total = 1;
+    n->bin_width = s->smoothing.h;
+    for (int a = 0; a < 3; a++) {
+        n->bin_lower[a] = lo[a];
+        n->bins[a] = a == 2 && s->box.dimension == 2 ? 1 : (int)fmin((hi[a] - lo[a])/n->bin_width + 1, 4096);
+        total *= n->bins[a];
+    }
+    if (s->box.dimension == 2) n->bin_lower[2] = -0.5*n->bin_width;
+    void *start = n->bin_start, *item = n->bin_item;
+    tobi_status status = grow(&start, &n->bin_capacity, total + 2, sizeof(int32_t), err);
+    n->bin_start = start;
+    TOBI_TRY(status);
+    status = grow(&item, &n->item_capacity, b->surface.count, sizeof(int32_t), err);
+    n->bin_item = item;
+    TOBI_TRY(status);
+    memset(n->bin_start, 0, (size_t)(total + 2)*sizeof(int32_t));
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t k = 0; k < b->surface.count; k++) {
+            int c[3];
+            for (int a = 0; a < 3; a++) {
+                c[a] = bin_along(n, a, b->point[k][a]);
+                c[a] = c[a] < 0 ? 0 : c[a] >= n->bins[a] ? n->bins[a] - 1 : c[a];
+            }
+            int64_t bin = ((int64_t)c[2]*n->bins[1] + c[1])*n->bins[0] + c[0];
+            if (pass == 0) n->bin_start[bin + 2]++;
+            else n->bin_item[n->bin_start[bin + 1]++] = (int32_t)k;
+        }
+        if (pass == 0)
+            for (int64_t c = 1; c <= total; c++) n->bin_start[c + 1] += n->bin_start[c];
+    }
+    return TOBI_OK;
+}
+
+/* Calls visit for every point of the cells around x; stops early when it answers nonzero. */
+typedef int (*visit_fn)(void *user, int32_t point);
+static int visit_points(const tobi_near_bodies *n, const double x[3], visit_fn visit, void *user)
+{
+    int c[3];
+    for (int a = 0; a < 3; a++) {
+        c[a] = bin_along(n, a, x[a]);
+        double beyond = c[a] < 0 ? n->bin_lower[a] - x[a] : x[a] - (n->bin_lower[a] + n->bins[a]*n->bin_width);
+        if ((c[a] < 0 || c[a] >= n->bins[a]) && beyond > n->bin_width) return 0;
+    }
+    for (int z = c[2] - 1; z <= c[2] + 1; z++)
+        for (int y = c[1] - 1; y <= c[1] + 1; y++)
+            for (int q = c[0] - 1; q <= c[0] + 1; q++) {
+                if (z < 0 || z >= n->bins[2] || y < 0 || y >= n->bins[1] || q < 0 || q >= n->bins[0]) continue;
+                int64_t bin = ((int64_t)z*n->bins[1] + y)*n->bins[0] + q;
+                for (int32_t k = n->bin_start[bin]; k < n->bin_start[bin + 1]; k++)
+                    if (visit(user, n->bin_item[k])) return 1;
+            }
+    return 0;
+}
+
+/* A particle's look at one body. */
+typedef struct look {
+    const tobi_simulation *s;
+    const tobi_body *b;
+    double x[3];
+    tobi_near_entry *entry;
+} look;
+
+/* Distance to the tangent plane if the point is near and faces the particle, else -1. */
+static double faces(const look *l, int32_t point, double r[3])
+{
+    for (int a = 0; a < 3; a++) r[a] = l->x[a] - l->b->point[point][a];
+    double h = l->s->smoothing.h;
+    if (dot(r, r) >= h*h || l->b->area[point] <= 0) return -1;
+    return dot(r, l->b->normal[point]);
+}
+
+static int sees_any(void *user, int32_t point)
+{
+    double r[3];
+    return faces(user, point, r) > 0;
+}
+
+/* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way. */
+static int hidden(const look *l, int32_t point)
+{
+    const tobi_near_entry *e = l->entry;
+    double d = l->s->smoothing.spacing, to[3], from_foot[3];
+    for (int a = 0; a < 3; a++) {
+        to[a] = l->b->point[point][a] + 1e-3*d*l->b->normal[point][a];
+        from_foot[a] = to[a] - e->foot[a];
+    }
+    return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
+}
+
+static int add_point(void *user, int32_t k)
+{
+    look *l = user;
+    const tobi_body *b = l->b;
+    const tobi_smoothing_constants *c = &l->s->smoothing;
+    tobi_near_entry *e = l->entry;
+    double r[3], s = faces(l, k, r);
+    if (!(s > 0) || hidden(l, k)) return 0;
+    const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->def.gravity;
+    double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
+    double sigma = plane_value(l->s, c->plane.sigma, s);
+    double reach = sigma > 0 ? plane_value(l->s, c->plane.lambda, s)/sigma : 0;
+    double arm[3], gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);
+    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
+    for (int a = 0; a < 3; a++) {
+        int p = (a + 1)%3, q = (a + 2)%3;
+        e->gradient[a] -= aw*n[a];
+        e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
+        e->lift[a] -= aw*gn*(s + reach)*n[a];
+    }
+    e->wall_flux -= aw*dot(n, v);
+    e->share += aw*reach;
+    if (b->friction == TOBI_NO_SLIP) {
+        double rate = 2*aw/fmax(s, 0.25*c->spacing);
+        e->drag += rate;
+        for (int a = 0; a < 3; a++) e->drag_velocity[a] += rate*v[a];
+    }
+    return 0;
+}
+
+static int look_at(look *l, int32_t i, int body)
+{
+    tobi_near_entry *e = l->entry;
+    tobi_bvh_hit hit;
+    memset(e, 0, sizeof *e);
+    e->particle = i;
+    e->body = (int16_t)body;
+    if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
+    e->distance = hit.signed_distance;
+    memcpy(e->foot, hit.point, sizeof e->foot);
+    memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
+    visit_points(&l->s->near, l->x, add_point, l);
+    e->share = fmin(e->share, 0.98);
+    return 1;
+}
+
+static void place_look(look *l, int64_t i)
+{
+    tobi_double3 q = l->s->particles.position[i];
+    l->x[0] = q.x; l->x[1] = q.y; l->x[2] = q.z;
+}
+
+/* Marks the particles that see body k in `delta` (free at this time) and counts them per block. */
+static void count_near(tobi_simulation *s, int k, int64_t blocks)
+{
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 4)
+    for (int64_t block = 0; block < blocks; block++) {
+        int64_t end = (block + 1)*TOBI_BLOCK, found = 0;
+        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
+            look l = {.s = s, .b = &s->bodies[k]};
+            place_look(&l, i);
+            int near = visit_points(&s->near, l.x, sees_any, &l);
+            s->particles.delta[i] = (float)near;
+            found += near;
+        }
+        s->near.block_count[block] = found;
+    }
+}
+
+static void fill_near(tobi_simulation *s, int k, int64_t first, int64_t blocks)
+{
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 4)
+    for (int64_t block = 0; block < blocks; block++) {
+        int64_t end = (block + 1)*TOBI_BLOCK, at = first + s->near.block_count[block];
+        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
+            if (s->particles.delta[i] == 0) continue;
+            look l = {.s = s, .b = &s->bodies[k], .entry = &s->near.entry[at]};
+            place_look(&l, i);
+            if (!look_at(&l, (int32_t)i, k)) l.entry->distance = s->smoothing.h;
+            l.entry->previous = s->particles.near[i];
+            s->particles.near[i] = (int32_t)at++;
+        }
+    }
+}
+
+tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &s->near;
+    int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    n->count = 0;
+    void *p = n->block_count;
+    tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
+    n->block_count = p;
+    TOBI_TRY(status);
+    memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
+    for (int k = 0; k < s->body_count; k++) {
+        TOBI_TRY(fill_bins(s, &s->bodies[k], err));
+        count_near(s, k, blocks);
+        int64_t found = tobi_scan(&s->exec, blocks, n->block_count);
+        p = n->entry;
+        status = grow(&p, &n->capacity, n->count + found, sizeof *n->entry, err);
+        n->entry = p;
+        TOBI_TRY(status);
+        fill_near(s, k, n->count, blocks);
+        n->count += found;
+    }
+    return TOBI_OK;
+}
+
+static const tobi_near_entry *next_entry(const tobi_simulation *s, const tobi_near_entry *e)
+{
+    return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
+}
+
+/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the nearer id asks. */
+static int separated(const tobi_simulation *s, int64_t i, int64_t j)
+{
+    const tobi_particles *p = &s->particles;
+    const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
+    double d[3] = {(int32_t)((uint32_t)p->record[i].x - (uint32_t)p->record[j].x)/s->box.to_fixed[0],
+                   (int32_t)((uint32_t)p->record[i].y - (uint32_t)p->record[j].y)/s->box.to_fixed[1],
+                   (int32_t)((uint32_t)p->record[i].z - (uint32_t)p->record[j].z)/s->box.to_fixed[2]};
+    double length = sqrt(dot(d, d)), x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    for (; a; a = next_entry(s, a))
+        for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
+            if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
+            double to[3], ra[3], rb[3];
+            for (int c = 0; c < 3; c++) {
+                to[c] = x[c] - d[c];
+                ra[c] = to[c] - a->foot[c];
+                rb[c] = to[c] + d[c] - b->foot[c];
+            }
+            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
+            const tobi_bvh *tree = s->bodies[a->body].bvh;
+            if (p->id[i] < p->id[j] ? tobi_bvh_segment_hits(tree, x, to) : tobi_bvh_segment_hits(tree, to, x)) return 1;
+        }
+    return 0;
+}
+
+void tobi_near_cut_pairs(tobi_simulation *s)
+{
+    const tobi_particles *p = &s->particles;
+    int64_t cut = 0;
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
+    for (int64_t k = 0; k < s->near.count; k++) {
+        int64_t i = s->near.entry[k].particle;
+        if (p->near[i] != k) continue;      /* once per particle */
+        int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
+        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+            int32_t j = list[g];
+            if (j == i || p->near[j] < 0 || !separated(s, i, j)) continue;
+            list[g] = (int32_t)i;
+            cut++;
+        }
+    }
+    s->near.cut_pairs = cut/2;
+}
+
+/* Runs over the entries of all particles; one particle's entries are handled together. */
+#define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
+    _Pragma("omp parallel for num_threads((s)->exec.threads) schedule(static)")                            \
+    for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
+        for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
+            for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
+
+void tobi_near_add_gradients(tobi_simulation *s)
+{
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_float4 *w = &s->particles.wall[i];
+        w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
+        w->w += (float)e->wall_flux;
+        s->particles.density[i] = 1 - (1 - s->particles.density[i])*(1 - (float)e->share);
+    }
+}
+
+/* Acceleration by lift and friction of one entry, for velocity u. */
+static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, const double u[3], double lift[3], double drag[3])
+{
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[e->particle]];
+    double nu = f->viscosity/f->density, a[3];
+    for (int c = 0; c < 3; c++) {
+        lift[c] = e->lift[c];
+        a[c] = nu*(e->drag_velocity[c] - e->drag*u[c]);
+    }
+    double normal = dot(a, e->foot_normal);
+    for (int c = 0; c < 3; c++) drag[c] = a[c] - normal*e->foot_normal[c];
+}
+
+void tobi_near_add_forces(tobi_simulation *s)
+{
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_float4 *v = &s->particles.velocity[i];
+        double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
+        entry_accel(s, e, u, lift, drag);
+        tobi_near_entry *own = (tobi_near_entry *)e;   /* kept for the reaction */
+        memcpy(own->lift, lift, sizeof lift);
+        memcpy(own->friction, drag, sizeof drag);
+        v->x += (float)(s->dt*(lift[0] + drag[0]));
+        v->y += (float)(s->dt*(lift[1] + drag[1]));
+        v->z += (float)(s->dt*(lift[2] + drag[2]));
+    }
+}
+
+/* Sums of the reactions on one body over the entries. */
+typedef struct reaction { const tobi_simulation *s; int body; int viscous; } reaction;
+
+static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const reaction *r = view;
+    const tobi_simulation *s = r->s;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_near_entry *e = &s->near.entry[k];
+        if (e->body != r->body) continue;
+        const tobi_body *b = &s->bodies[e->body];
+        double mass = s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].density, force[3], arm[3];
+        const double *accel = r->viscous ? e->friction : e->lift;
+        for (int a = 0; a < 3; a++) {
+            force[a] = -mass*accel[a];
+            arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
+        }
+        double push = r->viscous ? 0 : 2*s->smoothing.volume*s->particles.pressure[e->particle];
+        for (int a = 0; a < 3; a++) {
+            int p = (a + 1)%3, q = (a + 2)%3;
+            t[a] += force[a] + push*e->gradient[a];
+            t[3 + a] += arm[p]*force[q] - arm[q]*force[p] + push*e->torque_arm[a];
+        }
+    }
+}
+
+void tobi_near_body_forces(tobi_simulation *s)
+{
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_body_info *info = &s->bodies[k].info;
+        double t[TOBI_TOTALS];
+        reaction r = {s, k, 0};
+        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        memcpy(info->pressure_force, t, 3*sizeof *t);
+        memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
+        r.viscous = 1;
+        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        memcpy(info->viscous_force, t, 3*sizeof *t);
+        memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
+    }
+}
+
+/* Puts one particle outside; the impulse it loses goes to t[0..5]. */
+static int push_particle(tobi_simulation *s, const tobi_body *b, int64_t i, double *t)
+{
+    tobi_bvh_hit hit;
+    tobi_double3 *q = &s->particles.position[i];
+    double x[3] = {q->x, q->y, q->z}, least = 0.2*s->smoothing.spacing, u[3], arm[3];
+    if (!tobi_bvh_closest(b->bvh, x, s->smoothing.h, &hit) || hit.signed_distance >= least) return 0;
+    const int32_t *tri = b->mesh.triangles[hit.triangle];
+    tobi_float4 *v = &s->particles.velocity[i];
+    double *w[3] = {b->vertex_velocity[tri[0]], b->vertex_velocity[tri[1]], b->vertex_velocity[tri[2]]};
+    for (int a = 0; a < 3; a++)
+        u[a] = (&v->x)[a] - (hit.barycentric[0]*w[0][a] + hit.barycentric[1]*w[1][a] + hit.barycentric[2]*w[2][a]);
+    double into = dot(u, hit.normal);
+    q->x = hit.point[0] + least*hit.normal[0];
+    q->y = hit.point[1] + least*hit.normal[1];
+    if (s->box.dimension == 3) q->z = hit.point[2] + least*hit.normal[2];
+    if (into >= 0) return 1;
+    double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+    for (int a = 0; a < 3; a++) {
+        (&v->x)[a] -= (float)(into*hit.normal[a]);
+        arm[a] = hit.point[a] + b->lower[a] - b->centre[a];
+    }
+    for (int a = 0; a < 3; a++) {
+        int p = (a + 1)%3, r = (a + 2)%3;
+        t[a] += mass*into*hit.normal[a];
+        t[3 + a] += mass*into*(arm[p]*hit.normal[r] - arm[r]*hit.normal[p]);
+    }
+    return 1;
+}
+
+typedef struct pusher { tobi_simulation *s; const tobi_body *b; double lo[3], hi[3]; } pusher;
+
+static void push_range(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const pusher *p = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double *x = &p->s->particles.position[i].x;
+        int outside = 0;
+        for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
+        if (!outside && push_particle(p->s, p->b, i, t)) t[6] += 1;
+    }
+}
+
+void tobi_near_push_out(tobi_simulation *s)
+{
+    s->near.contacts = 0;
+    for (int k = 0; k < s->body_count; k++) {
+        double t[TOBI_TOTALS];
+        pusher p = {.s = s, .b = &s->bodies[k]};
+        tobi_bvh_box(p.b->bvh, p.lo, p.hi);
+        for (int a = 0; a < 3; a++) {
+            p.lo[a] -= s->smoothing.spacing;
+            p.hi[a] += s->smoothing.spacing;
+        }
+        tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
+        tobi_body_info *info = &s->bodies[k].info;
+        for (int a = 0; a < 3; a++) {
+            info->pressure_force[a] += t[a]/s->dt;
+            info->pressure_torque[a] += t[3 + a]/s->dt;
+        }
+        s->near.contacts += (int64_t)t[6];
+    }
+}
+
+void tobi_near_free(tobi_near_bodies *n)
+{
+    free(n->entry);
+    free(n->block_count);
+    free(n->bin_start);
+    free(n->bin_item);
+    memset(n, 0, sizeof *n);
+}

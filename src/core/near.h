@@ -1,0 +1,51 @@
+/* The fluid particles near bodies and what they see of them. */
+#pragma once
+#include "core/body.h"
+#include "core/cells.h"
+
+/* What one fluid particle sees of one body. particles.near names a particle's last entry. */
+typedef struct tobi_near_entry {
+    int32_t particle;
+    int16_t body;
+    int32_t previous;         /* the particle's entry for an earlier body, -1 = none              */
+    double gradient[3];       /* G = -sum A W n, 1/m                                              */
+    double torque_arm[3];     /* -sum A W (x_b - centre) x n                                      */
+    double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
+    double share;             /* lambda: share of the kernel inside or behind the body            */
+    double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
+    double friction[3];       /* acceleration by no-slip friction in this step                    */
+    double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
+    double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */
+    double foot[3];           /* closest point on the body, relative to the box                   */
+    double foot_normal[3];    /* outward                                                          */
+    double distance;          /* signed distance to the body, m                                   */
+} tobi_near_entry;
+
+typedef struct tobi_near_bodies {
+    tobi_near_entry *entry;
+    int64_t count, capacity;
+    int64_t contacts;         /* particles pushed out in this step                                */
+    int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
+    int64_t *block_count;     /* entries per block of particles, scratch of the search            */
+    int64_t block_capacity;
+    int32_t *bin_start, *bin_item;   /* points of one body by cell of width h                     */
+    int64_t bin_capacity, item_capacity;
+    int bins[3];
+    double bin_lower[3], bin_width;
+} tobi_near_bodies;
+
+struct tobi_simulation;
+/* Finds the entries at the bodies' present pose and velocities, writes particles.near. */
+tobi_status tobi_near_find(struct tobi_simulation *s, tobi_error *err);
+/* Replaces neighbours that lie behind a body by the particle itself in the list. */
+void tobi_near_cut_pairs(struct tobi_simulation *s);
+/* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the planes' part). */
+void tobi_near_add_gradients(struct tobi_simulation *s);
+/* Adds dt times lift and no-slip friction of the bodies to the velocities. */
+void tobi_near_add_forces(struct tobi_simulation *s);
+/* Forces and torques on every body of the pressure and the friction of this step. */
+void tobi_near_body_forces(struct tobi_simulation *s);
+/* Puts particles that the body's new pose has caught, or that came nearer than 0.2 d, back outside:
+   their speed into the body is taken, the impulse counts as pressure force. */
+void tobi_near_push_out(struct tobi_simulation *s);
+void tobi_near_free(tobi_near_bodies *near);

@@ -1,0 +1,54 @@
+/* The fluid's particle arrays. One list says every field: allocation, sorting, checkpoint, hashing
+   and output read it. Arrays are laid out [own | ghost] (no ghosts on one rank) and padded so that
+   eight rows may be read past the end. */
+#pragma once
+#include "base/error.h"
+#include "exec/portable.h"
+
+/* STATE fields survive a step: they are sorted with the particles and stored in checkpoints.
+   SCRATCH fields are recomputed every step. */
+enum { TOBI_STATE = 1, TOBI_SCRATCH = 2 };
+
+/*   type          name                 kind          unit     meaning                                     */
+#define TOBI_PARTICLE_FIELDS(X)                                                                              \
+    X(tobi_double3, position,            TOBI_STATE,   "m",     "position from the domain's lower corner")   \
+    X(tobi_float4,  velocity,            TOBI_STATE,   "m/s",   "velocity; w unused")                        \
+    X(float,        pressure,            TOBI_STATE,   "Pa",    "pressure")                                  \
+    X(int64_t,      id,                  TOBI_STATE,   "1",     "stable particle id")                        \
+    X(uint8_t,      fluid,               TOBI_STATE,   "1",     "fluid index")                               \
+    X(tobi_record,  record,              TOBI_SCRATCH, "1",     "fixed-point position, payload of the pass") \
+    X(tobi_float4,  accel,               TOBI_SCRATCH, "m/s2",  "acceleration of the pass")                  \
+    X(tobi_float4,  wall,                TOBI_SCRATCH, "1/m",   "wall gradient G; w = G . wall velocity")    \
+    X(float,        density,             TOBI_SCRATCH, "1",     "density over rest density")                 \
+    X(float,        diagonal,            TOBI_SCRATCH, "m/kg",  "diagonal of the pressure operator")         \
+    X(float,        precondition,        TOBI_SCRATCH, "kg/m",  "1/diagonal, 0 where pressure is held")      \
+    X(float,        residual,            TOBI_SCRATCH, "1/s2",  "residual of the pressure equation")         \
+    X(float,        product,             TOBI_SCRATCH, "1/s2",  "operator times search direction; after the density pass the averaged pressure") \
+    X(float,        delta,               TOBI_SCRATCH, "Pa",    "pressure change of this solve")             \
+    X(float,        correction,          TOBI_SCRATCH, "Pa",    "potential of the position correction")      \
+    X(uint8_t,      surface,             TOBI_SCRATCH, "1",     "1 at a free surface")                       \
+    X(int32_t,      near,                TOBI_SCRATCH, "1",     "last near-body entry, -1 = none")          \
+    X(uint32_t,     list_start,          TOBI_SCRATCH, "8",     "first neighbour, in groups of 8")           \
+    X(uint16_t,     list_groups,         TOBI_SCRATCH, "8",     "neighbour groups of 8")
+
+typedef struct tobi_particles {
+    int64_t count, capacity;
+#define X(type, name, kind, unit, doc) type *name;
+    TOBI_PARTICLE_FIELDS(X)
+#undef X
+} tobi_particles;
+
+/* Allocates every field for `capacity` particles; count becomes 0. */
+tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, tobi_error *err);
+void tobi_particles_free(tobi_particles *p);
+/* Bytes per particle of all fields, without neighbour lists. */
+int64_t tobi_particles_row_bytes(void);
+
+/* Reorders every STATE field: row k takes the old row order[k]. scratch holds count rows of the widest
+   state field (tobi_particles_widest bytes each). */
+void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads);
+int64_t tobi_particles_widest(void);
+
+/* Walks the state fields, for checkpoints: name and pointer by index, NULL past the end. */
+typedef struct tobi_field_ref { const char *name; void *data; size_t bytes; } tobi_field_ref;
+tobi_field_ref tobi_particles_state(tobi_particles *p, int index);

@@ -1,0 +1,44 @@
+#include "core/simulation.h"
+#include <math.h>
+#include <string.h>
+
+void tobi_stage_end(tobi_stages *st, const char *name, double *since)
+{
+    double now = tobi_clock();
+    int k = 0;
+    while (k < st->count && strcmp(st->name[k], name) != 0) k++;
+    if (k == st->count) {
+        if (k == TOBI_STAGE_LIMIT) return;
+        st->name[k] = name;
+        st->seconds[k] = 0;
+        st->count++;
+    }
+    st->seconds[k] += now - *since;
+    *since = now;
+}
+
+/* totals: kinetic, potential, momentum x y z, mass. Potential against the box's lower corner. */
+static void measure_range(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const tobi_simulation *s = view;
+    for (int64_t i = begin; i < end; i++) {
+        double m = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+        tobi_float4 v = s->particles.velocity[i];
+        const double *x = &s->particles.position[i].x;
+        t[0] += 0.5*m*((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
+        for (int a = 0; a < s->box.dimension; a++) t[1] -= m*s->def.gravity[a]*x[a];
+        t[2] += m*v.x; t[3] += m*v.y; t[4] += m*v.z;
+        t[5] += m;
+    }
+}
+
+void tobi_simulation_measure(tobi_simulation *s)
+{
+    double t[TOBI_TOTALS], g2 = 0;
+    tobi_launch(&s->exec, measure_range, s, 0, s->particles.count, t);
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    s->info.kinetic_energy = t[0];
+    s->info.potential_energy = t[1];
+    for (int a = 0; a < 3; a++) s->info.momentum[a] = t[2 + a];
+    s->info.weight = t[5]*sqrt(g2);
+}

@@ -1,0 +1,62 @@
+/* What every particle method steps: the box, the particles, the fluids, the bodies, the clock. */
+#pragma once
+#include "core/body.h"
+#include "core/cells.h"
+#include "core/near.h"
+#include "core/particles.h"
+#include "core/smoothing.h"
+#include "tobiuo/types.h"
+
+enum { TOBI_FLUID_LIMIT = 8, TOBI_STAGE_LIMIT = 16 };
+
+typedef struct tobi_fluid { char name[64]; double density, viscosity; } tobi_fluid;
+
+/* Stage timers of a step, in the order of first use. */
+typedef struct tobi_stages {
+    const char *name[TOBI_STAGE_LIMIT];
+    double seconds[TOBI_STAGE_LIMIT];
+    int count;
+} tobi_stages;
+
+typedef struct tobi_simulation {
+    tobi_world_def def;             /* strings inside are not used after creation            */
+    tobi_exec exec;
+    tobi_box box;
+    tobi_smoothing_constants smoothing;
+    tobi_cells cells;
+    tobi_particles particles;
+    tobi_fluid fluid[TOBI_FLUID_LIMIT];
+    int fluid_count;
+    tobi_body *bodies;
+    int body_count;
+    tobi_near_bodies near;          /* fluid particles that see a body                       */
+    double time, dt;                /* s; dt of the last step                                */
+    int64_t step;
+    double body_speed;              /* m/s, fastest body point of the last step              */
+    tobi_step_info info;            /* of the last step                                      */
+    tobi_stages stages;
+} tobi_simulation;
+
+/* A particle method: one static struct in one file, listed in world/methods.c. */
+typedef struct tobi_method {
+    const char *name;
+    const char *doc;
+    size_t def_size;                                             /* of the parameter struct        */
+    /* Smoothing kernel and support radius the parameters ask for. */
+    void (*smoothing)(const void *def, int *shape, double *support);
+    tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);
+    tobi_status (*step)(tobi_simulation *s, void *state, double max_dt, tobi_error *err);
+    /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. */
+    tobi_status (*refresh)(tobi_simulation *s, void *state, tobi_error *err);
+    /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
+    void (*derive)(tobi_simulation *s, void *state, const char *field);
+    /* Doubles that must survive a restart besides the particles (time-step history and the like). */
+    int (*memory)(void *state, double **values);
+    void (*free)(void *state);
+} tobi_method;
+
+/* Energies, momentum and weight of the fluid into s->info. */
+void tobi_simulation_measure(tobi_simulation *s);
+
+/* Adds the seconds since *since to a stage and moves *since to now. */
+void tobi_stage_end(tobi_stages *st, const char *name, double *since);

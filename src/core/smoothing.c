@@ -1,0 +1,107 @@
+/* Lattice normalisation. A kernel that integrates to one does not sum to one on a lattice (Wendland
+   at 2 d sums to 1.034). Instead of changing the particle mass, which is exactly rho0 d^3, the kernel
+   is normalised on the lattice: the sum of V W is 1 and a linear field has its exact gradient. */
+#include "core/smoothing.h"
+#define TOBI_SCALAR_LANES
+#include "core/smoothing.k.h"
+#include <math.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* Integral normalisation of the shape, 1/m^dim. */
+static double norm(int shape, int dimension, double h)
+{
+    if (shape == TOBI_SHAPE_WENDLAND)
+        return dimension == 3 ? 21/(2*PI*h*h*h) : 7/(PI*h*h);
+    return dimension == 3 ? 8/(PI*h*h*h) : 40/(7*PI*h*h);
+}
+
+double tobi_smoothing_w(int shape, int dimension, double h, double r)
+{
+    double q = r/h, t = 1 - q, u = 0.5 - q;
+    if (q >= 1) return 0;
+    if (shape == TOBI_SHAPE_WENDLAND) return norm(shape, dimension, h)*t*t*t*t*(1 + 4*q);
+    return norm(shape, dimension, h)*(2*t*t*t - (u > 0 ? 8*u*u*u : 0));
+}
+
+double tobi_smoothing_f(int shape, int dimension, double h, double r)
+{
+    double q = r/h, t = 1 - q, u = 0.5 - q;
+    if (q >= 1) return 0;
+    if (shape == TOBI_SHAPE_WENDLAND) return norm(shape, dimension, h)*20/(h*h)*t*t*t;
+    return norm(shape, dimension, h)*6/h*(t*t - (u > 0 ? 4*u*u : 0))/(r > 0 ? r : 1e-30);
+}
+
+/* Sums over lattice neighbours: kernel, second moment xx, gradient of those with x > 0, V F. */
+typedef struct lattice_sums { double w, moment, slope_half, rate; } lattice_sums;
+
+static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
+{
+    lattice_sums s = {0};
+    int n = (int)ceil(h/d), nz = dimension == 3 ? n : 0;
+    double v = dimension == 3 ? d*d*d : d*d;
+    for (int k = -nz; k <= nz; k++)
+        for (int j = -n; j <= n; j++)
+            for (int i = -n; i <= n; i++) {
+                double x = i*d, y = j*d, z = k*d, r2 = x*x + y*y + z*z, r = sqrt(r2);
+                s.w += v*tobi_smoothing_w(shape, dimension, h, r);
+                if (r2 == 0) continue;
+                double f = v*tobi_smoothing_f(shape, dimension, h, r);
+                s.rate += f;
+                s.moment += f*x*x;
+                if (i > 0) s.slope_half += f*x;
+            }
+    return s;
+}
+
+/* Integral of the kernel over the plane at distance z (over a line in 2-D). */
+static double integrate_plane(int shape, int dimension, double h, double z)
+{
+    enum { N = 200 };
+    double end = sqrt(fmax(h*h - z*z, 0)), sum = 0;
+    for (int i = 0; i < N; i++) {
+        double a = (i + 0.5)*end/N, w = tobi_smoothing_w(shape, dimension, h, sqrt(a*a + z*z));
+        sum += w*(dimension == 3 ? 2*PI*a : 2);
+    }
+    return sum*end/N;
+}
+
+static void fill_plane(tobi_smoothing_constants *c, double slope_half)
+{
+    enum { N = TOBI_PLANE_SAMPLES };
+    double h = c->h, step = h/N, lambda = 0, sigma[N + 2];
+    for (int k = 0; k <= N; k++) sigma[k] = integrate_plane(c->shape, c->dimension, h, k*step);
+    memset(&c->plane, 0, sizeof c->plane);
+    for (int k = N - 1; k >= 0; k--) {
+        lambda += 0.5*step*(sigma[k] + sigma[k + 1]);
+        c->plane.lambda[k] = (float)lambda;
+        c->plane.sigma[k] = (float)sigma[k];
+    }
+    /* Scale sigma to what a lattice particle at s = d/2 needs against a uniform pressure. */
+    double at = 0.5*c->spacing/step;
+    int k = (int)at;
+    double value = c->plane.sigma[k] + (at - k)*(c->plane.sigma[k + 1] - c->plane.sigma[k]);
+    double scale = slope_half*c->slope_correction/value;
+    c->plane_scale = scale;
+    for (k = 0; k <= N; k++) c->plane.sigma[k] *= (float)scale;
+}
+
+void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing, double support)
+{
+    double h = support*spacing;
+    lattice_sums s = sum_lattice(shape, dimension, spacing, h);
+    memset(c, 0, sizeof *c);
+    c->shape = shape;
+    c->dimension = dimension;
+    c->spacing = spacing;
+    c->h = h;
+    c->volume = dimension == 3 ? spacing*spacing*spacing : spacing*spacing;
+    c->weight_correction = 1/s.w;
+    c->slope_correction = 1/s.moment;
+    c->rate = s.rate*c->slope_correction;
+    double n = norm(shape, dimension, h)*c->volume;
+    c->weight = n*c->weight_correction;
+    c->slope = n*(shape == TOBI_SHAPE_WENDLAND ? 20/(h*h) : 6/h)*c->slope_correction;
+    fill_plane(c, s.slope_half);
+}

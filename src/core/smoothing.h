@@ -1,0 +1,34 @@
+/* Constants of a smoothing kernel at one spacing: lattice normalisation and what a plane wall sees. */
+#pragma once
+#include "base/error.h"
+
+enum { TOBI_PLANE_SAMPLES = 512 };
+
+/* Functions of the distance s to a plane wall, tabulated over 0 <= s <= h.
+     lambda(s)  kernel integral over the half space behind the plane
+     sigma(s)   kernel integral over the plane = -dlambda/ds, 1/m */
+typedef struct tobi_plane_table {
+    float lambda[TOBI_PLANE_SAMPLES + 2];
+    float sigma[TOBI_PLANE_SAMPLES + 2];
+} tobi_plane_table;
+
+typedef struct tobi_smoothing_constants {
+    int    shape;          /* TOBI_SHAPE_*                                                       */
+    int    dimension;
+    double spacing;        /* d, m                                                               */
+    double h;              /* support radius, m                                                  */
+    double volume;         /* V = d^dimension, m3 (m2 in 2-D: per metre depth)                   */
+    double weight;         /* V W = weight shape(q); sum over the lattice = 1                    */
+    double slope;          /* V grad W = -slope falloff(q) dx; linear fields exact on the lattice */
+    double rate;           /* lattice sum of V F, 1/m2: the scale of particle-wise differences   */
+    double weight_correction, slope_correction; /* against the integral norm */
+    double plane_scale;    /* sigma over the plain integral; also scales W at body points          */
+    tobi_plane_table plane;
+} tobi_smoothing_constants;
+
+/* kernel: TOBI_SHAPE_*; support in spacings, 2 to 4. */
+void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing, double support);
+
+/* W and -dW/dr / r in double with the integral normalisation (1/m^dim); the reference the tests use. */
+double tobi_smoothing_w(int shape, int dimension, double h, double r);
+double tobi_smoothing_f(int shape, int dimension, double h, double r);

@@ -1,0 +1,155 @@
+#include "exec/exec.h"
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { RADIX_BITS = 11, RADIX = 1 << RADIX_BITS };
+
+static int find_isa(void)
+{
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd")) return 4;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma")) return 3;
+#endif
+    return 2;
+}
+
+tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err)
+{
+    memset(x, 0, sizeof *x);
+    if (threads < 0) return tobi_fail(err, TOBI_INVALID, "threads is %d, allowed is 0 (all cores) or more", threads);
+    x->threads = threads > 0 ? threads : omp_get_num_procs();
+    x->isa = find_isa();
+    const char *wish = getenv("TOBIUO_ISA");   /* tests compare instruction sets with this */
+    if (wish && atoi(wish) >= 2 && atoi(wish) < x->isa) x->isa = atoi(wish);
+    return tobi_exec_reserve(x, TOBI_BLOCK, err);
+}
+
+void tobi_exec_free(tobi_exec *x)
+{
+    free(x->partial);
+    x->partial = NULL;
+    x->partial_blocks = 0;
+}
+
+tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err)
+{
+    int64_t blocks = (n + TOBI_BLOCK - 1)/TOBI_BLOCK + 1;
+    if (blocks <= x->partial_blocks) return TOBI_OK;
+    double *p = realloc(x->partial, (size_t)blocks*TOBI_TOTALS*sizeof *p);
+    if (!p) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the sums of %lld particles", (long long)n);
+    x->partial = p;
+    x->partial_blocks = blocks;
+    return TOBI_OK;
+}
+
+/* Pairwise over blocks: error grows with log n, order fixed by n alone. */
+static void combine(double *p, int64_t blocks, double *totals)
+{
+    for (int64_t step = 1; step < blocks; step *= 2)
+        for (int64_t b = 0; b + step < blocks; b += 2*step) {
+            double *a = p + b*TOBI_TOTALS, *c = p + (b + step)*TOBI_TOTALS;
+            for (int k = 0; k < TOBI_SUMS; k++) a[k] += c[k];
+            for (int k = TOBI_SUMS; k < TOBI_TOTALS; k++) if (c[k] > a[k]) a[k] = c[k];
+        }
+    memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
+}
+
+void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end, double *totals)
+{
+    int64_t blocks = (end - begin + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    if (totals) memset(totals, 0, TOBI_TOTALS*sizeof *totals);
+    if (blocks <= 0) return;
+    double *partial = x->partial;
+    #pragma omp parallel for schedule(dynamic, 4) num_threads(x->threads) if (blocks > 1)
+    for (int64_t b = 0; b < blocks; b++) {
+        double sums[TOBI_TOTALS] = {0};
+        int64_t first = begin + b*TOBI_BLOCK, last = first + TOBI_BLOCK;
+        kernel(view, first, last < end ? last : end, sums);
+        if (totals) memcpy(partial + b*TOBI_TOTALS, sums, sizeof sums);
+    }
+    if (totals) combine(partial, blocks, totals);
+}
+
+int64_t tobi_sort_histogram_size(const tobi_exec *x) { return (int64_t)x->threads*RADIX; }
+
+/* One stable pass on RADIX_BITS bits: every thread counts and moves its own contiguous part. */
+static void sort_pass(tobi_exec *x, int64_t n, int shift, const uint32_t *key_in, const int32_t *index_in,
+                      uint32_t *key_out, int32_t *index_out, int64_t *histogram)
+{
+    #pragma omp parallel num_threads(x->threads)
+    {
+        int t = omp_get_thread_num(), count = omp_get_num_threads();
+        int64_t first = n*t/count, last = n*(t + 1)/count;
+        int64_t *mine = histogram + (int64_t)t*RADIX;
+        memset(mine, 0, RADIX*sizeof *mine);
+        for (int64_t i = first; i < last; i++) mine[(key_in[i] >> shift) & (RADIX - 1)]++;
+        #pragma omp barrier
+        #pragma omp single
+        {
+            int64_t sum = 0;
+            for (int d = 0; d < RADIX; d++)
+                for (int s = 0; s < count; s++) {
+                    int64_t c = histogram[(int64_t)s*RADIX + d];
+                    histogram[(int64_t)s*RADIX + d] = sum;
+                    sum += c;
+                }
+        }
+        for (int64_t i = first; i < last; i++) {
+            int64_t at = mine[(key_in[i] >> shift) & (RADIX - 1)]++;
+            key_out[at] = key_in[i];
+            index_out[at] = index_in ? index_in[i] : (int32_t)i;
+        }
+    }
+}
+
+void tobi_sort_by_key(tobi_exec *x, int64_t n, uint32_t key_limit, uint32_t *keys, int32_t *order,
+                      uint32_t *key_scratch, int32_t *order_scratch, int64_t *histogram)
+{
+    /* An even number of passes ends in the caller's arrays. */
+    int passes = 2;
+    while (passes*RADIX_BITS < 32 && (key_limit >> (passes*RADIX_BITS)) != 0) passes += 2;
+    for (int p = 0; p < passes; p += 2) {
+        sort_pass(x, n, p*RADIX_BITS, keys, p ? order : NULL, key_scratch, order_scratch, histogram);
+        sort_pass(x, n, (p + 1)*RADIX_BITS, key_scratch, order_scratch, keys, order, histogram);
+    }
+}
+
+/* One int64 per 4096 counts fits into the block totals, which hold 8 doubles per 512 items. */
+int64_t tobi_scan(tobi_exec *x, int64_t n, int64_t *counts)
+{
+    enum { PART = 4096 };
+    int64_t parts = (n + PART - 1)/PART, total = 0;
+    int64_t *base = (int64_t *)x->partial;
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t p = 0; p < parts; p++) {
+        int64_t s = 0;
+        for (int64_t i = p*PART; i < n && i < (p + 1)*PART; i++) s += counts[i];
+        base[p] = s;
+    }
+    for (int64_t p = 0; p < parts; p++) {
+        int64_t s = base[p];
+        base[p] = total;
+        total += s;
+    }
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t p = 0; p < parts; p++) {
+        int64_t s = base[p];
+        for (int64_t i = p*PART; i < n && i < (p + 1)*PART; i++) {
+            int64_t c = counts[i];
+            counts[i] = s;
+            s += c;
+        }
+    }
+    return total;
+}
+
+double tobi_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
+}

@@ -1,0 +1,41 @@
+/* Where loops run. A kernel is a function over a range of particles; exec cuts [begin, end) into
+   blocks of fixed size, runs them on threads in any order and combines the totals of the blocks in
+   one fixed order: the result does not depend on the number of threads. */
+#pragma once
+#include "base/error.h"
+#include "exec/portable.h"
+
+enum { TOBI_BLOCK = 512 };
+
+/* Runs over [begin, end) of one block. totals[0..5] are summed over all blocks, totals[6..7] are
+   maxima (start at 0); all eight are zero on entry. */
+typedef void (*tobi_kernel)(const void *view, int64_t begin, int64_t end, double *totals);
+
+typedef struct tobi_exec {
+    int threads;             /* OpenMP threads of every launch          */
+    int isa;                 /* 2, 3 or 4: x86-64 level of the kernels  */
+    double *partial;         /* block totals, grown when needed         */
+    int64_t partial_blocks;
+} tobi_exec;
+
+/* threads = 0 takes all cores. */
+tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err);
+void tobi_exec_free(tobi_exec *x);
+/* Makes room for sums over n items, so that launches never allocate. */
+tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
+
+/* Runs kernel over [begin, end); totals (TOBI_TOTALS doubles) may be NULL. */
+void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end, double *totals);
+
+/* Stable radix sort of keys (each < key_limit) with their indices 0..n-1. On return keys are sorted
+   and order[k] is the old index of rank k. The three scratch arrays hold n entries each. */
+void tobi_sort_by_key(tobi_exec *x, int64_t n, uint32_t key_limit, uint32_t *keys, int32_t *order,
+                      uint32_t *key_scratch, int32_t *order_scratch, int64_t *histogram);
+/* Entries of `histogram` for the above. */
+int64_t tobi_sort_histogram_size(const tobi_exec *x);
+
+/* Exclusive prefix sum in place over n counts; returns the total. */
+int64_t tobi_scan(tobi_exec *x, int64_t n, int64_t *counts);
+
+/* Wall-clock seconds, for stage timers only. */
+double tobi_clock(void);

@@ -1,0 +1,131 @@
+/* The one header that knows which compiler reads a kernel, and how wide it computes.
+   A kernel file (*.k.h) is plain arithmetic on `lane`: eight floats at once in the production build
+   (GNU vectors), one float in CUDA and in the test oracles (TOBI_SCALAR_LANES). Eight lanes and one
+   reduction tree on every instruction set, so that AVX2 and AVX-512 give the same bits. */
+#pragma once
+#include <math.h>
+#include <stdint.h>
+
+#if defined(__CUDACC__)
+#  define TOBI_FN static __host__ __device__ __forceinline__
+#  define TOBI_RESTRICT __restrict__
+#elif defined(__cplusplus)
+#  define TOBI_FN static inline __attribute__((always_inline))
+#  define TOBI_RESTRICT __restrict__
+#else
+#  define TOBI_FN static inline __attribute__((always_inline))
+#  define TOBI_RESTRICT restrict
+#endif
+
+typedef struct tobi_float4 { float x, y, z, w; } tobi_float4;
+/* Fixed-point position over the domain (see docs/decisions/0002) and one float for the pass. */
+typedef struct tobi_record { int32_t x, y, z; float w; } tobi_record;
+typedef struct tobi_double3 { double x, y, z; } tobi_double3;
+
+#if defined(__CUDACC__) || defined(__cplusplus) || defined(TOBI_SCALAR_LANES)
+
+enum { TOBI_LANES = 1 };
+typedef float lane;
+typedef int32_t lane_int;
+TOBI_FN lane lane_set(float a) { return a; }
+TOBI_FN lane_int lane_load_index(const int32_t *p) { return *p; }
+TOBI_FN lane_int lane_set_int(int32_t a) { return a; }
+TOBI_FN lane lane_sqrt(lane a) { return sqrtf(a); }
+TOBI_FN lane lane_from_int(lane_int a) { return (float)a; }
+TOBI_FN lane lane_positive(lane a) { return a > 0 ? a : 0; }
+TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f) { return a == b ? t : f; }
+TOBI_FN float lane_sum(lane a) { return a; }
+TOBI_FN lane_int lane_sub_wrap(int32_t a, lane_int b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
+TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x, lane *y, lane *z, lane *w)
+{
+    tobi_float4 a = base[*j];
+    *x = a.x; *y = a.y; *z = a.z; *w = a.w;
+}
+TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y, lane_int *z, lane *w)
+{
+    tobi_record a = base[*j];
+    *x = a.x; *y = a.y; *z = a.z; *w = a.w;
+}
+
+#else
+
+#if defined(__AVX__)
+#  include <immintrin.h>
+#elif defined(__SSE2__)
+#  include <emmintrin.h>
+#endif
+enum { TOBI_LANES = 8 };
+#pragma GCC diagnostic ignored "-Wpsabi"   /* every lane function is inlined, no ABI is crossed */
+typedef float   lane     __attribute__((vector_size(32)));
+typedef int32_t lane_int __attribute__((vector_size(32)));
+typedef float   lane_half_ __attribute__((vector_size(16)));
+
+TOBI_FN lane lane_set(float a) { return (lane){a, a, a, a, a, a, a, a}; }
+TOBI_FN lane_int lane_set_int(int32_t a) { return (lane_int){a, a, a, a, a, a, a, a}; }
+TOBI_FN lane_int lane_load_index(const int32_t *p)
+{
+    lane_int v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+TOBI_FN lane lane_sqrt(lane a)
+{
+#if defined(__AVX__)
+    return (lane)_mm256_sqrt_ps((__m256)a);
+#elif defined(__SSE2__)
+    lane_half_ l = __builtin_shufflevector(a, a, 0, 1, 2, 3), h = __builtin_shufflevector(a, a, 4, 5, 6, 7);
+    l = (lane_half_)_mm_sqrt_ps((__m128)l);
+    h = (lane_half_)_mm_sqrt_ps((__m128)h);
+    return __builtin_shufflevector(l, h, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+    for (int k = 0; k < 8; k++) a[k] = sqrtf(a[k]);
+    return a;
+#endif
+}
+TOBI_FN lane lane_from_int(lane_int a) { return __builtin_convertvector(a, lane); }
+TOBI_FN lane lane_positive(lane a) { return (lane)((lane_int)a & (a > 0)); }
+TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f)
+{
+    lane_int m = a == b;
+    return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
+}
+/* One tree on every machine: (0+4)+(2+6) + (1+5)+(3+7). */
+TOBI_FN float lane_sum(lane a)
+{
+    lane_half_ b = __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
+    return (b[0] + b[2]) + (b[1] + b[3]);
+}
+/* a - b modulo 2^32: wraps around periodic sides. */
+TOBI_FN lane_int lane_sub_wrap(int32_t a, lane_int b)
+{
+    typedef uint32_t lane_uint __attribute__((vector_size(32)));
+    return (lane_int)((lane_uint)lane_set_int(a) - (lane_uint)b);
+}
+/* Loads eight 16-byte rows and transposes them into four lanes. */
+TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x, lane *y, lane *z, lane *w)
+{
+    lane_half_ a[8];
+    for (int k = 0; k < 8; k++) __builtin_memcpy(&a[k], base + j[k], 16);
+    lane r0 = __builtin_shufflevector(a[0], a[4], 0, 1, 2, 3, 4, 5, 6, 7);
+    lane r1 = __builtin_shufflevector(a[1], a[5], 0, 1, 2, 3, 4, 5, 6, 7);
+    lane r2 = __builtin_shufflevector(a[2], a[6], 0, 1, 2, 3, 4, 5, 6, 7);
+    lane r3 = __builtin_shufflevector(a[3], a[7], 0, 1, 2, 3, 4, 5, 6, 7);
+    lane t0 = __builtin_shufflevector(r0, r1, 0, 8, 1, 9, 4, 12, 5, 13);
+    lane t1 = __builtin_shufflevector(r2, r3, 0, 8, 1, 9, 4, 12, 5, 13);
+    lane t2 = __builtin_shufflevector(r0, r1, 2, 10, 3, 11, 6, 14, 7, 15);
+    lane t3 = __builtin_shufflevector(r2, r3, 2, 10, 3, 11, 6, 14, 7, 15);
+    *x = __builtin_shufflevector(t0, t1, 0, 1, 8, 9, 4, 5, 12, 13);
+    *y = __builtin_shufflevector(t0, t1, 2, 3, 10, 11, 6, 7, 14, 15);
+    *z = __builtin_shufflevector(t2, t3, 0, 1, 8, 9, 4, 5, 12, 13);
+    *w = __builtin_shufflevector(t2, t3, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y, lane_int *z, lane *w)
+{
+    lane fx, fy, fz;
+    lane_load_float4((const tobi_float4 *)(const void *)base, j, &fx, &fy, &fz, w);
+    *x = (lane_int)fx; *y = (lane_int)fy; *z = (lane_int)fz;
+}
+#endif
+
+/* Kernels launched over a range add into sums[0..5] and raise sums[6..7] (see exec.h). */
+enum { TOBI_SUMS = 6, TOBI_MAXIMA = 2, TOBI_TOTALS = TOBI_SUMS + TOBI_MAXIMA };

@@ -1,0 +1,343 @@
+/* DFSPH (Bender & Koschier 2015, 2017): a divergence-free velocity and a constant density, by two
+   pressure equations that share one symmetric matrix-free operator. Two things differ from the paper:
+   - The density equation moves positions and leaves velocities alone. In the paper its correction
+     e/dt enters the velocity, so that every rearrangement of particles becomes kinetic energy and the
+     pressure carries the noise of e/dt^2. Here pressure is what makes the velocity divergence-free.
+   - Conjugate gradients with warm start replace the Jacobi sweeps: the same two pair passes per
+     iteration, convergence with the depth of the water, not its square.
+   Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
+#include "sph/dfsph.h"
+#include "sph/kernels.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Share of the kernel average in the pressure a step starts from. */
+static const float PRESSURE_SMOOTHING = 0.02f;
+
+typedef struct dfsph {
+    tobi_dfsph_def def;
+    sph_view view;
+    const sph_kernels *kernel;
+    /* survives a restart */
+    struct { double speed, accel, head, dt; } memory;
+} dfsph;
+
+/* A run of conjugate gradients on A p = s. */
+typedef struct solve {
+    double tolerance;             /* on the mean of |r| dt^2                                     */
+    double relative_tolerance;    /* on |r|/|s|                                                  */
+    double source;                /* |s|^2 in the norm of the diagonal                           */
+    int min, max;
+    /* results */
+    int iterations, converged;
+    double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
+    double head;                  /* max |p|/rho, m2/s2                                          */
+} solve;
+
+static void launch(tobi_simulation *s, dfsph *m, tobi_kernel k, double *totals)
+{
+    tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
+}
+
+static void choose_smoothing(const void *def, int *shape, double *support)
+{
+    const tobi_dfsph_def *d = def;
+    *shape = d->kernel;
+    *support = d->support;
+}
+
+static void bind_planes(const tobi_simulation *s, sph_view *v)
+{
+    v->plane_count = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (s->box.periodic[a]) continue;
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP};
+        v->plane[v->plane_count++] = (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP};
+    }
+}
+
+static void bind_view(const tobi_simulation *s, dfsph *m)
+{
+    const tobi_particles *p = &s->particles;
+    const tobi_smoothing_constants *c = &s->smoothing;
+    sph_view *v = &m->view;
+    v->count = p->count;
+    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
+    v->wall = p->wall; v->density = p->density; v->diagonal = p->diagonal; v->precondition = p->precondition;
+    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
+    v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
+    v->list = s->cells.list;
+    memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
+    v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
+    v->weight = (float)c->weight; v->slope = (float)c->slope;
+    v->spacing = (float)c->spacing; v->volume = (float)c->volume;
+    v->dimension = c->dimension;
+    v->surface_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->table = &c->plane;
+    for (int f = 0; f < s->fluid_count; f++) {
+        v->inverse_density[f] = (float)(1/s->fluid[f].density);
+        v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
+    }
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
+}
+
+static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+{
+    dfsph *m = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
+    m->def = *(const tobi_dfsph_def *)def;
+    m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
+    bind_planes(s, &m->view);
+    *state = m;
+    return TOBI_OK;
+}
+
+static int list_memory(void *state, double **values)
+{
+    dfsph *m = state;
+    *values = &m->memory.speed;
+    return 4;
+}
+
+/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/|a|), 0.125 h^2/nu): the pressure keeps particles
+   apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve. Not above a tenth more than the last; the rest
+   up to max_dt is shared evenly, so that no sliver of a step is left. */
+static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
+{
+    double d = s->smoothing.spacing, h = s->smoothing.h, dt, g2 = 0;
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    if (s->def.time_step > 0) {
+        dt = s->def.time_step;
+    } else {
+        double speed = fmax(m->memory.speed, s->body_speed), accel = fmax(sqrt(g2), m->memory.accel);
+        dt = 0.25*sqrt(d/fmax(accel, 1e-12));
+        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + m->memory.head, 1e-24)));
+        for (int f = 0; f < s->fluid_count; f++)
+            if (s->fluid[f].viscosity > 0)
+                dt = fmin(dt, 0.125*h*h*s->fluid[f].density/s->fluid[f].viscosity);
+        if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
+        if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
+        m->memory.dt = dt;
+    }
+    if (max_dt <= 0 || dt < 0.5*max_dt) return dt;
+    return dt < max_dt ? 0.5*max_dt : max_dt;
+}
+
+static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)
+{
+    s->dt = choose_dt(s, m, max_dt);
+    m->view.dt = (float)s->dt;
+    m->view.inverse_dt = (float)(1/s->dt);
+}
+
+/* Conjugate gradients from the state a residual kernel left: r, payload z = r/diagonal, totals rz, |r|. */
+static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
+{
+    const sph_kernels *k = m->kernel;
+    double t[TOBI_TOTALS] = {start[0], start[1]}, rz = start[0];
+    double scale = s->dt*s->dt/(double)s->particles.count;
+    for (q->iterations = 0;; q->iterations++) {
+        q->error = t[1]*scale;
+        q->relative = sqrt(t[0]/fmax(q->source, 1e-300));
+        q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
+        if (!(t[0] > 0) || q->iterations >= q->max) break;
+        if (q->converged && q->iterations >= q->min) break;
+        if (q->iterations > 0) {
+            m->view.beta = (float)(t[0]/rz);
+            rz = t[0];
+            launch(s, m, k->sph_cg_direction, NULL);
+        }
+        launch(s, m, k->sph_pressure_accel, NULL);
+        launch(s, m, k->sph_product, t);
+        if (!(t[0] > 0)) break;
+        m->view.alpha = (float)(rz/t[0]);
+        launch(s, m, k->sph_cg_update, t);
+    }
+    launch(s, m, k->sph_correct_pressure, t);
+    q->head = t[6];
+}
+
+static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+{
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
+    tobi_stage_end(&s->stages, "sort", clock);
+    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
+    bind_view(s, m);
+    tobi_stage_end(&s->stages, "neighbours", clock);
+    return TOBI_OK;
+}
+
+static tobi_status see_bodies(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+{
+    launch(s, m, m->kernel->sph_walls, NULL);
+    if (s->body_count > 0) {
+        TOBI_TRY(tobi_near_find(s, err));
+        tobi_near_cut_pairs(s);
+        tobi_near_add_gradients(s);
+    }
+    tobi_stage_end(&s->stages, "walls and bodies", clock);
+    return TOBI_OK;
+}
+
+static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, double *clock)
+{
+    double t[TOBI_TOTALS];
+    m->view.pressure = s->particles.pressure;
+    m->view.smooth = smoothing;
+    launch(s, m, m->kernel->sph_density, t);
+    s->info.density_error_mean = t[0]/(double)s->particles.count;
+    s->info.density_error_max = t[6];
+    tobi_stage_end(&s->stages, "density", clock);
+}
+
+/* The bodies' velocities over the coming step. */
+static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    s->body_speed = 0;
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+    tobi_stage_end(&s->stages, "motion", clock);
+    return TOBI_OK;
+}
+
+static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
+{
+    double scale = 2*s->smoothing.rate;
+    m->view.filter = (float)(m->def.filter/(s->dt*scale*scale));
+    launch(s, m, m->kernel->sph_laplacian, NULL);
+    launch(s, m, m->kernel->sph_kick, NULL);
+    if (s->body_count > 0) tobi_near_add_forces(s);
+    tobi_stage_end(&s->stages, "forces", clock);
+}
+
+/* Pressure of the step: v becomes divergence-free. */
+static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
+{
+    const sph_kernels *k = m->kernel;
+    double t[TOBI_TOTALS];
+    m->view.pressure = s->particles.pressure;
+    launch(s, m, k->sph_warm_start, NULL);
+    launch(s, m, k->sph_source, t);
+    solve q = {.tolerance = m->def.divergence_tolerance, .relative_tolerance = m->def.pressure_tolerance,
+               .source = t[0], .min = m->def.divergence_iterations_min, .max = m->def.divergence_iterations_max};
+    launch(s, m, k->sph_pressure_accel, NULL);
+    launch(s, m, k->sph_product, NULL);
+    launch(s, m, k->sph_warm_residual, t);
+    solve_pressure(s, m, t, &q);
+    launch(s, m, k->sph_pressure_kick, NULL);
+    m->memory.head = q.head;
+    s->info.divergence_iterations = q.iterations;
+    s->info.divergence_converged = q.converged;
+    s->info.divergence_mean = q.error/s->dt;
+    s->info.pressure_residual = q.relative;
+    tobi_stage_end(&s->stages, "divergence solve", clock);
+}
+
+/* Shift of positions that takes out the density error; left in accel. */
+static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    m->view.pressure = s->particles.correction;
+    launch(s, m, m->kernel->sph_density_residual, t);
+    solve q = {.tolerance = m->def.density_tolerance, .relative_tolerance = 1, .source = t[0],
+               .min = m->def.density_iterations_min, .max = m->def.density_iterations_max};
+    solve_pressure(s, m, t, &q);
+    launch(s, m, m->kernel->sph_pressure_accel, NULL);
+    s->info.density_iterations = q.iterations;
+    s->info.density_converged = q.converged;
+    tobi_stage_end(&s->stages, "density solve", clock);
+}
+
+static void measure_forces(tobi_simulation *s, dfsph *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    m->view.pressure = s->particles.pressure;
+    launch(s, m, m->kernel->sph_wall_force, t);
+    memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
+    if (s->body_count > 0) tobi_near_body_forces(s);
+    tobi_stage_end(&s->stages, "walls and bodies", clock);
+}
+
+static void advance(tobi_simulation *s, dfsph *m, double *clock)
+{
+    double t[TOBI_TOTALS], speed;
+    launch(s, m, m->kernel->sph_advance, t);
+    speed = sqrt(t[6]);
+    m->memory.accel = fabs(speed - m->memory.speed)/s->dt;
+    m->memory.speed = speed;
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
+    s->info.contacts = (int64_t)t[0];
+    s->info.speed_max = speed;
+    tobi_stage_end(&s->stages, "advance", clock);
+}
+
+static tobi_status advance_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
+    if (s->body_count > 0) tobi_near_push_out(s);
+    s->info.contacts += s->near.contacts;
+    tobi_stage_end(&s->stages, "motion", clock);
+    return TOBI_OK;
+}
+
+static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+{
+    dfsph *m = state;
+    double clock = tobi_clock();
+    set_dt(s, m, max_dt);
+    TOBI_TRY(predict_bodies(s, &clock, err));
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(see_bodies(s, m, &clock, err));
+    measure_density(s, m, PRESSURE_SMOOTHING, &clock);
+    apply_forces(s, m, &clock);
+    remove_divergence(s, m, &clock);
+    correct_density(s, m, &clock);
+    measure_forces(s, m, &clock);
+    advance(s, m, &clock);
+    TOBI_TRY(advance_bodies(s, &clock, err));
+    s->time += s->dt;
+    s->step++;
+    return TOBI_OK;
+}
+
+static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
+{
+    dfsph *m = state;
+    double clock = tobi_clock();
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(see_bodies(s, m, &clock, err));
+    measure_density(s, m, 0, &clock);
+    return TOBI_OK;
+}
+
+static void derive(tobi_simulation *s, void *state, const char *field)
+{
+    dfsph *m = state;
+    if (strcmp(field, "vorticity") == 0) {
+        launch(s, m, m->kernel->sph_vorticity, NULL);
+        return;
+    }
+    launch(s, m, m->kernel->sph_pressure_accel, NULL);
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        s->particles.accel[i].x += m->view.gravity[0];
+        s->particles.accel[i].y += m->view.gravity[1];
+        s->particles.accel[i].z += m->view.gravity[2];
+    }
+}
+
+static void free_state(void *state) { free(state); }
+
+const tobi_method tobi_dfsph = {
+    .name = "dfsph",
+    .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
+    .def_size = sizeof(tobi_dfsph_def),
+    .smoothing = choose_smoothing,
+    .create = create,
+    .step = step,
+    .refresh = refresh,
+    .derive = derive,
+    .memory = list_memory,
+    .free = free_state,
+};

@@ -1,0 +1,40 @@
+/* Turns kernels.def into loops, compiled once per instruction set. */
+#include "sph/kernels.h"
+#include "sph/pressure.k.h"
+#include "sph/sph.k.h"
+
+#define JOIN_(a, b) a##_##b
+#define JOIN(a, b) JOIN_(a, b)
+
+/* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one. */
+#define PAIR(K)                                                                                     \
+    typedef K##_acc K##_wendland_acc, K##_cubic_acc;                                                \
+    TOBI_FN void K##_wendland_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \
+    TOBI_FN void K##_cubic_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); }  \
+    TOBI_FN void K##_wendland_pair(const sph_view *v, int64_t i, const tobi_near *n, K##_acc *a)    \
+    { K##_pair(v, i, n, a, TOBI_SHAPE_WENDLAND); }                                                  \
+    TOBI_FN void K##_cubic_pair(const sph_view *v, int64_t i, const tobi_near *n, K##_acc *a)       \
+    { K##_pair(v, i, n, a, TOBI_SHAPE_CUBIC); }                                                     \
+    TOBI_FN void K##_wendland_finish(const sph_view *v, int64_t i, K##_acc *a, double *t) { K##_finish(v, i, a, t); } \
+    TOBI_FN void K##_cubic_finish(const sph_view *v, int64_t i, K##_acc *a, double *t) { K##_finish(v, i, a, t); } \
+    TOBI_PAIR_LOOP(K##_wendland, sph_view, run_##K##_wendland)                                      \
+    TOBI_PAIR_LOOP(K##_cubic, sph_view, run_##K##_cubic)
+#define FOR(K) TOBI_FOR_LOOP(K, sph_view, run_##K)
+#include "sph/kernels.def"
+#undef PAIR
+#undef FOR
+
+const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
+    {
+#define PAIR(K) .K = run_##K##_wendland,
+#define FOR(K) .K = run_##K,
+#include "sph/kernels.def"
+#undef PAIR
+    },
+    {
+#define PAIR(K) .K = run_##K##_cubic,
+#include "sph/kernels.def"
+#undef PAIR
+#undef FOR
+    },
+};

@@ -1,0 +1,187 @@
+/* The pressure equation of DFSPH, solved by conjugate gradients.
+   C u = sum_j V grad W . (u_i - u_j) + 2 G . (u_i - u_wall)   is the rate of relative compression,
+   a(p) = -(1/rho) C^T p = -(1/rho) [ sum_j (p_i + p_j) V grad W + 2 p_i G ]   the pressure acceleration,
+   A = -C a = C (1/rho) C^T the operator: symmetric, so momentum is exact and CG applies.
+   Equation numbers: docs/theory/dfsph.md. */
+#pragma once
+#include "core/smoothing.k.h"
+#include "exec/pairs.h"
+#include "sph/view.h"
+
+/* a(p) for the payload p of the records, eq. (8). */
+typedef struct sph_pressure_accel_acc { lane p, x, y, z; } sph_pressure_accel_acc;
+
+TOBI_FN void sph_pressure_accel_start(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
+{
+    a->p = lane_set(v->record[i].w);
+    a->x = a->y = a->z = lane_set(0);
+}
+
+TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_pressure_accel_acc *a, const int shape)
+{
+    lane r = lane_sqrt(n->r2), f = (a->p + n->w)*smoothing_falloff(shape, r*v->inverse_h, r);
+    (void)i;
+    a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
+}
+
+TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
+{
+    tobi_float4 w = v->wall[i], out;
+    float k = v->inverse_density[v->fluid[i]], p2 = 2*v->record[i].w;
+    out.x = k*(v->slope*lane_sum(a->x) - p2*w.x);
+    out.y = k*(v->slope*lane_sum(a->y) - p2*w.y);
+    out.z = k*(v->slope*lane_sum(a->z) - p2*w.z);
+    out.w = 0;
+    return out;
+}
+
+TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a, double *totals)
+{
+    (void)totals;
+    v->accel[i] = sph_pressure_accel_value(v, i, a);
+}
+
+/* v += dt a(p). */
+#define sph_pressure_kick_acc sph_pressure_accel_acc
+#define sph_pressure_kick_start sph_pressure_accel_start
+#define sph_pressure_kick_pair sph_pressure_accel_pair
+TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a, double *totals)
+{
+    tobi_float4 f = sph_pressure_accel_value(v, i, a), u = v->velocity[i];
+    u.x += v->dt*f.x; u.y += v->dt*f.y; u.z += v->dt*f.z;
+    v->velocity[i] = u;
+    (void)totals;
+}
+
+/* C u for a float4 array u, eq. (7). */
+typedef struct sph_compression_acc { lane ux, uy, uz, sum; } sph_compression_acc;
+
+TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression_acc *a, const tobi_float4 *field)
+{
+    tobi_float4 u = field[i];
+    (void)v;
+    a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
+    a->sum = lane_set(0);
+}
+
+TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_compression_acc *a, const tobi_float4 *field, const int shape)
+{
+    lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
+    lane_load_float4(field, n->j, &x, &y, &z, &w);
+    a->sum += f*((x - a->ux)*n->dx + (y - a->uy)*n->dy + (z - a->uz)*n->dz);
+}
+
+TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compression_acc *a, const tobi_float4 *field, float wall_speed)
+{
+    tobi_float4 u = field[i], g = v->wall[i];
+    return v->slope*lane_sum(a->sum) + 2*(g.x*u.x + g.y*u.y + g.z*u.z - wall_speed*g.w);
+}
+
+/* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
+   surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
+   (precondition 0). Elsewhere s has either sign. totals[0]: |s|^2/diagonal, the scale of residuals. */
+TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
+{
+    v->precondition[i] = active ? 1/v->diagonal[i] : 0;
+    v->residual[i] = active ? r : 0;
+    v->delta[i] = 0;
+    float z = v->residual[i]*v->precondition[i], size = fabsf(v->residual[i]);
+    v->record[i].w = z;
+    totals[0] += (double)v->residual[i]*z;
+    totals[1] += size;
+    totals[6] = size > totals[6] ? size : totals[6];
+}
+
+#define sph_source_acc sph_compression_acc
+TOBI_FN void sph_source_start(const sph_view *v, int64_t i, sph_compression_acc *a)
+{
+    sph_compression_start(v, i, a, v->velocity);
+}
+TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a, const int shape)
+{
+    (void)i;
+    sph_compression_pair(v, n, a, v->velocity, shape);
+}
+TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
+{
+    float rate = sph_compression_value(v, i, a, v->velocity, 1);
+    float r = v->inverse_dt*rate;
+    int active = v->diagonal[i] > 0 && (!v->surface[i] || r > 0 || v->pressure[i] > 0);
+    v->precondition[i] = active ? 1/v->diagonal[i] : 0;
+    v->residual[i] = active ? r : 0;
+    v->record[i].w = v->pressure[i];
+    totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);
+}
+
+/* r = s - A p for the pressure p of the last step, from product = A p. */
+TOBI_FN void sph_warm_residual(const sph_view *v, int64_t i, double *totals)
+{
+    float m = v->precondition[i];
+    sph_start_search(v, i, v->residual[i] - v->product[i], m > 0, totals);
+}
+
+/* Residual of the position equation, eq. (11): r = e/dt^2 with the density error e that the step
+   starts from. Compression is taken out at a bounded pace; gaps close slowly, and not at a free surface. */
+TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
+{
+    float e = v->density[i] - 1;
+    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.02f ? -0.002f : 0.1f*e);
+    v->pressure[i] = 0;
+    sph_start_search(v, i, e*v->inverse_dt*v->inverse_dt, v->diagonal[i] > 0 && (!v->surface[i] || e > 0), totals);
+}
+
+/* product = A q for the search direction q, from accel = a(q). totals[0]: q . A q. */
+#define sph_product_acc sph_compression_acc
+TOBI_FN void sph_product_start(const sph_view *v, int64_t i, sph_compression_acc *a)
+{
+    sph_compression_start(v, i, a, v->accel);
+}
+TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a, const int shape)
+{
+    (void)i;
+    sph_compression_pair(v, n, a, v->accel, shape);
+}
+TOBI_FN void sph_product_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
+{
+    float p = -sph_compression_value(v, i, a, v->accel, 0);
+    v->product[i] = p;
+    totals[0] += (double)p*v->record[i].w;
+}
+
+/* delta += alpha q, r -= alpha A q. totals: r . z, sum |r|; max |r|. */
+TOBI_FN void sph_cg_update(const sph_view *v, int64_t i, double *totals)
+{
+    float m = v->precondition[i];
+    if (m == 0) return;
+    v->delta[i] += v->alpha*v->record[i].w;
+    float r = v->residual[i] - v->alpha*v->product[i], size = fabsf(r);
+    v->residual[i] = r;
+    totals[0] += (double)r*(r*m);
+    totals[1] += size;
+    totals[6] = size > totals[6] ? size : totals[6];
+}
+
+/* q = z + beta q. */
+TOBI_FN void sph_cg_direction(const sph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    v->record[i].w = v->residual[i]*v->precondition[i] + v->beta*v->record[i].w;
+}
+
+/* A free surface keeps no pressure that pulls. */
+TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    if (v->surface[i] && v->pressure[i] < 0) v->pressure[i] = 0;
+}
+
+/* Adds the correction, clamped at free surfaces; payload = the pressure. Maximum: |p|/rho, m2/s2. */
+TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
+{
+    float p = v->pressure[i] + v->delta[i];
+    if (v->surface[i] && p < 0) p = 0;
+    double head = (double)fabsf(p)*v->inverse_density[v->fluid[i]];
+    totals[6] = head > totals[6] ? head : totals[6];
+    v->pressure[i] = p;
+    v->record[i].w = p;
+}

@@ -1,0 +1,241 @@
+/* SPH kernels that are not the pressure solve: walls, density, viscosity, motion.
+   Notation: q = r/h, V the particle volume, x_ij = x_i - x_j, grad W the gradient at i;
+   V grad W = -slope falloff x_ij (core/smoothing). Equation numbers: docs/theory/dfsph.md. */
+#pragma once
+#include "core/smoothing.k.h"
+#include "exec/pairs.h"
+#include "sph/view.h"
+
+/* Linear interpolation in a plane table at distance s. */
+TOBI_FN float sph_plane_value(const sph_view *v, const float *table, float s)
+{
+    float at = (s > 0 ? s : 0)*v->inverse_h*TOBI_PLANE_SAMPLES;
+    if (at >= TOBI_PLANE_SAMPLES) return 0;
+    int k = (int)at;
+    return table[k] + (at - (float)k)*(table[k + 1] - table[k]);
+}
+
+TOBI_FN float sph_plane_distance(const sph_view *v, int plane, int64_t i)
+{
+    const tobi_plane *w = &v->plane[plane];
+    const double *x = &v->position[i].x;
+    return (float)(w->sign*(x[w->axis] - w->at));
+}
+
+/* Wall gradient G and wall share of the density, eq. (4), (5). In corners the uncovered fractions
+   multiply: 1 - lambda = prod (1 - lambda_k). Leaves the share in density[i]. */
+TOBI_FN void sph_walls(const sph_view *v, int64_t i, double *totals)
+{
+    float free[6], sigma[6], g[3] = {0, 0, 0}, open = 1;
+    (void)totals;
+    for (int k = 0; k < v->plane_count; k++) {
+        float s = sph_plane_distance(v, k, i);
+        free[k] = 1;
+        sigma[k] = 0;
+        if (s >= v->h) continue;
+        free[k] = 1 - sph_plane_value(v, v->table->lambda, s);
+        sigma[k] = sph_plane_value(v, v->table->sigma, s);
+        open *= free[k];
+    }
+    for (int k = 0; k < v->plane_count; k++)
+        if (sigma[k] > 0) g[v->plane[k].axis] -= v->plane[k].sign*sigma[k]*open/free[k];
+    tobi_float4 wall = {g[0], g[1], g[2], 0};
+    v->wall[i] = wall;
+    v->density[i] = 1 - open;
+}
+
+/* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
+   sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing. */
+typedef struct sph_density_acc { lane rho, pressure, gx, gy, gz, g2, div; } sph_density_acc;
+
+TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
+{
+    (void)v; (void)i;
+    a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
+}
+
+TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_density_acc *a, const int shape)
+{
+    lane r = lane_sqrt(n->r2), q = r*v->inverse_h, f = smoothing_falloff(shape, q, r);
+    /* padding repeats i itself: it must not count */
+    lane w = lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), smoothing_shape(shape, q));
+    a->rho += w;
+    a->pressure += w*n->w;
+    a->gx += f*n->dx; a->gy += f*n->dy; a->gz += f*n->dz;
+    lane f2 = f*n->r2;
+    a->g2 += f*f2;
+    a->div += f2;
+}
+
+TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a, double *totals)
+{
+    float share = v->density[i], k = v->slope;
+    float rho = v->weight*(1 + lane_sum(a->rho)) + share;
+    tobi_float4 w = v->wall[i];
+    float sx = 2*w.x - k*lane_sum(a->gx), sy = 2*w.y - k*lane_sum(a->gy), sz = 2*w.z - k*lane_sum(a->gz);
+    float div = k*lane_sum(a->div) + (float)v->dimension*share;
+    /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
+       layer-by-layer mode that a collocated pressure leaves free. */
+    float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
+    v->product[i] = mean;
+    if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
+    v->density[i] = rho;
+    v->diagonal[i] = v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*lane_sum(a->g2));
+    v->surface[i] = div < v->surface_limit;
+    float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
+    totals[0] += error;
+    totals[6] = error > totals[6] ? error : totals[6];
+}
+
+/* L u_i = sum V F (u_j - u_i), half the Laplacian of Morris et al. (1997): symmetric, so momentum is
+   exact. First pass: accel = L v. */
+typedef struct sph_laplacian_acc { lane vx, vy, vz, ax, ay, az; } sph_laplacian_acc;
+
+TOBI_FN void sph_laplacian_begin(sph_laplacian_acc *a, const tobi_float4 *field, int64_t i)
+{
+    tobi_float4 u = field[i];
+    a->vx = lane_set(u.x); a->vy = lane_set(u.y); a->vz = lane_set(u.z);
+    a->ax = a->ay = a->az = lane_set(0);
+}
+
+TOBI_FN void sph_laplacian_add(const sph_view *v, const tobi_near *n, sph_laplacian_acc *a, const tobi_float4 *field, const int shape)
+{
+    lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
+    lane_load_float4(field, n->j, &x, &y, &z, &w);
+    a->ax += f*(x - a->vx); a->ay += f*(y - a->vy); a->az += f*(z - a->vz);
+}
+
+TOBI_FN void sph_laplacian_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
+{
+    sph_laplacian_begin(a, v->velocity, i);
+}
+TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a, const int shape)
+{
+    (void)i;
+    sph_laplacian_add(v, n, a, v->velocity, shape);
+}
+TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
+{
+    tobi_float4 out = {v->slope*lane_sum(a->ax), v->slope*lane_sum(a->ay), v->slope*lane_sum(a->az), 0};
+    (void)totals;
+    v->accel[i] = out;
+}
+
+/* v += dt (g + 2 nu L v - filter L L v + walls), eq. (13), (14): laminar viscosity, a fourth-order
+   filter that takes motion at the particle scale and leaves longer waves, no-slip planes (mirrored
+   velocity: 2 nu sigma/s) and the lift of planes, the hydrostatic part of their mirrored pressure,
+   -(g . n)(s sigma + lambda) n, eq. (6). */
+typedef sph_laplacian_acc sph_kick_acc;
+TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
+{
+    sph_laplacian_begin(a, v->accel, i);
+}
+TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a, const int shape)
+{
+    (void)i;
+    sph_laplacian_add(v, n, a, v->accel, shape);
+}
+TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
+{
+    float nu = v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
+    tobi_float4 u = v->velocity[i], l = v->accel[i];
+    float speed[3] = {u.x, u.y, u.z};
+    float add[3] = {v->gravity[0] + 2*nu*l.x + k*lane_sum(a->ax), v->gravity[1] + 2*nu*l.y + k*lane_sum(a->ay),
+                    v->gravity[2] + 2*nu*l.z + k*lane_sum(a->az)};
+    (void)totals;
+    for (int p = 0; p < v->plane_count; p++) {
+        float s = sph_plane_distance(v, p, i);
+        if (s >= v->h) continue;
+        s = s > 0.25f*v->spacing ? s : 0.25f*v->spacing;
+        float sigma = sph_plane_value(v, v->table->sigma, s), lambda = sph_plane_value(v, v->table->lambda, s);
+        int axis = v->plane[p].axis;
+        add[axis] -= v->gravity[axis]*(lambda + s*sigma);
+        if (!v->plane[p].no_slip) continue;
+        for (int c = 0; c < 3; c++)
+            if (c != axis) add[c] -= 2*nu*sigma/s*speed[c];
+    }
+    u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
+    v->velocity[i] = u;
+}
+
+/* Force of the fluid on plane walls: reaction of pressure, lift and friction. totals[0..2]: N. */
+TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
+{
+    float free[6], sigma[6], lambda[6], open = 1;
+    int touched = 0;
+    for (int k = 0; k < v->plane_count; k++) {
+        float s = sph_plane_distance(v, k, i);
+        free[k] = 1;
+        sigma[k] = 0;
+        if (s >= v->h) continue;
+        s = s > 0.25f*v->spacing ? s : 0.25f*v->spacing;
+        lambda[k] = sph_plane_value(v, v->table->lambda, s);
+        sigma[k] = sph_plane_value(v, v->table->sigma, s);
+        lambda[k] += s*sigma[k];
+        free[k] = 1 - sph_plane_value(v, v->table->lambda, sph_plane_distance(v, k, i));
+        open *= free[k];
+        touched = 1;
+    }
+    if (!touched) return;
+    double mass = v->volume/v->inverse_density[v->fluid[i]];
+    for (int k = 0; k < v->plane_count; k++) {
+        if (!(sigma[k] > 0)) continue;
+        int axis = v->plane[k].axis;
+        float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
+        totals[axis] -= 2.0*v->volume*v->pressure[i]*v->plane[k].sign*here*open/free[k];
+        totals[axis] += mass*v->gravity[axis]*lambda[k];
+    }
+}
+
+/* u_i = curl v by differences, eq. (15); into accel. */
+typedef struct sph_vorticity_acc { lane vx, vy, vz, x, y, z; } sph_vorticity_acc;
+TOBI_FN void sph_vorticity_start(const sph_view *v, int64_t i, sph_vorticity_acc *a)
+{
+    tobi_float4 u = v->velocity[i];
+    a->vx = lane_set(u.x); a->vy = lane_set(u.y); a->vz = lane_set(u.z);
+    a->x = a->y = a->z = lane_set(0);
+}
+TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_vorticity_acc *a, const int shape)
+{
+    lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
+    (void)i;
+    lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
+    x -= a->vx; y -= a->vy; z -= a->vz;
+    a->x += f*(y*n->dz - z*n->dy); a->y += f*(z*n->dx - x*n->dz); a->z += f*(x*n->dy - y*n->dx);
+}
+TOBI_FN void sph_vorticity_finish(const sph_view *v, int64_t i, sph_vorticity_acc *a, double *totals)
+{
+    tobi_float4 out = {v->slope*lane_sum(a->x), v->slope*lane_sum(a->y), v->slope*lane_sum(a->z), 0};
+    (void)totals;
+    v->accel[i] = out;
+}
+
+/* x += dt (v + dt shift), held at a small distance from plane walls; a particle pressed further loses
+   its normal speed. The shift (accel) corrects positions and never enters the velocity, eq. (12).
+   totals: contacts, momentum lost to walls; maximum: speed^2. */
+TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
+{
+    tobi_float4 u = v->velocity[i], shift = v->accel[i];
+    double x[3] = {v->position[i].x + (double)v->dt*(u.x + v->dt*shift.x),
+                   v->position[i].y + (double)v->dt*(u.y + v->dt*shift.y),
+                   v->position[i].z + (double)v->dt*(u.z + v->dt*shift.z)};
+    float w[3] = {u.x, u.y, u.z};
+    double least = 0.2*v->spacing;
+    for (int p = 0; p < v->plane_count; p++) {
+        const tobi_plane *pl = &v->plane[p];
+        if (pl->sign*(x[pl->axis] - pl->at) >= least) continue;
+        x[pl->axis] = pl->at + pl->sign*least;
+        if (pl->sign*w[pl->axis] < 0) {
+            totals[0] += 1;
+            totals[1 + pl->axis] += w[pl->axis]*v->volume/v->inverse_density[v->fluid[i]];
+            w[pl->axis] = 0;
+        }
+    }
+    tobi_float4 out = {w[0], w[1], w[2], 0};
+    tobi_double3 at = {x[0], x[1], x[2]};
+    v->velocity[i] = out;
+    v->position[i] = at;
+    double speed2 = (double)u.x*u.x + (double)u.y*u.y + (double)u.z*u.z;
+    if (!(speed2 < 1e30)) speed2 = 1e30;   /* NaN shows as a runaway */
+    totals[6] = speed2 > totals[6] ? speed2 : totals[6];
+}

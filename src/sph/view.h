@@ -1,0 +1,45 @@
+/* Everything an SPH kernel may read or write, as plain pointers and constants. */
+#pragma once
+#include "core/smoothing.h"
+#include "exec/portable.h"
+
+enum { TOBI_MAX_FLUIDS = 8 };
+
+/* A plane wall of the box seen from inside: distance = sign*(x[axis] - at). */
+typedef struct tobi_plane { int axis; float sign; double at; int no_slip; } tobi_plane;
+
+typedef struct sph_view {
+    int64_t count;
+    /* particle arrays, see core/particles.h */
+    tobi_double3 *TOBI_RESTRICT position;
+    tobi_record *TOBI_RESTRICT record;
+    tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall;
+    float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
+    float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
+    float *TOBI_RESTRICT pressure;            /* of the solve at hand */
+    uint8_t *TOBI_RESTRICT surface;
+    const uint8_t *TOBI_RESTRICT fluid;
+    /* neighbour list */
+    const int32_t *TOBI_RESTRICT list;
+    const uint32_t *TOBI_RESTRICT list_start;
+    const uint16_t *TOBI_RESTRICT list_groups;
+    /* constants of the discretisation */
+    float from_fixed[3];
+    float h, inverse_h, weight, slope;        /* see core/smoothing.h */
+    float spacing, volume;
+    int   dimension;
+    float surface_limit;                      /* div x below this marks a free surface */
+    /* fluids, by index */
+    float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
+    float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
+    /* walls */
+    int plane_count;
+    tobi_plane plane[6];
+    const tobi_plane_table *TOBI_RESTRICT table;
+    /* the step and the solve at hand */
+    float dt, inverse_dt;
+    float gravity[3];
+    float smooth;                             /* share of the averaged pressure in the warm start */
+    float filter;                             /* coefficient of L L v, m4/s                      */
+    float alpha, beta;                        /* conjugate gradient coefficients       */
+} sph_view;

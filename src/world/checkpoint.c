@@ -1,0 +1,114 @@
+/* The complete state in one file: particle state fields in memory order, the clock, the method's memory. */
+#include "base/error.h"
+#include "io/store.h"
+#include "world/world.h"
+#include <string.h>
+
+/* A state field as columns of a basic type. */
+static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
+{
+    *components = f->bytes == sizeof(tobi_double3) ? 3 : f->bytes == sizeof(tobi_float4) ? 4 : 1;
+    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64 : f->bytes == 16 || f->bytes == 4 ? TOBI_F32 : f->bytes == 8 ? TOBI_I64 : TOBI_U8;
+}
+
+static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    double *memory;
+    int n = w->method->memory(w->method_state, &memory);
+    TOBI_TRY(tobi_store_put_text(f, "method", w->method->name, err));
+    TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
+    TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
+    TOBI_TRY(tobi_store_put_real(f, "spacing", s->smoothing.spacing, err));
+    double clock[3] = {s->time, s->dt, s->body_speed};
+    TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 3, 1, clock, err));
+    TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
+    for (int k = 0; k < s->body_count; k++) {
+        char name[32] = "body_";
+        name[5] = (char)('0' + k/100%10); name[6] = (char)('0' + k/10%10); name[7] = (char)('0' + k%10);
+        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof s->bodies[k].info, 1, &s->bodies[k].info, err));
+    }
+    return tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err);
+}
+
+tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
+{
+    TOBI_TRY(tobi_world_start(w, err));
+    tobi_store *f;
+    TOBI_TRY(tobi_store_create(path, &f, err));
+    tobi_status status = put_clock(w, f, err);
+    for (int k = 0; status == TOBI_OK; k++) {
+        tobi_field_ref r = tobi_particles_state(&w->sim.particles, k);
+        tobi_vtk_type type;
+        int components;
+        if (!r.name) break;
+        shape_of(&r, &type, &components);
+        status = tobi_store_put(f, r.name, type, w->sim.particles.count, components, r.data, err);
+    }
+    if (status == TOBI_OK) return tobi_store_commit(f, err);
+    tobi_store_close(f);
+    return status;
+}
+
+static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    double *memory, clock[3], spacing;
+    int64_t step, bodies;
+    int n = w->method->memory(w->method_state, &memory);
+    TOBI_TRY(tobi_store_get_int(f, "step", &step, err));
+    TOBI_TRY(tobi_store_get_int(f, "bodies", &bodies, err));
+    TOBI_TRY(tobi_store_get_real(f, "spacing", &spacing, err));
+    if (bodies != s->body_count || spacing != s->smoothing.spacing)
+        return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies at spacing %g m, the scene %d at %g m",
+                         (long long)bodies, spacing, s->body_count, s->smoothing.spacing);
+    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 3, 1, clock, err));
+    TOBI_TRY(tobi_store_get(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
+    TOBI_TRY(tobi_store_get(f, "memory", TOBI_F64, n, 1, memory, err));
+    s->step = step;
+    s->time = clock[0];
+    s->dt = clock[1];
+    s->body_speed = clock[2];
+    return TOBI_OK;
+}
+
+static tobi_status place_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        tobi_body *b = &w->sim.bodies[k];
+        char name[32] = "body_";
+        name[5] = (char)('0' + k/100%10); name[6] = (char)('0' + k/10%10); name[7] = (char)('0' + k%10);
+        TOBI_TRY(tobi_body_place(b, w->sim.time, err));
+        TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
+{
+    TOBI_TRY(tobi_world_start(w, err));
+    tobi_store *f;
+    TOBI_TRY(tobi_store_open(path, &f, err));
+    int64_t n = 0;
+    tobi_status status = tobi_store_rows(f, "id", &n, err);
+    if (status == TOBI_OK)
+        status = n <= w->sim.particles.capacity ? get_clock(w, f, err)
+        : tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld", path, (long long)n,
+                    (long long)w->sim.particles.capacity);
+    for (int k = 0; status == TOBI_OK; k++) {
+        tobi_field_ref r = tobi_particles_state(&w->sim.particles, k);
+        tobi_vtk_type type;
+        int components;
+        if (!r.name) break;
+        shape_of(&r, &type, &components);
+        status = tobi_store_get(f, r.name, type, n, components, r.data, err);
+    }
+    if (status == TOBI_OK) {
+        w->sim.particles.count = n;
+        status = place_bodies(w, f, err);
+    }
+    tobi_store_close(f);
+    w->fresh = 0;
+    w->diverged = 0;
+    return status;
+}

@@ -1,0 +1,89 @@
+#include "world/fill.h"
+#include "base/error.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Layers of a side of length a, and their distance: the lattice is stretched to fill the box evenly, so
+   that no gap of part of a spacing is left at a wall. */
+static int64_t layers(double a, double d) { return (int64_t)fmax(1, floor(a/d + 0.5)); }
+
+static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
+{
+    double d = s->smoothing.spacing;
+    for (int a = 0; a < 3; a++) {
+        double side = r->upper[a] - r->lower[a];
+        int flat = a == 2 && s->box.dimension == 2;
+        n[a] = flat ? 1 : r->mesh ? (int64_t)ceil(side/d) : layers(side, d);
+        step[a] = r->mesh ? d : side/(double)n[a];
+    }
+}
+
+int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
+{
+    int64_t n[3];
+    double step[3];
+    lattice(s, r, n, step);
+    return n[0]*n[1]*n[2];
+}
+
+static int inside_body(const tobi_simulation *s, const double x[3])
+{
+    for (int k = 0; k < s->body_count; k++) {
+        double lo[3], hi[3];
+        int out = 0;
+        tobi_bvh_box(s->bodies[k].bvh, lo, hi);
+        for (int a = 0; a < s->box.dimension; a++) out |= x[a] < lo[a] || x[a] > hi[a];
+        if (!out && tobi_bvh_inside(s->bodies[k].bvh, x)) return 1;
+    }
+    return 0;
+}
+
+static void add_particle(tobi_simulation *s, const tobi_region *r, const double x[3])
+{
+    tobi_particles *p = &s->particles;
+    int64_t i = p->count++;
+    p->position[i] = (tobi_double3){x[0], x[1], x[2]};
+    p->velocity[i] = (tobi_float4){(float)r->velocity[0], (float)r->velocity[1], (float)r->velocity[2], 0};
+    p->pressure[i] = 0;
+    p->fluid[i] = (uint8_t)r->fluid;
+    p->id[i] = i;
+}
+
+static tobi_status load_region_mesh(const tobi_region *r, tobi_mesh *mesh, tobi_bvh **tree, tobi_error *err)
+{
+    const double axis[3] = {0, 0, 1};
+    TOBI_TRY(tobi_mesh_read(r->mesh, mesh, err));
+    TOBI_TRY(tobi_mesh_transform(mesh, r->scale, axis, 0, r->translation, err));
+    TOBI_TRY(tobi_mesh_orient(mesh, r->mesh, err));
+    return tobi_bvh_build(mesh->vertex_count, (const double (*)[3])mesh->vertices, mesh->triangle_count,
+                          (const int32_t (*)[3])mesh->triangles, tree, err);
+}
+
+tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
+{
+    int64_t n[3];
+    double step[3];
+    tobi_mesh mesh = {0};
+    tobi_bvh *tree = NULL;
+    if (r->mesh) {
+        tobi_status status = load_region_mesh(r, &mesh, &tree, err);
+        tobi_mesh_free(&mesh);
+        if (status != TOBI_OK) return status;
+    }
+    lattice(s, r, n, step);
+    for (int64_t k = 0; k < n[2]; k++)
+        for (int64_t j = 0; j < n[1]; j++)
+            for (int64_t i = 0; i < n[0]; i++) {
+                double w[3] = {r->lower[0] + ((double)i + 0.5)*step[0], r->lower[1] + ((double)j + 0.5)*step[1],
+                               s->box.dimension == 3 ? r->lower[2] + ((double)k + 0.5)*step[2] : 0}, x[3];
+                int out = 0;
+                for (int a = 0; a < 3; a++) {
+                    x[a] = w[a] - s->box.lower[a];
+                    if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
+                }
+                if (out || (tree && !tobi_bvh_inside(tree, w)) || inside_body(s, x)) continue;
+                add_particle(s, r, x);
+            }
+    tobi_bvh_free(tree);
+    return TOBI_OK;
+}

@@ -1,0 +1,17 @@
+/* Where the fluid starts: lattice points of boxes and meshes, minus those inside bodies. */
+#pragma once
+#include "core/simulation.h"
+
+/* One region of one fluid; strings owned. */
+typedef struct tobi_region {
+    int fluid;
+    double lower[3], upper[3];     /* m, world; the box, or the mesh's box */
+    char *mesh;                    /* path or NULL */
+    double scale[3], translation[3];
+    double velocity[3];
+} tobi_region;
+
+/* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
+int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r);
+/* Appends the region's particles to s->particles (capacity must suffice). */
+tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err);

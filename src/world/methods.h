@@ -1,0 +1,7 @@
+/* The list of methods: adding one is a file and a line here. */
+#pragma once
+#include "core/simulation.h"
+
+/* Methods by index, NULL past the end; by name, NULL if there is none. */
+const tobi_method *tobi_method_at(int index);
+const tobi_method *tobi_method_find(const char *name);

@@ -1,0 +1,143 @@
+/* Reading a world: fields in id order, surfaces, the state hash. */
+#include "base/error.h"
+#include "world/world.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const struct { const char *name; int components; const char *unit; } fields[] = {
+    {"position", 3, "m"},       {"velocity", 3, "m/s"},      {"pressure", 1, "Pa"},
+    {"density", 1, "kg/m3"},    {"object_id", 1, "1"},       {"particle_id", 1, "1"},
+    {"acceleration", 3, "m/s2"}, {"vorticity", 3, "1/s"},    {"surface", 1, "1"},
+};
+enum { FIELD_COUNT = sizeof fields/sizeof *fields };
+
+const char *tobi_world_field_name(int field, int *components, const char **unit)
+{
+    if (field < 0 || field >= FIELD_COUNT) return NULL;
+    if (components) *components = fields[field].components;
+    if (unit) *unit = fields[field].unit;
+    return fields[field].name;
+}
+
+int64_t tobi_world_count(const tobi_world *w, tobi_set set)
+{
+    if (set == TOBI_FLUID) return w->sim.particles.count;
+    int64_t n = 0;
+    for (int k = 0; k < w->sim.body_count; k++) n += w->sim.bodies[k].particle_count;
+    return n;
+}
+
+tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    TOBI_TRY(tobi_world_start(w, err));
+    if (w->fresh) return TOBI_OK;
+    tobi_step_info kept = s->info;
+    if (!w->diverged) TOBI_TRY(w->method->refresh(s, w->method_state, err));
+    double mean = s->info.density_error_mean, max = s->info.density_error_max;
+    s->info = kept;
+    s->info.density_error_mean = mean;
+    s->info.density_error_max = max;
+    for (int64_t i = 0; i < s->particles.count; i++) w->row_of[s->particles.id[i]] = i;
+    w->fresh = 1;
+    return TOBI_OK;
+}
+
+static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, double *out)
+{
+    const tobi_particles *p = &s->particles;
+    if (!strcmp(field, "position")) {
+        out[0] = p->position[i].x + s->box.lower[0];
+        out[1] = p->position[i].y + s->box.lower[1];
+        out[2] = p->position[i].z + s->box.lower[2];
+    } else if (!strcmp(field, "velocity") || !strcmp(field, "acceleration") || !strcmp(field, "vorticity")) {
+        const tobi_float4 *v = field[0] == 'v' && field[1] == 'e' ? &p->velocity[i] : &p->accel[i];
+        out[0] = v->x; out[1] = v->y; out[2] = v->z;
+    } else if (!strcmp(field, "pressure")) {
+        out[0] = p->product[i];
+    } else if (!strcmp(field, "density")) {
+        out[0] = p->density[i]*s->fluid[p->fluid[i]].density;
+    } else if (!strcmp(field, "particle_id")) {
+        out[0] = (double)p->id[i];
+    } else if (!strcmp(field, "surface")) {
+        out[0] = p->surface[i];
+    } else {
+        out[0] = 0;      /* object id of every fluid */
+    }
+}
+
+static tobi_status read_bodies(const tobi_world *w, const char *field, int components, double *buffer)
+{
+    int64_t row = 0, id = w->sim.particles.count;
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        tobi_status status = tobi_body_place_particles((tobi_body *)b, w->sim.time, NULL);
+        if (status != TOBI_OK) return status;
+        for (int64_t i = 0; i < b->particle_count; i++, row++) {
+            double *out = buffer + row*components;
+            memset(out, 0, (size_t)components*sizeof *out);
+            if (!strcmp(field, "position")) memcpy(out, b->particle[i], 3*sizeof *out);
+            else if (!strcmp(field, "density")) out[0] = b->density;
+            else if (!strcmp(field, "object_id")) out[0] = k + 1;
+            else if (!strcmp(field, "particle_id")) out[0] = (double)(id + row);
+        }
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer, int64_t count, tobi_error *err)
+{
+    int k = 0, components = 0;
+    while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
+    if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
+    components = fields[k].components;
+    TOBI_TRY(tobi_world_start(w, err));
+    if (count < tobi_world_count(w, set)*components)
+        return tobi_fail(err, TOBI_INVALID, "field '%s' needs room for %lld doubles, %lld given", field,
+                         (long long)(tobi_world_count(w, set)*components), (long long)count);
+    if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer);
+    TOBI_TRY(tobi_world_refresh(w, err));
+    if (!w->diverged && (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")))
+        w->method->derive(&w->sim, w->method_state, field);
+    #pragma omp parallel for num_threads(w->sim.exec.threads)
+    for (int64_t r = 0; r < w->sim.particles.count; r++)
+        read_fluid(&w->sim, field, w->row_of[r], buffer + r*components);
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_count, const double (**vertices)[3],
+                               int64_t *triangle_count, const int32_t (**triangles)[3])
+{
+    if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
+    tobi_body *b = &w->sim.bodies[body];
+    /* `next` is free between steps: it holds the pose in world coordinates. */
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        for (int a = 0; a < 3; a++) b->next[i][a] = b->vertex[i][a] + b->lower[a];
+    *vertex_count = b->mesh.vertex_count;
+    *vertices = (const double (*)[3])b->next;
+    *triangle_count = b->mesh.triangle_count;
+    *triangles = (const int32_t (*)[3])b->mesh.triangles;
+    return TOBI_OK;
+}
+
+static uint64_t mix(uint64_t h, const void *data, size_t bytes)
+{
+    const unsigned char *p = data;
+    for (size_t k = 0; k < bytes; k++) h = (h ^ p[k])*1099511628211u;   /* FNV-1a */
+    return h;
+}
+
+uint64_t tobi_world_hash(tobi_world *w)
+{
+    const tobi_particles *p = &w->sim.particles;
+    uint64_t h = 14695981039346656037u;
+    if (tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
+    h = mix(h, &w->sim.time, sizeof w->sim.time);
+    for (int64_t r = 0; r < p->count; r++) {
+        int64_t i = w->row_of[r];
+        h = mix(h, &p->position[i], sizeof p->position[i]);
+        h = mix(h, &p->velocity[i], 3*sizeof(float));
+        h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
+    }
+    return h;
+}

@@ -1,0 +1,353 @@
+/* A world: definitions become a simulation, the method steps it. */
+#include "world/world.h"
+#include "base/error.h"
+#include "world/params.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const char *tobi_version(void) { return TOBI_VERSION; }
+
+const char *tobi_status_text(tobi_status status)
+{
+    switch (status) {
+#define X(code, text) case code: return text;
+    TOBI_STATUS_LIST(X)
+#undef X
+    }
+    return "unknown status";
+}
+
+static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
+{
+    TOBI_TRY(tobi_param_check(&tobi_world_table, d, err));
+    for (int a = 0; a < d->dimension; a++) {
+        if (!(d->domain_max[a] > d->domain_min[a]))
+            return tobi_fail(err, TOBI_INVALID, "domain: max %g is not above min %g along %c",
+                             d->domain_max[a], d->domain_min[a], "xyz"[a]);
+        if ((d->wall_min[a] == TOBI_WALL_PERIODIC) != (d->wall_max[a] == TOBI_WALL_PERIODIC))
+            return tobi_fail(err, TOBI_INVALID, "domain: only one side along %c is periodic; both or none are allowed", "xyz"[a]);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    int shape, periodic[3];
+    double support;
+    s->def = *def;
+    if (def->dimension == 2) s->def.gravity[2] = 0;
+    TOBI_TRY(tobi_exec_init(&s->exec, def->threads, err));
+    w->method->smoothing(w->method_def, &shape, &support);
+    tobi_smoothing_init(&s->smoothing, shape, def->dimension, def->spacing, support);
+    for (int a = 0; a < 3; a++) periodic[a] = def->wall_min[a] == TOBI_WALL_PERIODIC;
+    tobi_box_init(&s->box, def->dimension, def->domain_min, def->domain_max, periodic, s->smoothing.h);
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world, tobi_error *err)
+{
+    *world = NULL;
+    TOBI_TRY(check_world(def, err));
+    const tobi_method *method = tobi_method_find(def->method);
+    if (!method)
+        return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s", def->method ? def->method : "",
+                         tobi_method_at(0)->name);
+    const tobi_param_table *table = tobi_method_table(method->name);
+    tobi_world *w = calloc(1, sizeof *w);
+    void *params = calloc(1, method->def_size);
+    if (!w || !params) {
+        free(w);
+        free(params);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
+    }
+    tobi_param_defaults(table, params);
+    if (method_def) memcpy(params, method_def, method->def_size);
+    w->method = method;
+    w->method_def = params;
+    tobi_status status = tobi_param_check(table, params, err);
+    if (status == TOBI_OK) status = create_simulation(w, def, err);
+    if (status != TOBI_OK) {
+        tobi_world_destroy(w);
+        return status;
+    }
+    *world = w;
+    return TOBI_OK;
+}
+
+void tobi_world_destroy(tobi_world *w)
+{
+    if (!w) return;
+    if (w->method_state) w->method->free(w->method_state);
+    for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
+    for (int k = 0; k < w->region_count; k++) free(w->regions[k].mesh);
+    free(w->sim.bodies);
+    free(w->regions);
+    free(w->row_of);
+    free(w->method_def);
+    tobi_near_free(&w->sim.near);
+    tobi_cells_free(&w->sim.cells);
+    tobi_particles_free(&w->sim.particles);
+    tobi_exec_free(&w->sim.exec);
+    free(w);
+}
+
+static tobi_status measure_region(tobi_world *w, const tobi_fill_def *f, tobi_region *r, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    memcpy(r->lower, f->box_min, sizeof r->lower);
+    memcpy(r->upper, f->box_max, sizeof r->upper);
+    memcpy(r->scale, f->scale, sizeof r->scale);
+    memcpy(r->translation, f->translation, sizeof r->translation);
+    memcpy(r->velocity, f->velocity, sizeof r->velocity);
+    if (f->mesh) {
+        tobi_mesh mesh;
+        const double axis[3] = {0, 0, 1};
+        r->mesh = strdup(f->mesh);
+        if (!r->mesh) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a path");
+        TOBI_TRY(tobi_mesh_read(f->mesh, &mesh, err));
+        tobi_status status = tobi_mesh_transform(&mesh, f->scale, axis, 0, f->translation, err);
+        tobi_mesh_box(&mesh, r->lower, r->upper);
+        tobi_mesh_free(&mesh);
+        TOBI_TRY(status);
+    }
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (!(r->upper[a] > r->lower[a]))
+            return tobi_fail(err, TOBI_INVALID, "fluid box: max %g is not above min %g along %c", r->upper[a], r->lower[a], "xyz"[a]);
+        if (r->upper[a] <= s->box.lower[a] || r->lower[a] >= s->box.lower[a] + s->box.size[a])
+            return tobi_fail(err, TOBI_INVALID, "a fluid region (%g to %g m along %c) lies outside the domain (%g to %g m)",
+                             r->lower[a], r->upper[a], "xyz"[a], s->box.lower[a], s->box.lower[a] + s->box.size[a]);
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def, const tobi_fill_def *fills, int fill_count, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
+    TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
+    if (s->fluid_count > 0 && (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity))
+        return tobi_fail(err, TOBI_UNSUPPORTED, "fluid '%s' differs from '%s' in density or viscosity; dfsph carries one material, "
+                         "allowed are several fluids with the same values", def->name ? def->name : "", s->fluid[0].name);
+    if (s->fluid_count == TOBI_FLUID_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
+    tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for fluid regions");
+    w->regions = more;
+    int first = w->region_count;
+    for (int k = 0; k < fill_count; k++) {
+        tobi_region *r = &w->regions[w->region_count];
+        memset(r, 0, sizeof *r);
+        r->fluid = s->fluid_count;
+        tobi_status status = measure_region(w, &fills[k], r, err);
+        w->region_count++;
+        if (status == TOBI_OK) continue;
+        while (w->region_count > first) free(w->regions[--w->region_count].mesh);
+        return status;
+    }
+    tobi_fluid *f = &s->fluid[s->fluid_count++];
+    snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
+    f->density = def->density;
+    f->viscosity = def->viscosity;
+    return TOBI_OK;
+}
+
+static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    const tobi_box *box = &w->sim.box;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        for (int a = 0; a < box->dimension; a++)
+            if (!box->periodic[a] && (b->vertex[i][a] < 0 || b->vertex[i][a] > box->size[a]))
+                return tobi_fail(err, TOBI_INVALID, "body '%s' sticks out of the domain: a vertex is at %c = %g m, allowed is %g to %g m",
+                                 b->name, "xyz"[a], b->vertex[i][a] + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
+    TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
+    if (s->body_count == TOBI_BODY_LIMIT) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
+    tobi_body *more = realloc(s->bodies, (size_t)(s->body_count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a body");
+    s->bodies = more;
+    tobi_body *b = &s->bodies[s->body_count];
+    TOBI_TRY(tobi_body_create(b, def, s->box.dimension, 0.5*s->smoothing.spacing, s->box.lower, err));
+    tobi_status status = check_body(w, b, err);
+    if (status != TOBI_OK) tobi_body_free(b);
+    else s->body_count++;
+    return status;
+}
+
+static int64_t list_bytes(const tobi_simulation *s)
+{
+    double r = s->smoothing.h/s->smoothing.spacing;
+    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 16);
+}
+
+tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles, int64_t *bytes, tobi_error *err)
+{
+    int64_t fluid = 0, body = 0;
+    (void)err;
+    for (int k = 0; k < w->region_count; k++) fluid += tobi_region_count(&w->sim, &w->regions[k]);
+    for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
+    if (w->started) fluid = w->sim.particles.count;
+    *fluid_particles = fluid;
+    *body_particles = body;
+    *bytes = fluid*(tobi_particles_row_bytes() + list_bytes(&w->sim)) + body*48;
+    return TOBI_OK;
+}
+
+static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *err)
+{
+    double have = (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE);
+    if (particles > 2000000000)
+        return tobi_fail(err, TOBI_NO_MEMORY, "%lld fluid particles; one machine takes at most 2e9", (long long)particles);
+    if ((double)bytes > 0.95*have)
+        return tobi_fail(err, TOBI_NO_MEMORY, "%lld fluid particles need %.1f GiB; this machine has %.1f GiB. A larger spacing needs less",
+                         (long long)particles, (double)bytes/1073741824, have/1073741824);
+    return TOBI_OK;
+}
+
+static double start_speed(const tobi_world *w)
+{
+    double v2 = 0;
+    for (int k = 0; k < w->region_count; k++) {
+        const double *v = w->regions[k].velocity;
+        v2 = fmax(v2, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    }
+    return sqrt(v2);
+}
+
+tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    int64_t fluid, body, bytes;
+    if (w->started) return TOBI_OK;
+    TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
+    if (fluid + body == 0) return tobi_fail(err, TOBI_INVALID, "no particles at all: the scene needs a fluid region or a body");
+    TOBI_TRY(check_memory(fluid, bytes, err));
+    tobi_particles_free(&s->particles);
+    TOBI_TRY(tobi_particles_create(&s->particles, fluid, err));
+    for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    int64_t n = s->particles.count;
+    if (n + body == 0) return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
+    TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));
+    tobi_cells_free(&s->cells);
+    TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->exec, err));
+    free(w->row_of);
+    w->row_of = malloc((size_t)(n + 1)*sizeof *w->row_of);
+    if (!w->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
+    if (!w->method_state) TOBI_TRY(w->method->create(s, w->method_def, &w->method_state, err));
+    double *memory;
+    w->method->memory(w->method_state, &memory);
+    memory[0] = start_speed(w);
+    /* How fast the bodies start: their motion around time 0. */
+    for (int k = 0; k < s->body_count; k++) TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
+    s->info.fluid_particles = n;
+    w->started = 1;
+    return TOBI_OK;
+}
+
+static tobi_status check_runaway(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    double g2 = 0, limit = s->def.speed_limit;
+    for (int a = 0; a < 3; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    if (limit <= 0) {   /* far above free fall across the box, and above the bodies */
+        double size = s->box.size[0] + s->box.size[1] + s->box.size[2];
+        limit = 20*(sqrt(2*sqrt(g2)*size) + s->body_speed + start_speed(w)) + 10;
+    }
+    if (s->info.speed_max < limit) return TOBI_OK;
+    w->diverged = 1;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        tobi_float4 v = s->particles.velocity[i];
+        tobi_double3 x = s->particles.position[i];
+        double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
+        if (speed < limit) continue;
+        return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, %g, %g) m moves at %g m/s, the limit is %g m/s",
+                         s->time, (long long)s->step, (long long)s->particles.id[i], x.x + s->box.lower[0],
+                         x.y + s->box.lower[1], x.z + s->box.lower[2], speed, limit);
+    }
+    return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: a speed reached %g m/s", s->time, s->info.speed_max);
+}
+
+tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    TOBI_TRY(tobi_world_start(w, err));
+    if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
+    w->fresh = 0;
+    tobi_status status = w->method->step(s, w->method_state, max_dt, err);
+    if (status != TOBI_OK) {
+        w->diverged = 1;
+        return status;
+    }
+    s->info.step = s->step;
+    s->info.time = s->time;
+    s->info.dt = s->dt;
+    TOBI_TRY(check_runaway(w, err));
+    if (info) {
+        tobi_simulation_measure(s);
+        *info = s->info;
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
+{
+    while (w->sim.time < t) {
+        TOBI_TRY(tobi_world_step(w, t - w->sim.time, NULL, err));
+        if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
+    }
+    if (info) {
+        tobi_simulation_measure(&w->sim);
+        *info = w->sim.info;
+    }
+    return TOBI_OK;
+}
+
+double tobi_world_time(const tobi_world *w) { return w->sim.time; }
+
+const tobi_step_info *tobi_world_info(const tobi_world *w)
+{
+    tobi_simulation *s = (tobi_simulation *)&w->sim;   /* fills in sums of the present state */
+    s->info.step = s->step;
+    s->info.time = s->time;
+    s->info.dt = s->dt;
+    if (w->started) tobi_simulation_measure(s);
+    return &s->info;
+}
+
+int tobi_world_body_count(const tobi_world *w) { return w->sim.body_count; }
+
+tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
+{
+    if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
+    *info = w->sim.bodies[body].info;
+    return TOBI_OK;
+}
+
+const char *tobi_world_body_name(const tobi_world *w, int body)
+{
+    return body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
+}
+
+int64_t tobi_world_bytes(const tobi_world *w)
+{
+    const tobi_simulation *s = &w->sim;
+    return s->particles.capacity*(tobi_particles_row_bytes() + 8) + s->cells.list_capacity*4 + s->cells.total*4 +
+           s->near.capacity*(int64_t)sizeof(tobi_near_entry);
+}
+
+const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
+{
+    const tobi_stages *st = &w->sim.stages;
+    if (stage < 0 || stage >= st->count) return NULL;
+    *seconds = st->seconds[stage];
+    return st->name[stage];
+}

@@ -1,0 +1,21 @@
+/* The inside of a tobi_world. */
+#pragma once
+#include "tobiuo/tobiuo.h"
+#include "world/fill.h"
+#include "world/methods.h"
+
+enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024 };
+
+struct tobi_world {
+    tobi_simulation sim;
+    const tobi_method *method;
+    void *method_def;              /* copy of the method's parameters                        */
+    void *method_state;
+    tobi_region *regions;
+    int region_count;
+    int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int64_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
+};
+
+/* Brings derived fields and the id order up to date. */
+tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
