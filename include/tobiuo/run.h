@@ -45,7 +45,8 @@ TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *o
 TOBI_API const char *tobi_run_note(const tobi_run *run);
 
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
-   NULL. When `end` is a multiple of the interval to within rounding, that multiple is the end. */
+   NULL; its energies, momentum and weight are those of the last output. When `end` is a multiple of
+   the interval to within rounding, that multiple is the end. */
 TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
                                    tobi_error *err);
 /* 1 when the world has reached `end`. */

@@ -46,7 +46,6 @@ struct tobi_run {
     double particle_steps;                /* sum of fluid particles over steps       */
     int64_t checkpoint_step;              /* of the last checkpoint, -1 = none       */
     double next_checkpoint;               /* s                                       */
-    int threads;                          /* that the world runs on                  */
 };
 
 /* record_files.c: the directory. */
@@ -77,6 +76,9 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_series_write(tobi_run *run, tobi_error *err);
 /* The lists of outputs 0 .. run->outputs - 1. */
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
+
+/* record_frame.c: the picture of output run->outputs. */
+tobi_status tobi_record_frame(tobi_run *run, tobi_error *err);
 
 /* record_state.c: checkpoints. */
 tobi_status tobi_state_save(tobi_run *run, tobi_error *err);

@@ -1,6 +1,7 @@
 /* The picture of an output: water coloured by speed, bodies by number, seen so that the box fits. */
 #include "io/frame.h"
 #include "world/record.h"
+#include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,8 +32,8 @@ static tobi_status read_fluid(tobi_run *run, int64_t n, drawing *d, tobi_error *
     d->speeds = malloc((size_t)n * sizeof *d->speeds + 1);
     if (!d->positions || !d->velocities || !d->speeds)
         return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "position", d->positions, n, err));
-    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "velocity", d->velocities, n, err));
+    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "position", d->positions, 3 * n, err));
+    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "velocity", d->velocities, 3 * n, err));
     for (int64_t i = 0; i < n; i++) {
         const double *v = d->velocities + 3 * i;
         d->speeds[i] = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -64,7 +65,7 @@ static double color_speed(const tobi_world_def *def)
 
 static tobi_status draw(tobi_run *run, const char *path, drawing *d, tobi_error *err)
 {
-    const tobi_world_def *def = tobi_world_definition(run->world);
+    const tobi_world_def *def = &run->world->sim.def;
     char title[64];
     tobi_frame frame = tobi_default_frame();
     frame.dimension = def->dimension;

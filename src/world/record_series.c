@@ -1,4 +1,4 @@
-/* The files per output: particles, surfaces, pictures, and the lists that give them their times. */
+/* The files per output: particles, surfaces, and the lists that give them their times. */
 #include "io/vtk.h"
 #include "world/record.h"
 #include <ctype.h>
@@ -102,7 +102,7 @@ static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int6
 {
     for (int k = 0; k < run->field_count; k++) {
         const tobi_record_field *f = &run->field[k];
-        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
+        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, 3 * n, err));
         arrays[k] = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
                                       convert(buffer, n * f->components, f->type) };
         if (!arrays[k].data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
@@ -121,7 +121,7 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
     tobi_status status = TOBI_OK;
     if (!path || !points || !buffer)
         status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, n, err);
+    if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, 3 * n, err);
     if (status == TOBI_OK) status = read_arrays(run, set, buffer, n, arrays, err);
     if (status == TOBI_OK)
         status = tobi_vtu_write(path, (tobi_compression)run->output.compression, n,
@@ -201,5 +201,6 @@ tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
     TOBI_TRY(write_particles(run, TOBI_FLUID, "fluid", err));
     if (bodies) TOBI_TRY(write_particles(run, TOBI_BODIES, "bodies", err));
     for (int b = 0; run->output.surfaces && b < bodies; b++) TOBI_TRY(write_surface(run, b, err));
+    if (run->output.frames) TOBI_TRY(tobi_record_frame(run, err));
     return write_lists(run, run->outputs + 1, err);
 }

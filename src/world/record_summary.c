@@ -1,6 +1,7 @@
 /* summary.json: the totals of a run, over all its sessions. */
 #include "io/file.h"
 #include "world/record.h"
+#include "world/world.h"
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
@@ -56,7 +57,7 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
         "unconverged_steps", (json_int_t)t->unconverged,
         "particles_lost", (json_int_t)info->particles_lost,
         "world_bytes", (json_int_t)tobi_world_bytes(run->world), "peak_rss_bytes", peak_rss(),
-        "threads", run->threads, "outputs", (json_int_t)run->outputs, "state_hash", hash,
+        "threads", run->world->sim.exec.threads, "outputs", (json_int_t)run->outputs, "state_hash", hash,
         "stages_s", make_stages(run));
     if (json && more) json_object_update(json, more);
     json_decref(more);

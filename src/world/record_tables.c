@@ -1,5 +1,6 @@
 /* history.csv and bodies.csv: the columns are lists, so that header and row cannot disagree. */
 #include "world/record.h"
+#include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,7 +8,8 @@
 
 /* H(column, kind, value): one line per column of history.csv. `i` is the last step's info, `s` the
    sums since the last output. Means are over the steps since the last output; other values are of
-   the last step. wall_force_ratio: |force of the fluid on the walls| / weight of the fluid. */
+   the last step. wall_force_ratio: force of the fluid on the walls along gravity / its weight; 1 in a
+   settled tank. */
 #define HISTORY(H)                                                                  \
     H("time",                       real, i->time)                                  \
     H("step",                       int,  i->step)                                  \
@@ -26,7 +28,7 @@
     H("wall_force_y",               real, i->wall_force[1])                         \
     H("wall_force_z",               real, i->wall_force[2])                         \
     H("weight",                     real, i->weight)                                \
-    H("wall_force_ratio",           real, i->weight > 0.0 ? norm(i->wall_force) / i->weight : 0.0) \
+    H("wall_force_ratio",           real, wall_ratio(run, i)) \
     H("kinetic_energy",             real, i->kinetic_energy)                        \
     H("potential_energy",           real, i->potential_energy)                      \
     H("momentum_x",                 real, i->momentum[0])                           \
@@ -59,7 +61,13 @@ static double mean(double sum, const tobi_tally *s)
     return s->steps ? sum / (double)s->steps : 0.0;
 }
 
-static double norm(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+static double wall_ratio(const tobi_run *run, const tobi_step_info *i)
+{
+    const double *g = run->world->sim.def.gravity, *f = i->wall_force;
+    double size = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    if (!(i->weight > 0.0)) return 0.0;
+    return (f[0] * g[0] + f[1] * g[1] + f[2] * g[2]) / (size * i->weight);
+}
 
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
 {
