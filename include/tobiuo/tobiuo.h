@@ -65,6 +65,9 @@ TOBI_API const char *tobi_world_field_name(int field, int *components, const cha
 /* Copies a field into buffer (count x components doubles, row-major, id order). */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
                                      double *buffer, int64_t count, tobi_error *err);
+/* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. */
+TOBI_API tobi_status tobi_world_write(tobi_world *world, const char *field, const double *buffer,
+                                      int64_t count, tobi_error *err);
 /* The moving surface of a body: vertices (m) and triangles, owned by the world. */
 TOBI_API tobi_status tobi_world_surface(const tobi_world *world, int body, int64_t *vertex_count,
                                         const double (**vertices)[3], int64_t *triangle_count,

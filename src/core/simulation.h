@@ -50,7 +50,7 @@ typedef struct tobi_method {
     tobi_status (*refresh)(tobi_simulation *s, void *state, tobi_error *err);
     /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
     void (*derive)(tobi_simulation *s, void *state, const char *field);
-    /* Doubles that must survive a restart besides the particles (time-step history and the like). */
+    /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
     int (*memory)(void *state, double **values);
     void (*free)(void *state);
 } tobi_method;

@@ -32,7 +32,7 @@ typedef struct solve {
     /* results */
     int iterations, converged;
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
-    double head;                  /* max |p|/rho, m2/s2                                          */
+    double head;                  /* three times the mean |p|/rho, m2/s2: more than the bottom's   */
 } solve;
 
 static void launch(tobi_simulation *s, dfsph *m, tobi_kernel k, double *totals)
@@ -155,7 +155,7 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         launch(s, m, k->sph_cg_update, t);
     }
     launch(s, m, k->sph_correct_pressure, t);
-    q->head = t[6];
+    q->head = 3*t[0]/(double)s->particles.count;
 }
 
 static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)

@@ -175,13 +175,12 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
     if (v->surface[i] && v->pressure[i] < 0) v->pressure[i] = 0;
 }
 
-/* Adds the correction, clamped at free surfaces; payload = the pressure. Maximum: |p|/rho, m2/s2. */
+/* Adds the correction, clamped at free surfaces; payload = the pressure. totals[0]: |p|/rho, m2/s2. */
 TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
 {
     float p = v->pressure[i] + v->delta[i];
     if (v->surface[i] && p < 0) p = 0;
-    double head = (double)fabsf(p)*v->inverse_density[v->fluid[i]];
-    totals[6] = head > totals[6] ? head : totals[6];
+    totals[0] += (double)fabsf(p)*v->inverse_density[v->fluid[i]];
     v->pressure[i] = p;
     v->record[i].w = p;
 }

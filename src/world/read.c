@@ -1,6 +1,7 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
 #include "world/world.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,9 +93,9 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     components = fields[k].components;
     TOBI_TRY(tobi_world_start(w, err));
-    if (count < tobi_world_count(w, set)*components)
-        return tobi_fail(err, TOBI_INVALID, "field '%s' needs room for %lld doubles, %lld given", field,
-                         (long long)(tobi_world_count(w, set)*components), (long long)count);
+    if (count < tobi_world_count(w, set))
+        return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, room for %lld given", field,
+                         (long long)tobi_world_count(w, set), (long long)count);
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer);
     TOBI_TRY(tobi_world_refresh(w, err));
     if (!w->diverged && (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")))
@@ -102,6 +103,33 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     #pragma omp parallel for num_threads(w->sim.exec.threads)
     for (int64_t r = 0; r < w->sim.particles.count; r++)
         read_fluid(&w->sim, field, w->row_of[r], buffer + r*components);
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count, tobi_error *err)
+{
+    int velocity = strcmp(field, "velocity") == 0;
+    if (!velocity && strcmp(field, "pressure") != 0)
+        return tobi_fail(err, TOBI_INVALID, "field '%s' cannot be set; allowed are velocity and pressure", field);
+    TOBI_TRY(tobi_world_refresh(w, err));
+    tobi_particles *p = &w->sim.particles;
+    if (count != p->count)
+        return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field, (long long)p->count, (long long)count);
+    double fastest = 0;
+    for (int64_t r = 0; r < count; r++) {
+        const double *v = buffer + r*(velocity ? 3 : 1);
+        int64_t i = w->row_of[r];
+        if (!velocity) {
+            p->pressure[i] = (float)v[0];
+            continue;
+        }
+        p->velocity[i] = (tobi_float4){(float)v[0], (float)v[1], (float)v[2], 0};
+        fastest = fmax(fastest, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    }
+    double *memory;
+    w->method->memory(w->method_state, &memory);
+    if (velocity) memory[0] = sqrt(fastest);
+    w->fresh = 0;
     return TOBI_OK;
 }
 
