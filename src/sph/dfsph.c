@@ -20,7 +20,7 @@ typedef struct dfsph {
     sph_view view;
     const sph_kernels *kernel;
     /* survives a restart */
-    struct { double speed, accel, head, dt; } memory;
+    struct { double speed, head, dt; } memory;
 } dfsph;
 
 /* A run of conjugate gradients on A p = s. */
@@ -97,10 +97,10 @@ static int list_memory(void *state, double **values)
 {
     dfsph *m = state;
     *values = &m->memory.speed;
-    return 4;
+    return 3;
 }
 
-/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/|a|), 0.125 h^2/nu): the pressure keeps particles
+/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps particles
    apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve. Not above a tenth more than the last; the rest
    up to max_dt is shared evenly, so that no sliver of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
@@ -110,8 +110,8 @@ static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
-        double speed = fmax(m->memory.speed, s->body_speed), accel = fmax(sqrt(g2), m->memory.accel);
-        dt = 0.25*sqrt(d/fmax(accel, 1e-12));
+        double speed = fmax(m->memory.speed, s->body_speed);
+        dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
         dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + m->memory.head, 1e-24)));
         for (int f = 0; f < s->fluid_count; f++)
             if (s->fluid[f].viscosity > 0)
@@ -264,7 +264,6 @@ static void advance(tobi_simulation *s, dfsph *m, double *clock)
     double t[TOBI_TOTALS], speed;
     launch(s, m, m->kernel->sph_advance, t);
     speed = sqrt(t[6]);
-    m->memory.accel = fabs(speed - m->memory.speed)/s->dt;
     m->memory.speed = speed;
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];
