@@ -8,17 +8,73 @@
 static tobi_status allocate(tobi_body *b, tobi_error *err)
 {
     size_t v = (size_t)b->mesh.vertex_count, n = (size_t)b->surface.count, p = (size_t)b->particle_count;
-    b->vertex = malloc(v*sizeof *b->vertex);
-    b->next = malloc(v*sizeof *b->next);
-    b->vertex_velocity = calloc(v, sizeof *b->vertex_velocity);
-    b->point = malloc(n*sizeof *b->point);
-    b->normal = malloc(n*sizeof *b->normal);
-    b->point_velocity = calloc(n, sizeof *b->point_velocity);
-    b->area = malloc(n*sizeof *b->area);
-    b->particle = malloc(p*sizeof *b->particle);
-    if (b->vertex && b->next && b->vertex_velocity && b->point && b->normal && b->point_velocity && b->area && b->particle)
-        return TOBI_OK;
+    void **arrays[] = {(void **)&b->vertex, (void **)&b->next, (void **)&b->vertex_velocity, (void **)&b->piece,
+                       (void **)&b->piece_normal, (void **)&b->piece_velocity, (void **)&b->point, (void **)&b->normal,
+                       (void **)&b->point_velocity, (void **)&b->particle};
+    size_t rows[] = {v, v, v, n, n, n, n, n, n, p};
+    int failed = 0;
+    for (size_t k = 0; k < sizeof rows/sizeof *rows; k++) {
+        *arrays[k] = calloc(rows[k] + 1, 3*sizeof(double));
+        failed |= !*arrays[k];
+    }
+    b->piece_area = calloc(n + 1, sizeof *b->piece_area);
+    b->area = calloc(n + 1, sizeof *b->area);
+    b->weight = calloc(n + 1, sizeof *b->weight);
+    b->point_of = calloc(n + 1, sizeof *b->point_of);
+    if (!failed && b->piece_area && b->area && b->weight && b->point_of) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %zu surface points", b->name, n);
+}
+
+/* A piece's cell of the rest pose and the side its normal looks to. */
+typedef struct piece_key { int32_t cell[3], side, piece; } piece_key;
+
+static int compare_keys(const void *a, const void *b)
+{
+    const piece_key *p = a, *q = b;
+    for (int k = 0; k < 3; k++)
+        if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
+    if (p->side != q->side) return p->side < q->side ? -1 : 1;
+    return p->piece < q->piece ? -1 : p->piece > q->piece;
+}
+
+/* Meshes finer than the fluid would cost more than they tell: pieces of one cell that face the same
+   way become one quadrature point. */
+static tobi_status group_pieces(tobi_body *b, double width, tobi_error *err)
+{
+    int64_t n = b->surface.count;
+    piece_key *keys = malloc((size_t)(n + 1)*sizeof *keys);
+    if (!keys) return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %lld surface pieces", b->name, (long long)n);
+    tobi_surface_update(&b->surface, (const double (*)[3])b->vertex, (const int32_t (*)[3])b->mesh.triangles,
+                        b->piece, b->piece_normal, b->piece_area);
+    for (int64_t i = 0; i < n; i++) {
+        const double *m = b->piece_normal[i];
+        int axis = fabs(m[0]) >= fabs(m[1]) && fabs(m[0]) >= fabs(m[2]) ? 0 : fabs(m[1]) >= fabs(m[2]) ? 1 : 2;
+        keys[i].side = 2*axis + (m[axis] > 0);
+        keys[i].piece = (int32_t)i;
+        for (int a = 0; a < 3; a++) keys[i].cell[a] = (int32_t)floor(b->piece[i][a]/width);
+    }
+    qsort(keys, (size_t)n, sizeof *keys, compare_keys);
+    for (int64_t i = 0; i < n; i++) {
+        int same = i > 0 && keys[i].side == keys[i - 1].side && memcmp(keys[i].cell, keys[i - 1].cell, sizeof keys[i].cell) == 0;
+        if (!same) b->point_count++;
+        b->point_of[keys[i].piece] = (int32_t)(b->point_count - 1);
+    }
+    free(keys);
+    return TOBI_OK;
+}
+
+/* Sums value times area of the pieces of every point. */
+static void gather_points(const tobi_body *b, const double (*value)[3], double (*out)[3])
+{
+    memset(out, 0, (size_t)b->point_count*sizeof *out);
+    for (int64_t i = 0; i < b->surface.count; i++)
+        for (int a = 0; a < 3; a++) out[b->point_of[i]][a] += b->piece_area[i]*value[i][a];
+}
+
+static void divide_by_weight(const tobi_body *b, double (*out)[3])
+{
+    for (int64_t k = 0; k < b->point_count; k++)
+        for (int a = 0; a < 3; a++) out[k][a] = b->weight[k] > 0 ? out[k][a]/b->weight[k] : 0;
 }
 
 static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3], double (*out)[3], tobi_error *err)
@@ -96,7 +152,17 @@ static void update_surface(tobi_body *b)
 {
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
     tobi_surface_update(&b->surface, (const double (*)[3])b->vertex, (const int32_t (*)[3])b->mesh.triangles,
-                        b->point, b->normal, b->area);
+                        b->piece, b->piece_normal, b->piece_area);
+    memset(b->weight, 0, (size_t)b->point_count*sizeof *b->weight);
+    for (int64_t i = 0; i < b->surface.count; i++) b->weight[b->point_of[i]] += b->piece_area[i];
+    gather_points(b, (const double (*)[3])b->piece, b->point);
+    divide_by_weight(b, b->point);
+    gather_points(b, (const double (*)[3])b->piece_normal, b->normal);
+    for (int64_t k = 0; k < b->point_count; k++) {
+        double size = sqrt(b->normal[k][0]*b->normal[k][0] + b->normal[k][1]*b->normal[k][1] + b->normal[k][2]*b->normal[k][2]);
+        for (int a = 0; a < 3; a++) b->normal[k][a] = size > 0 ? b->normal[k][a]/size : 0;
+        b->area[k] = size;
+    }
 }
 
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
@@ -144,6 +210,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimensi
     if (status == TOBI_OK)
         status = tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->vertex, b->mesh.triangle_count,
                                 (const int32_t (*)[3])b->mesh.triangles, &b->bvh, err);
+    if (status == TOBI_OK) status = group_pieces(b, point_spacing, err);
     if (status == TOBI_OK) status = tobi_body_place(b, 0, err);
     if (status != TOBI_OK) {
         tobi_body_free(b);
@@ -163,7 +230,8 @@ void tobi_body_free(tobi_body *b)
     tobi_bvh_free(b->bvh);
     tobi_surface_free(&b->surface);
     free(b->vertex); free(b->next); free(b->vertex_velocity);
-    free(b->point); free(b->normal); free(b->point_velocity); free(b->area);
+    free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
+    free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight);
     free(b->particle_rest); free(b->particle);
     memset(b, 0, sizeof *b);
 }
@@ -186,7 +254,9 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
     }
     *speed = fmax(*speed, sqrt(fastest));
     tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
-                             (const double (*)[3])b->vertex_velocity, b->point_velocity);
+                             (const double (*)[3])b->vertex_velocity, b->piece_velocity);
+    gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity, 0);
+    divide_by_area(b, b->point_velocity);
     return TOBI_OK;
 }
 

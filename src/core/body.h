@@ -24,9 +24,13 @@ typedef struct tobi_body {
     double (*vertex_velocity)[3];    /* mean over the step                                     */
     tobi_bvh *bvh;                   /* of `vertex`                                            */
 
-    tobi_surface surface;            /* quadrature points                                      */
+    tobi_surface surface;            /* pieces of the triangles                                */
+    double (*piece)[3], (*piece_normal)[3], (*piece_velocity)[3];
+    double *piece_area;
+    int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */
+    int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
-    double *area;
+    double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
     double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */
     double (*particle)[3];           /* now, world coordinates                                 */

@@ -52,12 +52,12 @@ static tobi_status fill_bins(tobi_simulation *s, const tobi_body *b, tobi_error 
     tobi_status status = grow(&start, &n->bin_capacity, total + 2, sizeof(int32_t), err);
     n->bin_start = start;
     TOBI_TRY(status);
-    status = grow(&item, &n->item_capacity, b->surface.count, sizeof(int32_t), err);
+    status = grow(&item, &n->item_capacity, b->point_count, sizeof(int32_t), err);
     n->bin_item = item;
     TOBI_TRY(status);
     memset(n->bin_start, 0, (size_t)(total + 2)*sizeof(int32_t));
     for (int pass = 0; pass < 2; pass++) {
-        for (int64_t k = 0; k < b->surface.count; k++) {
+        for (int64_t k = 0; k < b->point_count; k++) {
             int c[3];
             for (int a = 0; a < 3; a++) {
                 c[a] = bin_along(n, a, b->point[k][a]);

@@ -105,14 +105,19 @@ static int list_memory(void *state, double **values)
    up to max_dt is shared evenly, so that no sliver of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
 {
-    double d = s->smoothing.spacing, h = s->smoothing.h, dt, g2 = 0;
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    double d = s->smoothing.spacing, h = s->smoothing.h, dt, g2 = 0, fall = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        g2 += s->def.gravity[a]*s->def.gravity[a];
+        fall += fabs(s->def.gravity[a])*s->box.size[a];
+    }
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
         double speed = fmax(m->memory.speed, s->body_speed);
+        /* never more than Bernoulli allows: the pressure of a sudden change grows as 1/dt */
+        double head = fmin(m->memory.head, fall + speed*speed);
         dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
-        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + m->memory.head, 1e-24)));
+        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + head, 1e-24)));
         for (int f = 0; f < s->fluid_count; f++)
             if (s->fluid[f].viscosity > 0)
                 dt = fmin(dt, 0.125*h*h*s->fluid[f].density/s->fluid[f].viscosity);
