@@ -255,8 +255,8 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
     *speed = fmax(*speed, sqrt(fastest));
     tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
                              (const double (*)[3])b->vertex_velocity, b->piece_velocity);
-    gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity, 0);
-    divide_by_area(b, b->point_velocity);
+    gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity);
+    divide_by_weight(b, b->point_velocity);
     return TOBI_OK;
 }
 
