@@ -1,0 +1,225 @@
+"""What every physics case needs: runs the program, reads its files, prints and records figures.
+
+A case is a file test/physics/<case>/run.py with a Case. It prints each figure with its goal, met or
+MISS. At smoke size the exit code follows case.hold(): statements with a tolerance of their own, each
+justified where it stands. At reference size it follows the goals themselves, and the rows and the
+plot go to docs/validation/<case>.{md,svg}. Only the standard library is needed.
+"""
+import argparse
+import array
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+VALIDATION = ROOT / "docs" / "validation"
+COLOURS = ["#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910", "#555555"]
+TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B"}
+
+
+class Case:
+    def __init__(self, name, title, text):
+        self.name, self.title, self.text = name, title, text
+        parser = argparse.ArgumentParser(description=title)
+        parser.add_argument("--tobiuo", required=True, help="the program")
+        parser.add_argument("--size", choices=["smoke", "reference"], default="smoke")
+        parser.add_argument("--out", help="folder for the results (a temporary one, removed at the end)")
+        parser.add_argument("--commit", default="unknown")
+        parser.add_argument("--machine", default="unknown")
+        parser.add_argument("--threads", type=int, help="default: 1 at smoke size, all cores at reference size")
+        parser.add_argument("--reference", default=str(ROOT.parent / "shared" / "reference"),
+                            help="folder of published reference data, used where it exists")
+        self.args = parser.parse_args()
+        self.program = os.path.abspath(self.args.tobiuo)
+        if self.args.threads is None:
+            self.args.threads = 1 if self.args.size == "smoke" else 0
+        self.smoke = self.args.size == "smoke"
+        self.folder = pathlib.Path(__file__).resolve().parent / name
+        self.begin = time.monotonic()
+        self.rows, self.broken, self.commands, self.plots = [], 0, [], []
+        self.temporary = None
+        if self.args.out:
+            self.out = pathlib.Path(self.args.out)
+        else:
+            self.temporary = tempfile.TemporaryDirectory()
+            self.out = pathlib.Path(self.temporary.name)
+
+    def pick(self, smoke, reference):
+        return smoke if self.smoke else reference
+
+    def reference_file(self, path):
+        """A file of published data, or None. Such files are never part of this repository."""
+        found = pathlib.Path(self.args.reference) / path
+        return found if found.is_file() else None
+
+    def run(self, label, *options, scene=None, limit=None):
+        """Runs a scene (the case's own by default); returns the folder of the results."""
+        scene = scene or self.folder / "scene.json"
+        target = self.out / label
+        shown = [os.path.relpath(scene, ROOT) if str(scene).startswith(str(ROOT)) else f"{label}.json"]
+        command = [str(o) for o in options]
+        self.commands.append("tobiuo run " + " ".join(shown + command))
+        done = subprocess.run([self.program, "run", str(scene), "--out", str(target), "--force", "--quiet",
+                               "--threads", str(self.args.threads)] + command, capture_output=True,
+                              text=True, timeout=limit or (100 if self.smoke else None))
+        if done.returncode:
+            print(f"{self.name}: the program failed ({done.returncode}): {done.stderr.strip()}")
+            sys.exit(1)
+        return target
+
+    def figure(self, text, value, goal, met):
+        """A result beside its goal. Decides the exit code at reference size only."""
+        shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+        self.rows.append((text, shown, goal, bool(met)))
+        print(f"{self.name}: {text}: {shown}   goal: {goal}   {'met' if met else 'MISS'}", flush=True)
+
+    def hold(self, text, ok):
+        """A statement that must hold at this size."""
+        print(f"{self.name}: {'holds' if ok else 'BROKEN'}: {text}", flush=True)
+        self.broken += not ok
+
+    def plot(self, title, x_label, y_label, curves):
+        """curves: (label, xs, ys, points?) each."""
+        self.plots.append((title, x_label, y_label, curves))
+
+    def finish(self):
+        missed = sum(not row[3] for row in self.rows)
+        print(f"{self.name}: {len(self.rows) - missed} of {len(self.rows)} goals met, {self.broken} broken, "
+              f"{time.monotonic() - self.begin:.1f} s")
+        if not self.smoke:
+            self.write_page()
+            write_index()
+        if self.temporary:
+            self.temporary.cleanup()
+        sys.exit(1 if self.broken or (missed and not self.smoke) else 0)
+
+    def write_page(self):
+        VALIDATION.mkdir(parents=True, exist_ok=True)
+        lines = [f"# {self.title}", "", self.text.strip(), "", "| figure | value | goal | result |", "|---|---|---|---|"]
+        lines += ["| %s | %s | %s | %s |" % (t, v, g, "met" if ok else "**missed**") for t, v, g, ok in self.rows]
+        if self.plots:
+            (VALIDATION / f"{self.name}.svg").write_text(draw(self.plots))
+            lines += ["", f"![plot]({self.name}.svg)"]
+        lines += ["", f"Command: `./test.sh --slow {self.name}`, which runs", "",
+                  *["    " + c for c in self.commands], "",
+                  f"Commit: {self.args.commit}. Machine: {self.args.machine}."]
+        (VALIDATION / f"{self.name}.md").write_text("\n".join(lines) + "\n")
+
+
+def write_index():
+    """docs/validation/README.md: the rows of all case pages in one table."""
+    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE]`, one page per case; do not edit.",
+             "Every figure stands here, met or missed.", "",
+             "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
+    for page in sorted(VALIDATION.glob("*.md")):
+        text = page.read_text()
+        found = re.search(r"^Commit: (.*?)\. Machine: (.*)\.$", text, re.M)
+        if page.name == "README.md" or not found:
+            continue
+        for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*)) \|$", text, re.M):
+            lines.append(f"| [{page.stem}]({page.name}) | {row} | {found[1]} | {found[2]} |")
+    (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
+
+
+def read_table(path):
+    """A CSV table as {column: [values]}; comment lines (#) are skipped; columns of text stay text."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    def value(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text
+    return {key: [value(row[key]) for row in rows] for key in rows[0]}
+
+
+def read_series(folder, name="fluid"):
+    """(time, path) of each file of a run's series."""
+    text = (pathlib.Path(folder) / f"{name}.pvd").read_text()
+    return [(float(t), pathlib.Path(folder) / f) for t, f in
+            re.findall(r'<DataSet timestep="([^"]*)"[^>]*file="([^"]*)"', text)]
+
+
+def read_vtu(path):
+    """Arrays of a VTU file with appended data, raw or zlib: {name: flat array}; "Points" 3 per point."""
+    data = pathlib.Path(path).read_bytes()
+    begin = data.index(b"<AppendedData")
+    base = data.index(b"_", begin) + 1
+    head = data[:begin].decode()
+    packed = "vtkZLibDataCompressor" in head
+    arrays = {}
+    for kind, name, offset in re.findall(r'<DataArray type="(\w+)" Name="(\w+)"[^>]*offset="(\d+)"', head):
+        at = base + int(offset)
+        size = int.from_bytes(data[at:at + 8], "little")
+        if packed:
+            counts = array.array("Q", data[at:at + 8*(3 + size)])[3:]
+            at += 8*(3 + size)
+            parts = []
+            for count in counts:
+                parts.append(zlib.decompress(data[at:at + count]))
+                at += count
+            arrays[name] = array.array(TYPES[kind], b"".join(parts))
+        else:
+            arrays[name] = array.array(TYPES[kind], data[at + 8:at + 8 + size])
+    return arrays
+
+
+def mean(values):
+    return sum(values)/len(values)
+
+
+def fit_line(xs, ys):
+    """Slope and offset of the least-squares line."""
+    mx, my = mean(xs), mean(ys)
+    slope = sum((x - mx)*(y - my) for x, y in zip(xs, ys))/sum((x - mx)**2 for x in xs)
+    return slope, my - slope*mx
+
+
+def interpolate(xs, ys, x):
+    """Linear between ascending xs."""
+    for a, b, ya, yb in zip(xs, xs[1:], ys, ys[1:]):
+        if a <= x <= b:
+            return ya + (yb - ya)*((x - a)/(b - a) if b > a else 0)
+    return float("nan")
+
+
+def draw(plots):
+    """Line plots side by side as SVG."""
+    width, height, parts = 460, 340, []
+    for number, (title, x_label, y_label, curves) in enumerate(plots):
+        xs = [x for curve in curves for x in curve[1]]
+        ys = [y for curve in curves for y in curve[2] if y == y]
+        x0, x1, y0, y1 = min(xs), max(xs), min(ys), max(ys)
+        y0, y1 = (y0 - 0.05*(y1 - y0 or 1), y1 + 0.05*(y1 - y0 or 1))
+        x1 = x1 if x1 > x0 else x0 + 1
+        def at(x, y):
+            return 60 + (x - x0)/(x1 - x0)*(width - 80), height - 45 - (y - y0)/(y1 - y0)*(height - 80)
+        part = [f'<g transform="translate({number*width},0)">',
+                f'<rect x="60" y="35" width="{width - 80}" height="{height - 80}" fill="none" stroke="#888"/>',
+                f'<text x="{width/2}" y="20" text-anchor="middle" font-weight="bold">{title}</text>',
+                f'<text x="{width/2}" y="{height - 8}" text-anchor="middle">{x_label}</text>',
+                f'<text x="12" y="{height/2}" text-anchor="middle" '
+                f'transform="rotate(-90 12 {height/2})">{y_label}</text>']
+        for step in range(5):
+            x, y = x0 + (x1 - x0)*step/4, y0 + (y1 - y0)*step/4
+            part.append(f'<text x="{at(x, y0)[0]:.1f}" y="{height - 28}" text-anchor="middle">{x:.3g}</text>')
+            part.append(f'<text x="56" y="{at(x0, y)[1] + 4:.1f}" text-anchor="end">{y:.3g}</text>')
+        for index, (label, cx, cy, points) in enumerate(curves):
+            colour = COLOURS[index % len(COLOURS)]
+            pairs = [at(x, y) for x, y in zip(cx, cy) if y == y]
+            if points:
+                part += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{colour}"/>' for x, y in pairs]
+            else:
+                line = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
+                part.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
+            part.append(f'<text x="70" y="{52 + 14*index}" fill="{colour}">{label}</text>')
+        parts += part + ["</g>"]
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width*len(plots)}" height="{height}" '
+            f'font-family="sans-serif" font-size="11">\n<rect width="100%" height="100%" fill="white"/>\n'
+            + "\n".join(parts) + "\n</svg>\n")
