@@ -1,0 +1,386 @@
+/* The SPH kernels once more, in double, from the equations of docs/theory: every pair of particles is
+   looked at, there are no lists, no records, no tables of production code. Slow on purpose. */
+#pragma once
+#include "sph/view.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One row per particle: everything a kernel may read or write, in double. */
+enum {
+    POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, WALL = ACC + 3, FLUX = WALL + 3, RHO, DIAG, PRE, RES,
+    PROD, DELTA, PRES, SURF, COLUMNS
+};
+typedef double row[COLUMNS];
+static const char *const column_name[COLUMNS] = {
+    "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "Gx", "Gy", "Gz", "flux", "density",
+    "diagonal", "precondition", "residual", "product", "delta", "pressure", "surface"
+};
+
+enum { TABLE = 4000 };
+typedef struct oracle {
+    int count, dimension, shape;
+    double d, h, volume, box[3];
+    int periodic[3];
+    double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
+    double lambda[TABLE + 2], sigma[TABLE + 2];
+    int plane_count;
+    tobi_plane plane[6];
+    const uint8_t *fluid;
+    double rho0[2], nu[2], gravity[3];
+    double dt, alpha, beta, smooth, filter, surface_limit;
+} oracle;
+
+/* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
+static double oracle_w(const oracle *o, double r)
+{
+    double q = r/o->h, h = o->h, pi = acos(-1);
+    if (q >= 1) return 0;
+    if (o->shape == TOBI_SHAPE_WENDLAND)
+        return (o->dimension == 3 ? 21/(2*pi*h*h*h) : 7/(pi*h*h))*pow(1 - q, 4)*(1 + 4*q);
+    double n = o->dimension == 3 ? 8/(pi*h*h*h) : 40/(7*pi*h*h);
+    return q <= 0.5 ? n*(6*(q*q*q - q*q) + 1) : n*2*pow(1 - q, 3);
+}
+
+/* -W'(r)/r */
+static double oracle_f(const oracle *o, double r)
+{
+    double q = r/o->h, h = o->h, pi = acos(-1);
+    if (q >= 1) return 0;
+    if (o->shape == TOBI_SHAPE_WENDLAND)
+        return (o->dimension == 3 ? 21/(2*pi*h*h*h) : 7/(pi*h*h))*20*pow(1 - q, 3)/(h*h);
+    double n = o->dimension == 3 ? 8/(pi*h*h*h) : 40/(7*pi*h*h);
+    return n*(q <= 0.5 ? 6*(2 - 3*q)/(h*h) : 6*(1 - q)*(1 - q)/(h*r));
+}
+
+/* Integral of W over the plane (line in 2-D) at distance s, Simpson. */
+static double plane_integral(const oracle *o, double s)
+{
+    enum { N = 400 };
+    double sum = 0, end = sqrt(fmax(o->h*o->h - s*s, 0)), pi = acos(-1);
+    for (int k = 0; k <= N; k++) {
+        double a = end*k/N, w = oracle_w(o, sqrt(s*s + a*a))*(o->dimension == 3 ? 2*pi*a : 2);
+        sum += w*(k == 0 || k == N ? 1 : k%2 ? 4 : 2);
+    }
+    return sum*end/(3*N);
+}
+
+/* Lattice sums: V W sums to one, V F x x to one; sigma(d/2) carries a uniform pressure exactly. */
+static void oracle_normalise(oracle *o)
+{
+    int n = 5, nz = o->dimension == 3 ? n : 0;
+    double w = 0, moment = 0, half = 0;
+    o->volume = pow(o->d, o->dimension);
+    for (int k = -nz; k <= nz; k++)
+        for (int j = -n; j <= n; j++)
+            for (int i = -n; i <= n; i++) {
+                double r = o->d*sqrt(i*i + j*j + k*k), x = i*o->d;
+                w += o->volume*oracle_w(o, r);
+                if (r == 0) continue;
+                moment += o->volume*oracle_f(o, r)*x*x;
+                if (i > 0) half += o->volume*oracle_f(o, r)*x;
+            }
+    o->w_scale = 1/w;
+    o->g_scale = 1/moment;
+    for (int k = 0; k <= TABLE; k++) o->sigma[k] = plane_integral(o, o->h*k/TABLE);
+    o->lambda[TABLE] = 0;
+    for (int k = TABLE - 1; k >= 0; k--)
+        o->lambda[k] = o->lambda[k + 1] + 0.5*o->h/TABLE*(o->sigma[k] + o->sigma[k + 1]);
+    double scale = half*o->g_scale/plane_integral(o, 0.5*o->d);
+    for (int k = 0; k <= TABLE; k++) o->sigma[k] *= scale;
+}
+
+static double look_up(const oracle *o, const double *table, double s)
+{
+    double at = fmax(s, 0)/o->h*TABLE;
+    int k = (int)at;
+    return k >= TABLE ? 0 : table[k] + (at - k)*(table[k + 1] - table[k]);
+}
+
+/* x_i - x_j with the nearest image; returns the distance. */
+static double oracle_pair(const oracle *o, const row *s, int i, int j, double x[3])
+{
+    double r2 = 0;
+    for (int a = 0; a < 3; a++) {
+        x[a] = s[i][POS + a] - s[j][POS + a];
+        if (o->periodic[a]) x[a] -= o->box[a]*nearbyint(x[a]/o->box[a]);
+        r2 += x[a]*x[a];
+    }
+    return sqrt(r2);
+}
+
+#define EACH_NEIGHBOUR(o, s, i, j, x, r)                       \
+    for (int j = 0; j < (o)->count; j++)                       \
+        for (double x[3], r = oracle_pair(o, s, i, j, x), once_ = 1; once_ > 0; once_ = 0) \
+            if (j != i && r < (o)->h)
+
+static double wall_distance(const oracle *o, const row *s, int i, int k)
+{
+    const tobi_plane *p = &o->plane[k];
+    return p->sign*(s[i][POS + p->axis] - p->at);
+}
+
+/* Eq. (4), (5): the fractions of the kernel that planes leave open multiply. */
+static void oracle_walls(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double open = 1;
+        for (int a = 0; a < 4; a++) out[i][WALL + a] = 0;
+        for (int k = 0; k < o->plane_count; k++) {
+            double g = look_up(o, o->sigma, wall_distance(o, in, i, k));
+            for (int l = 0; l < o->plane_count; l++)
+                if (l != k) g *= 1 - look_up(o, o->lambda, wall_distance(o, in, i, l));
+            out[i][WALL + o->plane[k].axis] -= o->plane[k].sign*g;
+            open *= 1 - look_up(o, o->lambda, wall_distance(o, in, i, k));
+        }
+        out[i][RHO] = 1 - open;
+    }
+}
+
+/* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
+static void oracle_density(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double share = in[i][RHO], ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, own[3], rest = 0;
+        double rho = ww*oracle_w(o, 0), mean = rho*in[i][PAYLOAD] + share*in[i][PAYLOAD], div = o->dimension*share;
+        for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            rho += ww*oracle_w(o, r);
+            mean += ww*oracle_w(o, r)*in[j][PAYLOAD];
+            for (int a = 0; a < 3; a++) {
+                double g = -gg*oracle_f(o, r)*x[a];      /* V grad W */
+                own[a] += g;
+                rest += g*g;
+                div -= g*x[a];
+            }
+        }
+        rho += share;
+        mean /= rho;
+        double e = rho - 1;
+        out[i][RHO] = rho;
+        out[i][PROD] = mean;
+        out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
+        out[i][SURF] = div < o->surface_limit;
+        if (share == 0 && out[i][SURF] == 0) out[i][PRES] = in[i][PAYLOAD] + o->smooth*(mean - in[i][PAYLOAD]);
+        e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
+        t[0] += e;
+        t[6] = fmax(t[6], e);
+    }
+}
+
+static void laplacian(const oracle *o, const row *in, int i, int field, double l[3])
+{
+    l[0] = l[1] = l[2] = 0;
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double f = o->volume*o->g_scale*oracle_f(o, r);
+        (void)x;
+        for (int a = 0; a < 3; a++) l[a] += f*(in[j][field + a] - in[i][field + a]);
+    }
+}
+
+static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) laplacian(o, in, i, VEL, &out[i][ACC]);
+}
+
+/* Eq. (13), (14), (6). accel holds L v. */
+static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double ll[3], add[3], nu = o->nu[o->fluid[i]];
+        laplacian(o, in, i, ACC, ll);
+        for (int a = 0; a < 3; a++) add[a] = o->gravity[a] + 2*nu*in[i][ACC + a] - o->filter*ll[a];
+        for (int k = 0; k < o->plane_count; k++) {
+            double s = wall_distance(o, in, i, k);
+            if (s >= o->h) continue;
+            s = fmax(s, 0.25*o->d);
+            double sigma = look_up(o, o->sigma, s);
+            add[o->plane[k].axis] -= o->gravity[o->plane[k].axis]*(s*sigma + look_up(o, o->lambda, s));
+            for (int a = 0; a < 3; a++)
+                if (o->plane[k].no_slip && a != o->plane[k].axis) add[a] -= 2*nu*sigma/s*in[i][VEL + a];
+        }
+        for (int a = 0; a < 3; a++) out[i][VEL + a] += o->dt*add[a];
+    }
+}
+
+/* Reaction of the pressure on planes and of the lift. */
+static void oracle_wall_force(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)out;
+    for (int i = 0; i < o->count; i++)
+        for (int k = 0; k < o->plane_count; k++) {
+            int axis = o->plane[k].axis;
+            double s = wall_distance(o, in, i, k), g = look_up(o, o->sigma, s);
+            if (s >= o->h) continue;
+            for (int l = 0; l < o->plane_count; l++)
+                if (l != k) g *= 1 - look_up(o, o->lambda, wall_distance(o, in, i, l));
+            t[axis] -= 2*o->volume*in[i][PRES]*o->plane[k].sign*g;
+            s = fmax(s, 0.25*o->d);
+            t[axis] += o->volume*o->rho0[o->fluid[i]]*o->gravity[axis]*
+                       (look_up(o, o->lambda, s) + s*look_up(o, o->sigma, s));
+        }
+}
+
+/* Eq. (12); held 0.2 d from planes. */
+static void oracle_advance(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double speed2 = 0;
+        for (int a = 0; a < 3; a++) {
+            out[i][POS + a] += o->dt*in[i][VEL + a] + o->dt*o->dt*in[i][ACC + a];
+            speed2 += in[i][VEL + a]*in[i][VEL + a];
+        }
+        t[6] = fmax(t[6], speed2);
+        for (int k = 0; k < o->plane_count; k++) {
+            int a = o->plane[k].axis;
+            double sign = o->plane[k].sign;
+            if (sign*(out[i][POS + a] - o->plane[k].at) >= 0.2*o->d) continue;
+            out[i][POS + a] = o->plane[k].at + sign*0.2*o->d;
+            if (sign*out[i][VEL + a] >= 0) continue;
+            t[0] += 1;
+            t[1 + a] += o->volume*o->rho0[o->fluid[i]]*out[i][VEL + a];
+            out[i][VEL + a] = 0;
+        }
+    }
+}
+
+/* Eq. (15): sum V grad W x (v_j - v_i). */
+static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        for (int a = 0; a < 3; a++) out[i][ACC + a] = 0;
+        EACH_NEIGHBOUR(o, in, i, j, x, r)
+            for (int a = 0; a < 3; a++) {
+                int b = (a + 1)%3, c = (a + 2)%3;
+                double f = -o->volume*o->g_scale*oracle_f(o, r);
+                out[i][ACC + a] += f*(x[b]*(in[j][VEL + c] - in[i][VEL + c]) - x[c]*(in[j][VEL + b] - in[i][VEL + b]));
+            }
+    }
+}
+
+/* Eq. (8) for the payload. */
+static void pressure_accel(const oracle *o, const row *in, int i, double a[3])
+{
+    double p = in[i][PAYLOAD];
+    for (int c = 0; c < 3; c++) a[c] = 2*p*in[i][WALL + c];
+    EACH_NEIGHBOUR(o, in, i, j, x, r)
+        for (int c = 0; c < 3; c++)
+            a[c] += (p + in[j][PAYLOAD])*-o->volume*o->g_scale*oracle_f(o, r)*x[c];
+    for (int c = 0; c < 3; c++) a[c] /= -o->rho0[o->fluid[i]];
+}
+
+static void oracle_pressure_accel(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) pressure_accel(o, in, i, &out[i][ACC]);
+}
+
+static void oracle_pressure_kick(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double a[3];
+        pressure_accel(o, in, i, a);
+        for (int c = 0; c < 3; c++) out[i][VEL + c] += o->dt*a[c];
+    }
+}
+
+/* Eq. (7): C u; `flux` is G . u_wall. */
+static double compression(const oracle *o, const row *in, int i, int field, double flux)
+{
+    double sum = -2*flux;
+    for (int a = 0; a < 3; a++) sum += 2*in[i][WALL + a]*in[i][field + a];
+    EACH_NEIGHBOUR(o, in, i, j, x, r)
+        for (int a = 0; a < 3; a++)
+            sum += -o->volume*o->g_scale*oracle_f(o, r)*x[a]*(in[i][field + a] - in[j][field + a]);
+    return sum;
+}
+
+/* Eq. (10). */
+static void oracle_source(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double s = compression(o, in, i, VEL, in[i][FLUX])/o->dt;
+        int active = in[i][DIAG] > 0 && (in[i][SURF] == 0 || s > 0 || in[i][PRES] > 0);
+        out[i][PRE] = active ? 1/in[i][DIAG] : 0;
+        out[i][RES] = active ? s : 0;
+        out[i][PAYLOAD] = in[i][PRES];
+        t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
+    }
+}
+
+static void oracle_product(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        out[i][PROD] = -compression(o, in, i, ACC, 0);
+        t[0] += out[i][PROD]*in[i][PAYLOAD];
+    }
+}
+
+/* The start of conjugate gradients: r, z = r/diagonal, q = z, no change yet. */
+static void begin_search(const row *in, row *out, int i, double r, int active, double *t)
+{
+    out[i][RES] = active ? r : 0;
+    out[i][PRE] = active ? 1/in[i][DIAG] : 0;
+    out[i][PAYLOAD] = out[i][RES]*out[i][PRE];
+    out[i][DELTA] = 0;
+    t[0] += out[i][RES]*out[i][PAYLOAD];
+    t[1] += fabs(out[i][RES]);
+    t[6] = fmax(t[6], fabs(out[i][RES]));
+}
+
+static void oracle_warm_residual(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++)
+        begin_search(in, out, i, in[i][RES] - in[i][PROD], in[i][PRE] > 0, t);
+}
+
+/* Eq. (11). */
+static void oracle_density_residual(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double e = in[i][RHO] - 1, surface = in[i][SURF];
+        e = e >= 0 ? fmin(e, 0.1) : surface > 0 ? 0 : fmax(0.1*e, -0.002);
+        out[i][PRES] = 0;
+        begin_search(in, out, i, e/(o->dt*o->dt), in[i][DIAG] > 0 && (surface == 0 || e > 0), t);
+    }
+}
+
+static void oracle_cg_update(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        if (in[i][PRE] == 0) continue;
+        out[i][DELTA] += o->alpha*in[i][PAYLOAD];
+        out[i][RES] -= o->alpha*in[i][PROD];
+        t[0] += out[i][RES]*out[i][RES]*in[i][PRE];
+        t[1] += fabs(out[i][RES]);
+        t[6] = fmax(t[6], fabs(out[i][RES]));
+    }
+}
+
+static void oracle_cg_direction(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) out[i][PAYLOAD] = in[i][RES]*in[i][PRE] + o->beta*in[i][PAYLOAD];
+}
+
+static void oracle_warm_start(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++)
+        if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], 0);
+}
+
+static void oracle_correct_pressure(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double p = in[i][PRES] + in[i][DELTA];
+        if (in[i][SURF] > 0) p = fmax(p, 0);
+        out[i][PRES] = out[i][PAYLOAD] = p;
+        t[0] += fabs(p)/o->rho0[o->fluid[i]];
+    }
+}

@@ -1,0 +1,168 @@
+/* A box of jittered particles, bound to a view as the DFSPH method binds it, and to an oracle. */
+#pragma once
+#include "core/cells.h"
+#include "core/smoothing.h"
+#include "sph/kernels.h"
+#include "kernel/sph_oracle.h"
+
+typedef struct rig_case {
+    int dimension, shape;
+    double support;
+    int periodic[3];
+    int closed;           /* 1: full of fluid, no free surface      */
+    int fluids;           /* 1 or 2                                 */
+    double jitter;        /* in spacings                            */
+    double origin;        /* world coordinate of the lower corner   */
+} rig_case;
+
+typedef struct rig {
+    tobi_exec exec;
+    tobi_box box;
+    tobi_smoothing_constants c;
+    tobi_particles p;
+    tobi_cells cells;
+    sph_view view;
+    oracle o;
+} rig;
+
+static uint64_t rig_state;
+/* Uniform in -1..1, the same on every machine. */
+static double rig_random(void)
+{
+    rig_state = rig_state*6364136223846793005u + 1442695040888963407u;
+    return (double)(rig_state >> 11)/4503599627370496.0 - 1;
+}
+
+static void rig_fill(rig *g, const rig_case *k, const int n[3])
+{
+    double d = g->c.spacing;
+    for (int z = 0; z < n[2]; z++)
+        for (int y = 0; y < n[1]; y++)
+            for (int x = 0; x < n[0]; x++) {
+                int64_t i = g->p.count++;
+                double at[3] = {x, y, z}, *q = &g->p.position[i].x;
+                for (int a = 0; a < 3; a++)
+                    q[a] = a < k->dimension ? (at[a] + 0.5 + k->jitter*rig_random())*d : 0;
+                for (int a = 0; a < k->dimension; a++) (&g->p.velocity[i].x)[a] = (float)rig_random();
+                g->p.pressure[i] = (float)(1000*rig_random() + 500);
+                g->p.id[i] = i;
+                g->p.fluid[i] = (uint8_t)(k->fluids > 1 && x%3 == 0);
+            }
+}
+
+static void rig_bind(rig *g, const rig_case *k)
+{
+    sph_view *v = &g->view;
+    tobi_particles *p = &g->p;
+    v->count = p->count;
+    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
+    v->wall = p->wall; v->density = p->density; v->diagonal = p->diagonal; v->precondition = p->precondition;
+    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
+    v->pressure = p->pressure; v->fluid = p->fluid;
+    v->list = g->cells.list; v->list_start = p->list_start; v->list_groups = p->list_groups;
+    for (int a = 0; a < 3; a++) v->from_fixed[a] = g->box.from_fixed[a];
+    v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h);
+    v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
+    v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;
+    v->dimension = k->dimension;
+    v->surface_limit = (k->dimension == 3 ? 0.87f : 0.80f)*(float)k->dimension;
+    v->table = &g->c.plane;
+    const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-3};
+    v->plane_count = 0;
+    for (int a = 0; a < k->dimension; a++) {
+        v->gravity[a] = (float)(a + 1 == k->dimension ? -9.81 : 1.5);
+        if (k->periodic[a]) continue;
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1};
+        v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0};
+    }
+    v->dt = 1e-3f; v->inverse_dt = 1000;
+    v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f;
+    oracle *o = &g->o;
+    o->count = (int)p->count; o->dimension = k->dimension; o->shape = k->shape;
+    o->d = g->c.spacing; o->h = g->c.h;
+    o->fluid = p->fluid;
+    o->plane_count = v->plane_count;
+    memcpy(o->plane, v->plane, sizeof o->plane);
+    for (int a = 0; a < 3; a++) {
+        o->box[a] = g->box.size[a];
+        o->periodic[a] = g->box.periodic[a];
+        o->gravity[a] = v->gravity[a];
+    }
+    for (int f = 0; f < 2; f++) {
+        v->inverse_density[f] = (float)(1/rho[f]);
+        v->kinematic[f] = (float)nu[f];
+        o->rho0[f] = rho[f]; o->nu[f] = nu[f];
+    }
+    o->dt = v->dt; o->alpha = v->alpha; o->beta = v->beta;
+    o->smooth = v->smooth; o->filter = v->filter; o->surface_limit = v->surface_limit;
+    oracle_normalise(o);
+}
+
+/* 0 = ok. 3-D: 9 x 8 x 8 particles, 2-D: 26 x 24; one support radius of air above if not closed. */
+static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
+{
+    static const int size3[3] = {9, 8, 8}, size2[3] = {26, 24, 1};
+    const int *n = k->dimension == 3 ? size3 : size2;
+    double d = 0.01, lower[3], upper[3];
+    memset(g, 0, sizeof *g);
+    rig_state = 1234567;
+    if (tobi_exec_init(&g->exec, threads, err)) return 1;
+    tobi_smoothing_init(&g->c, k->shape, k->dimension, d, k->support);
+    for (int a = 0; a < 3; a++) {
+        lower[a] = k->origin;
+        upper[a] = k->origin + d*(n[a] + (!k->closed && a + 1 == k->dimension ? 3 : 0));
+    }
+    tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
+    int64_t count = (int64_t)n[0]*n[1]*n[2];
+    if (tobi_particles_create(&g->p, count, err)) return 1;
+    if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
+    if (tobi_exec_reserve(&g->exec, count, err)) return 1;
+    rig_fill(g, k, n);
+    tobi_cells_sort(&g->cells, &g->box, &g->p, &g->exec);
+    if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
+    rig_bind(g, k);
+    return 0;
+}
+
+static void rig_free(rig *g)
+{
+    tobi_cells_free(&g->cells);
+    tobi_particles_free(&g->p);
+    tobi_exec_free(&g->exec);
+}
+
+/* Copies the particles' values out to rows and back; exact both ways. */
+static void rig_get(const rig *g, row *s)
+{
+    const tobi_particles *p = &g->p;
+    for (int64_t i = 0; i < p->count; i++) {
+        for (int a = 0; a < 3; a++) {
+            s[i][POS + a] = (&p->position[i].x)[a];
+            s[i][VEL + a] = (&p->velocity[i].x)[a];
+            s[i][ACC + a] = (&p->accel[i].x)[a];
+        }
+        for (int a = 0; a < 4; a++) s[i][WALL + a] = (&p->wall[i].x)[a];
+        s[i][PAYLOAD] = p->record[i].w;
+        s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
+        s[i][RES] = p->residual[i]; s[i][PROD] = p->product[i]; s[i][DELTA] = p->delta[i];
+        s[i][PRES] = p->pressure[i]; s[i][SURF] = p->surface[i];
+    }
+}
+
+static void rig_set(rig *g, const row *s)
+{
+    tobi_particles *p = &g->p;
+    for (int64_t i = 0; i < p->count; i++) {
+        for (int a = 0; a < 3; a++) {
+            (&p->position[i].x)[a] = s[i][POS + a];
+            (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
+            (&p->accel[i].x)[a] = (float)s[i][ACC + a];
+        }
+        for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
+        p->record[i].w = (float)s[i][PAYLOAD];
+        p->density[i] = (float)s[i][RHO]; p->diagonal[i] = (float)s[i][DIAG];
+        p->precondition[i] = (float)s[i][PRE]; p->residual[i] = (float)s[i][RES];
+        p->product[i] = (float)s[i][PROD]; p->delta[i] = (float)s[i][DELTA];
+        p->pressure[i] = (float)s[i][PRES]; p->surface[i] = (uint8_t)s[i][SURF];
+    }
+}
