@@ -110,6 +110,7 @@ typedef struct tobi_step_info {
     double  speed_max;            /* m/s                                                              */
     int64_t fluid_particles;
     int64_t particles_lost;       /* left the domain so far                                           */
+    int64_t capped;               /* particles slowed to the speed cap in this step                   */
     int64_t contacts;             /* particles held back at a surface by position in this step        */
 } tobi_step_info;
 

@@ -42,3 +42,10 @@ void tobi_simulation_measure(tobi_simulation *s)
     for (int a = 0; a < 3; a++) s->info.momentum[a] = t[2 + a];
     s->info.weight = t[5]*sqrt(g2);
 }
+
+double tobi_simulation_speed_scale(const tobi_simulation *s)
+{
+    double fall = 0;
+    for (int a = 0; a < s->box.dimension; a++) fall += fabs(s->def.gravity[a])*s->box.size[a];
+    return sqrt(2*fall) + s->body_speed + s->start_speed;
+}

@@ -33,6 +33,7 @@ typedef struct tobi_simulation {
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
     double body_speed;              /* m/s, fastest body point of the last step              */
+    double start_speed;             /* m/s, fastest particle at the start                    */
     tobi_step_info info;            /* of the last step                                      */
     tobi_stages stages;
 } tobi_simulation;
@@ -55,6 +56,9 @@ typedef struct tobi_method {
     void (*free)(void *state);
 } tobi_method;
 
+/* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
+   initial velocities. */
+double tobi_simulation_speed_scale(const tobi_simulation *s);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_simulation_measure(tobi_simulation *s);
 

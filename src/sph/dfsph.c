@@ -266,13 +266,14 @@ static void measure_forces(tobi_simulation *s, dfsph *m, double *clock)
 
 static void advance(tobi_simulation *s, dfsph *m, double *clock)
 {
-    double t[TOBI_TOTALS], speed;
+    double t[TOBI_TOTALS];
+    m->view.speed_cap = (float)(2*tobi_simulation_speed_scale(s));
     launch(s, m, m->kernel->sph_advance, t);
-    speed = sqrt(t[6]);
-    m->memory.speed = speed;
+    m->memory.speed = sqrt(t[6]);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];
-    s->info.speed_max = speed;
+    s->info.speed_max = sqrt(t[7]);
+    s->info.capped = (int64_t)t[4];
     tobi_stage_end(&s->stages, "advance", clock);
 }
 

@@ -212,10 +212,21 @@ TOBI_FN void sph_vorticity_finish(const sph_view *v, int64_t i, sph_vorticity_ac
 
 /* x += dt (v + dt shift), held at a small distance from plane walls; a particle pressed further loses
    its normal speed. The shift (accel) corrects positions and never enters the velocity, eq. (12).
-   totals: contacts, momentum lost to walls; maximum: speed^2. */
+   A particle beyond the speed cap, squeezed where surfaces meet, is slowed to it and counted.
+   totals: contacts, momentum lost to walls, capped; maxima: speed^2 after and before the cap. */
 TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
 {
     tobi_float4 u = v->velocity[i], shift = v->accel[i];
+    double speed2 = (double)u.x*u.x + (double)u.y*u.y + (double)u.z*u.z, cap2 = (double)v->speed_cap*v->speed_cap;
+    if (!(speed2 < 1e30)) speed2 = 1e30;   /* NaN shows as a runaway */
+    totals[7] = speed2 > totals[7] ? speed2 : totals[7];
+    if (speed2 > cap2 && speed2 < 1e30) {
+        float slow = (float)(v->speed_cap/sqrt(speed2));
+        u.x *= slow; u.y *= slow; u.z *= slow;
+        totals[4] += 1;
+        speed2 = cap2;
+    }
+    totals[6] = speed2 > totals[6] ? speed2 : totals[6];
     double x[3] = {v->position[i].x + (double)v->dt*(u.x + v->dt*shift.x),
                    v->position[i].y + (double)v->dt*(u.y + v->dt*shift.y),
                    v->position[i].z + (double)v->dt*(u.z + v->dt*shift.z)};
@@ -235,7 +246,4 @@ TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
     tobi_double3 at = {x[0], x[1], x[2]};
     v->velocity[i] = out;
     v->position[i] = at;
-    double speed2 = (double)u.x*u.x + (double)u.y*u.y + (double)u.z*u.z;
-    if (!(speed2 < 1e30)) speed2 = 1e30;   /* NaN shows as a runaway */
-    totals[6] = speed2 > totals[6] ? speed2 : totals[6];
 }

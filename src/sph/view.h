@@ -39,6 +39,7 @@ typedef struct sph_view {
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];
+    float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */
     float alpha, beta;                        /* conjugate gradient coefficients       */

@@ -20,8 +20,8 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
     TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
     TOBI_TRY(tobi_store_put_real(f, "spacing", s->smoothing.spacing, err));
-    double clock[3] = {s->time, s->dt, s->body_speed};
-    TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 3, 1, clock, err));
+    double clock[4] = {s->time, s->dt, s->body_speed, s->start_speed};
+    TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     for (int k = 0; k < s->body_count; k++) {
         char name[32] = "body_";
@@ -53,7 +53,7 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    double *memory, clock[3], spacing;
+    double *memory, clock[4], spacing;
     int64_t step, bodies;
     int n = w->method->memory(w->method_state, &memory);
     TOBI_TRY(tobi_store_get_int(f, "step", &step, err));
@@ -62,13 +62,14 @@ static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     if (bodies != s->body_count || spacing != s->smoothing.spacing)
         return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies at spacing %g m, the scene %d at %g m",
                          (long long)bodies, spacing, s->body_count, s->smoothing.spacing);
-    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 3, 1, clock, err));
+    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_get(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     TOBI_TRY(tobi_store_get(f, "memory", TOBI_F64, n, 1, memory, err));
     s->step = step;
     s->time = clock[0];
     s->dt = clock[1];
     s->body_speed = clock[2];
+    s->start_speed = clock[3];
     return TOBI_OK;
 }
 

@@ -128,7 +128,7 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
     }
     double *memory;
     w->method->memory(w->method_state, &memory);
-    if (velocity) memory[0] = sqrt(fastest);
+    if (velocity) memory[0] = w->sim.start_speed = sqrt(fastest);
     w->fresh = 0;
     return TOBI_OK;
 }

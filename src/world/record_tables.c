@@ -38,6 +38,7 @@
     H("speed_max",                  real, i->speed_max)                             \
     H("fluid_particles",            int,  i->fluid_particles)                       \
     H("particles_lost",             int,  i->particles_lost)                        \
+    H("capped",                     int,  i->capped)                 \
     H("contacts",                   int,  i->contacts)
 
 /* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those of the
