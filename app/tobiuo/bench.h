@@ -1,0 +1,40 @@
+/* What the files of `tobiuo bench` share. */
+#pragma once
+#include "app.h"
+
+typedef struct bench_options {
+    const char *which;       /* the case                                     */
+    const char *scene;       /* of the case fish                             */
+    double spacing;          /* m; 0 = the case's own                        */
+    double project;          /* s of simulated time to project to; 0 = 0.8   */
+    int threads;             /* 0 = all cores                                */
+    int steps, settle;       /* 0 = the case's own                           */
+} bench_options;
+
+/* One measured stretch of steps. */
+typedef struct bench_result {
+    int64_t particles;
+    int steps;
+    double seconds, median;                   /* wall clock: of all steps, of the middle step */
+    double processor;                         /* s of processor time of all threads           */
+    double simulated, dt_least, dt_most;      /* s                                            */
+    double density_iterations, divergence_iterations;
+    double density_error, pressure_residual;  /* means over the steps                         */
+    double solve_seconds;                     /* in the stages named "... solve"              */
+    double force_least, force_mean, force_most;   /* wall force against gravity / weight      */
+} bench_result;
+
+enum { BENCH_STAGES = 16 };
+/* Seconds per stage so far. */
+typedef struct bench_stages { const char *name[BENCH_STAGES]; double seconds[BENCH_STAGES]; int count; } bench_stages;
+
+/* bench_machine.c: processor, threads, instruction set, load: what a figure must be read with. */
+void bench_print_machine(int threads);
+/* Bytes of the process at its largest. */
+double bench_peak_rss(void);
+
+/* bench_measure.c: steps a world and measures; up: direction that gravity points against, 0 to 2.
+   Returns 0 or an exit code after a complaint. */
+int bench_settle(tobi_world *world, int steps);
+int bench_measure(tobi_world *world, int steps, int up, bench_result *result, bench_stages *stages);
+void bench_print_result(const tobi_world *world, const bench_result *r, const bench_stages *stages);
