@@ -78,10 +78,10 @@ static tobi_world *make_tank(const bench_options *o, double spacing, int more)
 /* Hands the settled state from one tank to another through a checkpoint file. */
 static int copy_state(tobi_world *from, tobi_world *to)
 {
-    char path[] = "/tmp/tobiuo-bench-XXXXXX";
+    char path[] = P_tmpdir "/tobiuo-bench-XXXXXX";
     tobi_error err = { 0 };
     int file = mkstemp(path), failed = 0;
-    if (file < 0) return complain("no temporary file in /tmp");
+    if (file < 0) return complain("no temporary file %s", path);
     close(file);
     if (tobi_world_save(from, path, &err) != TOBI_OK ||
         tobi_world_load(to, path, &err) != TOBI_OK) failed = complain("%s", err.text);

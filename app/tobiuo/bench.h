@@ -26,7 +26,11 @@ typedef struct bench_result {
 
 enum { BENCH_STAGES = 16 };
 /* Seconds per stage so far. */
-typedef struct bench_stages { const char *name[BENCH_STAGES]; double seconds[BENCH_STAGES]; int count; } bench_stages;
+typedef struct bench_stages {
+    const char *name[BENCH_STAGES];
+    double seconds[BENCH_STAGES];
+    int count;
+} bench_stages;
 
 /* bench_machine.c: processor, threads, instruction set, load: what a figure must be read with. */
 void bench_print_machine(int threads);

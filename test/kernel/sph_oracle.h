@@ -28,7 +28,7 @@ typedef struct oracle {
     tobi_plane plane[6];
     const uint8_t *fluid;
     double rho0[2], nu[2], gravity[3];
-    double dt, alpha, beta, smooth, filter, surface_limit;
+    double dt, alpha, beta, smooth, filter, surface_limit, speed_cap;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -142,8 +142,8 @@ static void oracle_walls(const oracle *o, const row *in, row *out, double *t)
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
-        double share = in[i][RHO], ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, own[3], rest = 0;
-        double rho = ww*oracle_w(o, 0), mean = rho*in[i][PAYLOAD] + share*in[i][PAYLOAD], div = o->dimension*share;
+        double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
+        double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
         for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
@@ -162,7 +162,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         out[i][PROD] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
         out[i][SURF] = div < o->surface_limit;
-        if (share == 0 && out[i][SURF] == 0) out[i][PRES] = in[i][PAYLOAD] + o->smooth*(mean - in[i][PAYLOAD]);
+        if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
         t[0] += e;
         t[6] = fmax(t[6], e);
@@ -224,16 +224,22 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
         }
 }
 
-/* Eq. (12); held 0.2 d from planes. */
+/* Eq. (12); capped speed, held 0.2 d from planes. */
 static void oracle_advance(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
-        double speed2 = 0;
-        for (int a = 0; a < 3; a++) {
-            out[i][POS + a] += o->dt*in[i][VEL + a] + o->dt*o->dt*in[i][ACC + a];
-            speed2 += in[i][VEL + a]*in[i][VEL + a];
+        double speed2 = 0, slow = 1;
+        for (int a = 0; a < 3; a++) speed2 += in[i][VEL + a]*in[i][VEL + a];
+        t[7] = fmax(t[7], speed2);
+        if (sqrt(speed2) > o->speed_cap) {
+            slow = o->speed_cap/sqrt(speed2);
+            t[4] += 1;
         }
-        t[6] = fmax(t[6], speed2);
+        t[6] = fmax(t[6], speed2*slow*slow);
+        for (int a = 0; a < 3; a++) {
+            out[i][VEL + a] *= slow;
+            out[i][POS + a] += o->dt*out[i][VEL + a] + o->dt*o->dt*in[i][ACC + a];
+        }
         for (int k = 0; k < o->plane_count; k++) {
             int a = o->plane[k].axis;
             double sign = o->plane[k].sign;
@@ -257,7 +263,8 @@ static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t
             for (int a = 0; a < 3; a++) {
                 int b = (a + 1)%3, c = (a + 2)%3;
                 double f = -o->volume*o->g_scale*oracle_f(o, r);
-                out[i][ACC + a] += f*(x[b]*(in[j][VEL + c] - in[i][VEL + c]) - x[c]*(in[j][VEL + b] - in[i][VEL + b]));
+                out[i][ACC + a] += f*x[b]*(in[j][VEL + c] - in[i][VEL + c]);
+                out[i][ACC + a] -= f*x[c]*(in[j][VEL + b] - in[i][VEL + b]);
             }
     }
 }

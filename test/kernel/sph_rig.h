@@ -50,7 +50,7 @@ static void rig_fill(rig *g, const rig_case *k, const int n[3])
             }
 }
 
-static void rig_bind(rig *g, const rig_case *k)
+static void rig_bind(rig *g, const rig_case *k, const double rho[2], const double nu[2])
 {
     sph_view *v = &g->view;
     tobi_particles *p = &g->p;
@@ -67,7 +67,6 @@ static void rig_bind(rig *g, const rig_case *k)
     v->dimension = k->dimension;
     v->surface_limit = (k->dimension == 3 ? 0.87f : 0.80f)*(float)k->dimension;
     v->table = &g->c.plane;
-    const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-3};
     v->plane_count = 0;
     for (int a = 0; a < k->dimension; a++) {
         v->gravity[a] = (float)(a + 1 == k->dimension ? -9.81 : 1.5);
@@ -75,8 +74,18 @@ static void rig_bind(rig *g, const rig_case *k)
         v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1};
         v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0};
     }
-    v->dt = 1e-3f; v->inverse_dt = 1000;
+    for (int f = 0; f < 2; f++) {
+        v->inverse_density[f] = (float)(1/rho[f]);
+        v->kinematic[f] = (float)nu[f];
+    }
+    v->dt = 1e-3f; v->inverse_dt = 1000; v->speed_cap = 1.2f;
     v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f;
+}
+
+static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], const double nu[2])
+{
+    const sph_view *v = &g->view;
+    const tobi_particles *p = &g->p;
     oracle *o = &g->o;
     o->count = (int)p->count; o->dimension = k->dimension; o->shape = k->shape;
     o->d = g->c.spacing; o->h = g->c.h;
@@ -89,12 +98,11 @@ static void rig_bind(rig *g, const rig_case *k)
         o->gravity[a] = v->gravity[a];
     }
     for (int f = 0; f < 2; f++) {
-        v->inverse_density[f] = (float)(1/rho[f]);
-        v->kinematic[f] = (float)nu[f];
         o->rho0[f] = rho[f]; o->nu[f] = nu[f];
     }
     o->dt = v->dt; o->alpha = v->alpha; o->beta = v->beta;
     o->smooth = v->smooth; o->filter = v->filter; o->surface_limit = v->surface_limit;
+    o->speed_cap = v->speed_cap;
     oracle_normalise(o);
 }
 
@@ -103,6 +111,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
 {
     static const int size3[3] = {9, 8, 8}, size2[3] = {26, 24, 1};
     const int *n = k->dimension == 3 ? size3 : size2;
+    const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-3};   /* kg/m3, m2/s */
     double d = 0.01, lower[3], upper[3];
     memset(g, 0, sizeof *g);
     rig_state = 1234567;
@@ -120,7 +129,8 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     rig_fill(g, k, n);
     tobi_cells_sort(&g->cells, &g->box, &g->p, &g->exec);
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
-    rig_bind(g, k);
+    rig_bind(g, k, rho, nu);
+    rig_bind_oracle(g, k, rho, nu);
     return 0;
 }
 

@@ -29,7 +29,8 @@ static tobi_world *make(int threads, int body)
     w.wall_min[2] = TOBI_WALL_NO_SLIP;
     f.name = "water";
     f.viscosity = 0.05;
-    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_fluid(world, &f, &fill, 1, &err)) fail_msg("%s", err.text);
+    if (tobi_world_create(&w, NULL, &world, &err)) fail_msg("%s", err.text);
+    if (tobi_world_add_fluid(world, &f, &fill, 1, &err)) fail_msg("%s", err.text);
     b.name = "post";
     b.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
     b.friction = TOBI_NO_SLIP;
@@ -99,7 +100,8 @@ static void restarts_do_not_matter(void **state)
         tobi_world *a = make(2, body), *b = make(3, body);
         tobi_error err;
         for (int k = 0; k < STEPS/2; k++) assert_int_equal(tobi_world_step(a, 0, NULL, &err), TOBI_OK);
-        if (tobi_world_save(a, "same_bits.h5", &err) || tobi_world_load(b, "same_bits.h5", &err)) fail_msg("%s", err.text);
+        if (tobi_world_save(a, "same_bits.h5", &err)) fail_msg("%s", err.text);
+        if (tobi_world_load(b, "same_bits.h5", &err)) fail_msg("%s", err.text);
         remove("same_bits.h5");
         assert_true(tobi_world_hash(a) == tobi_world_hash(b));
         for (int k = 0; k < STEPS/2; k++) assert_int_equal(tobi_world_step(b, 0, NULL, &err), TOBI_OK);

@@ -84,11 +84,12 @@ static void check_rows(const rig *g, const row *a, const row *b, double toleranc
     }
     for (int c = 0; c < COLUMNS; c++)
         if (!(worst[c] <= tolerance*scale[c]))
-            fail_msg("%s, %s of particle %d: %.9g, expected %.9g (column scale %.3g)", what, column_name[c],
-                     where[c], a[where[c]][c], b[where[c]][c], scale[c]);
+            fail_msg("%s, %s of particle %d: %.9g, expected %.9g (scale %.3g)", what,
+                     column_name[c], where[c], a[where[c]][c], b[where[c]][c], scale[c]);
 }
 
-static void check_totals(const double *a, const double *b, const double *size, double tolerance, const char *what)
+static void check_totals(const double *a, const double *b, const double *size, double tolerance,
+                         const char *what)
 {
     for (int k = 0; k < TOBI_TOTALS; k++)
         if (!(fabs(a[k] - b[k]) <= tolerance*fmax(size[k], fabs(b[k]))))
@@ -121,10 +122,11 @@ static void walk(const rig_case *c, int case_index, reading other, double tolera
         other(&g, k, in, expected, u);
         /* signed sums cancel: measured against the sum of sizes where that is known */
         if (!strcmp(kernels[k].name, "sph_wall_force") || !strcmp(kernels[k].name, "sph_advance"))
-            for (int a = 0; a < 6; a++) size[a] = fabs(u[0]) + fabs(u[1]) + fabs(u[2]) + fabs(u[3]);
+            for (int a = 0; a < 4; a++) size[a] = fabs(u[0]) + fabs(u[1]) + fabs(u[2]) + fabs(u[3]);
         if (!strcmp(kernels[k].name, "sph_product"))
             for (int64_t i = 0; i < g.p.count; i++) size[0] += fabs(expected[i][PROD]*in[i][PAYLOAD]);
-        if (bits && memcmp(made, expected, (size_t)g.p.count*sizeof(row)) != 0) fail_msg("%s: bits differ", what);
+        if (bits && memcmp(made, expected, (size_t)g.p.count*sizeof(row)) != 0)
+            fail_msg("%s: bits differ", what);
         if (bits && memcmp(t, u, sizeof t) != 0) fail_msg("%s: bits of the totals differ", what);
         check_rows(&g, made, expected, tolerance, what);
         check_totals(t, u, size, tolerance, what);
@@ -153,7 +155,8 @@ static void kernels_follow_the_equations(void **state)
 static void read_scalar(rig *g, int k, const row *in, row *out, double *totals)
 {
     (void)in;
-    tobi_launch(&g->exec, kernel_at(&sph_kernels_scalar[g->o.shape], k), &g->view, 0, g->p.count, totals);
+    const sph_kernels *table = &sph_kernels_scalar[g->o.shape];
+    tobi_launch(&g->exec, kernel_at(table, k), &g->view, 0, g->p.count, totals);
     rig_get(g, out);
 }
 
@@ -168,7 +171,8 @@ static int other_isa;
 static void read_isa(rig *g, int k, const row *in, row *out, double *totals)
 {
     (void)in;
-    tobi_launch(&g->exec, kernel_at(sph_kernels_for(other_isa, g->o.shape), k), &g->view, 0, g->p.count, totals);
+    const sph_kernels *table = sph_kernels_for(other_isa, g->o.shape);
+    tobi_launch(&g->exec, kernel_at(table, k), &g->view, 0, g->p.count, totals);
     rig_get(g, out);
 }
 
@@ -196,10 +200,12 @@ static void lattice_normalisation_is_the_equations(void **state)
         for (int k = 0; k < 100; k++) {
             double s = o->h*k/100.0, at = s/o->h*TOBI_PLANE_SAMPLES;
             int n = (int)at;
-            double lambda = g.c.plane.lambda[n] + (at - n)*(g.c.plane.lambda[n + 1] - g.c.plane.lambda[n]);
-            double sigma = g.c.plane.sigma[n] + (at - n)*(g.c.plane.sigma[n + 1] - g.c.plane.sigma[n]);
-            if (fabs(lambda - look_up(o, o->lambda, s)) > 5e-5) fail_msg("case %d: lambda(%g h) %g", c, k/100.0, lambda);
-            if (fabs(sigma - look_up(o, o->sigma, s)) > 1e-4*o->sigma[0]) fail_msg("case %d: sigma(%g h) %g", c, k/100.0, sigma);
+            const float *l = &g.c.plane.lambda[n], *m = &g.c.plane.sigma[n];
+            double lambda = l[0] + (at - n)*(l[1] - l[0]), sigma = m[0] + (at - n)*(m[1] - m[0]);
+            if (fabs(lambda - look_up(o, o->lambda, s)) > 5e-5)
+                fail_msg("case %d: lambda(%g h) %g", c, k/100.0, lambda);
+            if (fabs(sigma - look_up(o, o->sigma, s)) > 1e-4*o->sigma[0])
+                fail_msg("case %d: sigma(%g h) %g", c, k/100.0, sigma);
         }
         rig_free(&g);
     }
@@ -289,7 +295,8 @@ static void linear_fields_are_exact_on_the_lattice(void **state)
         const sph_kernels *table = sph_kernels_for(g.exec.isa, k.shape);
         for (int64_t i = 0; i < g.p.count; i++) {
             tobi_double3 x = g.p.position[i];
-            g.p.velocity[i] = (tobi_float4){(float)(-3*x.y - x.x), (float)(4*x.x), (float)(k.dimension == 3 ? 2*x.y : 0), 0};
+            float w = k.dimension == 3 ? (float)(2*x.y) : 0;
+            g.p.velocity[i] = (tobi_float4){(float)(-3*x.y - x.x), (float)(4*x.x), w, 0};
         }
         tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
         tobi_launch(&g.exec, table->sph_density, &g.view, 0, g.p.count, NULL);
@@ -299,7 +306,8 @@ static void linear_fields_are_exact_on_the_lattice(void **state)
         for (int64_t i = 0; i < g.p.count; i++) {
             int inside = 1;
             for (int a = 0; a < k.dimension; a++) {
-                double x = (&g.p.position[i].x)[a], top = a + 1 == k.dimension && !k.closed ? 3*g.c.spacing : 0;
+                double x = (&g.p.position[i].x)[a];
+                double top = a + 1 == k.dimension && !k.closed ? 3*g.c.spacing : 0;
                 inside &= x > g.c.h && x < g.box.size[a] - top - g.c.h;
             }
             if (!inside) continue;
@@ -355,12 +363,14 @@ static void walls_hold_a_uniform_pressure(void **state)
         measure_walls(&k, &e);
         printf("%d-D %-8s", k.dimension, k.shape ? "cubic" : "wendland");
         for (int w = 0; w <= k.dimension; w++)
-            printf("  %d walls: density %.3f accel %.3f surface %d;", w, e.density[w], e.accel[w], e.open[w]);
+            printf("  %d walls: density %.3f accel %.3f surface %d;", w, e.density[w], e.accel[w],
+                   e.open[w]);
         printf("\n");
         /* One wall: 5 %, because lambda is the integral and not the lattice's sum. Along edges the
            fractions multiply, which misses the overlap; particles there count as a free surface. */
         assert_int_equal(e.open[0] + e.open[1], 0);
-        assert_true(e.density[0] < 0.006 && e.density[1] < 0.06 && e.density[2] < 0.09 && e.density[3] < 0.11);
+        assert_true(e.density[0] < 0.006 && e.density[1] < 0.06);
+        assert_true(e.density[2] < 0.09 && e.density[3] < 0.11);
         assert_true(e.accel[0] < 0.06 && e.accel[1] < 0.04 && e.accel[2] < 0.08 && e.accel[3] < 0.14);
     }
 }
