@@ -47,7 +47,8 @@ TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_parti
 TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
 
 /* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. */
-TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info, tobi_error *err);
+TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info,
+                                     tobi_error *err);
 /* Steps until time t (s), hit exactly. */
 TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
 

@@ -14,7 +14,12 @@ extern "C" {
 typedef enum tobi_wall   { TOBI_WALL_SLIP, TOBI_WALL_NO_SLIP, TOBI_WALL_PERIODIC } tobi_wall;
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
-typedef enum tobi_compression { TOBI_COMPRESS_NONE, TOBI_COMPRESS_ZLIB, TOBI_COMPRESS_LZ4, TOBI_ASCII } tobi_compression;
+typedef enum tobi_compression {
+    TOBI_COMPRESS_NONE,
+    TOBI_COMPRESS_ZLIB,
+    TOBI_COMPRESS_LZ4,
+    TOBI_ASCII
+} tobi_compression;
 
 /* The box, the fluid resolution and the clock. */
 typedef struct tobi_world_def {

@@ -8,9 +8,11 @@
 static tobi_status allocate(tobi_body *b, tobi_error *err)
 {
     size_t v = (size_t)b->mesh.vertex_count, n = (size_t)b->surface.count, p = (size_t)b->particle_count;
-    void **arrays[] = {(void **)&b->vertex, (void **)&b->next, (void **)&b->vertex_velocity, (void **)&b->piece,
-                       (void **)&b->piece_normal, (void **)&b->piece_velocity, (void **)&b->point, (void **)&b->normal,
-                       (void **)&b->point_velocity, (void **)&b->particle};
+    void **arrays[] = {(void **)&b->vertex,          (void **)&b->next,
+                       (void **)&b->vertex_velocity, (void **)&b->piece,
+                       (void **)&b->piece_normal,    (void **)&b->piece_velocity,
+                       (void **)&b->point,           (void **)&b->normal,
+                       (void **)&b->point_velocity,  (void **)&b->particle};
     size_t rows[] = {v, v, v, n, n, n, n, n, n, p};
     int failed = 0;
     for (size_t k = 0; k < sizeof rows/sizeof *rows; k++) {
@@ -43,19 +45,25 @@ static tobi_status group_pieces(tobi_body *b, double width, tobi_error *err)
 {
     int64_t n = b->surface.count;
     piece_key *keys = malloc((size_t)(n + 1)*sizeof *keys);
-    if (!keys) return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %lld surface pieces", b->name, (long long)n);
-    tobi_surface_update(&b->surface, (const double (*)[3])b->vertex, (const int32_t (*)[3])b->mesh.triangles,
-                        b->piece, b->piece_normal, b->piece_area);
+    if (!keys)
+        return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %lld surface pieces",
+                         b->name, (long long)n);
+    tobi_surface_update(&b->surface, (const double(*)[3])b->vertex,
+                        (const int32_t(*)[3])b->mesh.triangles, b->piece, b->piece_normal,
+                        b->piece_area);
     for (int64_t i = 0; i < n; i++) {
         const double *m = b->piece_normal[i];
-        int axis = fabs(m[0]) >= fabs(m[1]) && fabs(m[0]) >= fabs(m[2]) ? 0 : fabs(m[1]) >= fabs(m[2]) ? 1 : 2;
+        int axis = fabs(m[0]) >= fabs(m[1]) && fabs(m[0]) >= fabs(m[2]) ? 0
+                   : fabs(m[1]) >= fabs(m[2])                           ? 1
+                                                                        : 2;
         keys[i].side = 2*axis + (m[axis] > 0);
         keys[i].piece = (int32_t)i;
         for (int a = 0; a < 3; a++) keys[i].cell[a] = (int32_t)floor(b->piece[i][a]/width);
     }
     qsort(keys, (size_t)n, sizeof *keys, compare_keys);
     for (int64_t i = 0; i < n; i++) {
-        int same = i > 0 && keys[i].side == keys[i - 1].side && memcmp(keys[i].cell, keys[i - 1].cell, sizeof keys[i].cell) == 0;
+        int same = i > 0 && keys[i].side == keys[i - 1].side &&
+                   memcmp(keys[i].cell, keys[i - 1].cell, sizeof keys[i].cell) == 0;
         if (!same) b->point_count++;
         b->point_of[keys[i].piece] = (int32_t)(b->point_count - 1);
     }
@@ -77,7 +85,8 @@ static void divide_by_weight(const tobi_body *b, double (*out)[3])
         for (int a = 0; a < 3; a++) out[k][a] = b->weight[k] > 0 ? out[k][a]/b->weight[k] : 0;
 }
 
-static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3], double (*out)[3], tobi_error *err)
+static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                            double (*out)[3], tobi_error *err)
 {
     if (!b->motion) {
         memcpy(out, rest, (size_t)n*sizeof *out);
@@ -97,7 +106,8 @@ static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3],
 
 /* Where the material at the rest centre is and how it is turned: three short axes through the motion,
    made orthonormal. Exact for a rigid motion. */
-static tobi_status place_frame(tobi_body *b, double t, double centre[3], double frame[3][3], tobi_error *err)
+static tobi_status place_frame(tobi_body *b, double t, double centre[3], double frame[3][3],
+                               tobi_error *err)
 {
     double arm = 0.01*cbrt(fabs(b->rest.volume)), rest[4][3], now[4][3];
     for (int k = 0; k < 4; k++)
@@ -129,7 +139,8 @@ static void to_quaternion(const double f[3][3], double q[4])
         q[1] = (m[2][1] - m[1][2])/s; q[2] = (m[0][2] - m[2][0])/s; q[3] = (m[1][0] - m[0][1])/s;
         return;
     }
-    int i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2), j = (i + 1)%3, k = (i + 2)%3;
+    int i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2),
+        j = (i + 1) % 3, k = (i + 2) % 3;
     double s = 2*sqrt(fmax(1 + m[i][i] - m[j][j] - m[k][k], 1e-300));
     q[0] = (m[k][j] - m[j][k])/s;
     q[1 + i] = 0.25*s;
@@ -151,15 +162,17 @@ static void turn_rate(const double from[3][3], const double to[3][3], double dt,
 static void update_surface(tobi_body *b)
 {
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
-    tobi_surface_update(&b->surface, (const double (*)[3])b->vertex, (const int32_t (*)[3])b->mesh.triangles,
-                        b->piece, b->piece_normal, b->piece_area);
+    tobi_surface_update(&b->surface, (const double(*)[3])b->vertex,
+                        (const int32_t(*)[3])b->mesh.triangles, b->piece, b->piece_normal,
+                        b->piece_area);
     memset(b->weight, 0, (size_t)b->point_count*sizeof *b->weight);
     for (int64_t i = 0; i < b->surface.count; i++) b->weight[b->point_of[i]] += b->piece_area[i];
     gather_points(b, (const double (*)[3])b->piece, b->point);
     divide_by_weight(b, b->point);
     gather_points(b, (const double (*)[3])b->piece_normal, b->normal);
     for (int64_t k = 0; k < b->point_count; k++) {
-        double size = sqrt(b->normal[k][0]*b->normal[k][0] + b->normal[k][1]*b->normal[k][1] + b->normal[k][2]*b->normal[k][2]);
+        double size = sqrt(b->normal[k][0] * b->normal[k][0] + b->normal[k][1] * b->normal[k][1] +
+                           b->normal[k][2] * b->normal[k][2]);
         for (int a = 0; a < 3; a++) b->normal[k][a] = size > 0 ? b->normal[k][a]/size : 0;
         b->area[k] = size;
     }
@@ -183,17 +196,20 @@ tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err)
 static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
 {
     TOBI_TRY(tobi_mesh_read(def->mesh, &b->mesh, err));
-    TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle, def->translation, err));
+    TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
+                                 def->translation, err));
     TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh, err));
     if (def->motion && !def->motion_rigid) TOBI_TRY(tobi_mesh_refine(&b->mesh, 3*b->spacing, err));
-    return dimension == 3 ? tobi_massprops_volume(&b->mesh, &b->rest, err) : tobi_massprops_section(&b->mesh, &b->rest, err);
+    return dimension == 3 ? tobi_massprops_volume(&b->mesh, &b->rest, err)
+                          : tobi_massprops_section(&b->mesh, &b->rest, err);
 }
 
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
                              const double lower[3], tobi_error *err)
 {
     memset(b, 0, sizeof *b);
-    if (!def->mesh || !def->mesh[0]) return tobi_fail(err, TOBI_INVALID, "body '%s' names no mesh", def->name ? def->name : "");
+    if (!def->mesh || !def->mesh[0])
+        return tobi_fail(err, TOBI_INVALID, "body '%s' names no mesh", def->name ? def->name : "");
     snprintf(b->name, sizeof b->name, "%s", def->name && def->name[0] ? def->name : "body");
     b->density = def->density;
     b->friction = def->friction;
@@ -202,14 +218,17 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimensi
     b->motion_user = def->motion_user;
     memcpy(b->lower, lower, sizeof b->lower);
     tobi_status status = load_mesh(b, def, dimension, err);
-    if (status == TOBI_OK) status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
     if (status == TOBI_OK)
-        status = tobi_sample_volume(&b->mesh, NULL, b->spacing, dimension, &b->particle_rest, &b->particle_count, err);
+        status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
+    if (status == TOBI_OK)
+        status = tobi_sample_volume(&b->mesh, NULL, b->spacing, dimension, &b->particle_rest,
+                                    &b->particle_count, err);
     if (status == TOBI_OK) status = allocate(b, err);
     if (status == TOBI_OK) status = move_vertices(b, 0, b->vertex, err);
     if (status == TOBI_OK)
-        status = tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->vertex, b->mesh.triangle_count,
-                                (const int32_t (*)[3])b->mesh.triangles, &b->bvh, err);
+        status = tobi_bvh_build(b->mesh.vertex_count, (const double(*)[3])b->vertex,
+                                b->mesh.triangle_count, (const int32_t(*)[3])b->mesh.triangles,
+                                &b->bvh, err);
     if (status == TOBI_OK) status = group_pieces(b, point_spacing, err);
     if (status == TOBI_OK) status = tobi_body_place(b, 0, err);
     if (status != TOBI_OK) {

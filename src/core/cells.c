@@ -15,7 +15,8 @@ void tobi_box_init(tobi_box *b, int dimension, const double lower[3], const doub
         b->lower[a] = flat ? 0 : lower[a];
         b->size[a] = flat ? h : upper[a] - lower[a];
         b->periodic[a] = flat ? 0 : periodic[a];
-        /* A periodic side is 2^32 units, so that differences wrap; a walled one 2^30, so that they never do. */
+        /* A periodic side is 2^32 units, so that differences wrap; a walled one 2^30, so that they
+         * never do. */
         b->to_fixed[a] = (b->periodic[a] ? 4294967296.0 : 1073741824.0)/b->size[a];
         b->from_fixed[a] = (float)(1/b->to_fixed[a]);
         b->centre[a] = flat ? 0 : 0.5*b->size[a];
@@ -59,8 +60,10 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int6
     memset(c, 0, sizeof *c);
     for (int a = 0; a < 3; a++)
         if (box->periodic[a] && box->size[a] < 3.001*h)
-            return tobi_fail(err, TOBI_INVALID, "the periodic domain is %g m along %c, allowed is at least three support radii (%g m)",
-                             box->size[a], "xyz"[a], 3*h);
+            return tobi_fail(err, TOBI_INVALID,
+                             "the periodic domain is %g m along %c, allowed is at least three "
+                             "support radii (%g m)",
+                             box->size[a], "xyz"[a], 3 * h);
     choose_cells(c, box, h, particles);
     c->list_capacity = scratch_entries(particles) + 16;
     int64_t guess = particles*40 + 1024;
@@ -70,7 +73,8 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int6
     c->list = aligned_alloc(64, (size_t)(c->list_capacity*4 + 63)/64*64);
     if (c->start && c->histogram && c->list) return TOBI_OK;
     tobi_cells_free(c);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list", (long long)c->total);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list",
+                     (long long)c->total);
 }
 
 void tobi_cells_free(tobi_cells *c)
@@ -121,7 +125,8 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
     #pragma omp parallel for num_threads(x->threads) schedule(static)
     for (int64_t i = 0; i < n; i++) {
         wrap(box, &p->position[i]);
-        int64_t row = tobi_cells_row(c, cell_along(c, 1, p->position[i].y), cell_along(c, 2, p->position[i].z));
+        int64_t row = tobi_cells_row(c, cell_along(c, 1, p->position[i].y),
+                                     cell_along(c, 2, p->position[i].z));
         keys[i] = (uint32_t)(row + cell_along(c, 0, p->position[i].x));
     }
     tobi_sort_by_key(x, n, (uint32_t)c->total, keys, order, key_copy, order_copy, c->histogram);
@@ -132,7 +137,8 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
     #pragma omp parallel for num_threads(x->threads) schedule(static)
     for (int64_t i = 0; i < n; i++) {
         tobi_double3 q = p->position[i];
-        p->record[i] = (tobi_record){to_fixed(box, 0, q.x), to_fixed(box, 1, q.y), to_fixed(box, 2, q.z), p->pressure[i]};
+        p->record[i] = (tobi_record){to_fixed(box, 0, q.x), to_fixed(box, 1, q.y),
+                                     to_fixed(box, 2, q.z), p->pressure[i]};
     }
 }
 
@@ -161,7 +167,9 @@ tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_p
             .from_fixed = {box->from_fixed[0], box->from_fixed[1], box->from_fixed[2]}, .h2 = (float)(h*h),
         };
         tobi_launch(x, search[x->isa - 2], &v, 0, p->count, NULL);
-        if (overflow == 2) return tobi_fail(err, TOBI_DIVERGED, "more than 1000 particles crowd into one support radius");
+        if (overflow == 2)
+            return tobi_fail(err, TOBI_DIVERGED,
+                             "more than 1000 particles crowd into one support radius");
         if (overflow == 0) return TOBI_OK;
         TOBI_TRY(grow_list(c, err));
     }

@@ -58,7 +58,7 @@ typedef struct tobi_list_view {
     uint16_t *list_groups;
     int64_t   capacity;
     int64_t  *used;         /* atomic counter, int32 entries                          */
-    int      *overflow;     /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
+    int *overflow; /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
     float     from_fixed[3];
     float     h2;
 } tobi_list_view;

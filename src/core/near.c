@@ -22,7 +22,9 @@ static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, 
     if (need <= *capacity) return TOBI_OK;
     int64_t more = need + need/2 + 64;
     void *q = realloc(*p, (size_t)more*size);
-    if (!q) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld entries near bodies", (long long)more);
+    if (!q)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld entries near bodies",
+                         (long long)more);
     *p = q;
     *capacity = more;
     return TOBI_OK;
@@ -44,7 +46,9 @@ static tobi_status fill_bins(tobi_simulation *s, const tobi_body *b, tobi_error 
     n->bin_width = s->smoothing.h;
     for (int a = 0; a < 3; a++) {
         n->bin_lower[a] = lo[a];
-        n->bins[a] = a == 2 && s->box.dimension == 2 ? 1 : (int)fmin((hi[a] - lo[a])/n->bin_width + 1, 4096);
+        n->bins[a] = a == 2 && s->box.dimension == 2
+                         ? 1
+                         : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);
         total *= n->bins[a];
     }
     if (s->box.dimension == 2) n->bin_lower[2] = -0.5*n->bin_width;
@@ -80,13 +84,16 @@ static int visit_points(const tobi_near_bodies *n, const double x[3], visit_fn v
     int c[3];
     for (int a = 0; a < 3; a++) {
         c[a] = bin_along(n, a, x[a]);
-        double beyond = c[a] < 0 ? n->bin_lower[a] - x[a] : x[a] - (n->bin_lower[a] + n->bins[a]*n->bin_width);
+        double beyond = c[a] < 0 ? n->bin_lower[a] - x[a]
+                                 : x[a] - (n->bin_lower[a] + n->bins[a] * n->bin_width);
         if ((c[a] < 0 || c[a] >= n->bins[a]) && beyond > n->bin_width) return 0;
     }
     for (int z = c[2] - 1; z <= c[2] + 1; z++)
         for (int y = c[1] - 1; y <= c[1] + 1; y++)
             for (int q = c[0] - 1; q <= c[0] + 1; q++) {
-                if (z < 0 || z >= n->bins[2] || y < 0 || y >= n->bins[1] || q < 0 || q >= n->bins[0]) continue;
+                if (z < 0 || z >= n->bins[2] || y < 0 || y >= n->bins[1] || q < 0 ||
+                    q >= n->bins[0])
+                    continue;
                 int64_t bin = ((int64_t)z*n->bins[1] + y)*n->bins[0] + q;
                 for (int32_t k = n->bin_start[bin]; k < n->bin_start[bin + 1]; k++)
                     if (visit(user, n->bin_item[k])) return 1;
@@ -263,7 +270,9 @@ static int separated(const tobi_simulation *s, int64_t i, int64_t j)
             }
             if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
             const tobi_bvh *tree = s->bodies[a->body].bvh;
-            if (p->id[i] < p->id[j] ? tobi_bvh_segment_hits(tree, x, to) : tobi_bvh_segment_hits(tree, to, x)) return 1;
+            if (p->id[i] < p->id[j] ? tobi_bvh_segment_hits(tree, x, to)
+                                    : tobi_bvh_segment_hits(tree, to, x))
+                return 1;
         }
     return 0;
 }
@@ -305,7 +314,8 @@ void tobi_near_add_gradients(tobi_simulation *s)
 }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
-static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, const double u[3], double lift[3], double drag[3])
+static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, const double u[3],
+                        double lift[3], double drag[3])
 {
     const tobi_fluid *f = &s->fluid[s->particles.fluid[e->particle]];
     double nu = f->viscosity/f->density, a[3];
@@ -343,7 +353,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
         const tobi_near_entry *e = &s->near.entry[k];
         if (e->body != r->body) continue;
         const tobi_body *b = &s->bodies[e->body];
-        double mass = s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].density, force[3], arm[3];
+        double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
+               force[3], arm[3];
         const double *accel = r->viscous ? e->friction : e->lift;
         for (int a = 0; a < 3; a++) {
             force[a] = -mass*accel[a];
@@ -385,7 +396,8 @@ static int push_particle(tobi_simulation *s, const tobi_body *b, int64_t i, doub
     tobi_float4 *v = &s->particles.velocity[i];
     double *w[3] = {b->vertex_velocity[tri[0]], b->vertex_velocity[tri[1]], b->vertex_velocity[tri[2]]};
     for (int a = 0; a < 3; a++)
-        u[a] = (&v->x)[a] - (hit.barycentric[0]*w[0][a] + hit.barycentric[1]*w[1][a] + hit.barycentric[2]*w[2][a]);
+        u[a] = (&v->x)[a] - (hit.barycentric[0] * w[0][a] + hit.barycentric[1] * w[1][a] +
+                             hit.barycentric[2] * w[2][a]);
     double into = dot(u, hit.normal);
     q->x = hit.point[0] + least*hit.normal[0];
     q->y = hit.point[1] + least*hit.normal[1];

@@ -39,7 +39,8 @@ struct tobi_simulation;
 tobi_status tobi_near_find(struct tobi_simulation *s, tobi_error *err);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
 void tobi_near_cut_pairs(struct tobi_simulation *s);
-/* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the planes' part). */
+/* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the
+ * planes' part). */
 void tobi_near_add_gradients(struct tobi_simulation *s);
 /* Adds dt times lift and no-slip friction of the bodies to the velocities. */
 void tobi_near_add_forces(struct tobi_simulation *s);

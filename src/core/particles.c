@@ -58,7 +58,8 @@ DEFINE_PERMUTE(float)
 DEFINE_PERMUTE(int64_t)
 DEFINE_PERMUTE(uint8_t)
 
-#define PERMUTE(field) _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4, \
+#define PERMUTE(field) \
+    _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4, \
     float *: permute_float, int64_t *: permute_int64_t, uint8_t *: permute_uint8_t, default: permute_uint8_t)
 
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)

@@ -87,7 +87,8 @@ static void fill_plane(tobi_smoothing_constants *c, double slope_half)
     for (k = 0; k <= N; k++) c->plane.sigma[k] *= (float)scale;
 }
 
-void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing, double support)
+void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing,
+                         double support)
 {
     double h = support*spacing;
     lattice_sums s = sum_lattice(shape, dimension, spacing, h);

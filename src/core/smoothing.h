@@ -27,7 +27,8 @@ typedef struct tobi_smoothing_constants {
 } tobi_smoothing_constants;
 
 /* kernel: TOBI_SHAPE_*; support in spacings, 2 to 4. */
-void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing, double support);
+void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, double spacing,
+                         double support);
 
 /* W and -dW/dr / r in double with the integral normalisation (1/m^dim); the reference the tests use. */
 double tobi_smoothing_w(int shape, int dimension, double h, double r);

@@ -12,7 +12,9 @@ static int find_isa(void)
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd")) return 4;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma")) return 3;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") &&
+        __builtin_cpu_supports("fma"))
+        return 3;
 #endif
     return 2;
 }
@@ -20,7 +22,9 @@ static int find_isa(void)
 tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err)
 {
     memset(x, 0, sizeof *x);
-    if (threads < 0) return tobi_fail(err, TOBI_INVALID, "threads is %d, allowed is 0 (all cores) or more", threads);
+    if (threads < 0)
+        return tobi_fail(err, TOBI_INVALID, "threads is %d, allowed is 0 (all cores) or more",
+                         threads);
     x->threads = threads > 0 ? threads : omp_get_num_procs();
     x->isa = find_isa();
     const char *wish = getenv("TOBIUO_ISA");   /* tests compare instruction sets with this */
@@ -58,7 +62,8 @@ static void combine(double *p, int64_t blocks, double *totals)
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
 }
 
-void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end, double *totals)
+void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
+                 double *totals)
 {
     int64_t blocks = (end - begin + TOBI_BLOCK - 1)/TOBI_BLOCK;
     if (totals) memset(totals, 0, TOBI_TOTALS*sizeof *totals);
@@ -86,7 +91,7 @@ static void sort_pass(tobi_exec *x, int64_t n, int shift, const uint32_t *key_in
         int64_t first = n*t/count, last = n*(t + 1)/count;
         int64_t *mine = histogram + (int64_t)t*RADIX;
         memset(mine, 0, RADIX*sizeof *mine);
-        for (int64_t i = first; i < last; i++) mine[(key_in[i] >> shift) & (RADIX - 1)]++;
+        for (int64_t i = first; i < last; i++) mine[((uint64_t)key_in[i] >> shift) & (RADIX - 1)]++;
         #pragma omp barrier
         #pragma omp single
         {
@@ -99,7 +104,7 @@ static void sort_pass(tobi_exec *x, int64_t n, int shift, const uint32_t *key_in
                 }
         }
         for (int64_t i = first; i < last; i++) {
-            int64_t at = mine[(key_in[i] >> shift) & (RADIX - 1)]++;
+            int64_t at = mine[((uint64_t)key_in[i] >> shift) & (RADIX - 1)]++;
             key_out[at] = key_in[i];
             index_out[at] = index_in ? index_in[i] : (int32_t)i;
         }

@@ -25,7 +25,8 @@ void tobi_exec_free(tobi_exec *x);
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 
 /* Runs kernel over [begin, end); totals (TOBI_TOTALS doubles) may be NULL. */
-void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end, double *totals);
+void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
+                 double *totals);
 
 /* Stable radix sort of keys (each < key_limit) with their indices 0..n-1. On return keys are sorted
    and order[k] is the old index of rank k. The three scratch arrays hold n entries each. */

@@ -41,7 +41,8 @@ TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x
     tobi_float4 a = base[*j];
     *x = a.x; *y = a.y; *z = a.z; *w = a.w;
 }
-TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y, lane_int *z, lane *w)
+TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y,
+                              lane_int *z, lane *w)
 {
     tobi_record a = base[*j];
     *x = a.x; *y = a.y; *z = a.z; *w = a.w;
@@ -119,7 +120,8 @@ TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x
     *z = __builtin_shufflevector(t2, t3, 0, 1, 8, 9, 4, 5, 12, 13);
     *w = __builtin_shufflevector(t2, t3, 2, 3, 10, 11, 6, 7, 14, 15);
 }
-TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y, lane_int *z, lane *w)
+TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y,
+                              lane_int *z, lane *w)
 {
     lane fx, fy, fz;
     lane_load_float4((const tobi_float4 *)(const void *)base, j, &fx, &fy, &fz, w);

@@ -144,8 +144,10 @@ static tobi_status cut_lines(lines *l, const tobi_mesh *mesh, const tobi_section
         double half = section && k ? 0 : 0.5*(max[k] - min[k])/l->fine;
         estimate *= 2*half + 3;
         if (!(estimate < (double)MAX_LINES))
-            return tobi_fail(err, TOBI_INVALID, "a body spacing of %g m is too fine for a body of %g x %g x "
-                             "%g m", spacing, max[0] - min[0], max[1] - min[1], max[2] - min[2]);
+            return tobi_fail(err, TOBI_INVALID,
+                             "a body spacing of %g m is too fine for a body of %g x %g x "
+                             "%g m",
+                             spacing, max[0] - min[0], max[1] - min[1], max[2] - min[2]);
         l->low[k] = -(int64_t)half - 2;
         l->size[k] = section && k ? 1 : 2*((int64_t)half + 2) + 1;
         if (section && k) l->low[k] = 0;
@@ -163,7 +165,8 @@ static tobi_status cut_lines(lines *l, const tobi_mesh *mesh, const tobi_section
     if (!l->start || !l->cuts)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory to fill a body at a spacing of %g m", spacing);
     for (int64_t i = 0; i < n; i++)
-        qsort(l->cuts + l->start[i], (size_t)(l->start[i + 1] - l->start[i]), sizeof *l->cuts, compare_cuts);
+        qsort(l->cuts + l->start[i], (size_t)(l->start[i + 1] - l->start[i]), sizeof *l->cuts,
+              compare_cuts);
     return TOBI_OK;
 }
 

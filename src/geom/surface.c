@@ -72,13 +72,15 @@ static void cut_triangle(const double *const x[3], double spacing, int32_t t, to
         piece half = p;
         half.fraction = p.fraction = 0.5*p.fraction;
         for (int i = 0; i < 3; i++)
-            p.corner[(k + 1) % 3][i] = half.corner[k][i] = 0.5*(p.corner[k][i] + half.corner[(k + 1) % 3][i]);
+            p.corner[(k + 1) % 3][i] = half.corner[k][i] =
+                0.5 * (p.corner[k][i] + half.corner[(k + 1) % 3][i]);
         stack[top++] = half;
         stack[top++] = p;
     }
 }
 
-static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_surface *out, tobi_error *err)
+static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_surface *out,
+                                   tobi_error *err)
 {
     for (int pass = 0; pass < 2; pass++) {
         int64_t count = 0;
@@ -140,7 +142,8 @@ tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimens
         return tobi_fail(err, TOBI_INVALID, "surface spacing is %g m; it must be > 0", spacing);
     if (dimension != 2 && dimension != 3)
         return tobi_fail(err, TOBI_INVALID, "dimension is %d; allowed are 2 and 3", dimension);
-    return dimension == 2 ? build_section(mesh, spacing, out, err) : build_triangles(mesh, spacing, out, err);
+    return dimension == 2 ? build_section(mesh, spacing, out, err)
+                          : build_triangles(mesh, spacing, out, err);
 }
 
 /* --- moving ------------------------------------------------------------------------------- */

@@ -204,8 +204,9 @@ tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, cons
     c->plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     c->digits = digits;
     c->columns = column_count;
-    tobi_status status = !c->path || !c->plain ? tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path)
-                                               : start_table(c, columns, mode, err);
+    tobi_status status = !c->path || !c->plain
+                             ? tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path)
+                             : start_table(c, columns, mode, err);
     if (status == TOBI_OK) *csv = c;
     else tobi_csv_close(c);
     return status;

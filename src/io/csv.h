@@ -1,9 +1,9 @@
 /* Tables that grow row by row: history.csv, bodies.csv.
 
-   Each row reaches the file in one write, so that a killed run leaves whole rows (a torn last line is dropped
-   when the table is opened again). The first column is always written with 17 digits, because resuming
-   compares it; texts are quoted as RFC 4180 says. Numbers have a decimal point in every locale; what is not
-   finite is written as nan, inf, -inf. */
+   Each row reaches the file in one write, so that a killed run leaves whole rows (a torn last line
+   is dropped when the table is opened again). The first column is always written with 17 digits,
+   because resuming compares it; texts are quoted as RFC 4180 says. Numbers have a decimal point in
+   every locale; what is not finite is written as nan, inf, -inf. */
 #pragma once
 #include "base/error.h"
 
@@ -15,8 +15,9 @@ typedef struct tobi_csv_column {
 } tobi_csv_column;
 
 typedef enum tobi_csv_mode {
-    TOBI_CSV_NEW,       /* replaces a file that is there                                           */
-    TOBI_CSV_APPEND     /* continues; TOBI_INVALID if its header differs. No file or no header yet: as new */
+    TOBI_CSV_NEW,   /* replaces a file that is there                                           */
+    TOBI_CSV_APPEND /* continues; TOBI_INVALID if its header differs. No file or no header yet: as
+                       new */
 } tobi_csv_mode;
 
 /* Digits of real numbers after the first column: 9 or 17. TOBI_IO, TOBI_NO_MEMORY, TOBI_INVALID. */

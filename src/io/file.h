@@ -24,7 +24,8 @@ void  tobi_file_print(tobi_file *file, const char *format, ...) __attribute__((f
 off_t tobi_file_tell(tobi_file *file);
 /* Overwrites earlier bytes and returns to the end. */
 void  tobi_file_patch(tobi_file *file, off_t at, const void *data, size_t bytes);
-/* Closes and renames; TOBI_IO with the path and the reason if anything failed, and then no trace is left. */
+/* Closes and renames; TOBI_IO with the path and the reason if anything failed, and then no trace is
+ * left. */
 tobi_status tobi_file_commit(tobi_file *file, tobi_error *err);
 /* Closes and removes PATH.part; does nothing if not open. */
 void  tobi_file_abandon(tobi_file *file);

@@ -17,8 +17,9 @@ static tobi_status check_mesh(const char *path, const tobi_frame_mesh *m, int nu
     for (int64_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++)
             if (m->triangles[t][k] < 0 || m->triangles[t][k] >= m->vertex_count)
-                return tobi_fail(err, TOBI_INVALID, "%s: triangle %" PRId64 " of body %d uses vertex %d of %"
-                                 PRId64, path, t, number, (int)m->triangles[t][k], m->vertex_count);
+                return tobi_fail(err, TOBI_INVALID,
+                                 "%s: triangle %" PRId64 " of body %d uses vertex %d of %" PRId64,
+                                 path, t, number, (int)m->triangles[t][k], m->vertex_count);
     return TOBI_OK;
 }
 

@@ -1,10 +1,11 @@
-/* A PNG picture of a moment, drawn in software: particles as a water surface, bodies, the domain's box.
+/* A PNG picture of a moment, drawn in software: particles as a water surface, bodies, the domain's
+   box.
 
-   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen space, lit,
-   and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009; smoothing: the narrow-range
-   filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by value.
-   The same input gives the same picture for any number of threads. Needs about 40 bytes per sample of the
-   picture (width x height x samples^2) and 30 per particle while it runs. */
+   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen
+   space, lit, and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009;
+   smoothing: the narrow-range filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by
+   value. The same input gives the same picture for any number of threads. Needs about 40 bytes per
+   sample of the picture (width x height x samples^2) and 30 per particle while it runs. */
 #pragma once
 #include "base/error.h"
 

@@ -26,7 +26,8 @@ static inline vec vec_unit(vec a)
 }
 static inline float clampf(float x, float low, float high) { return x < low ? low : x > high ? high : x; }
 
-/* The eye. Positions become view coordinates in double, then float: the scene may be far from the origin. */
+/* The eye. Positions become view coordinates in double, then float: the scene may be far from the
+ * origin. */
 typedef struct camera {
     double eye[3], right[3], up[3], forward[3];
     float  focal;                /* samples per unit of x/z; orthographic: samples per m           */
@@ -51,7 +52,7 @@ typedef struct canvas {
     float  *depth;               /* of what is opaque, m; INFINITY = background                    */
     float  *surface;             /* of the water's front, m; INFINITY = none                       */
     float  *thickness;           /* of the water, m                                                */
-    float  *value;               /* of the water at its front, 0 to 1; once lit: the light it lets through */
+    float *value; /* of the water at its front, 0 to 1; once lit: the light it lets through */
     float  *scratch;
 } canvas;
 
@@ -90,7 +91,10 @@ static inline vec to_eye(const camera *c, vec p)
     return c->orthographic ? (vec){ 0, 0, -1 } : vec_unit(vec_scale(-1, p));
 }
 
-static inline float to_linear(float s) { return s <= 0.04045f ? s/12.92f : powf((s + 0.055f)/1.055f, 2.4f); }
+static inline float to_linear(float s)
+{
+    return s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
+}
 static inline vec linear_color(const float srgb[3])
 {
     return (vec){ to_linear(srgb[0]), to_linear(srgb[1]), to_linear(srgb[2]) };

@@ -20,7 +20,8 @@ static camera light_camera(const camera *view, const shadow *s, double radius)
             + s->center.z*view->forward[k];
         c.right[k] = s->right.x*view->right[k] + s->right.y*view->up[k] + s->right.z*view->forward[k];
         c.up[k] = s->up.x*view->right[k] + s->up.y*view->up[k] + s->up.z*view->forward[k];
-        c.forward[k] = s->forward.x*view->right[k] + s->forward.y*view->up[k] + s->forward.z*view->forward[k];
+        c.forward[k] = s->forward.x * view->right[k] + s->forward.y * view->up[k] +
+                       s->forward.z * view->forward[k];
     }
     return c;
 }

@@ -23,7 +23,8 @@ typedef struct triangle_list {
 vec sky_color(const canvas *c, vec direction)
 {
     float t = clampf(0.5f + 0.5f*vec_dot(direction, c->sky_up), 0, 1);
-    vec ground = { 0.30f, 0.29f, 0.27f }, horizon = { 0.88f, 0.92f, 0.95f }, zenith = { 0.42f, 0.58f, 0.78f };
+    vec ground = {0.30f, 0.29f, 0.27f}, horizon = {0.88f, 0.92f, 0.95f},
+        zenith = {0.42f, 0.58f, 0.78f};
     if (t < 0.5f) return vec_mix(ground, horizon, clampf(t*2.2f - 0.1f, 0, 1));
     return vec_mix(horizon, zenith, 2*t - 1);
 }
@@ -212,7 +213,8 @@ static void draw_line(canvas *c, const double from[3], const double to[3], float
         if (!(fabsf(middle) < 1e6f)) continue;
         for (int o = (int)floorf(middle - reach/across); o <= (int)ceilf(middle + reach/across); o++) {
             if (o < 0 || o >= side) continue;
-            float off = fabsf((float)o + 0.5f - middle)*across, cover = clampf(0.5f*width + 0.5f - off, 0, 1);
+            float off = fabsf((float)o + 0.5f - middle) * across,
+                  cover = clampf(0.5f * width + 0.5f - off, 0, 1);
             float over = fmaxf(t*length - length, -t*length);      /* beyond the ends */
             cover *= clampf(0.5f*width + 0.5f - over, 0, 1);
             if (cover > 0) blend(c, steep ? o : m, steep ? m : o, z*0.9995f, color, alpha*cover);
@@ -226,7 +228,8 @@ static double grid_step(double size)
     return size/step > 40 ? 5*step : size/step > 16 ? 2*step : step;
 }
 
-/* The side of the box that faces down: the axis nearest to up. Returns the axis; *level is its coordinate. */
+/* The side of the box that faces down: the axis nearest to up. Returns the axis; *level is its
+ * coordinate. */
 static int find_floor(const tobi_frame *f, double *level)
 {
     int axis = 2;

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Points are two digits, x to the right and y up: baseline 2, small letters to 6, capitals to 8, tails to 0.
-   A space lifts the pen. */
+/* Points are two digits, x to the right and y up: baseline 2, small letters to 6, capitals to 8,
+   tails to 0. A space lifts the pen. */
 static const char *const strokes[128] = {
     ['0'] = "123243473818070312", ['1'] = "172822 1232", ['2'] = "07183847460242",
     ['3'] = "07183847463515 354443321203", ['4'] = "32380444", ['5'] = "480805354443321203",

@@ -9,7 +9,8 @@ typedef struct splat {
 } splat;
 
 enum { REACH_MAX = 40 };     /* samples, of the smoothing filter to one side */
-static const float water_radius = 1.7f;    /* in particle radii: neighbours' spheres overlap into a surface */
+static const float water_radius =
+    1.7f; /* in particle radii: neighbours' spheres overlap into a surface */
 
 /* From deep blue over light blue to white. */
 vec map_color(float value)
@@ -47,8 +48,9 @@ static bool is_placed(const double p[3], double size)
     return fabs(p[0]) < 1e15*size && fabs(p[1]) < 1e15*size && fabs(p[2]) < 1e15*size;     /* also NaN */
 }
 
-/* Drops of spray would look like balls of the size of the smoothed water's spheres: a particle with little
-   company within three cells of four radii is drawn smaller. Cells are hashed; a clash only adds company. */
+/* Drops of spray would look like balls of the size of the smoothed water's spheres: a particle with
+   little company within three cells of four radii is drawn smaller. Cells are hashed; a clash only
+   adds company. */
 static void shrink_spray(const tobi_frame *f, splat *splats)
 {
     const double size = 4*f->radius;
@@ -398,7 +400,8 @@ static tobi_status smooth_water(canvas *c, float radius, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Difference of the surface's view points along one axis, taken on the side where the depth changes less. */
+/* Difference of the surface's view points along one axis, taken on the side where the depth changes
+ * less. */
 static vec slope(const canvas *c, int x, int y, int dx, int dy)
 {
     size_t k = (size_t)y*(size_t)c->width + (size_t)x;

@@ -1,5 +1,6 @@
-/* HDF5 answers a full disk badly (a file that cannot be closed), so every put reserves its bytes on the disk
-   first, and HDF5 only ever writes into reserved space. What is left over is cut off at the end. */
+/* HDF5 answers a full disk badly (a file that cannot be closed), so every put reserves its bytes on
+   the disk first, and HDF5 only ever writes into reserved space. What is left over is cut off at
+   the end. */
 #define _GNU_SOURCE 1
 #include "io/store.h"
 #include "io/file.h"
@@ -310,8 +311,8 @@ static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type t
     return set;
 }
 
-tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n, int components,
-                           const void *data, tobi_error *err)
+tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+                           int components, const void *data, tobi_error *err)
 {
     size_t row = tobi_type_size(type)*(size_t)(components > 0 ? components : 0);
     if (row == 0 || n < 0 || (n > 0 && !data))
@@ -446,7 +447,8 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type
     tobi_status status = TOBI_OK;
     if (size[0] != (hsize_t)n || size[1] != (hsize_t)components)
         status = tobi_fail(err, TOBI_DAMAGED,
-                           "%s: array '%s' has %" PRIu64 " x %" PRIu64 " numbers, expected %" PRId64 " x %d",
+                           "%s: array '%s' has %" PRIu64 " x %" PRIu64 " numbers, expected %" PRId64
+                           " x %d",
                            store->path, name, (uint64_t)size[0], (uint64_t)size[1], n, components);
     else if (stored < 0 || H5Tequal(stored, file_type(type)) <= 0)
         status = tobi_fail(err, TOBI_DAMAGED, "%s: array '%s' has another number type than expected",
@@ -458,8 +460,8 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type
     return status;
 }
 
-tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n, int components,
-                           void *data, tobi_error *err)
+tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+                           int components, void *data, tobi_error *err)
 {
     quiet q = begin_quiet();
     tobi_status status = read_array(store, name, type, n, components, data, err);
@@ -486,8 +488,8 @@ static tobi_status open_value(tobi_store *store, const char *name, H5T_class_t c
     return tobi_fail(err, TOBI_DAMAGED, "%s: value '%s' has another type than expected", store->path, name);
 }
 
-static tobi_status get_number(tobi_store *store, const char *name, H5T_class_t class, hid_t type, void *value,
-                              tobi_error *err)
+static tobi_status get_number(tobi_store *store, const char *name, H5T_class_t class, hid_t type,
+                              void *value, tobi_error *err)
 {
     quiet q = begin_quiet();
     hid_t attribute;

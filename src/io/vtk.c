@@ -206,12 +206,14 @@ static tobi_status check_arrays(const char *path, const tobi_vtk_array *arrays, 
         return tobi_fail(err, TOBI_INVALID, "%s: a negative number of rows or arrays", path);
     for (int i = 0; i < count; i++) {
         const tobi_vtk_array *a = &arrays[i];
-        if (!a->name || !a->name[0]) return tobi_fail(err, TOBI_INVALID, "%s: array %d has no name", path, i);
+        if (!a->name || !a->name[0])
+            return tobi_fail(err, TOBI_INVALID, "%s: array %d has no name", path, i);
         if (tobi_type_size(a->type) == 0)
             return tobi_fail(err, TOBI_INVALID, "%s: array %s has an unknown type", path, a->name);
         if (a->components < 1)
-            return tobi_fail(err, TOBI_INVALID, "%s: array %s has %d components, at least 1 is needed", path,
-                             a->name, a->components);
+            return tobi_fail(err, TOBI_INVALID,
+                             "%s: array %s has %d components, at least 1 is needed", path, a->name,
+                             a->components);
         if (!a->data && rows > 0)
             return tobi_fail(err, TOBI_INVALID, "%s: array %s has no data", path, a->name);
     }
@@ -248,9 +250,11 @@ static tobi_status open_document(document *doc, const char *path, tobi_compressi
     }
     const char *compressor = compression == TOBI_COMPRESS_ZLIB ? " compressor=\"vtkZLibDataCompressor\""
                            : compression == TOBI_COMPRESS_LZ4 ? " compressor=\"vtkLZ4DataCompressor\"" : "";
-    tobi_file_print(&doc->file,
-                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
-                    "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s>\n", type, compressor, type);
+    tobi_file_print(
+        &doc->file,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n<%s>\n",
+        type, compressor, type);
     return TOBI_OK;
 }
 
@@ -262,7 +266,8 @@ static tobi_status write_appended(document *doc, tobi_error *err)
     for (int i = 0; i < doc->count; i++) {
         source *s = &doc->sources[i];
         char offset[OFFSET_ROOM + 3];
-        int n = snprintf(offset, sizeof offset, "\"%" PRId64 "\"", (int64_t)(tobi_file_tell(file) - origin));
+        int n = snprintf(offset, sizeof offset, "\"%" PRId64 "\"",
+                         (int64_t)(tobi_file_tell(file) - origin));
         tobi_file_patch(file, s->offset_at, offset, (size_t)n);
         if (doc->compression == TOBI_COMPRESS_NONE) write_raw(file, s);
         else TOBI_TRY(write_compressed(doc, s, err));
@@ -368,8 +373,8 @@ tobi_status tobi_pvd_write(const char *path, const tobi_pvd_entry *entries, int6
     tobi_file_print(&file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"Collection\" "
                     "version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n");
     for (int64_t i = 0; i < n; i++) {
-        tobi_file_print(&file, "<DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"", entries[i].time,
-                        entries[i].part);
+        tobi_file_print(&file, "<DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"",
+                        entries[i].time, entries[i].part);
         print_escaped(&file, entries[i].name ? entries[i].name : "");
         tobi_file_print(&file, "\" file=\"");
         print_escaped(&file, entries[i].file);

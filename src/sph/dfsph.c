@@ -53,7 +53,8 @@ static void bind_planes(const tobi_simulation *s, sph_view *v)
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
         v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP};
-        v->plane[v->plane_count++] = (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP};
+        v->plane[v->plane_count++] =
+            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP};
     }
 }
 
@@ -64,7 +65,10 @@ static void bind_view(const tobi_simulation *s, dfsph *m)
     sph_view *v = &m->view;
     v->count = p->count;
     v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->wall = p->wall; v->density = p->density; v->diagonal = p->diagonal; v->precondition = p->precondition;
+    v->wall = p->wall;
+    v->density = p->density;
+    v->diagonal = p->diagonal;
+    v->precondition = p->precondition;
     v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
     v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
     v->list = s->cells.list;
@@ -100,9 +104,10 @@ static int list_memory(void *state, double **values)
     return 3;
 }
 
-/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps particles
-   apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve. Not above a tenth more than the last; the rest
-   up to max_dt is shared evenly, so that no sliver of a step is left. */
+/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps
+   particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
+   Not above a tenth more than the last; the rest up to max_dt is shared evenly, so that no sliver
+   of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
 {
     double d = s->smoothing.spacing, h = s->smoothing.h, dt, g2 = 0, fall = 0;
@@ -224,8 +229,11 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     m->view.pressure = s->particles.pressure;
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_source, t);
-    solve q = {.tolerance = m->def.divergence_tolerance, .relative_tolerance = m->def.pressure_tolerance,
-               .source = t[0], .min = m->def.divergence_iterations_min, .max = m->def.divergence_iterations_max};
+    solve q = {.tolerance = m->def.divergence_tolerance,
+               .relative_tolerance = m->def.pressure_tolerance,
+               .source = t[0],
+               .min = m->def.divergence_iterations_min,
+               .max = m->def.divergence_iterations_max};
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_product, NULL);
     launch(s, m, k->sph_warm_residual, t);

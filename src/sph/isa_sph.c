@@ -15,8 +15,10 @@
     { K##_pair(v, i, n, a, TOBI_SHAPE_WENDLAND); }                                                  \
     TOBI_FN void K##_cubic_pair(const sph_view *v, int64_t i, const tobi_near *n, K##_acc *a)       \
     { K##_pair(v, i, n, a, TOBI_SHAPE_CUBIC); }                                                     \
-    TOBI_FN void K##_wendland_finish(const sph_view *v, int64_t i, K##_acc *a, double *t) { K##_finish(v, i, a, t); } \
-    TOBI_FN void K##_cubic_finish(const sph_view *v, int64_t i, K##_acc *a, double *t) { K##_finish(v, i, a, t); } \
+    TOBI_FN void K##_wendland_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)            \
+    { K##_finish(v, i, a, t); }                                                                     \
+    TOBI_FN void K##_cubic_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)               \
+    { K##_finish(v, i, a, t); }                                                                     \
     TOBI_PAIR_LOOP(K##_wendland, sph_view, run_##K##_wendland)                                      \
     TOBI_PAIR_LOOP(K##_cubic, sph_view, run_##K##_cubic)
 #define FOR(K) TOBI_FOR_LOOP(K, sph_view, run_##K)

@@ -17,7 +17,8 @@ TOBI_FN void sph_pressure_accel_start(const sph_view *v, int64_t i, sph_pressure
     a->x = a->y = a->z = lane_set(0);
 }
 
-TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_pressure_accel_acc *a, const int shape)
+TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n,
+                                     sph_pressure_accel_acc *a, const int shape)
 {
     lane r = lane_sqrt(n->r2), f = (a->p + n->w)*smoothing_falloff(shape, r*v->inverse_h, r);
     (void)i;
@@ -35,7 +36,8 @@ TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_p
     return out;
 }
 
-TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a, double *totals)
+TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a,
+                                       double *totals)
 {
     (void)totals;
     v->accel[i] = sph_pressure_accel_value(v, i, a);
@@ -45,7 +47,8 @@ TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressur
 #define sph_pressure_kick_acc sph_pressure_accel_acc
 #define sph_pressure_kick_start sph_pressure_accel_start
 #define sph_pressure_kick_pair sph_pressure_accel_pair
-TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a, double *totals)
+TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a,
+                                      double *totals)
 {
     tobi_float4 f = sph_pressure_accel_value(v, i, a), u = v->velocity[i];
     u.x += v->dt*f.x; u.y += v->dt*f.y; u.z += v->dt*f.z;
@@ -56,7 +59,8 @@ TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure
 /* C u for a float4 array u, eq. (7). */
 typedef struct sph_compression_acc { lane ux, uy, uz, sum; } sph_compression_acc;
 
-TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression_acc *a, const tobi_float4 *field)
+TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression_acc *a,
+                                   const tobi_float4 *field)
 {
     tobi_float4 u = field[i];
     (void)v;
@@ -64,14 +68,16 @@ TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression
     a->sum = lane_set(0);
 }
 
-TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_compression_acc *a, const tobi_float4 *field, const int shape)
+TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_compression_acc *a,
+                                  const tobi_float4 *field, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane_load_float4(field, n->j, &x, &y, &z, &w);
     a->sum += f*((x - a->ux)*n->dx + (y - a->uy)*n->dy + (z - a->uz)*n->dz);
 }
 
-TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compression_acc *a, const tobi_float4 *field, float wall_speed)
+TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compression_acc *a,
+                                    const tobi_float4 *field, float wall_speed)
 {
     tobi_float4 u = field[i], g = v->wall[i];
     return v->slope*lane_sum(a->sum) + 2*(g.x*u.x + g.y*u.y + g.z*u.z - wall_speed*g.w);
@@ -97,7 +103,8 @@ TOBI_FN void sph_source_start(const sph_view *v, int64_t i, sph_compression_acc 
 {
     sph_compression_start(v, i, a, v->velocity);
 }
-TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a, const int shape)
+TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n,
+                             sph_compression_acc *a, const int shape)
 {
     (void)i;
     sph_compression_pair(v, n, a, v->velocity, shape);
@@ -127,7 +134,8 @@ TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
     float e = v->density[i] - 1;
     e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.02f ? -0.002f : 0.1f*e);
     v->pressure[i] = 0;
-    sph_start_search(v, i, e*v->inverse_dt*v->inverse_dt, v->diagonal[i] > 0 && (!v->surface[i] || e > 0), totals);
+    sph_start_search(v, i, e * v->inverse_dt * v->inverse_dt,
+                     v->diagonal[i] > 0 && (!v->surface[i] || e > 0), totals);
 }
 
 /* product = A q for the search direction q, from accel = a(q). totals[0]: q . A q. */
@@ -136,7 +144,8 @@ TOBI_FN void sph_product_start(const sph_view *v, int64_t i, sph_compression_acc
 {
     sph_compression_start(v, i, a, v->accel);
 }
-TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a, const int shape)
+TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_near *n,
+                              sph_compression_acc *a, const int shape)
 {
     (void)i;
     sph_compression_pair(v, n, a, v->accel, shape);

@@ -54,7 +54,8 @@ TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
     a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
 }
 
-TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_density_acc *a, const int shape)
+TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_density_acc *a,
+                              const int shape)
 {
     lane r = lane_sqrt(n->r2), q = r*v->inverse_h, f = smoothing_falloff(shape, q, r);
     /* padding repeats i itself: it must not count */
@@ -76,12 +77,12 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     float div = k*lane_sum(a->div) + (float)v->dimension*share;
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
+    v->surface[i] = div < v->surface_limit;
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
     v->diagonal[i] = v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*lane_sum(a->g2));
-    v->surface[i] = div < v->surface_limit;
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;
     totals[6] = error > totals[6] ? error : totals[6];
@@ -98,7 +99,8 @@ TOBI_FN void sph_laplacian_begin(sph_laplacian_acc *a, const tobi_float4 *field,
     a->ax = a->ay = a->az = lane_set(0);
 }
 
-TOBI_FN void sph_laplacian_add(const sph_view *v, const tobi_near *n, sph_laplacian_acc *a, const tobi_float4 *field, const int shape)
+TOBI_FN void sph_laplacian_add(const sph_view *v, const tobi_near *n, sph_laplacian_acc *a,
+                               const tobi_float4 *field, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane_load_float4(field, n->j, &x, &y, &z, &w);
@@ -109,7 +111,8 @@ TOBI_FN void sph_laplacian_start(const sph_view *v, int64_t i, sph_laplacian_acc
 {
     sph_laplacian_begin(a, v->velocity, i);
 }
-TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a, const int shape)
+TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_near *n,
+                                sph_laplacian_acc *a, const int shape)
 {
     (void)i;
     sph_laplacian_add(v, n, a, v->velocity, shape);
@@ -130,7 +133,8 @@ TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
 {
     sph_laplacian_begin(a, v->accel, i);
 }
-TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a, const int shape)
+TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a,
+                           const int shape)
 {
     (void)i;
     sph_laplacian_add(v, n, a, v->accel, shape);
@@ -140,14 +144,16 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     float nu = v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
     tobi_float4 u = v->velocity[i], l = v->accel[i];
     float speed[3] = {u.x, u.y, u.z};
-    float add[3] = {v->gravity[0] + 2*nu*l.x + k*lane_sum(a->ax), v->gravity[1] + 2*nu*l.y + k*lane_sum(a->ay),
-                    v->gravity[2] + 2*nu*l.z + k*lane_sum(a->az)};
+    float add[3] = {v->gravity[0] + 2 * nu * l.x + k * lane_sum(a->ax),
+                    v->gravity[1] + 2 * nu * l.y + k * lane_sum(a->ay),
+                    v->gravity[2] + 2 * nu * l.z + k * lane_sum(a->az)};
     (void)totals;
     for (int p = 0; p < v->plane_count; p++) {
         float s = sph_plane_distance(v, p, i);
         if (s >= v->h) continue;
         s = s > 0.25f*v->spacing ? s : 0.25f*v->spacing;
-        float sigma = sph_plane_value(v, v->table->sigma, s), lambda = sph_plane_value(v, v->table->lambda, s);
+        float sigma = sph_plane_value(v, v->table->sigma, s),
+              lambda = sph_plane_value(v, v->table->lambda, s);
         int axis = v->plane[p].axis;
         add[axis] -= v->gravity[axis]*(lambda + s*sigma);
         if (!v->plane[p].no_slip) continue;
@@ -195,7 +201,8 @@ TOBI_FN void sph_vorticity_start(const sph_view *v, int64_t i, sph_vorticity_acc
     a->vx = lane_set(u.x); a->vy = lane_set(u.y); a->vz = lane_set(u.z);
     a->x = a->y = a->z = lane_set(0);
 }
-TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_vorticity_acc *a, const int shape)
+TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_near *n,
+                                sph_vorticity_acc *a, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     (void)i;
@@ -217,7 +224,8 @@ TOBI_FN void sph_vorticity_finish(const sph_view *v, int64_t i, sph_vorticity_ac
 TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
 {
     tobi_float4 u = v->velocity[i], shift = v->accel[i];
-    double speed2 = (double)u.x*u.x + (double)u.y*u.y + (double)u.z*u.z, cap2 = (double)v->speed_cap*v->speed_cap;
+    double speed2 = (double)u.x * u.x + (double)u.y * u.y + (double)u.z * u.z,
+           cap2 = (double)v->speed_cap * v->speed_cap;
     if (!(speed2 < 1e30)) speed2 = 1e30;   /* NaN shows as a runaway */
     totals[7] = speed2 > totals[7] ? speed2 : totals[7];
     if (speed2 > cap2 && speed2 < 1e30) {

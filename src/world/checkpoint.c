@@ -8,7 +8,10 @@
 static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
 {
     *components = f->bytes == sizeof(tobi_double3) ? 3 : f->bytes == sizeof(tobi_float4) ? 4 : 1;
-    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64 : f->bytes == 16 || f->bytes == 4 ? TOBI_F32 : f->bytes == 8 ? TOBI_I64 : TOBI_U8;
+    *type = f->bytes == sizeof(tobi_double3)  ? TOBI_F64
+            : f->bytes == 16 || f->bytes == 4 ? TOBI_F32
+            : f->bytes == 8                   ? TOBI_I64
+                                              : TOBI_U8;
 }
 
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
@@ -26,7 +29,8 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     for (int k = 0; k < s->body_count; k++) {
         char name[32] = "body_";
         name[5] = (char)('0' + k/100%10); name[6] = (char)('0' + k/10%10); name[7] = (char)('0' + k%10);
-        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof s->bodies[k].info, 1, &s->bodies[k].info, err));
+        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof s->bodies[k].info, 1,
+                                &s->bodies[k].info, err));
     }
     return tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err);
 }
@@ -60,7 +64,9 @@ static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_get_int(f, "bodies", &bodies, err));
     TOBI_TRY(tobi_store_get_real(f, "spacing", &spacing, err));
     if (bodies != s->body_count || spacing != s->smoothing.spacing)
-        return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies at spacing %g m, the scene %d at %g m",
+        return tobi_fail(err, TOBI_INVALID,
+                         "the checkpoint is of another scene: it has %lld bodies at spacing %g m, "
+                         "the scene %d at %g m",
                          (long long)bodies, spacing, s->body_count, s->smoothing.spacing);
     TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_get(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
@@ -93,9 +99,11 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     int64_t n = 0;
     tobi_status status = tobi_store_rows(f, "id", &n, err);
     if (status == TOBI_OK)
-        status = n <= w->sim.particles.capacity ? get_clock(w, f, err)
-        : tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld", path, (long long)n,
-                    (long long)w->sim.particles.capacity);
+        status =
+            n <= w->sim.particles.capacity
+                ? get_clock(w, f, err)
+                : tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld",
+                            path, (long long)n, (long long)w->sim.particles.capacity);
     for (int k = 0; status == TOBI_OK; k++) {
         tobi_field_ref r = tobi_particles_state(&w->sim.particles, k);
         tobi_vtk_type type;

@@ -74,8 +74,11 @@ tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_erro
     for (int64_t k = 0; k < n[2]; k++)
         for (int64_t j = 0; j < n[1]; j++)
             for (int64_t i = 0; i < n[0]; i++) {
-                double w[3] = {r->lower[0] + ((double)i + 0.5)*step[0], r->lower[1] + ((double)j + 0.5)*step[1],
-                               s->box.dimension == 3 ? r->lower[2] + ((double)k + 0.5)*step[2] : 0}, x[3];
+                double w[3] = {r->lower[0] + ((double)i + 0.5) * step[0],
+                               r->lower[1] + ((double)j + 0.5) * step[1],
+                               s->box.dimension == 3 ? r->lower[2] + ((double)k + 0.5) * step[2]
+                                                     : 0},
+                       x[3];
                 int out = 0;
                 for (int a = 0; a < 3; a++) {
                     x[a] = w[a] - s->box.lower[a];

@@ -51,7 +51,8 @@ static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, d
         out[0] = p->position[i].x + s->box.lower[0];
         out[1] = p->position[i].y + s->box.lower[1];
         out[2] = p->position[i].z + s->box.lower[2];
-    } else if (!strcmp(field, "velocity") || !strcmp(field, "acceleration") || !strcmp(field, "vorticity")) {
+    } else if (!strcmp(field, "velocity") || !strcmp(field, "acceleration") ||
+               !strcmp(field, "vorticity")) {
         const tobi_float4 *v = field[0] == 'v' && field[1] == 'e' ? &p->velocity[i] : &p->accel[i];
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(field, "pressure")) {
@@ -86,7 +87,8 @@ static tobi_status read_bodies(const tobi_world *w, const char *field, int compo
     return TOBI_OK;
 }
 
-tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer, int64_t count, tobi_error *err)
+tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer,
+                            int64_t count, tobi_error *err)
 {
     int k = 0, components = 0;
     while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
@@ -106,15 +108,18 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     return TOBI_OK;
 }
 
-tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count, tobi_error *err)
+tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count,
+                             tobi_error *err)
 {
     int velocity = strcmp(field, "velocity") == 0;
     if (!velocity && strcmp(field, "pressure") != 0)
-        return tobi_fail(err, TOBI_INVALID, "field '%s' cannot be set; allowed are velocity and pressure", field);
+        return tobi_fail(err, TOBI_INVALID,
+                         "field '%s' cannot be set; allowed are velocity and pressure", field);
     TOBI_TRY(tobi_world_refresh(w, err));
     tobi_particles *p = &w->sim.particles;
     if (count != p->count)
-        return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field, (long long)p->count, (long long)count);
+        return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field,
+                         (long long)p->count, (long long)count);
     double fastest = 0;
     for (int64_t r = 0; r < count; r++) {
         const double *v = buffer + r*(velocity ? 3 : 1);
@@ -133,8 +138,9 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
     return TOBI_OK;
 }
 
-tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_count, const double (**vertices)[3],
-                               int64_t *triangle_count, const int32_t (**triangles)[3])
+tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_count,
+                               const double (**vertices)[3], int64_t *triangle_count,
+                               const int32_t (**triangles)[3])
 {
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     tobi_body *b = &w->sim.bodies[body];

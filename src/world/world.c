@@ -28,7 +28,9 @@ static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
             return tobi_fail(err, TOBI_INVALID, "domain: max %g is not above min %g along %c",
                              d->domain_max[a], d->domain_min[a], "xyz"[a]);
         if ((d->wall_min[a] == TOBI_WALL_PERIODIC) != (d->wall_max[a] == TOBI_WALL_PERIODIC))
-            return tobi_fail(err, TOBI_INVALID, "domain: only one side along %c is periodic; both or none are allowed", "xyz"[a]);
+            return tobi_fail(err, TOBI_INVALID,
+                             "domain: only one side along %c is periodic; both or none are allowed",
+                             "xyz"[a]);
     }
     return TOBI_OK;
 }
@@ -48,14 +50,15 @@ static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, t
     return TOBI_OK;
 }
 
-tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world, tobi_error *err)
+tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
+                              tobi_error *err)
 {
     *world = NULL;
     TOBI_TRY(check_world(def, err));
     const tobi_method *method = tobi_method_find(def->method);
     if (!method)
-        return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s", def->method ? def->method : "",
-                         tobi_method_at(0)->name);
+        return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
+                         def->method ? def->method : "", tobi_method_at(0)->name);
     const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
     void *params = calloc(1, method->def_size);
@@ -116,22 +119,31 @@ static tobi_status measure_region(tobi_world *w, const tobi_fill_def *f, tobi_re
     }
     for (int a = 0; a < s->box.dimension; a++) {
         if (!(r->upper[a] > r->lower[a]))
-            return tobi_fail(err, TOBI_INVALID, "fluid box: max %g is not above min %g along %c", r->upper[a], r->lower[a], "xyz"[a]);
+            return tobi_fail(err, TOBI_INVALID, "fluid box: max %g is not above min %g along %c",
+                             r->upper[a], r->lower[a], "xyz"[a]);
         if (r->upper[a] <= s->box.lower[a] || r->lower[a] >= s->box.lower[a] + s->box.size[a])
-            return tobi_fail(err, TOBI_INVALID, "a fluid region (%g to %g m along %c) lies outside the domain (%g to %g m)",
-                             r->lower[a], r->upper[a], "xyz"[a], s->box.lower[a], s->box.lower[a] + s->box.size[a]);
+            return tobi_fail(
+                err, TOBI_INVALID,
+                "a fluid region (%g to %g m along %c) lies outside the domain (%g to %g m)",
+                r->lower[a], r->upper[a], "xyz"[a], s -> box.lower[a],
+                s->box.lower[a] + s->box.size[a]);
     }
     return TOBI_OK;
 }
 
-tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def, const tobi_fill_def *fills, int fill_count, tobi_error *err)
+tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
+                                 const tobi_fill_def *fills, int fill_count, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
-    if (s->fluid_count > 0 && (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity))
-        return tobi_fail(err, TOBI_UNSUPPORTED, "fluid '%s' differs from '%s' in density or viscosity; dfsph carries one material, "
-                         "allowed are several fluids with the same values", def->name ? def->name : "", s->fluid[0].name);
+    if (s->fluid_count > 0 &&
+        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity))
+        return tobi_fail(
+            err, TOBI_UNSUPPORTED,
+            "fluid '%s' differs from '%s' in density or viscosity; dfsph carries one material, "
+            "allowed are several fluids with the same values",
+            def->name ? def->name : "", s->fluid[0].name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);
@@ -161,8 +173,11 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)
             if (!box->periodic[a] && (b->vertex[i][a] < 0 || b->vertex[i][a] > box->size[a]))
-                return tobi_fail(err, TOBI_INVALID, "body '%s' sticks out of the domain: a vertex is at %c = %g m, allowed is %g to %g m",
-                                 b->name, "xyz"[a], b->vertex[i][a] + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
+                return tobi_fail(err, TOBI_INVALID,
+                                 "body '%s' sticks out of the domain: a vertex is at %c = %g m, "
+                                 "allowed is %g to %g m",
+                                 b->name, "xyz"[a], b -> vertex[i][a] + box -> lower[a],
+                                 box -> lower[a], box -> lower[a] + box -> size[a]);
     return TOBI_OK;
 }
 
@@ -171,7 +186,8 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
-    if (s->body_count == TOBI_BODY_LIMIT) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
+    if (s->body_count == TOBI_BODY_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
     tobi_body *more = realloc(s->bodies, (size_t)(s->body_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a body");
     s->bodies = more;
@@ -189,7 +205,8 @@ static int64_t list_bytes(const tobi_simulation *s)
     return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 16);
 }
 
-tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles, int64_t *bytes, tobi_error *err)
+tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
+                                int64_t *bytes, tobi_error *err)
 {
     int64_t fluid = 0, body = 0;
     (void)err;
@@ -206,10 +223,13 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
 {
     double have = (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE);
     if (particles > 2000000000)
-        return tobi_fail(err, TOBI_NO_MEMORY, "%lld fluid particles; one machine takes at most 2e9", (long long)particles);
+        return tobi_fail(err, TOBI_NO_MEMORY, "%lld fluid particles; one machine takes at most 2e9",
+                         (long long)particles);
     if ((double)bytes > 0.95*have)
-        return tobi_fail(err, TOBI_NO_MEMORY, "%lld fluid particles need %.1f GiB; this machine has %.1f GiB. A larger spacing needs less",
-                         (long long)particles, (double)bytes/1073741824, have/1073741824);
+        return tobi_fail(err, TOBI_NO_MEMORY,
+                         "%lld fluid particles need %.1f GiB; this machine has %.1f GiB. A larger "
+                         "spacing needs less",
+                         (long long)particles, (double)bytes / 1073741824, have / 1073741824);
     return TOBI_OK;
 }
 
@@ -229,13 +249,16 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     int64_t fluid, body, bytes;
     if (w->started) return TOBI_OK;
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
-    if (fluid + body == 0) return tobi_fail(err, TOBI_INVALID, "no particles at all: the scene needs a fluid region or a body");
+    if (fluid + body == 0)
+        return tobi_fail(err, TOBI_INVALID,
+                         "no particles at all: the scene needs a fluid region or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, fluid, err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     int64_t n = s->particles.count;
-    if (n + body == 0) return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
+    if (n + body == 0)
+        return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
     TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));
     tobi_cells_free(&s->cells);
     TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->exec, err));
@@ -247,7 +270,8 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     w->method->memory(w->method_state, &memory);
     memory[0] = s->start_speed = start_speed(w);
     /* How fast the bodies start: their motion around time 0. */
-    for (int k = 0; k < s->body_count; k++) TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
     s->info.fluid_particles = n;
     w->started = 1;
     return TOBI_OK;
@@ -269,11 +293,16 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
         tobi_double3 x = s->particles.position[i];
         double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
         if (speed < limit) continue;   /* NaN goes on */
-        return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, %g, %g) m moves at %g m/s, the limit is %g m/s",
-                         s->time, (long long)s->step, (long long)s->particles.id[i], x.x + s->box.lower[0],
-                         x.y + s->box.lower[1], x.z + s->box.lower[2], speed, limit);
+        return tobi_fail(err, TOBI_DIVERGED,
+                         "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
+                         "%g, %g) m moves at %g m/s, the limit is %g m/s",
+                         s->time, (long long)s->step, (long long)s->particles.id[i],
+                         x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
+                         limit);
     }
-    return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: a speed reached %g m/s", s->time, s->info.speed_max);
+    return tobi_fail(err, TOBI_DIVERGED,
+                     "the simulation diverged at t = %.9g s: a speed reached %g m/s", s->time,
+                     s->info.speed_max);
 }
 
 tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
@@ -340,8 +369,8 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 int64_t tobi_world_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
-    return s->particles.capacity*(tobi_particles_row_bytes() + 8) + s->cells.list_capacity*4 + s->cells.total*4 +
-           s->near.capacity*(int64_t)sizeof(tobi_near_entry);
+    return s->particles.capacity * (tobi_particles_row_bytes() + 8) + s->cells.list_capacity * 4 +
+           s->cells.total * 4 + s->near.capacity * (int64_t)sizeof(tobi_near_entry);
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
