@@ -13,7 +13,8 @@ import sys
 
 FILE_LINES = 600
 FUNCTION_LINES = 80
-COLUMNS = 110
+COLUMNS = 110          # C and Lua; scripts and scenes may be wider
+WIDE_COLUMNS = 150
 FOLDERS = ["include", "src", "app", "bench", "test", "tools", "scenes", "cmake", "docs", ".ci"]
 C_SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
 CODE_SUFFIXES = C_SUFFIXES | {".py", ".sh", ".lua", ".cmake", ".txt", ".json"}
@@ -64,8 +65,9 @@ def check_lines(where, suffix, lines, errors):
     for number, line in enumerate(lines, 1):
         if "\t" in line:
             errors.append(f"{where}:{number}: tab")
-        if len(line) > COLUMNS:
-            errors.append(f"{where}:{number}: {len(line)} columns, at most {COLUMNS}")
+        limit = COLUMNS if str(where).endswith((".c", ".h", ".lua")) else WIDE_COLUMNS
+        if len(line) > limit:
+            errors.append(f"{where}:{number}: {len(line)} columns, at most {limit}")
         if suffix not in SCRIPT_SUFFIXES and MACHINE_PATH.search(line) and not TEST_FOLDER.search(line):
             errors.append(f"{where}:{number}: path of a machine: {line.strip()[:60]}")
         if line != line.rstrip() and suffix in C_SUFFIXES:

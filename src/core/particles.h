@@ -23,7 +23,7 @@ enum { TOBI_STATE = 1, TOBI_SCRATCH = 2 };
     X(float,        diagonal,            TOBI_SCRATCH, "m/kg",  "diagonal of the pressure operator")         \
     X(float,        precondition,        TOBI_SCRATCH, "kg/m",  "1/diagonal, 0 where pressure is held")      \
     X(float,        residual,            TOBI_SCRATCH, "1/s2",  "residual of the pressure equation")         \
-    X(float,        product,             TOBI_SCRATCH, "1/s2",  "operator times direction; or mean pressure") \
+    X(float,        product,             TOBI_SCRATCH, "1/s2",  "A q in a solve; else the mean pressure") \
     X(float,        delta,               TOBI_SCRATCH, "Pa",    "pressure change of this solve")             \
     X(float,        correction,          TOBI_SCRATCH, "Pa",    "potential of the position correction")      \
     X(uint8_t,      surface,             TOBI_SCRATCH, "1",     "1 at a free surface")                       \
