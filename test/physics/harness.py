@@ -58,8 +58,8 @@ class Case:
         found = pathlib.Path(self.args.reference) / path
         return found if found.is_file() else None
 
-    def run(self, label, *options, scene=None, limit=None):
-        """Runs a scene (the case's own by default); returns the folder of the results."""
+    def run(self, label, *options, scene=None, may_fail=False):
+        """Runs a scene (the case's own by default); returns the folder of the results (None: it failed)."""
         scene = scene or self.folder / "scene.json"
         target = self.out / label
         shown = [os.path.relpath(scene, ROOT) if str(scene).startswith(str(ROOT)) else f"{label}.json"]
@@ -67,9 +67,11 @@ class Case:
         self.commands.append("tobiuo run " + " ".join(shown + command))
         done = subprocess.run([self.program, "run", str(scene), "--out", str(target), "--force", "--quiet",
                                "--threads", str(self.args.threads)] + command, capture_output=True,
-                              text=True, timeout=limit or (100 if self.smoke else None))
+                              text=True, timeout=100 if self.smoke else None)
         if done.returncode:
-            print(f"{self.name}: the program failed ({done.returncode}): {done.stderr.strip()}")
+            print(f"{self.name}: the program failed ({done.returncode}): {done.stderr.strip()}", flush=True)
+            if may_fail:
+                return None
             sys.exit(1)
         return target
 

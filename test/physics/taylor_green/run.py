@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Decay of the Taylor-Green vortex in two dimensions."""
+import json
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case, fit_line, read_series, read_table, read_vtu
+
+case = Case("taylor_green", "Taylor-Green vortex", """
+u = U sin(2 pi x / L) cos(2 pi y / L), v = -U cos(2 pi x / L) sin(2 pi y / L) in a periodic square, Re = U L / nu = 100;
+support 3 d. The scene starts every particle with its own velocity: one fill per particle,
+eight equal fluids of at most 256 fills, which is why 40 particles across are the most. Kinetic energy decays
+as exp(-4 nu k^2 t), k = 2 pi / L: the rate is a least-squares fit of log E over the time in which E falls to
+a tenth. Velocity error: root mean square against the analytic field at the particles' places, over U at that time.""")
+
+L, U, RHO = 1.0, 1.0, 1000
+NU = U*L/100
+K = 2*math.pi/L
+RATE = 4*NU*K*K
+END = round(math.log(10)/RATE, 2)
+
+
+def field(x, y, t):
+    fade = U*math.exp(-2*NU*K*K*t)
+    return fade*math.sin(K*x)*math.cos(K*y), -fade*math.cos(K*x)*math.sin(K*y)
+
+
+def compute(n):
+    d = L/n
+    def fill(i, j):
+        return {"box": {"min": [i*d, j*d], "max": [(i + 1)*d, (j + 1)*d]},
+                "velocity": [*field((i + 0.5)*d, (j + 0.5)*d, 0), 0]}
+    scene = {"dimension": 2, "domain": {"min": [0, 0], "max": [L, L],
+                                        "walls": {"x": "periodic", "y": "periodic"}},
+             "gravity": [0, 0], "spacing": d, "end_time": END, "dfsph": {"support": 3},
+             "fluids": [{"name": f"water {k}", "density": RHO, "viscosity": NU*RHO,
+                         "fill": [fill(i, j) for j in range(k*n//8, (k + 1)*n//8) for i in range(n)]}
+                        for k in range(8)],
+             "output": {"interval": END/20, "fields": ["velocity", "pressure"]}}
+    case.out.mkdir(parents=True, exist_ok=True)
+    path = case.out / f"vortex{n}.json"
+    path.write_text(json.dumps(scene))
+    out = case.run(f"vortex{n}_out", scene=path)
+    history = read_table(out / "history.csv")
+    data = read_vtu(read_series(out)[len(history["time"])//2][1])
+    time = history["time"][len(history["time"])//2]
+    total = 0.0
+    for x, y, u, v in zip(data["Points"][0::3], data["Points"][1::3], data["velocity"][0::3], data["velocity"][1::3]):
+        a, b = field(x, y, time)
+        total += (u - a)**2 + (v - b)**2
+    count = len(data["Points"])//3
+    case.hold(f"{n} across: {count} particles placed", count == n*n)
+    return history, math.sqrt(total/count)/(U*math.exp(-2*NU*K*K*time)), time
+
+
+errors, curves = {}, []
+for n in case.pick((32,), (24, 40)):
+    history, spread, time = compute(n)
+    times, energy = history["time"], history["kinetic_energy"]
+    start = RHO*L*L*U*U/4
+    case.figure(f"{n} across: kinetic energy at the start against rho U^2 L^2 / 4", energy[0]/start - 1, "within 0.01",
+                abs(energy[0]/start - 1) <= 0.01)
+    rate = -fit_line(times, [math.log(e) for e in energy])[0]
+    errors[n] = abs(rate/RATE - 1)
+    case.figure(f"{n} across: decay rate {rate:.4f} 1/s against {RATE:.4f}, deviation", rate/RATE - 1, "within 0.02",
+                errors[n] <= 0.02)
+    case.figure(f"{n} across: velocity error at {time:.2f} s", spread, "<= 0.05", spread <= 0.05)
+    curves.append((f"{n} across", times, [e/start for e in energy], True))
+if 24 in errors:
+    case.figure("order of convergence of the rate, 24 to 40 across", math.log(errors[24]/errors[40])/math.log(40/24),
+                "stated", True)
+# A vortex 16 particles wide: the filter of particle-scale motion and the support (3 d, a fifth of the
+# vortex) both damp; 25 % is what published SPH shows at this resolution.
+case.hold("decay rate within 25 %", max(errors.values()) <= 0.25)
+case.hold("energy only falls", all(b <= a for a, b in zip(history["kinetic_energy"], history["kinetic_energy"][1:])))
+case.plot("Kinetic energy", "t, s", "E / E(0)", [("analytic", times, [math.exp(-RATE*t) for t in times], False)] + curves)
+case.finish()
