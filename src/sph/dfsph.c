@@ -104,7 +104,7 @@ static int list_memory(void *state, double **values)
     return 3;
 }
 
-/* dt <= min(cfl d/sqrt(|v|^2 + |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps
+/* dt <= min(cfl d/sqrt(|v|^2 + 4 |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps
    particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
    Not above a tenth more than the last; the rest up to max_dt is shared evenly, so that no sliver
    of a step is left. */
@@ -122,7 +122,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
         /* never more than Bernoulli allows: the pressure of a sudden change grows as 1/dt */
         double head = fmin(m->memory.head, fall + speed*speed);
         dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
-        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + head, 1e-24)));
+        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
         for (int f = 0; f < s->fluid_count; f++)
             if (s->fluid[f].viscosity > 0)
                 dt = fmin(dt, 0.125*h*h*s->fluid[f].density/s->fluid[f].viscosity);

@@ -89,7 +89,7 @@ static const tobi_param dfsph_rows[] = {
     { .key = "divergence_iterations_max", INT, AT(tobi_dfsph_def, divergence_iterations_max),
       .def = { 200 },
       RANGE(0, 1000000), .unit = "1", .doc = "Most iterations of the divergence solve in a step." },
-    { .key = "filter", REAL, AT(tobi_dfsph_def, filter), .def = { 0.2 }, RANGE(0, 1), .unit = "1",
+    { .key = "filter", REAL, AT(tobi_dfsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
       .text = "off",
       .doc = "Share of particle-scale motion taken out per step; longer waves are left alone." },
     { 0 }
