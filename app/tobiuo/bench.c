@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 enum { KEY_THREADS = 256, KEY_STEPS, KEY_SETTLE, KEY_SPACING, KEY_SCENE, KEY_PROJECT };
-enum { MORE_ITERATIONS = 4 };
+enum { MORE_ITERATIONS = 12 };
 
 static const struct argp_option options[] = {
     { "threads", KEY_THREADS, "N", 0, "processor cores to use; 0 = all", 0 },
@@ -89,31 +89,61 @@ static int copy_state(tobi_world *from, tobi_world *to)
     return failed;
 }
 
-/* What further pressure iterations cost: the same steps once more with more of them. */
-static int measure_iterations(tobi_world *more, const bench_result *base)
+/* What a further pressure iteration costs: a like tank that does more of them, step by step in turn,
+   so that both meet the same disturbances. */
+static void print_iterations(const bench_result *base, const bench_result *more, int threads)
 {
-    bench_result r;
-    bench_stages stages;
-    int failed = bench_settle(more, 2);
-    if (!failed) failed = bench_measure(more, base->steps, 2, &r, &stages);
-    if (failed) return failed;
-    double n = (double)base->particles * base->steps;
-    double extra = r.density_iterations + r.divergence_iterations - base->density_iterations -
-                   base->divergence_iterations;
-    if (extra < 1.0) return complain("bench: the second tank did no further iterations");
-    double each = 1e6 * (r.solve_seconds - base->solve_seconds) / n / extra;
-    double beyond = base->density_iterations + base->divergence_iterations - 3.0;
+    double n = (double)base->particles * base->steps, did = base->density_iterations +
+                                                             base->divergence_iterations;
+    double extra = more->density_iterations + more->divergence_iterations - did;
+    if (extra < 1.0) {
+        printf("further iteration      not known: both tanks did as many\n");
+        return;
+    }
+    double each = 1e6 * (more->solve_seconds - base->solve_seconds) / n / extra;
+    double cost = 1e6 * base->seconds / n;
     printf("further iteration      %.4f us per particle (%.2f density + %.2f divergence against "
-           "the above)\n", each, r.density_iterations, r.divergence_iterations);
-    printf("cost at 2 + 1          %.4f us per particle and step, mean less %.2f iterations\n",
-           1e6 * base->seconds / n - beyond * each, beyond);
+           "the above)\n", each, more->density_iterations, more->divergence_iterations);
+    printf("cost at 2 + 1          %.4f us per particle and step, the mean less %.2f iterations\n",
+           cost - (did - 3.0) * each, did - 3.0);
+    n *= threads > 0 ? threads : (double)sysconf(_SC_NPROCESSORS_ONLN);
+    each = 1e6 * (more->processor - base->processor) / n / extra;
+    cost = 1e6 * base->processor / n;
+    printf("  in processor time    %.4f us and %.4f us per thread\n", each,
+           cost - (did - 3.0) * each);
+}
+
+static int step_in_turn(bench_run *base, bench_run *more, int steps)
+{
+    int failed = 0;
+    for (int k = 0; k < steps && !failed; k++) {
+        failed = bench_step(base);
+        if (!failed) failed = bench_step(more);
+    }
+    return failed;
+}
+
+static int compare_tanks(tobi_world *world, tobi_world *second, int steps, int threads)
+{
+    bench_run base, more = { 0 };
+    int failed = bench_begin(&base, world, steps);
+    if (!failed) failed = copy_state(world, second);
+    if (!failed) failed = bench_begin(&more, second, steps);
+    if (!failed) failed = step_in_turn(&base, &more, steps);
+    bench_end(&base);
+    bench_end(&more);
+    if (failed) return failed;
+    const bench_result *r = &base.result;
+    bench_print(&base, threads);
+    print_iterations(r, &more.result, threads);
+    printf("wall force / weight    %.4f to %.4f, mean %.4f\n", r->force_least, r->force_most,
+           r->force_mean);
+    printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
     return 0;
 }
 
 static int measure_tank(const bench_options *o, double spacing, int settle)
 {
-    bench_result r;
-    bench_stages stages;
     settle = o->settle ? o->settle : settle;
     spacing = o->spacing > 0.0 ? o->spacing : spacing;
     printf("case                   settled tank 0.584 x 0.284 x 0.182 m at %g m, after %d steps\n",
@@ -122,17 +152,8 @@ static int measure_tank(const bench_options *o, double spacing, int settle)
     tobi_world *world = make_tank(o, spacing, 0);
     tobi_world *more = world ? make_tank(o, spacing, MORE_ITERATIONS) : NULL;
     int failed = !more ? EXIT_ERROR : bench_settle(world, settle);
-    if (!failed) failed = bench_measure(world, o->steps ? o->steps : 60, 2, &r, &stages);
-    if (!failed) {
-        bench_print_result(world, &r, &stages);
-        printf("wall force / weight    %.4f to %.4f, mean %.4f\n", r.force_least, r.force_most,
-               r.force_mean);
-        printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
-        fflush(stdout);
-        failed = copy_state(world, more);
-    }
+    if (!failed) failed = compare_tanks(world, more, o->steps ? o->steps : 60, o->threads);
     tobi_world_destroy(world);
-    if (!failed) failed = measure_iterations(more, &r);
     tobi_world_destroy(more);
     return failed;
 }
@@ -141,9 +162,8 @@ static int run_fish(tobi_scene *scene, const bench_options *o)
 {
     tobi_error err = { 0 };
     tobi_world *world = NULL;
-    bench_result r;
-    bench_stages stages;
-    int settle = o->settle ? o->settle : 10;
+    bench_run run = { 0 };
+    int settle = o->settle ? o->settle : 10, steps = o->steps ? o->steps : 50;
     double end = o->project > 0.0 ? o->project : 0.8;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     printf("case                   %s at %g m, after %d steps\n", tobi_scene_name(scene),
@@ -151,14 +171,16 @@ static int run_fish(tobi_scene *scene, const bench_options *o)
     fflush(stdout);
     int failed = bench_settle(world, settle);
     double from = tobi_world_time(world);
-    if (!failed) failed = bench_measure(world, o->steps ? o->steps : 50, 2, &r, &stages);
+    if (!failed) failed = bench_begin(&run, world, steps);
+    for (int k = 0; k < steps && !failed; k++) failed = bench_step(&run);
+    bench_end(&run);
     if (!failed) {
-        bench_print_result(world, &r, &stages);
+        bench_print(&run, o->threads);
         char text[32];
         printf("simulated              %.4f to %.4f s\n", from, tobi_world_time(world));
         printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
         printf("projected to %.3g s     %s of wall clock, without output, if all steps were like "
-               "these\n", end, duration_text(end / r.simulated * r.seconds, text));
+               "these\n", end, duration_text(end / run.result.simulated * run.result.seconds, text));
     }
     tobi_world_destroy(world);
     return failed;

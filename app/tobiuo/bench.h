@@ -11,6 +11,14 @@ typedef struct bench_options {
     int steps, settle;       /* 0 = the case's own                           */
 } bench_options;
 
+enum { BENCH_STAGES = 16 };
+/* Seconds per stage so far. */
+typedef struct bench_stages {
+    const char *name[BENCH_STAGES];
+    double seconds[BENCH_STAGES];
+    int count;
+} bench_stages;
+
 /* One measured stretch of steps. */
 typedef struct bench_result {
     int64_t particles;
@@ -20,25 +28,28 @@ typedef struct bench_result {
     double simulated, dt_least, dt_most;      /* s                                            */
     double density_iterations, divergence_iterations;
     double density_error, pressure_residual;  /* means over the steps                         */
+    double peak_rss;                          /* bytes of the process when it began            */
     double solve_seconds;                     /* in the stages named "... solve"              */
     double force_least, force_mean, force_most;   /* wall force against gravity / weight      */
 } bench_result;
-
-enum { BENCH_STAGES = 16 };
-/* Seconds per stage so far. */
-typedef struct bench_stages {
-    const char *name[BENCH_STAGES];
-    double seconds[BENCH_STAGES];
-    int count;
-} bench_stages;
 
 /* bench_machine.c: processor, threads, instruction set, load: what a figure must be read with. */
 void bench_print_machine(int threads);
 /* Bytes of the process at its largest. */
 double bench_peak_rss(void);
 
-/* bench_measure.c: steps a world and measures; up: direction that gravity points against, 0 to 2.
-   Returns 0 or an exit code after a complaint. */
+/* A world under the clock: begin, any number of steps, end. */
+typedef struct bench_run {
+    tobi_world *world;
+    int up;                                   /* axis that gravity points against              */
+    double *step_seconds;
+    bench_stages before, stages;
+    bench_result result;
+} bench_run;
+
+/* bench_measure.c. All return 0 or an exit code after a complaint; bench_end frees, always. */
 int bench_settle(tobi_world *world, int steps);
-int bench_measure(tobi_world *world, int steps, int up, bench_result *result, bench_stages *stages);
-void bench_print_result(const tobi_world *world, const bench_result *r, const bench_stages *stages);
+int bench_begin(bench_run *run, tobi_world *world, int steps);
+int bench_step(bench_run *run);
+void bench_end(bench_run *run);
+void bench_print(const bench_run *run, int threads);

@@ -1,10 +1,12 @@
 /* Stepping a world under the clock. */
+#define _DEFAULT_SOURCE
 #include "bench.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 int bench_settle(tobi_world *world, int steps)
 {
@@ -67,40 +69,53 @@ static void finish(bench_result *r, bench_stages *now, const bench_stages *befor
     }
 }
 
-int bench_measure(tobi_world *world, int steps, int up, bench_result *r, bench_stages *stages)
+int bench_begin(bench_run *run, tobi_world *world, int steps)
 {
-    tobi_error err = { 0 };
-    tobi_step_info info;
-    bench_stages before;
-    double *seconds = malloc((size_t)steps * sizeof *seconds);
-    if (!seconds) return complain("out of memory");
-    memset(r, 0, sizeof *r);
-    read_stages(world, &before);
-    double begun = wall_clock();
-    clock_t processor = clock();
-    for (int k = 0; k < steps; k++) {
-        double since = wall_clock();
-        if (tobi_world_step(world, 0.0, &info, &err) != TOBI_OK) {
-            free(seconds);
-            return complain("%s", err.text);
-        }
-        seconds[k] = wall_clock() - since;
-        add_step(r, &info, up);
-    }
-    r->seconds = wall_clock() - begun;
-    r->processor = (double)(clock() - processor) / CLOCKS_PER_SEC;
-    r->particles = info.fluid_particles;
-    qsort(seconds, (size_t)steps, sizeof *seconds, compare);
-    r->median = seconds[steps / 2];
-    free(seconds);
-    read_stages(world, stages);
-    finish(r, stages, &before);
+    memset(run, 0, sizeof *run);
+    run->world = world;
+    run->up = 2;
+    run->step_seconds = calloc((size_t)steps, sizeof *run->step_seconds);
+    if (!run->step_seconds) return complain("out of memory");
+    run->result.peak_rss = bench_peak_rss();
+    read_stages(world, &run->before);
     return 0;
 }
 
-void bench_print_result(const tobi_world *world, const bench_result *r, const bench_stages *stages)
+int bench_step(bench_run *run)
 {
+    tobi_error err = { 0 };
+    tobi_step_info info;
+    bench_result *r = &run->result;
+    double since = wall_clock();
+    clock_t processor = clock();
+    if (tobi_world_step(run->world, 0.0, &info, &err) != TOBI_OK) return complain("%s", err.text);
+    double seconds = wall_clock() - since;
+    r->processor += (double)(clock() - processor) / CLOCKS_PER_SEC;
+    r->seconds += seconds;
+    run->step_seconds[r->steps] = seconds;
+    r->particles = info.fluid_particles;
+    add_step(r, &info, run->up);
+    return 0;
+}
+
+void bench_end(bench_run *run)
+{
+    bench_result *r = &run->result;
+    if (r->steps > 0) {
+        qsort(run->step_seconds, (size_t)r->steps, sizeof *run->step_seconds, compare);
+        r->median = run->step_seconds[r->steps / 2];
+        read_stages(run->world, &run->stages);
+        finish(r, &run->stages, &run->before);
+    }
+    free(run->step_seconds);
+    run->step_seconds = NULL;
+}
+
+void bench_print(const bench_run *run, int threads)
+{
+    const bench_result *r = &run->result;
     double n = (double)r->particles, each = 1e6 / n;
+    long cores = threads > 0 ? threads : sysconf(_SC_NPROCESSORS_ONLN);
     printf("fluid particles        %lld\n", (long long)r->particles);
     printf("measured               %d steps, %.3g s simulated, %.1f s of wall clock\n", r->steps,
            r->simulated, r->seconds);
@@ -111,12 +126,12 @@ void bench_print_result(const tobi_world *world, const bench_result *r, const be
     printf("pressure residual      %.2e relative\n", r->pressure_residual);
     printf("cost                   %.4f us per particle and step (mean), %.4f (median step)\n",
            r->seconds / r->steps * each, r->median * each);
-    printf("processor time         %.4f us per particle and step, all threads together\n",
-           r->processor / r->steps * each);
+    printf("processor time         %.4f us per particle and step and thread (without other "
+           "programs: the cost)\n", r->processor / r->steps * each / (double)cores);
     printf("memory                 %.0f bytes per particle in arrays, %.0f of the whole process\n",
-           (double)tobi_world_bytes(world) / n, bench_peak_rss() / n);
+           (double)tobi_world_bytes(run->world) / n, r->peak_rss / n);
     printf("\n  stage                  ns per particle and step\n");
-    for (int k = 0; k < stages->count; k++)
-        printf("  %-22s %8.2f\n", stages->name[k], 1e3 * stages->seconds[k] / r->steps * each);
+    for (int k = 0; k < run->stages.count; k++)
+        printf("  %-22s %8.2f\n", run->stages.name[k], 1e3 * run->stages.seconds[k] / r->steps * each);
     printf("\n");
 }
