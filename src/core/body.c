@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static tobi_status allocate(tobi_body *b, tobi_error *err)
 {
@@ -193,15 +194,34 @@ tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err)
     return evaluate(b, t, b->particle_count, (const double (*)[3])b->particle_rest, b->particle, err);
 }
 
-static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+/* Said before allocating: a spacing far below the mesh's size asks for more than the machine has. */
+static tobi_status check_pieces(const tobi_body *b, double point_spacing, int dimension, tobi_error *err)
+{
+    double pieces = dimension == 3 ? 4 * b->rest.area / (point_spacing * point_spacing)
+                                   : 2 * b->rest.area / point_spacing;
+    double inside = fabs(b->rest.volume)/pow(b->spacing, dimension);
+    double bytes = 200*pieces + 48*inside;
+    double have = (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE);
+    if (bytes < 0.9*have) return TOBI_OK;
+    return tobi_fail(
+        err, TOBI_NO_MEMORY,
+        "body '%s' at spacing %g m needs %.3g particles and %.3g surface points, about %.3g GiB; "
+        "this machine has %.3g GiB. A larger spacing needs less",
+        b->name, b->spacing, inside, pieces, bytes / 1073741824, have / 1073741824);
+}
+
+static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimension,
+                             double point_spacing, tobi_error *err)
 {
     TOBI_TRY(tobi_mesh_read(def->mesh, &b->mesh, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
     TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh, err));
-    if (def->motion && !def->motion_rigid) TOBI_TRY(tobi_mesh_refine(&b->mesh, 3*b->spacing, err));
-    return dimension == 3 ? tobi_massprops_volume(&b->mesh, &b->rest, err)
-                          : tobi_massprops_section(&b->mesh, &b->rest, err);
+    if (dimension == 3) TOBI_TRY(tobi_massprops_volume(&b->mesh, &b->rest, err));
+    else TOBI_TRY(tobi_massprops_section(&b->mesh, &b->rest, err));
+    TOBI_TRY(check_pieces(b, point_spacing, dimension, err));
+    if (!def->motion || def->motion_rigid) return TOBI_OK;
+    return tobi_mesh_refine(&b->mesh, 3*b->spacing, err);
 }
 
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
@@ -217,7 +237,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimensi
     b->motion = def->motion;
     b->motion_user = def->motion_user;
     memcpy(b->lower, lower, sizeof b->lower);
-    tobi_status status = load_mesh(b, def, dimension, err);
+    tobi_status status = load_mesh(b, def, dimension, point_spacing, err);
     if (status == TOBI_OK)
         status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
     if (status == TOBI_OK)

@@ -32,6 +32,7 @@ typedef struct solve {
     /* results */
     int iterations, converged;
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
+    double worst;                 /* max |r|, 1/s2                                               */
     double head;                  /* three times the mean |p|/rho, m2/s2: more than the bottom's   */
 } solve;
 
@@ -145,10 +146,12 @@ static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)
 static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
 {
     const sph_kernels *k = m->kernel;
-    double t[TOBI_TOTALS] = {start[0], start[1]}, rz = start[0];
+    double t[TOBI_TOTALS], rz = start[0];
+    memcpy(t, start, sizeof t);
     double scale = s->dt*s->dt/(double)s->particles.count;
     for (q->iterations = 0;; q->iterations++) {
         q->error = t[1]*scale;
+        q->worst = t[6];
         q->relative = sqrt(t[0]/fmax(q->source, 1e-300));
         q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
         if (!(t[0] > 0) || q->iterations >= q->max) break;
@@ -238,11 +241,13 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     launch(s, m, k->sph_product, NULL);
     launch(s, m, k->sph_warm_residual, t);
     solve_pressure(s, m, t, &q);
-    launch(s, m, k->sph_pressure_kick, NULL);
+    launch(s, m, k->sph_pressure_kick, t);
+    s->info.force_sum = t[0]*s->smoothing.volume;
     m->memory.head = q.head;
     s->info.divergence_iterations = q.iterations;
     s->info.divergence_converged = q.converged;
     s->info.divergence_mean = q.error/s->dt;
+    s->info.divergence_max = q.worst*s->dt;
     s->info.pressure_residual = q.relative;
     tobi_stage_end(&s->stages, "divergence solve", clock);
 }

@@ -43,7 +43,7 @@ TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressur
     v->accel[i] = sph_pressure_accel_value(v, i, a);
 }
 
-/* v += dt a(p). */
+/* v += dt a(p). totals[0]: sum of rho |a|. */
 #define sph_pressure_kick_acc sph_pressure_accel_acc
 #define sph_pressure_kick_start sph_pressure_accel_start
 #define sph_pressure_kick_pair sph_pressure_accel_pair
@@ -53,7 +53,7 @@ TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure
     tobi_float4 f = sph_pressure_accel_value(v, i, a), u = v->velocity[i];
     u.x += v->dt*f.x; u.y += v->dt*f.y; u.z += v->dt*f.z;
     v->velocity[i] = u;
-    (void)totals;
+    totals[0] += (double)sqrtf(f.x * f.x + f.y * f.y + f.z * f.z) / v->inverse_density[v->fluid[i]];
 }
 
 /* C u for a float4 array u, eq. (7). */

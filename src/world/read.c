@@ -68,21 +68,40 @@ static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, d
     }
 }
 
-static tobi_status read_bodies(const tobi_world *w, const char *field, int components, double *buffer)
+/* Velocities of a body's particles: central difference of its motion in double. */
+static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3])
+{
+    const double half = 1e-5;
+    if (!b->motion) {
+        memset(out, 0, (size_t)b->particle_count*sizeof *out);
+        return TOBI_OK;
+    }
+    TOBI_TRY(tobi_body_place_particles(b, t - half, NULL));
+    memcpy(out, b->particle, (size_t)b->particle_count*sizeof *out);
+    TOBI_TRY(tobi_body_place_particles(b, t + half, NULL));
+    for (int64_t i = 0; i < b->particle_count; i++)
+        for (int a = 0; a < 3; a++) out[i][a] = (b->particle[i][a] - out[i][a])/(2*half);
+    return TOBI_OK;
+}
+
+static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer)
 {
     int64_t row = 0, id = w->sim.particles.count;
     for (int k = 0; k < w->sim.body_count; k++) {
-        const tobi_body *b = &w->sim.bodies[k];
-        tobi_status status = tobi_body_place_particles((tobi_body *)b, w->sim.time, NULL);
-        if (status != TOBI_OK) return status;
-        for (int64_t i = 0; i < b->particle_count; i++, row++) {
-            double *out = buffer + row*components;
-            memset(out, 0, (size_t)components*sizeof *out);
-            if (!strcmp(field, "position")) memcpy(out, b->particle[i], 3*sizeof *out);
-            else if (!strcmp(field, "density")) out[0] = b->density;
-            else if (!strcmp(field, "object_id")) out[0] = k + 1;
-            else if (!strcmp(field, "particle_id")) out[0] = (double)(id + row);
+        tobi_body *b = &w->sim.bodies[k];
+        double *out = buffer + row*components;
+        if (!strcmp(field, "velocity")) {
+            TOBI_TRY(read_body_velocity(b, w->sim.time, (double (*)[3])(void *)out));
+        } else if (!strcmp(field, "position")) {
+            TOBI_TRY(tobi_body_place_particles(b, w->sim.time, NULL));
+            memcpy(out, b->particle, (size_t)b->particle_count*sizeof *b->particle);
+        } else {
+            int number = !strcmp(field, "particle_id"), object = !strcmp(field, "object_id");
+            double rho = !strcmp(field, "density") ? b->density : 0;
+            for (int64_t i = 0; i < b->particle_count*components; i++)
+                out[i] = number ? (double)(id + row + i) : object ? k + 1 : rho;
         }
+        row += b->particle_count;
     }
     return TOBI_OK;
 }

@@ -288,11 +288,11 @@ static void oracle_pressure_accel(const oracle *o, const row *in, row *out, doub
 
 static void oracle_pressure_kick(const oracle *o, const row *in, row *out, double *t)
 {
-    (void)t;
     for (int i = 0; i < o->count; i++) {
         double a[3];
         pressure_accel(o, in, i, a);
         for (int c = 0; c < 3; c++) out[i][VEL + c] += o->dt*a[c];
+        t[0] += o->rho0[o->fluid[i]]*sqrt(a[0]*a[0] + a[1]*a[1] + a[2]*a[2]);
     }
 }
 
