@@ -66,7 +66,7 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int6
                              box->size[a], "xyz"[a], 3 * h);
     choose_cells(c, box, h, particles);
     c->list_capacity = scratch_entries(particles) + 16;
-    int64_t guess = particles*40 + 1024;
+    int64_t guess = particles*36 + 4096;
     if (guess > c->list_capacity) c->list_capacity = guess;
     c->start = malloc((size_t)(c->total + 1)*sizeof *c->start);
     c->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *c->histogram);
@@ -144,7 +144,7 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
 
 static tobi_status grow_list(tobi_cells *c, tobi_error *err)
 {
-    int64_t more = c->list_capacity + c->list_capacity/2;
+    int64_t more = c->list_capacity + c->list_capacity/8;
     int32_t *list = aligned_alloc(64, (size_t)(more*4 + 63)/64*64);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
     free(c->list);

@@ -39,7 +39,7 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     s->info = kept;
     s->info.density_error_mean = mean;
     s->info.density_error_max = max;
-    for (int64_t i = 0; i < s->particles.count; i++) w->row_of[s->particles.id[i]] = i;
+    for (int64_t i = 0; i < s->particles.count; i++) w->row_of[s->particles.id[i]] = (int32_t)i;
     w->fresh = 1;
     return TOBI_OK;
 }

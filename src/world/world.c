@@ -369,7 +369,7 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 int64_t tobi_world_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
-    return s->particles.capacity * (tobi_particles_row_bytes() + 8) + s->cells.list_capacity * 4 +
+    return s->particles.capacity * (tobi_particles_row_bytes() + 4) + s->cells.list_capacity * 4 +
            s->cells.total * 4 + s->near.capacity * (int64_t)sizeof(tobi_near_entry);
 }
 

@@ -14,7 +14,7 @@ struct tobi_world {
     tobi_region *regions;
     int region_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
-    int64_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
+    int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
 /* Brings derived fields and the id order up to date. */
