@@ -36,8 +36,8 @@ def compare(label, size, fill, end):
     return largest/D, steps
 
 
-for label, fill, end in (("tank", (0.1875, 0.125, 0.09375), case.pick(0.02, 0.05)),
-                         ("dam", (0.0625, 0.125, 0.125), case.pick(0.01, 0.02))):
+for label, fill, end in (("tank", (0.1875, 0.125, 0.09375), case.pick(0.2, 0.5)),
+                         ("dam", (0.0625, 0.125, 0.125), case.pick(0.04, 0.05))):
     distance, steps = compare(label, (0.1875, 0.125, 0.25), fill, end)
     case.figure(f"{label}: largest distance to the twin after {steps} steps, in spacings", distance,
                 "<= 1e-5", distance <= 1e-5)
