@@ -41,7 +41,8 @@ run_slow() {
         fi
     done
     if [ $found -eq 0 ]; then
-        echo "test: no physics case '$wanted'; there are: $(ls test/physics 2> /dev/null | tr '\n' ' ')" >&2
+        echo "test: no physics case '$wanted'; there are:" >&2
+        for script in test/physics/*/run.py; do echo "  $(basename "$(dirname "$script")")" >&2; done
         exit 2
     fi
     close $passed $failed
