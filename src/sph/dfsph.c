@@ -280,7 +280,7 @@ static void measure_forces(tobi_simulation *s, dfsph *m, double *clock)
 static void advance(tobi_simulation *s, dfsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
-    m->view.speed_cap = (float)tobi_simulation_speed_scale(s);
+    m->view.speed_cap = (float)(1.5*tobi_simulation_speed_scale(s));
     launch(s, m, m->kernel->sph_advance, t);
     m->memory.speed = sqrt(t[6]);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;

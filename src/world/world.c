@@ -284,7 +284,7 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         if (s->info.speed_max < 1e14 && s->info.capped <= 20 + s->particles.count/200) return TOBI_OK;
-        limit = tobi_simulation_speed_scale(s);
+        limit = 1.4*tobi_simulation_speed_scale(s);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
     w->diverged = 1;
