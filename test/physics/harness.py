@@ -8,6 +8,7 @@ plot go to docs/validation/<case>.{md,svg}. Only the standard library is needed.
 import argparse
 import array
 import csv
+import html
 import os
 import pathlib
 import re
@@ -204,7 +205,7 @@ def draw(plots):
             return 60 + (x - x0)/(x1 - x0)*(width - 80), height - 45 - (y - y0)/(y1 - y0)*(height - 80)
         part = [f'<g transform="translate({number*width},0)">',
                 f'<rect x="60" y="35" width="{width - 80}" height="{height - 80}" fill="none" stroke="#888"/>',
-                f'<text x="{width/2}" y="20" text-anchor="middle" font-weight="bold">{title}</text>',
+                f'<text x="{width/2}" y="20" text-anchor="middle" font-weight="bold">{html.escape(title)}</text>',
                 f'<text x="{width/2}" y="{height - 8}" text-anchor="middle">{x_label}</text>',
                 f'<text x="12" y="{height/2}" text-anchor="middle" '
                 f'transform="rotate(-90 12 {height/2})">{y_label}</text>']
@@ -220,7 +221,7 @@ def draw(plots):
             else:
                 line = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
                 part.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
-            part.append(f'<text x="70" y="{52 + 14*index}" fill="{colour}">{label}</text>')
+            part.append(f'<text x="70" y="{52 + 14*index}" fill="{colour}">{html.escape(label)}</text>')
         parts += part + ["</g>"]
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width*len(plots)}" height="{height}" '
             f'font-family="sans-serif" font-size="11">\n<rect width="100%" height="100%" fill="white"/>\n'
