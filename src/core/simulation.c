@@ -47,5 +47,5 @@ double tobi_simulation_speed_scale(const tobi_simulation *s)
 {
     double fall = 0;
     for (int a = 0; a < s->box.dimension; a++) fall += fabs(s->def.gravity[a])*s->box.size[a];
-    return sqrt(2*fall) + s->body_speed + s->start_speed;
+    return sqrt(2*fall) + s->body_speed + 2*s->start_speed;
 }

@@ -21,6 +21,9 @@ typedef struct dfsph {
     const sph_kernels *kernel;
     /* survives a restart */
     struct { double speed, head, dt; } memory;
+    /* of the step at hand */
+    int closed;                   /* 1: no particle is at a free surface                         */
+    double diagonal;              /* mean diagonal of the operator                               */
 } dfsph;
 
 /* A run of conjugate gradients on A p = s. */
@@ -28,6 +31,7 @@ typedef struct solve {
     double tolerance;             /* on the mean of |r| dt^2                                     */
     double relative_tolerance;    /* on |r|/|s|                                                  */
     double source;                /* |s|^2 in the norm of the diagonal                           */
+    double nothing;               /* mean |r| dt^2 so small that no iteration is due             */
     int min, max;
     /* results */
     int iterations, converged;
@@ -105,13 +109,14 @@ static int list_memory(void *state, double **values)
     return 3;
 }
 
-/* dt <= min(cfl d/sqrt(|v|^2 + 4 |p|/rho), 0.25 sqrt(d/g), 0.125 h^2/nu): the pressure keeps
+/* dt <= min(cfl d/sqrt(|v|^2 + 4 |p|/rho), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
+   viscous sum of a particle at a no-slip wall. The pressure keeps
    particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
    Not above a tenth more than the last; the rest up to max_dt is shared evenly, so that no sliver
    of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
 {
-    double d = s->smoothing.spacing, h = s->smoothing.h, dt, g2 = 0, fall = 0;
+    double d = s->smoothing.spacing, dt, g2 = 0, fall = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         g2 += s->def.gravity[a]*s->def.gravity[a];
         fall += fabs(s->def.gravity[a])*s->box.size[a];
@@ -124,9 +129,10 @@ static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
         double head = fmin(m->memory.head, fall + speed*speed);
         dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
         dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
+        double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*d);
         for (int f = 0; f < s->fluid_count; f++)
             if (s->fluid[f].viscosity > 0)
-                dt = fmin(dt, 0.125*h*h*s->fluid[f].density/s->fluid[f].viscosity);
+                dt = fmin(dt, 0.8*s->fluid[f].density/(s->fluid[f].viscosity*rate));
         if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         m->memory.dt = dt;
@@ -142,19 +148,38 @@ static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)
     m->view.inverse_dt = (float)(1/s->dt);
 }
 
-/* Conjugate gradients from the state a residual kernel left: r, payload z = r/diagonal, totals rz, |r|. */
+/* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
+static void center(tobi_simulation *s, dfsph *m, tobi_kernel kernel, double sum, double *t)
+{
+    if (!m->closed) return;
+    m->view.mean = (float)(sum/(double)s->particles.count);
+    launch(s, m, kernel, t);
+}
+
+/* |r|/|s| in the norm of the diagonal; a source of round-off size counts as a hundredth of what the
+   tolerance lets pass. */
+static double relative_residual(const tobi_simulation *s, const dfsph *m, const solve *q, double rz)
+{
+    double small = 1e-2*q->tolerance/(s->dt*s->dt);
+    double floor = (double)s->particles.count*small*small/fmax(m->diagonal, 1e-300);
+    return sqrt(rz/fmax(fmax(q->source, floor), 1e-300));
+}
+
+/* Conjugate gradients from the state a residual kernel left: r, payload z = r/diagonal, totals rz, |r|
+   and sum r. */
 static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
 {
     const sph_kernels *k = m->kernel;
-    double t[TOBI_TOTALS], rz = start[0];
+    double t[TOBI_TOTALS], scale = s->dt*s->dt/(double)s->particles.count;
     memcpy(t, start, sizeof t);
-    double scale = s->dt*s->dt/(double)s->particles.count;
+    center(s, m, k->sph_center_residual, t[2], t);
+    double rz = t[0];
     for (q->iterations = 0;; q->iterations++) {
         q->error = t[1]*scale;
         q->worst = t[6];
-        q->relative = sqrt(t[0]/fmax(q->source, 1e-300));
+        q->relative = relative_residual(s, m, q, t[0]);
         q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
-        if (!(t[0] > 0) || q->iterations >= q->max) break;
+        if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
         if (q->converged && q->iterations >= q->min) break;
         if (q->iterations > 0) {
             m->view.beta = (float)(t[0]/rz);
@@ -163,6 +188,7 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         }
         launch(s, m, k->sph_pressure_accel, NULL);
         launch(s, m, k->sph_product, t);
+        center(s, m, k->sph_center_product, t[1], t);
         if (!(t[0] > 0)) break;
         m->view.alpha = (float)(rz/t[0]);
         launch(s, m, k->sph_cg_update, t);
@@ -200,6 +226,8 @@ static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, doubl
     m->view.smooth = smoothing;
     launch(s, m, m->kernel->sph_density, t);
     s->info.density_error_mean = t[0]/(double)s->particles.count;
+    m->closed = t[1] == 0;
+    m->diagonal = t[2]/(double)s->particles.count;
     s->info.density_error_max = t[6];
     tobi_stage_end(&s->stages, "density", clock);
 }
@@ -258,8 +286,12 @@ static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
     double t[TOBI_TOTALS];
     m->view.pressure = s->particles.correction;
     launch(s, m, m->kernel->sph_density_residual, t);
-    solve q = {.tolerance = m->def.density_tolerance, .relative_tolerance = 1, .source = t[0],
-               .min = m->def.density_iterations_min, .max = m->def.density_iterations_max};
+    solve q = {.tolerance = m->def.density_tolerance,
+               .relative_tolerance = 1,
+               .nothing = 1e-3 * m->def.density_tolerance,
+               .source = t[0],
+               .min = m->def.density_iterations_min,
+               .max = m->def.density_iterations_max};
     solve_pressure(s, m, t, &q);
     launch(s, m, m->kernel->sph_pressure_accel, NULL);
     s->info.density_iterations = q.iterations;

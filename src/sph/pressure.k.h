@@ -95,6 +95,7 @@ TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active,
     v->record[i].w = z;
     totals[0] += (double)v->residual[i]*z;
     totals[1] += size;
+    totals[2] += v->residual[i];
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
@@ -138,7 +139,7 @@ TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
                      v->diagonal[i] > 0 && (!v->surface[i] || e > 0), totals);
 }
 
-/* product = A q for the search direction q, from accel = a(q). totals[0]: q . A q. */
+/* product = A q for the search direction q, from accel = a(q). totals: q . A q, sum of A q. */
 #define sph_product_acc sph_compression_acc
 TOBI_FN void sph_product_start(const sph_view *v, int64_t i, sph_compression_acc *a)
 {
@@ -155,6 +156,19 @@ TOBI_FN void sph_product_finish(const sph_view *v, int64_t i, sph_compression_ac
     float p = -sph_compression_value(v, i, a, v->accel, 0);
     v->product[i] = p;
     totals[0] += (double)p*v->record[i].w;
+    totals[1] += p;
+}
+
+/* Without a free surface a constant pressure is free, and on a displaced lattice it would push the
+   flow about: residual and product are kept orthogonal to it, eq. (10b). */
+TOBI_FN void sph_center_residual(const sph_view *v, int64_t i, double *totals)
+{
+    sph_start_search(v, i, v->residual[i] - v->mean, v->precondition[i] > 0, totals);
+}
+TOBI_FN void sph_center_product(const sph_view *v, int64_t i, double *totals)
+{
+    v->product[i] -= v->mean;
+    totals[0] += (double)v->product[i]*v->record[i].w;
 }
 
 /* delta += alpha q, r -= alpha A q. totals: r . z, sum |r|; max |r|. */

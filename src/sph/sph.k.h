@@ -85,6 +85,8 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->diagonal[i] = v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*lane_sum(a->g2));
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;
+    totals[1] += v->surface[i];
+    totals[2] += v->diagonal[i];
     totals[6] = error > totals[6] ? error : totals[6];
 }
 
@@ -190,6 +192,12 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
         float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
         totals[axis] -= 2.0*v->volume*v->pressure[i]*v->plane[k].sign*here*open/free[k];
         totals[axis] += mass*v->gravity[axis]*lambda[k];
+        if (!v->plane[k].no_slip) continue;
+        float s = sph_plane_distance(v, k, i);
+        double drag = 2.0*mass*v->kinematic[v->fluid[i]]*sigma[k]/
+                      (s > 0.25f*v->spacing ? s : 0.25f*v->spacing);
+        for (int c = 0; c < 3; c++)
+            if (c != axis) totals[c] += drag*(&v->velocity[i].x)[c];
     }
 }
 

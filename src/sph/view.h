@@ -42,5 +42,6 @@ typedef struct sph_view {
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */
+    float mean;                               /* taken from residual or product               */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;

@@ -28,7 +28,7 @@ typedef struct oracle {
     tobi_plane plane[6];
     const uint8_t *fluid;
     double rho0[2], nu[2], gravity[3];
-    double dt, alpha, beta, smooth, filter, surface_limit, speed_cap;
+    double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -165,6 +165,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
         t[0] += e;
+        t[1] += out[i][SURF];
+        t[2] += out[i][DIAG];
         t[6] = fmax(t[6], e);
     }
 }
@@ -206,7 +208,7 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
-/* Reaction of the pressure on planes and of the lift. */
+/* Reaction of the pressure on planes, of the lift and of the friction. */
 static void oracle_wall_force(const oracle *o, const row *in, row *out, double *t)
 {
     (void)out;
@@ -221,6 +223,11 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
             s = fmax(s, 0.25*o->d);
             t[axis] += o->volume*o->rho0[o->fluid[i]]*o->gravity[axis]*
                        (look_up(o, o->lambda, s) + s*look_up(o, o->sigma, s));
+            if (!o->plane[k].no_slip) continue;
+            for (int c = 0; c < 3; c++)
+                if (c != axis)
+                    t[c] += o->volume*o->rho0[o->fluid[i]]*2*o->nu[o->fluid[i]]*look_up(o, o->sigma, s)/s*
+                            in[i][VEL + c];
         }
 }
 
@@ -325,6 +332,7 @@ static void oracle_product(const oracle *o, const row *in, row *out, double *t)
     for (int i = 0; i < o->count; i++) {
         out[i][PROD] = -compression(o, in, i, ACC, 0);
         t[0] += out[i][PROD]*in[i][PAYLOAD];
+        t[1] += out[i][PROD];
     }
 }
 
@@ -337,6 +345,7 @@ static void begin_search(const row *in, row *out, int i, double r, int active, d
     out[i][DELTA] = 0;
     t[0] += out[i][RES]*out[i][PAYLOAD];
     t[1] += fabs(out[i][RES]);
+    t[2] += out[i][RES];
     t[6] = fmax(t[6], fabs(out[i][RES]));
 }
 
@@ -380,6 +389,19 @@ static void oracle_warm_start(const oracle *o, const row *in, row *out, double *
     (void)t;
     for (int i = 0; i < o->count; i++)
         if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], 0);
+}
+
+static void oracle_center_residual(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) begin_search(in, out, i, in[i][RES] - o->mean, in[i][PRE] > 0, t);
+}
+
+static void oracle_center_product(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        out[i][PROD] = in[i][PROD] - o->mean;
+        t[0] += out[i][PROD]*in[i][PAYLOAD];
+    }
 }
 
 static void oracle_correct_pressure(const oracle *o, const row *in, row *out, double *t)

@@ -79,7 +79,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
         v->kinematic[f] = (float)nu[f];
     }
     v->dt = 1e-3f; v->inverse_dt = 1000; v->speed_cap = 1.2f;
-    v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f;
+    v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f; v->mean = 0.2f;
 }
 
 static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], const double nu[2])
@@ -100,7 +100,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     for (int f = 0; f < 2; f++) {
         o->rho0[f] = rho[f]; o->nu[f] = nu[f];
     }
-    o->dt = v->dt; o->alpha = v->alpha; o->beta = v->beta;
+    o->dt = v->dt; o->alpha = v->alpha; o->beta = v->beta; o->mean = v->mean;
     o->smooth = v->smooth; o->filter = v->filter; o->surface_limit = v->surface_limit;
     o->speed_cap = v->speed_cap;
     oracle_normalise(o);
