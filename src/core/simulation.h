@@ -34,6 +34,7 @@ typedef struct tobi_simulation {
     int64_t step;
     double body_speed;              /* m/s, fastest body point of the last step              */
     double start_speed;             /* m/s, fastest particle at the start                    */
+    double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     tobi_stages stages;
 } tobi_simulation;

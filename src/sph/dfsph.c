@@ -116,17 +116,14 @@ static int list_memory(void *state, double **values)
    of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
 {
-    double d = s->smoothing.spacing, dt, g2 = 0, fall = 0;
-    for (int a = 0; a < s->box.dimension; a++) {
-        g2 += s->def.gravity[a]*s->def.gravity[a];
-        fall += fabs(s->def.gravity[a])*s->box.size[a];
-    }
+    double d = s->smoothing.spacing, dt, g2 = 0;
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
         double speed = fmax(m->memory.speed, s->body_speed);
-        /* never more than Bernoulli allows: the pressure of a sudden change grows as 1/dt */
-        double head = fmin(m->memory.head, fall + speed*speed);
+        /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
+        double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
         dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
         dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
         double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*d);

@@ -233,6 +233,21 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
     return TOBI_OK;
 }
 
+/* The hydrostatic head of the regions' common box. */
+static double start_head(const tobi_world *w)
+{
+    double head = 0;
+    for (int a = 0; a < w->sim.box.dimension; a++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int k = 0; k < w->region_count; k++) {
+            lower = fmin(lower, w->regions[k].lower[a]);
+            upper = fmax(upper, w->regions[k].upper[a]);
+        }
+        if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
+    }
+    return head;
+}
+
 static double start_speed(const tobi_world *w)
 {
     double v2 = 0;
@@ -269,6 +284,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     double *memory;
     w->method->memory(w->method_state, &memory);
     memory[0] = s->start_speed = start_speed(w);
+    s->start_head = start_head(w);
     /* How fast the bodies start: their motion around time 0. */
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
