@@ -33,7 +33,11 @@ static void print_usage(FILE *file)
 static void wait_without_spinning(char **argv)
 {
     if (getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
-    execv("/proc/self/exe", argv);   /* returns only if it failed: then threads spin */
+    char path[4096];
+    ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (length <= 0) return;
+    path[length] = 0;
+    execv(path, argv);   /* returns only if it failed: then threads spin */
 }
 
 int main(int argc, char **argv)
