@@ -22,6 +22,7 @@ typedef struct dfsph {
     /* survives a restart */
     struct { double speed, head, dt; } memory;
     /* of the step at hand */
+    double motion_dt;             /* step that motion alone allows, s                            */
     int closed;                   /* 1: no particle is at a free surface                         */
     double diagonal;              /* mean diagonal of the operator                               */
 } dfsph;
@@ -116,16 +117,16 @@ static int list_memory(void *state, double **values)
    of a step is left. */
 static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
 {
-    double d = s->smoothing.spacing, dt, g2 = 0;
+    double d = s->smoothing.spacing, dt, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
     for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
+    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
+    m->motion_dt = fmin(0.25*sqrt(d/fmax(sqrt(g2), 1e-12)),
+                        s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
-        double speed = fmax(m->memory.speed, s->body_speed);
-        /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-        double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
-        dt = 0.25*sqrt(d/fmax(sqrt(g2), 1e-12));
-        dt = fmin(dt, s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
+        dt = m->motion_dt;
         double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*d);
         for (int f = 0; f < s->fluid_count; f++)
             if (s->fluid[f].viscosity > 0)
@@ -242,7 +243,8 @@ static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error 
 static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
 {
     double scale = 2*s->smoothing.rate;
-    m->view.filter = (float)(m->def.filter/(s->dt*scale*scale));
+    /* per motion step: a step made short by viscosity or by the user filters less */
+    m->view.filter = (float)(m->def.filter/(fmax(s->dt, m->motion_dt)*scale*scale));
     launch(s, m, m->kernel->sph_laplacian, NULL);
     launch(s, m, m->kernel->sph_kick, NULL);
     if (s->body_count > 0) tobi_near_add_forces(s);
