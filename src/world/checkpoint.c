@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "io/store.h"
 #include "world/world.h"
+#include <stdio.h>
 #include <string.h>
 
 /* A state field as columns of a basic type. */
@@ -13,6 +14,9 @@ static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *componen
             : f->bytes == 8                   ? TOBI_I64
                                               : TOBI_U8;
 }
+
+/* Where a body's state stands in the file. */
+static void name_body(int k, char name[32]) { snprintf(name, 32, "body_%04d", k); }
 
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
@@ -27,8 +31,8 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     for (int k = 0; k < s->body_count; k++) {
-        char name[32] = "body_";
-        name[5] = (char)('0' + k/100%10); name[6] = (char)('0' + k/10%10); name[7] = (char)('0' + k%10);
+        char name[32];
+        name_body(k, name);
         TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof s->bodies[k].info, 1,
                                 &s->bodies[k].info, err));
     }
@@ -83,8 +87,8 @@ static tobi_status place_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
-        char name[32] = "body_";
-        name[5] = (char)('0' + k/100%10); name[6] = (char)('0' + k/10%10); name[7] = (char)('0' + k%10);
+        char name[32];
+        name_body(k, name);
         TOBI_TRY(tobi_body_place(b, w->sim.time, err));
         TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
     }
