@@ -49,6 +49,7 @@ typedef struct tobi_dfsph_def {
     int    density_iterations_min, density_iterations_max;
     int    divergence_iterations_min, divergence_iterations_max;
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */
+    double shifting;                  /* 1, strength of particle shifting in flows without a surface  */
 } tobi_dfsph_def;
 
 /* A fluid: one material. */

@@ -14,16 +14,22 @@
 
 /* Share of the kernel average in the pressure a step starts from. */
 static const float PRESSURE_SMOOTHING = 0.02f;
+/* Pairs nearer than CORE spacings are pushed apart, each side by PUSH of the overlap: below the density that
+   packs spheres at random, so that the core never works against the density solve. */
+static const double CORE = 0.9;
+static const float PUSH = 0.25f;
+
+/* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
+enum { VESSEL_UNKNOWN, VESSEL_OPEN, VESSEL_FULL };
 
 typedef struct dfsph {
     tobi_dfsph_def def;
     sph_view view;
     const sph_kernels *kernel;
     /* survives a restart */
-    struct { double speed, head, dt; } memory;
+    struct { double speed, head, dt, vessel; } memory;   /* vessel: VESSEL_*                      */
     /* of the step at hand */
     double motion_dt;             /* step that motion alone allows, s                            */
-    int closed;                   /* 1: no particle is at a free surface                         */
     double diagonal;              /* mean diagonal of the operator                               */
 } dfsph;
 
@@ -64,6 +70,11 @@ static void bind_planes(const tobi_simulation *s, sph_view *v)
     }
 }
 
+static float surface_limit(const tobi_smoothing_constants *c)
+{
+    return (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+}
+
 static void bind_view(const tobi_simulation *s, dfsph *m)
 {
     const tobi_particles *p = &s->particles;
@@ -83,7 +94,11 @@ static void bind_view(const tobi_simulation *s, dfsph *m)
     v->weight = (float)c->weight; v->slope = (float)c->slope;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;
     v->dimension = c->dimension;
-    v->surface_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->surface_limit = m->memory.vessel == VESSEL_FULL ? -1e30f : surface_limit(c);
+    v->sheet_limit = 0.6f*(float)c->dimension;
+    v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
+    v->core = (float)(CORE*c->spacing);
+    v->push = PUSH;
     v->table = &c->plane;
     for (int f = 0; f < s->fluid_count; f++) {
         v->inverse_density[f] = (float)(1/s->fluid[f].density);
@@ -107,7 +122,7 @@ static int list_memory(void *state, double **values)
 {
     dfsph *m = state;
     *values = &m->memory.speed;
-    return 3;
+    return 4;
 }
 
 /* dt <= min(cfl d/sqrt(|v|^2 + 4 |p|/rho), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
@@ -149,7 +164,7 @@ static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)
 /* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
 static void center(tobi_simulation *s, dfsph *m, tobi_kernel kernel, double sum, double *t)
 {
-    if (!m->closed) return;
+    if (m->memory.vessel != VESSEL_FULL) return;
     m->view.mean = (float)(sum/(double)s->particles.count);
     launch(s, m, kernel, t);
 }
@@ -224,10 +239,24 @@ static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, doubl
     m->view.smooth = smoothing;
     launch(s, m, m->kernel->sph_density, t);
     s->info.density_error_mean = t[0]/(double)s->particles.count;
-    m->closed = t[1] == 0;
     m->diagonal = t[2]/(double)s->particles.count;
     s->info.density_error_max = t[6];
     tobi_stage_end(&s->stages, "density", clock);
+}
+
+/* Once, at the start: full if fewer particles see a surface than a tenth of a cube's face has. */
+static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+{
+    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    if (m->memory.vessel != VESSEL_UNKNOWN) return TOBI_OK;
+    TOBI_TRY(see_bodies(s, m, clock, err));
+    m->view.pressure = s->particles.pressure;
+    m->view.smooth = 0;
+    launch(s, m, m->kernel->sph_density, t);
+    int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
+    bind_view(s, m);
+    return TOBI_OK;
 }
 
 /* The bodies' velocities over the coming step. */
@@ -279,6 +308,14 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     tobi_stage_end(&s->stages, "divergence solve", clock);
 }
 
+/* The shift of the position solve, with particle shifting where the vessel is full. */
+static void shift_positions(tobi_simulation *s, dfsph *m)
+{
+    double d = s->smoothing.spacing, strength = m->memory.vessel == VESSEL_FULL ? m->def.shifting : 0;
+    m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
+    launch(s, m, m->kernel->sph_shift, NULL);
+}
+
 /* Shift of positions that takes out the density error; left in accel. */
 static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
 {
@@ -292,7 +329,7 @@ static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
                .min = m->def.density_iterations_min,
                .max = m->def.density_iterations_max};
     solve_pressure(s, m, t, &q);
-    launch(s, m, m->kernel->sph_pressure_accel, NULL);
+    shift_positions(s, m);
     s->info.density_iterations = q.iterations;
     s->info.density_converged = q.converged;
     tobi_stage_end(&s->stages, "density solve", clock);
@@ -338,6 +375,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     set_dt(s, m, max_dt);
     TOBI_TRY(predict_bodies(s, &clock, err));
     TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(see_bodies(s, m, &clock, err));
     measure_density(s, m, PRESSURE_SMOOTHING, &clock);
     apply_forces(s, m, &clock);
@@ -356,6 +394,7 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     dfsph *m = state;
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(see_bodies(s, m, &clock, err));
     measure_density(s, m, 0, &clock);
     return TOBI_OK;

@@ -207,3 +207,33 @@ TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
     v->pressure[i] = p;
     v->record[i].w = p;
 }
+
+/* The shift of positions over dt^2, eq. (12): a(phi) with phi the payload plus a uniform background (particle
+   shifting, Xu et al. 2009), and pairs nearer than the core pushed apart. */
+typedef struct sph_shift_acc { lane p, x, y, z, cx, cy, cz; } sph_shift_acc;
+TOBI_FN void sph_shift_start(const sph_view *v, int64_t i, sph_shift_acc *a)
+{
+    a->p = lane_set(v->record[i].w + 2*v->background);
+    a->x = a->y = a->z = a->cx = a->cy = a->cz = lane_set(0);
+}
+TOBI_FN void sph_shift_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_shift_acc *a,
+                            const int shape)
+{
+    lane r = lane_sqrt(n->r2), f = (a->p + n->w)*smoothing_falloff(shape, r*v->inverse_h, r);
+    lane c = lane_positive(v->core/(r + 1e-3f*v->core) - 1);
+    (void)i;
+    a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
+    a->cx += c*n->dx; a->cy += c*n->dy; a->cz += c*n->dz;
+}
+TOBI_FN void sph_shift_finish(const sph_view *v, int64_t i, sph_shift_acc *a, double *totals)
+{
+    tobi_float4 w = v->wall[i], out;
+    float k = v->inverse_density[v->fluid[i]], p2 = 2*(v->record[i].w + v->background);
+    float c = v->push*v->inverse_dt*v->inverse_dt;
+    (void)totals;
+    out.x = k*(v->slope*lane_sum(a->x) - p2*w.x) + c*lane_sum(a->cx);
+    out.y = k*(v->slope*lane_sum(a->y) - p2*w.y) + c*lane_sum(a->cy);
+    out.z = k*(v->slope*lane_sum(a->z) - p2*w.z) + c*lane_sum(a->cz);
+    out.w = 0;
+    v->accel[i] = out;
+}

@@ -45,7 +45,8 @@ TOBI_FN void sph_walls(const sph_view *v, int64_t i, double *totals)
 }
 
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
-   sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing. */
+   sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
+   totals: error, surface particles, diagonal, those at a surface beyond doubt; maximum: error. */
 typedef struct sph_density_acc { lane rho, pressure, gx, gy, gz, g2, div; } sph_density_acc;
 
 TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
@@ -78,6 +79,10 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
     v->surface[i] = div < v->surface_limit;
+    /* edges of the box and disorder lower div x as well, but on all sides alike */
+    float nx = 0.5f*(sx - k*lane_sum(a->gx)), ny = 0.5f*(sy - k*lane_sum(a->gy)),
+          nz = 0.5f*(sz - k*lane_sum(a->gz)), n2 = nx*nx + ny*ny + nz*nz;
+    totals[3] += v->surface[i] && (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);

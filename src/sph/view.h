@@ -29,6 +29,8 @@ typedef struct sph_view {
     float spacing, volume;
     int   dimension;
     float surface_limit;                      /* div x below this marks a free surface */
+    float sheet_limit;                        /* below this a surface beyond doubt     */
+    float surface_gradient;                   /* 1/m: so does a gradient of this size  */
     /* fluids, by index */
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
@@ -43,5 +45,8 @@ typedef struct sph_view {
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */
     float mean;                               /* taken from residual or product               */
+    float core;                               /* m: pairs nearer than this are pushed apart     */
+    float push;                               /* share of their overlap taken per step and side */
+    float background;                         /* Pa, uniform pressure that shifts particles     */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;

@@ -29,6 +29,7 @@ typedef struct oracle {
     const uint8_t *fluid;
     double rho0[2], nu[2], gravity[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
+    double sheet_limit, surface_gradient, core, push, background;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -143,14 +144,15 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
-        double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
-        for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
+        double rho = ww*oracle_w(o, 0), slant[3], mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
+        for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
             mean += ww*oracle_w(o, r)*in[j][PAYLOAD];
             for (int a = 0; a < 3; a++) {
                 double g = -gg*oracle_f(o, r)*x[a];      /* V grad W */
                 own[a] += g;
+                slant[a] += g;
                 rest += g*g;
                 div -= g*x[a];
             }
@@ -167,6 +169,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         t[0] += e;
         t[1] += out[i][SURF];
         t[2] += out[i][DIAG];
+        double steep = sqrt(slant[0]*slant[0] + slant[1]*slant[1] + slant[2]*slant[2]);
+        t[3] += out[i][SURF] > 0 && (div < o->sheet_limit || steep > o->surface_gradient);
         t[6] = fmax(t[6], e);
     }
 }
@@ -300,6 +304,23 @@ static void oracle_pressure_kick(const oracle *o, const row *in, row *out, doubl
         pressure_accel(o, in, i, a);
         for (int c = 0; c < 3; c++) out[i][VEL + c] += o->dt*a[c];
         t[0] += o->rho0[o->fluid[i]]*sqrt(a[0]*a[0] + a[1]*a[1] + a[2]*a[2]);
+    }
+}
+
+/* Eq. (12) over dt^2: the pressure acceleration with the background, and the core of pairs. */
+static void oracle_shift(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double rho = o->rho0[o->fluid[i]], b = 2*o->background;
+        pressure_accel(o, in, i, &out[i][ACC]);
+        for (int c = 0; c < 3; c++) out[i][ACC + c] -= b*in[i][WALL + c]/rho;
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            double overlap = fmax(o->core/(r + 1e-3*o->core) - 1, 0);
+            for (int c = 0; c < 3; c++)
+                out[i][ACC + c] += b*o->volume*o->g_scale*oracle_f(o, r)*x[c]/rho +
+                                   o->push*overlap*x[c]/(o->dt*o->dt);
+        }
     }
 }
 
