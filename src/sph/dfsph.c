@@ -44,7 +44,7 @@ typedef struct solve {
     int iterations, converged;
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
     double worst;                 /* max |r|, 1/s2                                               */
-    double head;                  /* three times the mean |p|/rho, m2/s2: more than the bottom's   */
+    double head;                  /* twice the mean |p|/rho, m2/s2: the bottom of a pool           */
 } solve;
 
 static void launch(tobi_simulation *s, dfsph *m, tobi_kernel k, double *totals)
@@ -125,7 +125,7 @@ static int list_memory(void *state, double **values)
     return 4;
 }
 
-/* dt <= min(cfl d/sqrt(|v|^2 + 4 |p|/rho), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
+/* dt <= min(cfl d/|v|, cfl d/(2 sqrt(|p|/rho)), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
    viscous sum of a particle at a no-slip wall. The pressure keeps
    particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
    Not above a tenth more than the last; the rest up to max_dt is shared evenly, so that no sliver
@@ -137,7 +137,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
     double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
     m->motion_dt = fmin(0.25*sqrt(d/fmax(sqrt(g2), 1e-12)),
-                        s->def.cfl*d/sqrt(fmax(speed*speed + 4*head, 1e-24)));
+                        s->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
@@ -207,7 +207,7 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         launch(s, m, k->sph_cg_update, t);
     }
     launch(s, m, k->sph_correct_pressure, t);
-    q->head = 3*t[0]/(double)s->particles.count;
+    q->head = 2*t[0]/(double)s->particles.count;
 }
 
 static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)

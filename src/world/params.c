@@ -94,7 +94,7 @@ static const tobi_param dfsph_rows[] = {
       .doc = "Share of particle-scale motion taken out per step; longer waves are left alone." },
     { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0 }, RANGE(0, 1), .unit = "1",
       .text = "off",
-      .doc = "Strength of particle shifting in a vessel full of liquid; with a free surface it does nothing." },
+      .doc = "Strength of particle shifting in a vessel full of liquid; a free surface turns it off." },
     { 0 }
 };
 

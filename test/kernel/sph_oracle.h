@@ -144,7 +144,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
-        double rho = ww*oracle_w(o, 0), slant[3], mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
+        double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
+        double slant[3];
         for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
