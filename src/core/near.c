@@ -342,6 +342,20 @@ void tobi_near_add_forces(tobi_simulation *s)
     }
 }
 
+/* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
+   second part adds no force to a closed surface, but a torque, eq. (17). */
+static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e, double force[3])
+{
+    const tobi_body *b = &s->bodies[e->body];
+    const double *w = b->info.angular_velocity;
+    double share = b->friction == TOBI_NO_SLIP
+                       ? 2*s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].viscosity : 0;
+    for (int a = 0; a < 3; a++) {
+        int p = (a + 1)%3, q = (a + 2)%3;
+        force[a] = share*(w[p]*e->gradient[q] - w[q]*e->gradient[p]);
+    }
+}
+
 /* Sums of the reactions on one body over the entries. */
 typedef struct reaction { const tobi_simulation *s; int body; int viscous; } reaction;
 
@@ -354,17 +368,19 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
         if (e->body != r->body) continue;
         const tobi_body *b = &s->bodies[e->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
-               force[3], arm[3];
+               force[3], arm[3], turning[3] = {0, 0, 0};
         const double *accel = r->viscous ? e->friction : e->lift;
         for (int a = 0; a < 3; a++) {
             force[a] = -mass*accel[a];
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
+        if (r->viscous) turning_traction(s, e, turning);
         double push = r->viscous ? 0 : 2*s->smoothing.volume*s->particles.pressure[e->particle];
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*e->gradient[a];
-            t[3 + a] += arm[p]*force[q] - arm[q]*force[p] + push*e->torque_arm[a];
+            t[3 + a] += arm[p]*(force[q] + turning[q]) - arm[q]*(force[p] + turning[p]) +
+                        push*e->torque_arm[a];
         }
     }
 }
