@@ -8,6 +8,7 @@
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/dfsph.h"
 #include "sph/kernels.h"
+#include "sph/multigrid.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,7 @@ typedef struct dfsph {
     tobi_dfsph_def def;
     sph_view view;
     const sph_kernels *kernel;
+    sph_multigrid grid;
     /* survives a restart */
     struct { double speed, head, dt, vessel; } memory;   /* vessel: VESSEL_*                      */
     /* of the step at hand */
@@ -40,6 +42,7 @@ typedef struct solve {
     double source;                /* |s|^2 in the norm of the diagonal                           */
     double nothing;               /* mean |r| dt^2 so small that no iteration is due             */
     int min, max;
+    int grid;                     /* 1: with the multigrid preconditioner                        */
     /* results */
     int iterations, converged;
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
@@ -103,6 +106,10 @@ static void bind_view(const tobi_simulation *s, dfsph *m)
     for (int f = 0; f < s->fluid_count; f++) {
         v->inverse_density[f] = (float)(1/s->fluid[f].density);
         v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
+    }
+    for (int a = 0; a < 3; a++) {
+        v->cells_per_metre[a] = m->grid.per_metre[a];
+        v->nodes[a] = m->grid.grid[0].n[a];
     }
     for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
 }
@@ -178,15 +185,22 @@ static double relative_residual(const tobi_simulation *s, const dfsph *m, const 
     return sqrt(rz/fmax(fmax(q->source, floor), 1e-300));
 }
 
-/* Conjugate gradients from the state a residual kernel left: r, payload z = r/diagonal, totals rz, |r|
-   and sum r. */
+/* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
+static double precondition(tobi_simulation *s, dfsph *m, const solve *q, double jacobi)
+{
+    return q->grid ? jacobi + sph_multigrid_apply(&m->grid, s) : jacobi;
+}
+
+/* Conjugate gradients from the state a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
 static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS], scale = s->dt*s->dt/(double)s->particles.count;
     memcpy(t, start, sizeof t);
     center(s, m, k->sph_center_residual, t[2], t);
-    double rz = t[0];
+    double rz = 0;
+    m->view.coarse = q->grid ? m->grid.grid[0].value : NULL;
+    m->view.beta = 0;
     for (q->iterations = 0;; q->iterations++) {
         q->error = t[1]*scale;
         q->worst = t[6];
@@ -194,11 +208,11 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
         if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
         if (q->converged && q->iterations >= q->min) break;
-        if (q->iterations > 0) {
-            m->view.beta = (float)(t[0]/rz);
-            rz = t[0];
-            launch(s, m, k->sph_cg_direction, NULL);
-        }
+        double last = rz;
+        rz = precondition(s, m, q, t[0]);
+        m->view.beta = last > 0 ? (float)(rz/last) : 0;
+        launch(s, m, k->sph_cg_direction, t);
+        center(s, m, k->sph_center_direction, t[0], NULL);
         launch(s, m, k->sph_pressure_accel, NULL);
         launch(s, m, k->sph_product, t);
         center(s, m, k->sph_center_product, t[1], t);
@@ -207,11 +221,13 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         launch(s, m, k->sph_cg_update, t);
     }
     launch(s, m, k->sph_correct_pressure, t);
+    center(s, m, k->sph_center_pressure, t[1], NULL);
     q->head = 2*t[0]/(double)s->particles.count;
 }
 
 static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
+    if (!m->grid.memory) TOBI_TRY(sph_multigrid_create(&m->grid, s, err));
     tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
     tobi_stage_end(&s->stages, "sort", clock);
     TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
@@ -292,10 +308,12 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
                .relative_tolerance = m->def.pressure_tolerance,
                .source = t[0],
                .min = m->def.divergence_iterations_min,
-               .max = m->def.divergence_iterations_max};
+               .max = m->def.divergence_iterations_max,
+               .grid = 1};
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_product, NULL);
     launch(s, m, k->sph_warm_residual, t);
+    if (q.grid) sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);
     solve_pressure(s, m, t, &q);
     launch(s, m, k->sph_pressure_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
@@ -415,7 +433,12 @@ static void derive(tobi_simulation *s, void *state, const char *field)
     }
 }
 
-static void free_state(void *state) { free(state); }
+static void free_state(void *state)
+{
+    dfsph *m = state;
+    if (m) sph_multigrid_free(&m->grid);
+    free(m);
+}
 
 const tobi_method tobi_dfsph = {
     .name = "dfsph",

@@ -91,9 +91,8 @@ TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active,
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
     v->delta[i] = 0;
-    float z = v->residual[i]*v->precondition[i], size = fabsf(v->residual[i]);
-    v->record[i].w = z;
-    totals[0] += (double)v->residual[i]*z;
+    float size = fabsf(v->residual[i]);
+    totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);
     totals[1] += size;
     totals[2] += v->residual[i];
     totals[6] = size > totals[6] ? size : totals[6];
@@ -160,7 +159,7 @@ TOBI_FN void sph_product_finish(const sph_view *v, int64_t i, sph_compression_ac
 }
 
 /* Without a free surface a constant pressure is free, and on a displaced lattice it would push the
-   flow about: residual and product are kept orthogonal to it, eq. (10b). */
+   flow about: residual, product, direction and result are kept orthogonal to it, eq. (10b). */
 TOBI_FN void sph_center_residual(const sph_view *v, int64_t i, double *totals)
 {
     sph_start_search(v, i, v->residual[i] - v->mean, v->precondition[i] > 0, totals);
@@ -184,11 +183,42 @@ TOBI_FN void sph_cg_update(const sph_view *v, int64_t i, double *totals)
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
-/* q = z + beta q. */
+/* The preconditioner's value at particle i, linear between the corners of its cell. */
+TOBI_FN float sph_coarse_value(const sph_view *v, int64_t i)
+{
+    const double *x = &v->position[i].x;
+    int64_t node = 0, up[3], stride = 1;
+    float w[3], sum = 0;
+    for (int a = 0; a < v->dimension; a++) {
+        double at = x[a]*v->cells_per_metre[a];
+        int k = (int)at;
+        w[a] = (float)(at - k);
+        node += k*stride;
+        up[a] = k + 1 < v->nodes[a] ? stride : -k*stride;
+        stride *= v->nodes[a];
+    }
+    for (int z = 0; z < v->dimension - 1; z++)
+        for (int y = 0; y < 2; y++) {
+            const float *p = v->coarse + node + y*up[1] + (z ? up[2] : 0);
+            float share = y ? w[1] : 1 - w[1];
+            if (v->dimension == 3) share *= z ? w[2] : 1 - w[2];
+            sum += share*(p[0] + w[0]*(p[up[0]] - p[0]));
+        }
+    return sum;
+}
+
+/* q = z + beta q with z = r/diagonal + the grid's value, eq. (10c). totals[0]: sum of q. */
 TOBI_FN void sph_cg_direction(const sph_view *v, int64_t i, double *totals)
 {
+    float m = v->precondition[i], q = v->beta != 0 ? v->beta*v->record[i].w : 0;
+    q = m > 0 ? v->residual[i]*m + q + (v->coarse ? sph_coarse_value(v, i) : 0) : 0;
+    v->record[i].w = q;
+    totals[0] += q;
+}
+TOBI_FN void sph_center_direction(const sph_view *v, int64_t i, double *totals)
+{
     (void)totals;
-    v->record[i].w = v->residual[i]*v->precondition[i] + v->beta*v->record[i].w;
+    v->record[i].w -= v->mean;
 }
 
 /* A free surface keeps no pressure that pulls. */
@@ -198,14 +228,21 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
     if (v->surface[i] && v->pressure[i] < 0) v->pressure[i] = 0;
 }
 
-/* Adds the correction, clamped at free surfaces; payload = the pressure. totals[0]: |p|/rho, m2/s2. */
+/* Adds the correction, clamped at free surfaces; payload = the pressure. totals: |p|/rho, m2/s2; p. */
 TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
 {
     float p = v->pressure[i] + v->delta[i];
     if (v->surface[i] && p < 0) p = 0;
     totals[0] += (double)fabsf(p)*v->inverse_density[v->fluid[i]];
+    totals[1] += p;
     v->pressure[i] = p;
     v->record[i].w = p;
+}
+TOBI_FN void sph_center_pressure(const sph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    v->pressure[i] -= v->mean;
+    v->record[i].w = v->pressure[i];
 }
 
 /* The shift of positions over dt^2, eq. (12): a(phi) with phi the payload plus a uniform background (particle

@@ -48,5 +48,8 @@ typedef struct sph_view {
     float core;                               /* m: pairs nearer than this are pushed apart     */
     float push;                               /* share of their overlap taken per step and side */
     float background;                         /* Pa, uniform pressure that shifts particles     */
+    const float *coarse;                      /* Pa at the preconditioner's nodes, NULL = none  */
+    double cells_per_metre[3];                /* of its cells                                   */
+    int   nodes[3];
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;

@@ -73,7 +73,7 @@ static const tobi_param dfsph_rows[] = {
     { .key = "divergence_tolerance", REAL, AT(tobi_dfsph_def, divergence_tolerance),
       .def = { 1e-3 }, .min = 0, .max = 1, .positive = true, .unit = "1",
       .doc = "Mean |div v| times the time step at which the divergence solve may stop." },
-    { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 2e-2 },
+    { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 0.05 },
       .min = 0, .max = 1, .positive = true, .unit = "1",
       .doc = "Relative pressure residual that both solves must reach as well." },
     { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min),

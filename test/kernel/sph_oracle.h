@@ -29,6 +29,8 @@ typedef struct oracle {
     const uint8_t *fluid;
     double rho0[2], nu[2], gravity[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
+    const float *coarse;
+    double cells_per_metre[3];
     double sheet_limit, surface_gradient, core, push, background;
 } oracle;
 
@@ -358,14 +360,13 @@ static void oracle_product(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
-/* The start of conjugate gradients: r, z = r/diagonal, q = z, no change yet. */
+/* The start of conjugate gradients: r, its norm, no change yet. */
 static void begin_search(const row *in, row *out, int i, double r, int active, double *t)
 {
     out[i][RES] = active ? r : 0;
     out[i][PRE] = active ? 1/in[i][DIAG] : 0;
-    out[i][PAYLOAD] = out[i][RES]*out[i][PRE];
     out[i][DELTA] = 0;
-    t[0] += out[i][RES]*out[i][PAYLOAD];
+    t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
     t[1] += fabs(out[i][RES]);
     t[2] += out[i][RES];
     t[6] = fmax(t[6], fabs(out[i][RES]));
@@ -400,10 +401,36 @@ static void oracle_cg_update(const oracle *o, const row *in, row *out, double *t
     }
 }
 
+/* Sum over the 4^dim nodes of the product of hat functions. */
+static double oracle_coarse(const oracle *o, const row *in, int i)
+{
+    double sum = 0;
+    for (int c = 0; c < (o->dimension == 3 ? 64 : 16); c++) {
+        const int at[3] = {c%4, c/4%4, c/16};
+        double hat = 1;
+        for (int a = 0; a < o->dimension; a++) {
+            double far = in[i][POS + a]*o->cells_per_metre[a] - at[a];
+            if (o->periodic[a] && far > 2) far -= 4;
+            hat *= fmax(0, 1 - fabs(far));
+        }
+        sum += hat*o->coarse[c];
+    }
+    return sum;
+}
+
 static void oracle_cg_direction(const oracle *o, const row *in, row *out, double *t)
 {
+    for (int i = 0; i < o->count; i++) {
+        double z = in[i][RES]*in[i][PRE] + oracle_coarse(o, in, i);
+        out[i][PAYLOAD] = in[i][PRE] > 0 ? z + o->beta*in[i][PAYLOAD] : 0;
+        t[0] += out[i][PAYLOAD];
+    }
+}
+
+static void oracle_center_direction(const oracle *o, const row *in, row *out, double *t)
+{
     (void)t;
-    for (int i = 0; i < o->count; i++) out[i][PAYLOAD] = in[i][RES]*in[i][PRE] + o->beta*in[i][PAYLOAD];
+    for (int i = 0; i < o->count; i++) out[i][PAYLOAD] = in[i][PAYLOAD] - o->mean;
 }
 
 static void oracle_warm_start(const oracle *o, const row *in, row *out, double *t)
@@ -433,5 +460,12 @@ static void oracle_correct_pressure(const oracle *o, const row *in, row *out, do
         if (in[i][SURF] > 0) p = fmax(p, 0);
         out[i][PRES] = out[i][PAYLOAD] = p;
         t[0] += fabs(p)/o->rho0[o->fluid[i]];
+        t[1] += p;
     }
+}
+
+static void oracle_center_pressure(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) out[i][PRES] = out[i][PAYLOAD] = in[i][PRES] - o->mean;
 }

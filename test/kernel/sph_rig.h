@@ -23,6 +23,7 @@ typedef struct rig {
     tobi_cells cells;
     sph_view view;
     oracle o;
+    float coarse[64];     /* values at the nodes of a preconditioner's grid */
 } rig;
 
 static uint64_t rig_state;
@@ -84,6 +85,20 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
 }
 
+/* A grid of 4 nodes along each axis: 3 cells, or 4 where the last meets the first. */
+static void rig_bind_grid(rig *g, const rig_case *k)
+{
+    sph_view *v = &g->view;
+    for (int a = 0; a < 3; a++) {
+        v->nodes[a] = a < k->dimension ? 4 : 1;
+        v->cells_per_metre[a] = (k->periodic[a] ? 4 : 3)/(g->box.size[a]*(1 + 1e-9));
+    }
+    for (int c = 0; c < 64; c++) g->coarse[c] = (float)(100*rig_random());
+    v->coarse = g->coarse;
+    g->o.coarse = g->coarse;
+    memcpy(g->o.cells_per_metre, v->cells_per_metre, sizeof v->cells_per_metre);
+}
+
 static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], const double nu[2])
 {
     const sph_view *v = &g->view;
@@ -135,6 +150,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     rig_bind(g, k, rho, nu);
     rig_bind_oracle(g, k, rho, nu);
+    rig_bind_grid(g, k);
     return 0;
 }
 

@@ -35,6 +35,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_cg_direction oracle_cg_direction
 #define oracle_sph_correct_pressure oracle_correct_pressure
 #define oracle_sph_shift oracle_shift
+#define oracle_sph_center_direction oracle_center_direction
+#define oracle_sph_center_pressure oracle_center_pressure
 static const entry kernels[] = {
 #define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
 #define FOR(K) PAIR(K)
