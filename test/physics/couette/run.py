@@ -37,6 +37,8 @@ case.hold(f"{len(found)} particles, none but {len(found) - len(inside)} outside 
 top = RATE*R1
 error = max(abs(u - (A*r + B/r)) for r, u, _ in inside)/top
 case.figure(f"{ACROSS} across: profile error", error, "<= 0.02 at 40 across", error <= 0.02)
+# Ten particles across and 48 corners: measured 0.013; a false free surface gave 0.042.
+case.hold("profile error at most 0.03", error <= 0.03)
 spread = math.sqrt(mean([(u - (A*r + B/r))**2 for r, u, _ in inside]))/top
 case.figure(f"{ACROSS} across: profile error, root mean square", spread, "stated", True)
 bodies = read_table(out / "bodies.csv")
@@ -45,8 +47,8 @@ for name, sign in (("inner", -1), ("ring", 1)):
         "pressure_torque_z", "viscous_torque_z", "name", "time"))) if n == name and t > END*2/3])
     case.figure(f"{ACROSS} across: torque on {name} against {TORQUE:.3e} N m/m, deviation", torque/TORQUE - 1,
                 "within 0.05", abs(torque/TORQUE - 1) <= 0.05)
-    # Half the reference's resolution and first order at curved walls: a factor of two is no Couette flow.
-    case.hold(f"torque on {name} has the right sign and size (factor 2)", 0.5 <= torque/TORQUE <= 2)
+    # First order at curved walls, ten particles across; without n x omega the inner one is 37 % low.
+    case.hold(f"torque on {name} within 10 %", abs(torque/TORQUE - 1) <= 0.1)
 rs = [R1 + (R2 - R1)*i/50 for i in range(51)]
 case.plot("Velocity around the axis", "r, m", "m/s", [("analytic", rs, [A*r + B/r for r in rs], False),
           (f"{ACROSS} across", [f[0] for f in inside], [f[1] for f in inside], True)])

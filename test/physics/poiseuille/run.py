@@ -62,6 +62,8 @@ if not case.smoke:
 # The profile is a goal above, met or missed. What must hold: plates only brake, so momentum never exceeds the
 # impulse of the body force (1e-6 for the digits of history.csv), and the plates do brake, by a third at least.
 history = shown["history"]
+last = max(e for (_, _, when), e in errors.items() if when == "end")
+case.hold(f"profile at the end within 2 % ({last:.4f})", last <= 0.02)
 pushed = [p/(g*t) for t, p, g in zip(*(history[c][1:] for c in ("time", "momentum_x", "weight")))]
 case.hold(f"momentum at most the impulse of the body force ({max(pushed):.3f})", max(pushed) <= 1 + 1e-6)
 case.hold(f"friction of the plates is felt ({pushed[-1]:.3f})", 0 < pushed[-1] < 0.67)

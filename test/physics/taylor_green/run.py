@@ -10,7 +10,7 @@ from harness import Case, fit_line, read_series, read_table, read_vtu
 
 case = Case("taylor_green", "Taylor-Green vortex", """
 u = U sin(2 pi x / L) cos(2 pi y / L), v = -U cos(2 pi x / L) sin(2 pi y / L) in a periodic square, Re = U L / nu = 100;
-support 3 d. The scene starts every particle with its own velocity: one fill per particle,
+support 3 d, particle shifting 0.5, no filter. The scene starts every particle with its own velocity: one fill per particle,
 eight equal fluids of at most 256 fills, which is why 40 particles across are the most. Kinetic energy decays
 as exp(-4 nu k^2 t), k = 2 pi / L: the rate is a least-squares fit of log E over the time in which E falls to
 a tenth. Velocity error: root mean square against the analytic field at the particles' places, over U at that time.""")
@@ -34,7 +34,7 @@ def compute(n):
                 "velocity": [*field((i + 0.5)*d, (j + 0.5)*d, 0), 0]}
     scene = {"dimension": 2, "domain": {"min": [0, 0], "max": [L, L],
                                         "walls": {"x": "periodic", "y": "periodic"}},
-             "gravity": [0, 0], "spacing": d, "end_time": END, "dfsph": {"support": 3},
+             "gravity": [0, 0], "spacing": d, "end_time": END, "dfsph": {"support": 3, "shifting": 0.5, "filter": 0},
              "fluids": [{"name": f"water {k}", "density": RHO, "viscosity": NU*RHO,
                          "fill": [fill(i, j) for j in range(k*n//8, (k + 1)*n//8) for i in range(n)]}
                         for k in range(8)],
@@ -71,10 +71,13 @@ for n in case.pick((32,), (24, 40)):
 if 24 in errors:
     case.figure("order of convergence of the rate, 24 to 40 across", math.log(errors[24]/errors[40])/math.log(40/24),
                 "stated", True)
-# The rate is a goal above, met or missed. What must hold at every resolution: no energy from nothing, and
+# The rate is a goal above, met or missed. What must hold at every resolution: the vortex is still there (a void
+# taken for a free surface cost 0.43 in velocity and 78 % in the rate; disorder costs 20 %), no energy from nothing, and
 # momentum, zero by symmetry, stays within 1e-5 of sum |m v| (about rho U L^2/2) in float sums.
 drift = max(max(map(abs, history[f"momentum_{a}"])) for a in "xy")/(RHO*U*L*L/2)
 case.hold(f"momentum stays zero ({drift:.1e})", drift <= 1e-5)
+case.hold(f"decay rate within 35 % ({rate/RATE - 1:.2f})", abs(rate/RATE - 1) <= 0.35)
+case.hold(f"velocity error at most 0.25 ({spread:.2f})", spread <= 0.25)
 case.hold("energy never above that of the start", max(history["kinetic_energy"][1:]) <= history["kinetic_energy"][0])
 case.plot("Kinetic energy", "t, s", "E / E(0)", [("analytic", times, [math.exp(-RATE*t) for t in times], False)] + curves)
 case.finish()
