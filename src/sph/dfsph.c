@@ -418,19 +418,38 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     return TOBI_OK;
 }
 
+/* accel = sum of all forces per mass but the filter: the kick over one second, then taken back, and the
+   pressure. Scratch of the solves keeps the velocity meanwhile. */
+static void derive_acceleration(tobi_simulation *s, dfsph *m)
+{
+    tobi_particles *p = &s->particles;
+    float *kept[3] = {p->residual, p->delta, p->correction}, dt = m->view.dt;
+    double step = s->dt;
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) kept[a][i] = (&p->velocity[i].x)[a];
+    s->dt = m->view.dt = 1;
+    m->view.filter = 0;
+    launch(s, m, m->kernel->sph_laplacian, NULL);
+    launch(s, m, m->kernel->sph_kick, NULL);
+    if (s->body_count > 0) tobi_near_add_forces(s);
+    s->dt = step;
+    m->view.dt = dt;
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) {
+            float kick = (&p->velocity[i].x)[a] - kept[a][i];
+            (&p->velocity[i].x)[a] = kept[a][i];
+            kept[a][i] = kick;
+        }
+    launch(s, m, m->kernel->sph_pressure_accel, NULL);
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) (&p->accel[i].x)[a] += kept[a][i];
+}
+
 static void derive(tobi_simulation *s, void *state, const char *field)
 {
     dfsph *m = state;
-    if (strcmp(field, "vorticity") == 0) {
-        launch(s, m, m->kernel->sph_vorticity, NULL);
-        return;
-    }
-    launch(s, m, m->kernel->sph_pressure_accel, NULL);
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        s->particles.accel[i].x += m->view.gravity[0];
-        s->particles.accel[i].y += m->view.gravity[1];
-        s->particles.accel[i].z += m->view.gravity[2];
-    }
+    if (strcmp(field, "vorticity") == 0) launch(s, m, m->kernel->sph_vorticity, NULL);
+    else derive_acceleration(s, m);
 }
 
 static void free_state(void *state)
