@@ -425,8 +425,8 @@ static tobi_status open_array(tobi_store *store, const char *name, hid_t *set, h
 tobi_status tobi_store_rows(tobi_store *store, const char *name, int64_t *n, tobi_error *err)
 {
     quiet q = begin_quiet();
-    hid_t set;
-    hsize_t size[2];
+    hid_t set = -1;
+    hsize_t size[2] = {0, 0};
     tobi_status status = open_array(store, name, &set, size, err);
     if (status == TOBI_OK) {
         *n = (int64_t)size[0];
@@ -440,8 +440,8 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type
                               int components,
                               void *data, tobi_error *err)
 {
-    hid_t set;
-    hsize_t size[2];
+    hid_t set = -1;
+    hsize_t size[2] = {0, 0};
     TOBI_TRY(open_array(store, name, &set, size, err));
     hid_t stored = H5Dget_type(set);
     tobi_status status = TOBI_OK;
