@@ -19,6 +19,8 @@ static const float PRESSURE_SMOOTHING = 0.02f;
    packs spheres at random, so that the core never works against the density solve. */
 static const double CORE = 0.9;
 static const float PUSH = 0.25f;
+/* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
+static const double ISOLATED = 0.01;
 
 /* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
 enum { VESSEL_UNKNOWN, VESSEL_OPEN, VESSEL_FULL };
@@ -256,6 +258,7 @@ static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, doubl
     launch(s, m, m->kernel->sph_density, t);
     s->info.density_error_mean = t[0]/(double)s->particles.count;
     m->diagonal = t[2]/(double)s->particles.count;
+    m->view.isolated = (float)(ISOLATED*m->diagonal);
     s->info.density_error_max = t[6];
     tobi_stage_end(&s->stages, "density", clock);
 }

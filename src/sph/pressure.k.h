@@ -85,7 +85,7 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
-   (precondition 0). Elsewhere s has either sign. totals[0]: |s|^2/diagonal, the scale of residuals. */
+   (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. totals[0]: |s|^2/diagonal, the scale of residuals. */
 TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
 {
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
@@ -113,7 +113,7 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_compression_acc
 {
     float rate = sph_compression_value(v, i, a, v->velocity, 1);
     float r = v->inverse_dt*rate;
-    int active = v->diagonal[i] > 0 && (!v->surface[i] || r > 0 || v->pressure[i] > 0);
+    int active = v->diagonal[i] > v->isolated && (!v->surface[i] || r > 0 || v->pressure[i] > 0);
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
     v->record[i].w = v->pressure[i];
@@ -135,7 +135,7 @@ TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
     e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.02f ? -0.002f : 0.1f*e);
     v->pressure[i] = 0;
     sph_start_search(v, i, e * v->inverse_dt * v->inverse_dt,
-                     v->diagonal[i] > 0 && (!v->surface[i] || e > 0), totals);
+                     v->diagonal[i] > v->isolated && (!v->surface[i] || e > 0), totals);
 }
 
 /* product = A q for the search direction q, from accel = a(q). totals: q . A q, sum of A q. */
@@ -221,11 +221,12 @@ TOBI_FN void sph_center_direction(const sph_view *v, int64_t i, double *totals)
     v->record[i].w -= v->mean;
 }
 
-/* A free surface keeps no pressure that pulls. */
+/* A free surface keeps no pressure that pulls, a particle that hardly touches another none at all: it
+   would need an enormous one, which the next step, with its neighbour nearer, would start from. */
 TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    if (v->surface[i] && v->pressure[i] < 0) v->pressure[i] = 0;
+    if ((v->surface[i] && v->pressure[i] < 0) || v->diagonal[i] <= v->isolated) v->pressure[i] = 0;
 }
 
 /* Adds the correction, clamped at free surfaces; payload = the pressure. totals: |p|/rho, m2/s2; p. */

@@ -45,6 +45,7 @@ typedef struct sph_view {
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */
     float mean;                               /* taken from residual or product               */
+    float isolated;                           /* m/kg: a smaller diagonal carries no pressure   */
     float core;                               /* m: pairs nearer than this are pushed apart     */
     float push;                               /* share of their overlap taken per step and side */
     float background;                         /* Pa, uniform pressure that shifts particles     */

@@ -31,7 +31,7 @@ typedef struct oracle {
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;
     double cells_per_metre[3];
-    double sheet_limit, surface_gradient, core, push, background;
+    double isolated, sheet_limit, surface_gradient, core, push, background;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -343,7 +343,7 @@ static void oracle_source(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double s = compression(o, in, i, VEL, in[i][FLUX])/o->dt;
-        int active = in[i][DIAG] > 0 && (in[i][SURF] == 0 || s > 0 || in[i][PRES] > 0);
+        int active = in[i][DIAG] > o->isolated && (in[i][SURF] == 0 || s > 0 || in[i][PRES] > 0);
         out[i][PRE] = active ? 1/in[i][DIAG] : 0;
         out[i][RES] = active ? s : 0;
         out[i][PAYLOAD] = in[i][PRES];
@@ -385,7 +385,7 @@ static void oracle_density_residual(const oracle *o, const row *in, row *out, do
         double e = in[i][RHO] - 1, surface = in[i][SURF];
         e = e >= 0 ? fmin(e, 0.1) : surface > 0 ? 0 : fmax(0.1*e, -0.002);
         out[i][PRES] = 0;
-        begin_search(in, out, i, e/(o->dt*o->dt), in[i][DIAG] > 0 && (surface == 0 || e > 0), t);
+        begin_search(in, out, i, e/(o->dt*o->dt), in[i][DIAG] > o->isolated && (surface == 0 || e > 0), t);
     }
 }
 
@@ -437,7 +437,8 @@ static void oracle_warm_start(const oracle *o, const row *in, row *out, double *
 {
     (void)t;
     for (int i = 0; i < o->count; i++)
-        if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], 0);
+        if (in[i][DIAG] <= o->isolated) out[i][PRES] = 0;
+        else if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], 0);
 }
 
 static void oracle_center_residual(const oracle *o, const row *in, row *out, double *t)

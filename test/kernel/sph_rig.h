@@ -82,6 +82,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->dt = 1e-3f; v->inverse_dt = 1000; v->speed_cap = 1.2f;
     v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f; v->mean = 0.2f;
     v->sheet_limit = 0.6f*(float)k->dimension; v->surface_gradient = (float)(0.5/g->c.h);
+    v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
 }
 
@@ -120,7 +121,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->dt = v->dt; o->alpha = v->alpha; o->beta = v->beta; o->mean = v->mean;
     o->smooth = v->smooth; o->filter = v->filter; o->surface_limit = v->surface_limit;
     o->sheet_limit = v->sheet_limit; o->surface_gradient = v->surface_gradient;
-    o->core = v->core; o->push = v->push; o->background = v->background;
+    o->core = v->core; o->isolated = v->isolated; o->push = v->push; o->background = v->background;
     o->speed_cap = v->speed_cap;
     oracle_normalise(o);
 }
