@@ -30,7 +30,15 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
 {
     tobi_run *run = calloc(1, sizeof *run);
     *out = run;
-    if (!run || !(run->dir = strdup(dir))) {
+    if (run) {
+        run->dir = strdup(dir);
+        run->body_since = calloc((size_t)tobi_world_body_count(world) + 1, sizeof *run->body_since);
+    }
+    if (!run || !run->dir || !run->body_since) {
+        if (run) {
+            free(run->dir);
+            free(run->body_since);
+        }
         free(run);
         *out = NULL;
         return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
@@ -155,6 +163,7 @@ static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
     run->step_wall += tobi_record_clock() - before;
     run->particle_steps += (double)sim->info.fluid_particles;
     tobi_tally_add(&run->since, &sim->info);
+    tobi_tally_bodies(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
     return TOBI_OK;
 }
@@ -179,6 +188,7 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_tables_write(run, err));
     run->outputs++;
     run->since = (tobi_tally){ 0 };
+    memset(run->body_since, 0, (size_t)tobi_world_body_count(run->world)*sizeof *run->body_since);
     return TOBI_OK;
 }
 
@@ -202,6 +212,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->bodies);
     if (run->lock >= 0) close(run->lock);
     free(run->body_file);
+    free(run->body_since);
     free(run->dir);
     free(run);
 }

@@ -19,6 +19,10 @@ typedef struct tobi_tally {
     double density_error_max;             /* largest                                 */
 } tobi_tally;
 
+/* Impulses of the fluid on one body since the last output: pressure force, viscous force, pressure torque,
+   viscous torque, each times time, N s and N m s. */
+typedef struct tobi_body_tally { double time, impulse[4][3]; } tobi_body_tally;
+
 /* One field to write. */
 typedef struct tobi_record_field {
     const char *name;                     /* of the world's list                     */
@@ -41,6 +45,7 @@ struct tobi_run {
     tobi_csv *history, *bodies;           /* bodies is NULL without bodies           */
     int64_t outputs;                      /* written so far = index of the next      */
     tobi_tally since, total;              /* since the last output; of the run       */
+    tobi_body_tally *body_since;          /* one per body                            */
     double wall, step_wall;               /* s, earlier sessions + this one          */
     double begun;                         /* s, monotonic clock at the start         */
     double particle_steps;                /* sum of fluid particles over steps       */
@@ -66,6 +71,7 @@ int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
+void tobi_tally_bodies(tobi_run *run, double dt);
 
 /* record_series.c: VTU, VTP, STL, PNG and PVD. */
 /* Reads "velocity,pressure" of output.fields into run->field. */

@@ -39,6 +39,33 @@ static bool tally_from_json(json_t *json, tobi_tally *t)
     return answer == 0;
 }
 
+static json_t *bodies_to_json(const tobi_run *run)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        const tobi_body_tally *t = &run->body_since[k];
+        json_t *row = json_array();
+        json_array_append_new(row, json_real(t->time));
+        for (int v = 0; v < 12; v++) json_array_append_new(row, json_real(t->impulse[v/3][v%3]));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
+static bool bodies_from_json(json_t *list, tobi_run *run)
+{
+    int bodies = tobi_world_body_count(run->world);
+    if ((int)json_array_size(list) != bodies) return false;
+    for (int k = 0; k < bodies; k++) {
+        json_t *row = json_array_get(list, (size_t)k);
+        if (json_array_size(row) != 13) return false;
+        run->body_since[k].time = json_number_value(json_array_get(row, 0));
+        for (int v = 0; v < 12; v++)
+            run->body_since[k].impulse[v/3][v%3] = json_number_value(json_array_get(row, (size_t)v + 1));
+    }
+    return true;
+}
+
 static tobi_status write_json(const char *path, const json_t *json, tobi_error *err)
 {
     char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
@@ -83,11 +110,11 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 {
     int64_t step = tobi_world_info(run->world)->step;
     json_t *json =
-        json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o}", "step", (json_int_t)step, "time",
+        json_pack("{s:I, s:f, s:I, s:f, s:f, s:f, s:o, s:o, s:o}", "step", (json_int_t)step, "time",
                   tobi_world_time(run->world), "outputs", (json_int_t)run->outputs, "wall_s",
                   run->wall + tobi_record_clock() - run->begun, "step_wall_s", run->step_wall,
                   "particle_steps", run->particle_steps, "since_output", tally_to_json(&run->since),
-                  "total", tally_to_json(&run->total));
+                  "total", tally_to_json(&run->total), "bodies_since_output", bodies_to_json(run));
     char *companion = checkpoint_path(run, step, "json"), *state = checkpoint_path(run, step, "h5");
     tobi_status status = write_json(companion, json, err);
     if (status == TOBI_OK)
@@ -107,14 +134,16 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
 {
     json_error_t where;
     json_t *json = json_load_file(path, 0, &where);
-    json_t *since = NULL, *total = NULL;
+    json_t *since = NULL, *total = NULL, *bodies = NULL;
     json_int_t outputs = 0;
     double time = NAN;
     bool good =
-        json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o}", "time", &time, "outputs", &outputs,
+        json_unpack(json, "{s:F, s:I, s:F, s:F, s:F, s:o, s:o, s:o}", "time", &time, "outputs", &outputs,
                     "wall_s", &run->wall, "step_wall_s", &run->step_wall, "particle_steps",
-                    &run->particle_steps, "since_output", &since, "total", &total) == 0;
-    good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total);
+                    &run->particle_steps, "since_output", &since, "total", &total,
+                    "bodies_since_output", &bodies) == 0;
+    good = good && tally_from_json(since, &run->since) && tally_from_json(total, &run->total) &&
+           bodies_from_json(bodies, run);
     run->outputs = outputs;
     json_decref(json);
     if (!good) return tobi_fail(err, TOBI_DAMAGED, "%s: damaged or missing", path);

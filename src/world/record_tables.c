@@ -42,7 +42,8 @@
     H("contacts",                   int,  i->contacts)
 
 /* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those of the
-   fluid on the body, torques about its position (centre of mass). */
+   fluid on the body, torques about its position (centre of mass): of the last step, and as means over the
+   time since the last output. */
 #define V3(B, name, v) B(name "_x", v[0]) B(name "_y", v[1]) B(name "_z", v[2])
 #define BODY(B)                                             \
     V3(B, "position", b.position)                           \
@@ -55,7 +56,11 @@
     V3(B, "pressure_force", b.pressure_force)               \
     V3(B, "viscous_force", b.viscous_force)                 \
     V3(B, "pressure_torque", b.pressure_torque)             \
-    V3(B, "viscous_torque", b.viscous_torque)
+    V3(B, "viscous_torque", b.viscous_torque)               \
+    V3(B, "mean_pressure_force", m.impulse[0])              \
+    V3(B, "mean_viscous_force", m.impulse[1])               \
+    V3(B, "mean_pressure_torque", m.impulse[2])             \
+    V3(B, "mean_viscous_torque", m.impulse[3])
 
 static double mean(double sum, const tobi_tally *s)
 {
@@ -78,6 +83,27 @@ void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
     tally->divergence_iterations += info->divergence_iterations;
     tally->density_error_mean += info->density_error_mean;
     tally->density_error_max = fmax(tally->density_error_max, info->density_error_max);
+}
+
+void tobi_tally_bodies(tobi_run *run, double dt)
+{
+    for (int k = 0; k < tobi_world_body_count(run->world); k++) {
+        tobi_body_tally *t = &run->body_since[k];
+        const tobi_body_info *b = &run->world->sim.bodies[k].info;
+        const double *value[] = { b->pressure_force, b->viscous_force, b->pressure_torque,
+                                  b->viscous_torque };
+        t->time += dt;
+        for (int v = 0; v < 4; v++)
+            for (int a = 0; a < 3; a++) t->impulse[v][a] += dt*value[v][a];
+    }
+}
+
+static tobi_body_tally mean_of_body(const tobi_body_tally *t)
+{
+    tobi_body_tally m = *t;
+    for (int v = 0; v < 4; v++)
+        for (int a = 0; a < 3; a++) m.impulse[v][a] /= t->time > 0 ? t->time : 1;
+    return m;
 }
 
 static tobi_status open_table(const tobi_run *run, const char *name, bool continued,
@@ -115,6 +141,7 @@ static tobi_status write_bodies(tobi_run *run, tobi_error *err)
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
         tobi_body_info b;
         TOBI_TRY(tobi_world_body(run->world, k, &b));
+        const tobi_body_tally m = mean_of_body(&run->body_since[k]);
         tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
         tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
 #define B(column, value) tobi_csv_add_real(run->bodies, value);

@@ -44,7 +44,7 @@ case.figure(f"{ACROSS} across: profile error, root mean square", spread, "stated
 bodies = read_table(out / "bodies.csv")
 for name, sign in (("inner", -1), ("ring", 1)):
     torque = mean([(p + v)*sign for p, v, n, t in zip(*(bodies[c] for c in (
-        "pressure_torque_z", "viscous_torque_z", "name", "time"))) if n == name and t > END*2/3])
+        "mean_pressure_torque_z", "mean_viscous_torque_z", "name", "time"))) if n == name and t > END*2/3])
     case.figure(f"{ACROSS} across: torque on {name} against {TORQUE:.3e} N m/m, deviation", torque/TORQUE - 1,
                 "within 0.05", abs(torque/TORQUE - 1) <= 0.05)
     # First order at curved walls, ten particles across; without n x omega the inner one is 37 % low.

@@ -21,7 +21,7 @@ out = case.run("sphere", "--until", end, "--spacing", spacing, "--set", f"domain
                "--set", f"fluids[0].fill[0].box.max={box}", "--set", f"bodies[0].translation={place}")
 bodies = read_table(out / "bodies.csv")
 times = bodies["time"]
-parts = {part: bodies[f"{part}_force_x"] for part in ("pressure", "viscous")}
+parts = {part: bodies[f"mean_{part}_force_x"] for part in ("pressure", "viscous")}
 drag = [-(p + v) for p, v in zip(parts["pressure"], parts["viscous"])]
 late = [f for t, f in zip(times, drag) if t > end/2]
 level = mean(late)
@@ -31,8 +31,8 @@ coefficient = level/(RHO*U*U/2*math.pi*D*D/4)
 case.figure("drag coefficient, 1.09 unbounded", coefficient, "within 10 %", abs(coefficient/1.09 - 1) <= 0.10)
 viscous = mean([-v for t, v in zip(times, parts["viscous"]) if t > end/2])/level
 case.figure("viscous share of the drag (0.46 in theory)", viscous, "stated", True)
-side = max(abs(mean([f for t, f in zip(times, [p + v for p, v in zip(bodies[f"pressure_force_{a}"],
-               bodies[f"viscous_force_{a}"])]) if t > end/2])) for a in "yz")/level
+side = max(abs(mean([f for t, f in zip(times, [p + v for p, v in zip(bodies[f"mean_pressure_force_{a}"],
+               bodies[f"mean_viscous_force_{a}"])]) if t > end/2])) for a in "yz")/level
 case.figure("mean side force over drag", side, "<= 0.05", abs(side) <= 0.05)
 # Five particles across the sphere: a factor of two in the coefficient is what such a sphere allows.
 case.hold("the force is a drag: against the motion", level > 0)

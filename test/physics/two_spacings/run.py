@@ -15,8 +15,8 @@ second half of the run. Only the spacing changes between the two runs; no consta
 def force(out, name, axis, begin):
     """Mean force of the water on a body after a time, N."""
     table = read_table(out / "bodies.csv")
-    rows = [p + v for t, n, p, v in zip(table["time"], table["name"], table[f"pressure_force_{axis}"],
-                                        table[f"viscous_force_{axis}"]) if n == name and t >= begin]
+    rows = [p + v for t, n, p, v in zip(table["time"], table["name"], table[f"mean_pressure_force_{axis}"],
+                                        table[f"mean_viscous_force_{axis}"]) if n == name and t >= begin]
     return mean(rows), table
 
 
@@ -25,7 +25,7 @@ for spacing in case.pick((0.008, 0.16/24), (0.004, 0.0032)):
     out = case.run(f"wing{spacing:g}", "--spacing", spacing, "--until", case.pick(0.2, 0.3), "--set", "speed_limit=10")
     value, table = force(out, "wing", "x", 0.1)
     wing.append(value)
-    curves.append((f"d = {1000*spacing:.3g} mm", table["time"][1:], table["pressure_force_x"][1:], False))
+    curves.append((f"d = {1000*spacing:.3g} mm", table["time"][1:], table["mean_pressure_force_x"][1:], False))
     cd = -value/(0.5*1000*0.4**2*0.06*0.04)
     case.figure(f"wing at {1000*spacing:.3g} mm: force, N", value, "stated", True)
     case.hold(f"wing at {1000*spacing:.3g} mm: a drag, coefficient {cd:.2f} between 0.5 and 2", 0.5 < cd < 2)
