@@ -85,7 +85,8 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
-   (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. totals[0]: |s|^2/diagonal, the scale of residuals. */
+   (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign.
+   totals[0]: |s|^2/diagonal, the scale of residuals. */
 TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
 {
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
