@@ -4,7 +4,7 @@
      e/dt enters the velocity, so that every rearrangement of particles becomes kinetic energy and the
      pressure carries the noise of e/dt^2. Here pressure is what makes the velocity divergence-free.
    - Conjugate gradients with warm start replace the Jacobi sweeps: the same two pair passes per
-     iteration, convergence with the depth of the water, not its square.
+     iteration. A multigrid cycle preconditions them, so that iterations hardly grow with the depth.
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/dfsph.h"
 #include "sph/kernels.h"
