@@ -77,7 +77,7 @@ static const tobi_param dfsph_rows[] = {
       .min = 0, .max = 1, .positive = true, .unit = "1",
       .doc = "Relative pressure residual that both solves must reach as well." },
     { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min),
-      .def = { 2 },
+      .def = { 1 },
       RANGE(0, 1000000), .unit = "1", .doc = "Fewest iterations of the density solve in a step." },
     { .key = "density_iterations_max", INT, AT(tobi_dfsph_def, density_iterations_max),
       .def = { 1000 }, RANGE(1, 1000000), .unit = "1",

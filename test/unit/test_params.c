@@ -131,7 +131,7 @@ static void defaults_are_water_on_earth(void **state)
     tobi_dfsph_def d = tobi_default_dfsph_def();
     assert_true(d.kernel == TOBI_KERNEL_WENDLAND_C2 && d.support == 2 &&
                 d.density_tolerance == 5e-4);
-    assert_true(d.density_iterations_min == 2 && d.divergence_iterations_min == 1 &&
+    assert_true(d.density_iterations_min == 1 && d.divergence_iterations_min == 1 &&
                 d.filter == 1);
     tobi_fluid_def f = tobi_default_fluid_def();
     assert_true(f.density == 1000 && f.viscosity == 1.0e-3);

@@ -7,7 +7,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, fit_line, interpolate, mean, read_series, read_table, read_vtu
 
 case = Case("dam_break", "Dam break", """
-A column of width a and height n2 a is set free; 2-D, slip walls. Front Z = x / a of the foremost particle's far
+A column of width a and height n2 a is set free; 2-D, no-slip walls as in a real tank. Front Z = x / a of the foremost particle's far
 side against T = t sqrt(n2 g / a). Slope: least squares over 2 < Z < 6, of the computation and of the
 experiment alike (n2 = 1: over the experiment's own range). Lag: mean over the experiment's points in that range of
 T(computation) - T(experiment) at equal Z, in units of T. Experiments: J. C. Martin and W. J. Moyce, Phil.

@@ -13,7 +13,7 @@ mean over the last half second. Level: from the centre of mass, which lies at ha
 mean height of the topmost particle of each column 2 d wide. Energies from history.csv at the end.""")
 
 G, RHO = 9.81, 1000
-D = 0.008
+D = case.pick(0.008, 0.006)
 SIDE = case.pick((0.16, 0.08), (0.584, 0.284))
 DEPTH = case.pick(0.08, 0.182)
 END = case.pick(0.8, 5.0)
