@@ -3,6 +3,7 @@
    DIR/resolved.json            the scene with every default explicit (what the caller handed over)
    DIR/history.csv              one row per output: clock, solver, walls, energies, losses
    DIR/bodies.csv               one row per output and body: pose, rates, forces and torques
+   DIR/probes.csv               one row per step: what the scene's probes measure
    DIR/fluid.pvd, fluid/        the fluid's particles, VTU per output
    DIR/bodies.pvd, bodies/      the bodies' particles
    DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
@@ -10,7 +11,7 @@
    DIR/checkpoints/             the last two states and the recorder's place in the files
    DIR/summary.json             totals
 
-   Output k happens at the time k interval exactly, the first at 0. Every file but the two tables
+   Output k happens at the time k interval exactly, the first at 0. Every file but the three tables
    appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
    its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
    resume equal those of one run, byte for byte (except the wall clock times of summary.json). */

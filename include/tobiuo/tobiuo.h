@@ -23,6 +23,7 @@ TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
+TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def), NULL = its
@@ -37,6 +38,9 @@ TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_de
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
 /* Adds a body. The mesh must be closed and oriented outwards (flipped meshes are turned). */
 TOBI_API tobi_status tobi_world_add_body(tobi_world *world, const tobi_body_def *def, tobi_error *err);
+
+/* Adds a probe, at any time. TOBI_INVALID if it sits outside the domain. */
+TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_def *def, tobi_error *err);
 
 /* Counts particles and bytes without allocating them. */
 TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,
@@ -57,6 +61,10 @@ TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_body_info *info);
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
+TOBI_API int     tobi_world_probe_count(const tobi_world *world);
+TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_info *info, tobi_error *err);
+/* NULL for a number that is no probe; kind may be NULL. */
+TOBI_API const char *tobi_world_probe_name(const tobi_world *world, int probe, tobi_probe_kind *kind);
 
 /* Particle sets: the fluid, or the particles of the bodies. In both, rows are in id order. */
 typedef enum tobi_set { TOBI_FLUID, TOBI_BODIES } tobi_set;

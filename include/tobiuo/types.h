@@ -89,11 +89,21 @@ typedef struct tobi_body_def {
     int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
 } tobi_body_def;
 
+/* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the
+   fluid stands on the plumb line through the position (its coordinate along gravity does not matter). */
+typedef enum tobi_probe_kind { TOBI_PROBE_POINT, TOBI_PROBE_LEVEL } tobi_probe_kind;
+typedef struct tobi_probe_def {
+    const char *name;
+    int    kind;                /* tobi_probe_kind */
+    double position[3];         /* m */
+} tobi_probe_def;
+
 /* Files of a run. */
 typedef struct tobi_output_def {
     double      interval;             /* s of simulated time between outputs, hit exactly            */
     double      checkpoint_interval;  /* s of simulated time between checkpoints; 0 = only at the end */
     int         compression;          /* tobi_compression                                             */
+    double      probe_interval;       /* s of simulated time between rows of probes.csv; 0 = every step */
     const char *fields;               /* names separated by commas; see tobi_world_field_name         */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
@@ -119,6 +129,13 @@ typedef struct tobi_step_info {
     int64_t capped;               /* particles slowed to the speed cap in this step                   */
     int64_t contacts;             /* particles held back at a surface by position in this step        */
 } tobi_step_info;
+
+/* What a probe measures; members that its kind does not measure are 0. */
+typedef struct tobi_probe_info {
+    double pressure;              /* Pa                                                               */
+    double velocity[3];           /* m/s                                                              */
+    double level;                 /* m, coordinate of the surface along gravity                       */
+} tobi_probe_info;
 
 /* What a body is doing. Pressure and viscous parts apart; torque about `position`. */
 typedef struct tobi_body_info {

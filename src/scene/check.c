@@ -245,6 +245,27 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
     }
 }
 
+static void check_probes(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_world_def *w = &scene->world;
+    tobi_place probes = { &root, "probes", 0 };
+    for (int i = 0; i < scene->probe_count && !tobi_report_full(source->report); i++) {
+        const tobi_probe_def *probe = &scene->probes[i];
+        tobi_place entry = { &probes, NULL, (size_t)i }, name = { &entry, "name", 0 },
+                   position = { &entry, "position", 0 };
+        for (int j = 0; j < i; j++)
+            if (probe->name && scene->probes[j].name && strcmp(probe->name, scene->probes[j].name) == 0)
+                tobi_source_mistake(source, &name, "\"%s\" is already the name of probes[%d]",
+                                    probe->name, j);
+        for (int a = 0; has_domain(scene) && a < w->dimension; a++) {
+            double at = probe->position[a];
+            if (at < w->domain_min[a] || at > w->domain_max[a])
+                tobi_source_mistake(source, &position, "is %.10g m in %c, the domain reaches from %.10g to "
+                                    "%.10g m", at, axis_name[a], w->domain_min[a], w->domain_max[a]);
+        }
+    }
+}
+
 static void check_field(tobi_source *source, const tobi_place *place, const char *field)
 {
     enum { FIELDS = 64 };
@@ -288,5 +309,6 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_domain(scene, source);
     check_fluids(scene, source);
     check_bodies(scene, source);
+    check_probes(scene, source);
     check_output(scene, source);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FLUID_LIMIT = 64, FILL_LIMIT = 256, BODY_LIMIT = 1024 };
+enum { FLUID_LIMIT = 64, FILL_LIMIT = 256, BODY_LIMIT = 1024, PROBE_LIMIT = 1024 };
 
 /* A list of objects at `key` of `object`, and the memory for what they become. NULL if there is
    none; mistakes are reported. */
@@ -95,6 +95,22 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
     return TOBI_OK;
 }
 
+static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    tobi_place place = { root, "probes", 0 };
+    json_t *list = open_list(binder, scene->root, &place, PROBE_LIMIT);
+    if (!list) return TOBI_OK;
+    scene->probes = calloc(json_array_size(list) + 1, sizeof *scene->probes);
+    if (!scene->probes) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        tobi_probe_def *probe = &scene->probes[scene->probe_count++];
+        *probe = tobi_default_probe_def();
+        tobi_bind(binder, &tobi_probe_table, json_array_get(list, i), &entry, NULL, probe);
+    }
+    return TOBI_OK;
+}
+
 /* Parameters of methods that are not chosen are checked too. */
 static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
@@ -128,8 +144,8 @@ static void flatten_world(tobi_scene *scene)
 static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
 {
     enum { METHODS = 16 };
-    const char *also[METHODS + 4] = { "fluids", "bodies", "output" };
-    for (int i = 0; i < METHODS && tobi_method_name(i); i++) also[3 + i] = tobi_method_name(i);
+    const char *also[METHODS + 5] = { "fluids", "bodies", "probes", "output" };
+    for (int i = 0; i < METHODS && tobi_method_name(i); i++) also[4 + i] = tobi_method_name(i);
     tobi_place root = { 0 }, output = { &root, "output", 0 };
 
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
@@ -141,6 +157,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
+    TOBI_TRY(read_probes(scene, &binder, &root));
     scene->output = tobi_default_output_def();
     json_t *value = json_object_get(scene->root, "output");
     if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
@@ -231,6 +248,7 @@ void tobi_scene_free(tobi_scene *scene)
     for (int i = 0; i < scene->body_count; i++) tobi_motion_free(scene->bodies[i].motion);
     free(scene->fluids);
     free(scene->bodies);
+    free(scene->probes);
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
     json_decref(scene->root);
@@ -259,6 +277,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = tobi_world_add_body(world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
         status = add_fluid(world, &scene->fluids[i], err);
+    for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
+        status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);
     return status;
@@ -297,6 +317,11 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     }
     json_object_set_new(root, "fluids", fluids);
     json_object_set_new(root, "bodies", bodies);
+    json_t *probes = json_array();
+    for (int i = 0; i < scene->probe_count; i++)
+        json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
+    if (scene->probe_count) json_object_set(root, "probes", probes);
+    json_decref(probes);
     json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
     char *text = root ? tobi_write_json(root) : NULL;
     json_decref(root);

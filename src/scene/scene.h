@@ -33,6 +33,8 @@ struct tobi_scene {
     int fluid_count;
     tobi_scene_body *bodies;
     int body_count;
+    tobi_probe_def *probes;
+    int probe_count;
     tobi_output_def output;
 };
 

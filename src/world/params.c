@@ -149,12 +149,24 @@ static const tobi_param body_rows[] = {
     { 0 }
 };
 
+static const tobi_param probe_rows[] = {
+    { .key = "name", TEXT, AT(tobi_probe_def, name), .unit = "name", .text = "probe", .required = true,
+      .doc = "Name of the probe, used once in a scene and in the columns of probes.csv." },
+    { .key = "kind", CHOICE("point|level", 2), AT(tobi_probe_def, kind),
+      .doc = "A point measures pressure and velocity, a level the height of the surface above or below it." },
+    { .key = "position", VEC3, AT(tobi_probe_def, position), ANY, .unit = "m", .required = true,
+      .doc = "Where it sits; for a level any point of its plumb line." },
+    { 0 }
+};
+
 static const tobi_param output_rows[] = {
     { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, POSITIVE,
       .unit = "s", .doc = "Simulated time between outputs, hit exactly." },
     { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), FROM(0),
       .unit = "s", .text = "end",
       .doc = "Simulated time between checkpoints; end writes one when the run ends." },
+    { .key = "probe_interval", REAL, AT(tobi_output_def, probe_interval), FROM(0), .unit = "s",
+      .text = "step", .doc = "Simulated time between rows of probes.csv, at least; step writes every step." },
     { .key = "compression", CHOICE("none|zlib|lz4|ascii", 4), AT(tobi_output_def, compression),
       .def = { TOBI_COMPRESS_ZLIB }, .doc = "Form of the VTU and VTP files." },
     { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
@@ -181,6 +193,8 @@ const tobi_param_table tobi_fill_table = {
 const tobi_param_table tobi_body_table = {
     "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
     sizeof(tobi_body_def), body_rows };
+const tobi_param_table tobi_probe_table = {
+    "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 const tobi_param_table tobi_output_table = {
     "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
 
@@ -191,7 +205,7 @@ const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
         &tobi_world_table, &tobi_dfsph_table, &tobi_fluid_table,
-        &tobi_fill_table,  &tobi_body_table,  &tobi_output_table
+        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
 }
@@ -238,4 +252,5 @@ DEFAULT(dfsph)
 DEFAULT(fluid)
 DEFAULT(fill)
 DEFAULT(body)
+DEFAULT(probe)
 DEFAULT(output)

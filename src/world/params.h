@@ -16,6 +16,7 @@ extern const tobi_param_table tobi_dfsph_table;
 extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_fill_table;
 extern const tobi_param_table tobi_body_table;
+extern const tobi_param_table tobi_probe_table;
 extern const tobi_param_table tobi_output_table;
 
 /* Every table by index, NULL past the end. */

@@ -157,7 +157,7 @@ int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_en
 static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
 {
     tobi_simulation *sim = &run->world->sim;
-    double before = tobi_record_clock();
+    double before = tobi_record_clock(), start = sim->time;
     TOBI_TRY(tobi_world_step(run->world, target - sim->time, NULL, err));
     if (reached(run, target)) sim->time = sim->info.time = target;      /* not a rounding beside it */
     run->step_wall += tobi_record_clock() - before;
@@ -165,7 +165,7 @@ static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
     tobi_tally_add(&run->since, &sim->info);
     tobi_tally_bodies(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
-    return TOBI_OK;
+    return tobi_tables_write_probes(run, start, err);
 }
 
 tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err)
@@ -210,6 +210,7 @@ void tobi_run_free(tobi_run *run)
     if (!run) return;
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);
+    tobi_csv_close(run->probes);
     if (run->lock >= 0) close(run->lock);
     free(run->body_file);
     free(run->body_since);

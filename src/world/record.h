@@ -42,7 +42,7 @@ struct tobi_run {
     int field_count;
     char (*body_file)[80];                /* names of the bodies' surface files      */
 
-    tobi_csv *history, *bodies;           /* bodies is NULL without bodies           */
+    tobi_csv *history, *bodies, *probes;  /* NULL without bodies, without probes     */
     int64_t outputs;                      /* written so far = index of the next      */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
@@ -66,10 +66,12 @@ tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *
 /* Steps of the checkpoints in dir, newest first; at most limit. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
-/* record_tables.c: history.csv and bodies.csv. */
-/* Opens both: new, or continued after the rows up to the world's time. */
+/* record_tables.c: history.csv, bodies.csv and probes.csv. */
+/* Opens them: new, or continued after the rows up to the world's time. */
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
+/* The row of probes.csv that is due after the step from `before`, if any. */
+tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 

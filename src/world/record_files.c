@@ -20,6 +20,7 @@
 /* Folder, pattern. A file in work has ".part" behind its name. */
 static const struct { const char *folder, *pattern; } ours[] = {
     { "", "resolved.json" }, { "", "summary.json" }, { "", "history.csv" }, { "", "bodies.csv" },
+    { "", "probes.csv" },
     { "", "*.pvd" },
     { "fluid", "fluid_" SIX "*.vtu" }, { "bodies", "bodies_" SIX "*.vtu" },
     { "surfaces", "*_" SIX "*.vtp" }, { "surfaces", "*_" SIX "*.stl" },

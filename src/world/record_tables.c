@@ -1,4 +1,4 @@
-/* history.csv and bodies.csv: the columns are lists, so that header and row cannot disagree. */
+/* history.csv, bodies.csv and probes.csv: the columns are lists, so that header and row cannot disagree. */
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>
@@ -121,6 +121,33 @@ static tobi_status open_table(const tobi_run *run, const char *name, bool contin
     return status;
 }
 
+/* Columns of probes.csv: time, then P_pressure, P_velocity_x .. z of a point P, H_level of a level H. */
+static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
+{
+    static const char *const of_point[] = { "pressure", "velocity_x", "velocity_y", "velocity_z", NULL };
+    static const char *const of_level[] = { "level", NULL };
+    enum { NAME = 128, MOST = 4 };
+    int probes = tobi_world_probe_count(run->world), count = 1;
+    if (probes == 0) return TOBI_OK;
+    tobi_csv_column *columns = calloc((size_t)probes*MOST + 1, sizeof *columns);
+    char (*names)[NAME] = calloc((size_t)probes*MOST + 1, sizeof *names);
+    if (columns) columns[0].name = "time";
+    for (int k = 0; columns && names && k < probes; k++) {
+        tobi_probe_kind kind;
+        const char *name = tobi_world_probe_name(run->world, k, &kind);
+        for (const char *const *v = kind == TOBI_PROBE_LEVEL ? of_level : of_point; *v; v++, count++) {
+            snprintf(names[count], NAME, "%s_%s", name, *v);
+            columns[count].name = names[count];
+        }
+    }
+    tobi_status status = columns && names
+        ? open_table(run, "probes.csv", continued, columns, count, &run->probes, err)
+        : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    free(columns);
+    free(names);
+    return status;
+}
+
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
 #define H(column, kind, value) { column, NULL },
@@ -131,9 +158,31 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 #undef B
     TOBI_TRY(open_table(run, "history.csv", continued, history,
                         (int)(sizeof history / sizeof *history), &run->history, err));
-    if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
-    return open_table(run, "bodies.csv", continued, bodies, (int)(sizeof bodies / sizeof *bodies),
-                      &run->bodies, err);
+    if (tobi_world_body_count(run->world) > 0)
+        TOBI_TRY(open_table(run, "bodies.csv", continued, bodies, (int)(sizeof bodies / sizeof *bodies),
+                            &run->bodies, err));
+    return open_probes(run, continued, err);
+}
+
+/* A sensor's signal is followed step by step: at impacts nothing less will do. */
+tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err)
+{
+    double every = run->output.probe_interval, now = tobi_world_time(run->world);
+    if (!run->probes || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
+    tobi_csv_add_real(run->probes, now);
+    for (int k = 0; k < tobi_world_probe_count(run->world); k++) {
+        tobi_probe_kind kind;
+        tobi_probe_info info;
+        tobi_world_probe_name(run->world, k, &kind);
+        tobi_world_measure_probe(run->world, k, &info);
+        if (kind == TOBI_PROBE_LEVEL) {
+            tobi_csv_add_real(run->probes, info.level);
+            continue;
+        }
+        tobi_csv_add_real(run->probes, info.pressure);
+        for (int a = 0; a < 3; a++) tobi_csv_add_real(run->probes, info.velocity[a]);
+    }
+    return tobi_csv_end_row(run->probes, err);
 }
 
 static tobi_status write_bodies(tobi_run *run, tobi_error *err)

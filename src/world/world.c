@@ -89,6 +89,7 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->region_count; k++) free(w->regions[k].mesh);
     free(w->sim.bodies);
     free(w->regions);
+    free(w->probes);
     free(w->row_of);
     free(w->method_def);
     tobi_near_free(&w->sim.near);

@@ -4,7 +4,9 @@
 #include "world/fill.h"
 #include "world/methods.h"
 
-enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024 };
+enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024 };
+
+typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
 struct tobi_world {
     tobi_simulation sim;
@@ -13,9 +15,14 @@ struct tobi_world {
     void *method_state;
     tobi_region *regions;
     int region_count;
+    tobi_probe *probes;
+    int probe_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
+
+/* Reads a probe of a world that has just stepped. */
+void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *info);

@@ -1,0 +1,170 @@
+#include "core/probe.h"
+#include <math.h>
+#include <string.h>
+
+#define RADIUS 3.0          /* of the fit, spacings */
+#define BULK 0.6            /* relative density that spray does not reach */
+enum { BASIS = 4, VALUES = 4 };
+
+/* Cells of a box around x in box coordinates, not wrapped. */
+typedef struct range { int first[3], last[3]; } range;
+
+static range cells_around(const tobi_simulation *s, const double x[3], double reach)
+{
+    range r;
+    for (int a = 0; a < 3; a++) {
+        r.first[a] = (int)floor((x[a] - reach)*s->cells.inverse[a]);
+        r.last[a] = (int)floor((x[a] + reach)*s->cells.inverse[a]);
+        if (s->cells.periodic[a]) {
+            if (r.last[a] - r.first[a] >= s->cells.n[a]) r.last[a] = r.first[a] + s->cells.n[a] - 1;
+            continue;
+        }
+        /* particles that left the box are in its outermost cells */
+        r.first[a] = r.first[a] < 0 ? 0 : r.first[a] >= s->cells.n[a] ? s->cells.n[a] - 1 : r.first[a];
+        r.last[a] = r.last[a] < 0 ? 0 : r.last[a] >= s->cells.n[a] ? s->cells.n[a] - 1 : r.last[a];
+    }
+    return r;
+}
+
+static int wrap_cell(const tobi_simulation *s, int axis, int k)
+{
+    int n = s->cells.n[axis];
+    return s->cells.periodic[axis] ? ((k % n) + n) % n : k;
+}
+
+/* Offset of particle i from x, the nearest image along periodic axes. */
+static void offset_of(const tobi_simulation *s, int64_t i, const double x[3], double d[3])
+{
+    const double *p = &s->particles.position[i].x;
+    for (int a = 0; a < 3; a++) {
+        d[a] = p[a] - x[a];
+        if (s->box.periodic[a]) d[a] -= s->box.size[a]*round(d[a]/s->box.size[a]);
+    }
+    if (s->box.dimension == 2) d[2] = 0;
+}
+
+/* Calls see(user, i, offset) for every particle of the cells. */
+typedef void (*visitor)(void *user, int64_t i, const double d[3]);
+
+static void visit(const tobi_simulation *s, const double x[3], const range *r, visitor see, void *user)
+{
+    double d[3];
+    for (int z = r->first[2]; z <= r->last[2]; z++)
+        for (int y = r->first[1]; y <= r->last[1]; y++) {
+            int64_t row = tobi_cells_row(&s->cells, wrap_cell(s, 1, y), wrap_cell(s, 2, z));
+            for (int k = r->first[0]; k <= r->last[0]; k++) {
+                const int32_t *cell = s->cells.start + row + wrap_cell(s, 0, k);
+                for (int64_t i = cell[0]; i < cell[1]; i++) {
+                    offset_of(s, i, x, d);
+                    see(user, i, d);
+                }
+            }
+        }
+}
+
+/* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure and velocity. */
+typedef struct fit {
+    const tobi_particles *particles;
+    double radius, matrix[BASIS][BASIS], right[BASIS][VALUES];
+    int count;
+} fit;
+
+static void add_to_fit(void *user, int64_t i, const double d[3])
+{
+    fit *f = user;
+    double q = sqrt(d[0]*d[0] + d[1]*d[1] + d[2]*d[2])/f->radius;
+    if (q >= 1) return;
+    double w = (1 - q)*(1 - q)*(1 - q)*(1 - q)*(1 + 4*q);
+    const double basis[BASIS] = {1, d[0]/f->radius, d[1]/f->radius, d[2]/f->radius};
+    const tobi_float4 *v = &f->particles->velocity[i];
+    const double value[VALUES] = {f->particles->pressure[i], v->x, v->y, v->z};
+    f->count++;
+    for (int a = 0; a < BASIS; a++) {
+        for (int b = 0; b < BASIS; b++) f->matrix[a][b] += w*basis[a]*basis[b];
+        for (int k = 0; k < VALUES; k++) f->right[a][k] += w*basis[a]*value[k];
+    }
+}
+
+/* Gauss elimination of the n leading rows without pivoting (the matrix is positive definite). 0 where the
+   particles do not span the space: a pivot below a hundredth of its diagonal. */
+static int eliminate(fit *f, int n)
+{
+    for (int p = 0; p < n; p++) {
+        double whole = f->matrix[p][p];
+        for (int a = 0; a < p; a++) whole -= f->matrix[p][a]*f->matrix[a][p]/f->matrix[a][a];
+        if (!(whole > 1e-2*f->matrix[p][p]) || !(whole > 0)) return 0;
+        f->matrix[p][p] = whole;
+        for (int b = p + 1; b < n; b++)
+            for (int a = 0; a < p; a++) f->matrix[p][b] -= f->matrix[p][a]*f->matrix[a][b]/f->matrix[a][a];
+        for (int k = 0; k < VALUES; k++)
+            for (int a = 0; a < p; a++) f->right[p][k] -= f->matrix[p][a]*f->right[a][k]/f->matrix[a][a];
+        for (int b = p + 1; b < n; b++) f->matrix[b][p] = f->matrix[p][b];
+    }
+    return 1;
+}
+
+/* The value at the probe is the first coefficient. */
+static void substitute(const fit *f, int n, double value[VALUES])
+{
+    for (int k = 0; k < VALUES; k++) {
+        double c[BASIS] = {0};
+        for (int p = n - 1; p >= 0; p--) {
+            c[p] = f->right[p][k];
+            for (int b = p + 1; b < n; b++) c[p] -= f->matrix[p][b]*c[b];
+            c[p] /= f->matrix[p][p];
+        }
+        value[k] = c[0];
+    }
+}
+
+int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressure, double velocity[3])
+{
+    fit f = {.particles = &s->particles, .radius = RADIUS*s->smoothing.spacing};
+    double local[3], value[VALUES] = {0};
+    int n = 1 + s->box.dimension;
+    for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
+    range r = cells_around(s, local, f.radius + s->smoothing.spacing);
+    visit(s, local, &r, add_to_fit, &f);
+    fit full = f;
+    if (f.count >= 2*n && eliminate(&full, n)) substitute(&full, n, value);
+    else if (f.count > 0)
+        for (int k = 0; k < VALUES; k++) value[k] = f.right[0][k]/f.matrix[0][0];
+    *pressure = value[0];
+    memcpy(velocity, value + 1, 3*sizeof *velocity);
+    return f.count;
+}
+
+typedef struct column {
+    const tobi_particles *particles;
+    double near2, sign, top;    /* top: along the axis, box coordinates */
+    int axis;
+} column;
+
+static void look_for_top(void *user, int64_t i, const double d[3])
+{
+    column *c = user;
+    double r2 = d[0]*d[0] + d[1]*d[1] + d[2]*d[2] - d[c->axis]*d[c->axis];
+    double height = (&c->particles->position[i].x)[c->axis];
+    if (r2 > c->near2 || !(c->particles->density[i] > BULK)) return;
+    if (!(c->sign*height < c->sign*c->top)) c->top = height;
+}
+
+double tobi_probe_level(const tobi_simulation *s, const double x[3])
+{
+    double local[3] = {0}, d = s->smoothing.spacing, size = 0;
+    column c = {.particles = &s->particles, .near2 = d*d, .sign = 1, .axis = s->box.dimension - 1};
+    for (int a = 0; a < s->box.dimension; a++) {
+        local[a] = x[a] - s->box.lower[a];
+        if (fabs(s->def.gravity[a]) <= size) continue;
+        size = fabs(s->def.gravity[a]);
+        c.axis = a;
+        c.sign = s->def.gravity[a] > 0 ? -1 : 1;
+    }
+    range r = cells_around(s, local, 2*d);
+    r.first[c.axis] = 0;
+    r.last[c.axis] = s->cells.n[c.axis] - 1;
+    double floor_at = c.sign > 0 ? 0 : s->box.size[c.axis];
+    c.top = floor_at;
+    visit(s, local, &r, look_for_top, &c);
+    return s->box.lower[c.axis] + (c.top == floor_at ? floor_at : c.top + 0.5*d*c.sign);
+}

@@ -1,0 +1,15 @@
+/* Sensors: what the fluid does at a point, and how high it stands. Serial; a sensor looks only at the cells
+   around it. Drawback: near a plate thinner than the radius a point mixes the fluid of both sides. */
+#pragma once
+#include "core/simulation.h"
+
+/* Pressure (Pa) and velocity (m/s) at x (m, world coordinates): a linear moving least squares fit through the
+   particles within 3 spacings (Lancaster & Salkauskas 1981), their weighted mean where there are too few
+   for a fit, 0 without any. Returns how many particles were used. Positions may have moved since the
+   last sort by less than a spacing. */
+int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressure, double velocity[3]);
+
+/* Height of the surface on the plumb line through x: world coordinate along gravity, m (z, in 2-D y, without
+   gravity). Topmost particle within one spacing that has more than 0.6 of the rest density, plus half
+   a spacing; the domain's lower side where it is dry. */
+double tobi_probe_level(const tobi_simulation *s, const double x[3]);

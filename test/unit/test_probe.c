@@ -1,0 +1,118 @@
+/* Probes: a linear field is read exactly at walls, corners and in the bulk; levels; probes.csv columns. */
+#include "tobiuo/tobiuo.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdlib.h>
+
+static tobi_world *make_tank(int dimension, double gravity)
+{
+    tobi_error err;
+    tobi_world *world;
+    tobi_world_def w = tobi_default_world_def();
+    w.dimension = dimension;
+    w.spacing = 0.01;
+    w.domain_min[0] = -0.1;
+    w.domain_max[0] = 0.1; w.domain_max[1] = 0.2; w.domain_max[2] = dimension == 3 ? 0.2 : 0;
+    for (int a = 0; a < 3; a++) w.gravity[a] = 0;
+    w.gravity[dimension - 1] = gravity;
+    assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
+    tobi_fluid_def f = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    fill.box_min[0] = -0.1;
+    fill.box_max[0] = 0.1; fill.box_max[1] = dimension == 3 ? 0.2 : 0.08; fill.box_max[2] = 0.08;
+    assert_int_equal(tobi_world_add_fluid(world, &f, &fill, 1, &err), TOBI_OK);
+    return world;
+}
+
+static int add(tobi_world *world, const char *name, int kind, double x, double y, double z)
+{
+    tobi_error err;
+    tobi_probe_def p = tobi_default_probe_def();
+    p.name = name;
+    p.kind = kind;
+    p.position[0] = x; p.position[1] = y; p.position[2] = z;
+    assert_int_equal(tobi_world_add_probe(world, &p, &err), TOBI_OK);
+    return tobi_world_probe_count(world) - 1;
+}
+
+static double field_at(const double *x) { return 1000 + 3000*x[0] - 2000*x[1] + 500*x[2]; }
+
+static void set_pressure(tobi_world *world)
+{
+    tobi_error err;
+    int64_t n = tobi_world_count(world, TOBI_FLUID);
+    assert_int_equal(tobi_world_step(world, 1e-9, NULL, &err), TOBI_OK);
+    n = tobi_world_count(world, TOBI_FLUID);
+    double (*x)[3] = malloc((size_t)n*sizeof *x), *p = malloc((size_t)n*sizeof *p);
+    assert_int_equal(tobi_world_read(world, TOBI_FLUID, "position", &x[0][0], n, &err), TOBI_OK);
+    for (int64_t i = 0; i < n; i++) p[i] = field_at(x[i]);
+    assert_int_equal(tobi_world_write(world, "pressure", p, n, &err), TOBI_OK);
+    free(x);
+    free(p);
+}
+
+static void reads_a_linear_field(void **state)
+{
+    (void)state;
+    const double at[][3] = {{0, 0.1, 0.04}, {0.1, 0.05, 0.003}, {-0.1, 0, 0}, {0.031, 0.2, 0.08}};
+    tobi_world *world = make_tank(3, -9.81);
+    tobi_error err;
+    tobi_probe_info info;
+    for (int k = 0; k < 4; k++) add(world, "p", TOBI_PROBE_POINT, at[k][0], at[k][1], at[k][2]);
+    int dry = add(world, "dry", TOBI_PROBE_POINT, 0, 0.1, 0.19);
+    set_pressure(world);
+    for (int k = 0; k < 4; k++) {
+        assert_int_equal(tobi_world_probe(world, k, &info, &err), TOBI_OK);
+        assert_true(fabs(info.pressure - field_at(at[k])) < 0.01);   /* float pressures of 1000 Pa */
+    }
+    assert_int_equal(tobi_world_probe(world, dry, &info, &err), TOBI_OK);
+    assert_true(info.pressure == 0 && info.velocity[0] == 0);
+    tobi_world_destroy(world);
+}
+
+static void measures_the_level(void **state)
+{
+    (void)state;
+    for (int dimension = 2; dimension <= 3; dimension++) {
+        tobi_world *world = make_tank(dimension, -9.81);
+        tobi_error err;
+        tobi_probe_info info;
+        add(world, "middle", TOBI_PROBE_LEVEL, 0.004, dimension == 3 ? 0.1 : 0, 0);
+        add(world, "wall", TOBI_PROBE_LEVEL, -0.1, dimension == 3 ? 0.1 : 0.2, 0);
+        for (int k = 0; k < 2; k++) {
+            assert_int_equal(tobi_world_probe(world, k, &info, &err), TOBI_OK);
+            assert_true(fabs(info.level - 0.08) < 1e-9);
+        }
+        tobi_world_destroy(world);
+    }
+}
+
+static void refuses_probes_outside(void **state)
+{
+    (void)state;
+    tobi_error err;
+    tobi_world *world = make_tank(3, -9.81);
+    tobi_probe_def p = tobi_default_probe_def();
+    tobi_probe_info info;
+    p.name = "far";
+    p.position[0] = 0.11;
+    assert_int_equal(tobi_world_add_probe(world, &p, &err), TOBI_INVALID);
+    assert_string_equal(err.text,
+                        "probe 'far' sits outside the domain: x = 0.11 m, allowed is -0.1 to 0.1 m");
+    assert_int_equal(tobi_world_probe(world, 0, &info, &err), TOBI_NOT_FOUND);
+    tobi_world_destroy(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_a_linear_field),
+        cmocka_unit_test(measures_the_level),
+        cmocka_unit_test(refuses_probes_outside),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
