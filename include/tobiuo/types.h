@@ -29,6 +29,8 @@ typedef struct tobi_world_def {
     double      domain_max[3];   /* m                                                                */
     int         wall_min[3];     /* tobi_wall of the side at domain_min, per axis                    */
     int         wall_max[3];     /* tobi_wall of the side at domain_max; periodic comes in pairs     */
+    double      wall_velocity_min[3][3];   /* m/s, of the no-slip sides at domain_min, along themselves */
+    double      wall_velocity_max[3][3];   /* m/s, at domain_max                                       */
     double      gravity[3];      /* m/s2                                                             */
     double      spacing;         /* m, particle spacing d of the fluid                               */
     double      end_time;        /* s                                                                */

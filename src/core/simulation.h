@@ -32,7 +32,8 @@ typedef struct tobi_simulation {
     tobi_near_bodies near;          /* fluid particles that see a body                       */
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
-    double body_speed;              /* m/s, fastest body point of the last step              */
+    double wall_speed;              /* m/s, fastest side of the domain                       */
+    double body_speed;              /* m/s, fastest body point or side of the last step      */
     double start_speed;             /* m/s, fastest particle at the start                    */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */

@@ -49,6 +49,26 @@ static int has_domain(const tobi_scene *scene)
            tobi_bind_has(&tobi_world_table, scene->world_bound.good, "domain.max");
 }
 
+/* A side moves along itself, and only where the fluid sticks to it. */
+static void check_sides(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_world_def *w = &scene->world;
+    tobi_place domain = { &root, "domain", 0 }, velocity = { &domain, "wall_velocity", 0 };
+    for (int a = 0; a < w->dimension; a++)
+        for (size_t side = 0; side < 2; side++) {
+            char name[2] = { axis_name[a], 0 };
+            tobi_place axis = { &velocity, name, 0 }, entry = { &axis, NULL, side };
+            const double *v = side ? w->wall_velocity_max[a] : w->wall_velocity_min[a];
+            int wall = side ? w->wall_max[a] : w->wall_min[a];
+            if (is_zero(v)) continue;
+            if (wall != TOBI_WALL_NO_SLIP)
+                tobi_source_mistake(source, &entry, "moves a side that is not no-slip");
+            else if (v[a] != 0 || (w->dimension == 2 && v[2] != 0))
+                tobi_source_mistake(source, &entry, "is not along the side: %s must be 0",
+                                    v[a] != 0 ? name : "z");
+        }
+}
+
 static void check_domain(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
@@ -307,6 +327,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_method(scene, source);
     check_dfsph(scene, source);
     check_domain(scene, source);
+    check_sides(scene, source);
     check_fluids(scene, source);
     check_bodies(scene, source);
     check_probes(scene, source);

@@ -69,9 +69,12 @@ static void bind_planes(const tobi_simulation *s, sph_view *v)
     v->plane_count = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
-        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP};
+        const double *lower = s->def.wall_velocity_min[a], *upper = s->def.wall_velocity_max[a];
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP,
+                                                  {(float)lower[0], (float)lower[1], (float)lower[2]}};
         v->plane[v->plane_count++] =
-            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP};
+            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP,
+                         {(float)upper[0], (float)upper[1], (float)upper[2]}};
     }
 }
 
@@ -281,7 +284,7 @@ static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock,
 /* The bodies' velocities over the coming step. */
 static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
 {
-    s->body_speed = 0;
+    s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
     tobi_stage_end(&s->stages, "motion", clock);

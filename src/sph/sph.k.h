@@ -165,7 +165,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
         add[axis] -= v->gravity[axis]*(lambda + s*sigma);
         if (!v->plane[p].no_slip) continue;
         for (int c = 0; c < 3; c++)
-            if (c != axis) add[c] -= 2*nu*sigma/s*speed[c];
+            if (c != axis) add[c] -= 2*nu*sigma/s*(speed[c] - v->plane[p].velocity[c]);
     }
     u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
     v->velocity[i] = u;
@@ -202,7 +202,7 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
         double drag = 2.0*mass*v->kinematic[v->fluid[i]]*sigma[k]/
                       (s > 0.25f*v->spacing ? s : 0.25f*v->spacing);
         for (int c = 0; c < 3; c++)
-            if (c != axis) totals[c] += drag*(&v->velocity[i].x)[c];
+            if (c != axis) totals[c] += drag*((&v->velocity[i].x)[c] - v->plane[k].velocity[c]);
     }
 }
 

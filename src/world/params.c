@@ -22,6 +22,11 @@
     { .key = key_, CHOICE("slip|no-slip|periodic", 3),                                \
       .offset = offsetof(tobi_world_def, member_) + (axis_)*sizeof(int), .doc = doc_ }
 
+#define WALL_VELOCITY(key_, member_, axis_, doc_)                                     \
+    { .key = key_, VEC3, ANY, .unit = "m/s",                                          \
+      .offset = offsetof(tobi_world_def, member_) + (axis_)*3*sizeof(double),         \
+      .doc = doc_ " Velocity along itself of a no-slip side: a lid, a belt." }
+
 static const tobi_param world_rows[] = {
     { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "name", .text = "dfsph",
       .doc = "The method that moves the particles." },
@@ -38,6 +43,12 @@ static const tobi_param world_rows[] = {
     WALL("domain.walls.y[1]", wall_max, 1, "Side at the upper y."),
     WALL("domain.walls.z[0]", wall_min, 2, "Side at the lower z."),
     WALL("domain.walls.z[1]", wall_max, 2, "Side at the upper z."),
+    WALL_VELOCITY("domain.wall_velocity.x[0]", wall_velocity_min, 0, "The side at the lower x."),
+    WALL_VELOCITY("domain.wall_velocity.x[1]", wall_velocity_max, 0, "The side at the upper x."),
+    WALL_VELOCITY("domain.wall_velocity.y[0]", wall_velocity_min, 1, "The side at the lower y."),
+    WALL_VELOCITY("domain.wall_velocity.y[1]", wall_velocity_max, 1, "The side at the upper y."),
+    WALL_VELOCITY("domain.wall_velocity.z[0]", wall_velocity_min, 2, "The side at the lower z."),
+    WALL_VELOCITY("domain.wall_velocity.z[1]", wall_velocity_max, 2, "The side at the upper z."),
     { .key = "gravity", VEC3, AT(tobi_world_def, gravity), .def = { 0, 0, -9.81 }, ANY,
       .unit = "m/s2",
       .doc = "Acceleration of gravity, in any direction; a 2-D scene that gives none gets [0, "

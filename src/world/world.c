@@ -20,6 +20,22 @@ const char *tobi_status_text(tobi_status status)
     return "unknown status";
 }
 
+static double length(const double v[3]) { return sqrt(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]); }
+
+/* A side moves along itself, and only where the fluid sticks to it. */
+static tobi_status check_side(const double v[3], int axis, int wall, int dimension, tobi_error *err)
+{
+    if (!(length(v) > 0)) return TOBI_OK;
+    if (wall != TOBI_WALL_NO_SLIP)
+        return tobi_fail(err, TOBI_INVALID, "domain: a side along %c has a velocity but is not no-slip",
+                         "xyz"[axis]);
+    if (v[axis] != 0 || (dimension == 2 && v[2] != 0))
+        return tobi_fail(err, TOBI_INVALID,
+                         "domain: a side along %c moves by (%g, %g, %g) m/s, allowed is along itself",
+                         "xyz"[axis], v[0], v[1], v[2]);
+    return TOBI_OK;
+}
+
 static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
 {
     TOBI_TRY(tobi_param_check(&tobi_world_table, d, err));
@@ -31,6 +47,8 @@ static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
             return tobi_fail(err, TOBI_INVALID,
                              "domain: only one side along %c is periodic; both or none are allowed",
                              "xyz"[a]);
+        TOBI_TRY(check_side(d->wall_velocity_min[a], a, d->wall_min[a], d->dimension, err));
+        TOBI_TRY(check_side(d->wall_velocity_max[a], a, d->wall_max[a], d->dimension, err));
     }
     return TOBI_OK;
 }
@@ -45,6 +63,9 @@ static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, t
     TOBI_TRY(tobi_exec_init(&s->exec, def->threads, err));
     w->method->smoothing(w->method_def, &shape, &support);
     tobi_smoothing_init(&s->smoothing, shape, def->dimension, def->spacing, support);
+    for (int a = 0; a < def->dimension; a++)
+        s->wall_speed = fmax(s->wall_speed, fmax(length(def->wall_velocity_min[a]),
+                                                 length(def->wall_velocity_max[a])));
     for (int a = 0; a < 3; a++) periodic[a] = def->wall_min[a] == TOBI_WALL_PERIODIC;
     tobi_box_init(&s->box, def->dimension, def->domain_min, def->domain_max, periodic, s->smoothing.h);
     return TOBI_OK;
@@ -287,6 +308,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     memory[0] = s->start_speed = start_speed(w);
     s->start_head = start_head(w);
     /* How fast the bodies start: their motion around time 0. */
+    s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
     s->info.fluid_particles = n;

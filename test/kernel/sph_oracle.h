@@ -209,7 +209,8 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
             double sigma = look_up(o, o->sigma, s);
             add[o->plane[k].axis] -= o->gravity[o->plane[k].axis]*(s*sigma + look_up(o, o->lambda, s));
             for (int a = 0; a < 3; a++)
-                if (o->plane[k].no_slip && a != o->plane[k].axis) add[a] -= 2*nu*sigma/s*in[i][VEL + a];
+                if (o->plane[k].no_slip && a != o->plane[k].axis)
+                    add[a] -= 2*nu*sigma/s*(in[i][VEL + a] - o->plane[k].velocity[a]);
         }
         for (int a = 0; a < 3; a++) out[i][VEL + a] += o->dt*add[a];
     }
@@ -234,7 +235,7 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
             for (int c = 0; c < 3; c++)
                 if (c != axis)
                     t[c] += o->volume*o->rho0[o->fluid[i]]*2*o->nu[o->fluid[i]]*look_up(o, o->sigma, s)/s*
-                            in[i][VEL + c];
+                            (in[i][VEL + c] - o->plane[k].velocity[c]);
         }
 }
 

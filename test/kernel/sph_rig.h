@@ -72,8 +72,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     for (int a = 0; a < k->dimension; a++) {
         v->gravity[a] = (float)(a + 1 == k->dimension ? -9.81 : 1.5);
         if (k->periodic[a]) continue;
-        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1};
-        v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0};
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1, {0.3f, -0.2f, 0.1f}};
+        v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0, {0}};
     }
     for (int f = 0; f < 2; f++) {
         v->inverse_density[f] = (float)(1/rho[f]);
