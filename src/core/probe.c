@@ -4,6 +4,7 @@
 
 #define RADIUS 3.0          /* of the fit, spacings */
 #define BULK 0.6            /* relative density that spray does not reach */
+#define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
 enum { BASIS = 4, VALUES = 4 };
 
 /* Cells of a box around x in box coordinates, not wrapped. */
@@ -117,6 +118,111 @@ static void substitute(const fit *f, int n, double value[VALUES])
     }
 }
 
+/* A place on a surface and the traction of the fluid there: equations (6) and (8) per area. */
+typedef struct membrane {
+    const tobi_simulation *s;
+    const tobi_bvh *bvh;            /* of the body; NULL on a side of the domain */
+    double foot[3], normal[3];      /* box coordinates; out of the wall          */
+    double traction;
+} membrane;
+
+static void press(void *user, int64_t i, const double r[3])
+{
+    membrane *m = user;
+    const tobi_smoothing_constants *c = &m->s->smoothing;
+    double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
+    for (int a = 0; a < 3; a++) {
+        depth += r[a]*m->normal[a];
+        along += m->s->def.gravity[a]*m->normal[a];
+    }
+    if (!(r2 < c->h*c->h) || !(depth > 0)) return;
+    int k = (int)(depth/c->h*TOBI_PLANE_SAMPLES);
+    double sigma = c->plane.sigma[k], reach = sigma > 0 ? c->plane.lambda[k]/sigma : 0;
+    double weight = c->volume*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
+    double rho = m->s->fluid[m->s->particles.fluid[i]].density;
+    m->traction += weight*(2*m->s->particles.pressure[i] - rho*along*(depth + reach));
+}
+
+/* The nearest side or body within half a spacing of x. */
+static int find_surface(const tobi_simulation *s, const double x[3], membrane *m)
+{
+    double nearest = ON_WALL*s->smoothing.spacing;
+    int found = 0;
+    *m = (membrane){.s = s};
+    for (int a = 0; a < s->box.dimension; a++)
+        for (int side = 0; side < 2 && !s->box.periodic[a]; side++) {
+            double at = side ? s->box.size[a] : 0, away = fabs(x[a] - at);
+            if (!(away <= nearest) || (found && away == nearest)) continue;
+            nearest = away;
+            memcpy(m->foot, x, sizeof m->foot);
+            memset(m->normal, 0, sizeof m->normal);
+            m->foot[a] = at;
+            m->normal[a] = side ? -1 : 1;
+            found = 1;
+        }
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_bvh_hit hit;
+        if (!tobi_bvh_closest(s->bodies[k].bvh, x, nearest, &hit)) continue;
+        nearest = fabs(hit.signed_distance);
+        m->bvh = s->bodies[k].bvh;
+        memcpy(m->foot, hit.point, sizeof m->foot);
+        memcpy(m->normal, hit.normal, sizeof m->normal);
+        found = 1;
+    }
+    return found;
+}
+
+/* Whether a place of the disc is still wall: inside the domain, on the body. */
+static int is_on_wall(const membrane *m, const double y[3])
+{
+    tobi_bvh_hit hit;
+    for (int a = 0; a < m->s->box.dimension; a++)
+        if (!m->s->box.periodic[a] && (y[a] < 0 || y[a] > m->s->box.size[a])) return 0;
+    return !m->bvh || tobi_bvh_closest(m->bvh, y, 0.1*m->s->smoothing.spacing, &hit);
+}
+
+/* Share of the kernel around y that other sides of the domain leave to the fluid. */
+static double open_share(const membrane *m, const double y[3])
+{
+    const tobi_smoothing_constants *c = &m->s->smoothing;
+    double open = 1;
+    for (int a = 0; a < m->s->box.dimension; a++)
+        for (int side = 0; side < 2 && !m->s->box.periodic[a]; side++) {
+            double away = side ? m->s->box.size[a] - y[a] : y[a];
+            if (fabs(m->normal[a]) > 0.9 || !(away < c->h)) continue;
+            open *= 1 - c->plane.lambda[(int)(away/c->h*TOBI_PLANE_SAMPLES)];
+        }
+    return open;
+}
+
+/* Mean traction over the part of a disc that is wall: rings of equal area. */
+static double measure_wall(membrane *m)
+{
+    enum { RINGS = 3, SPOKES = 8 };
+    const tobi_simulation *s = m->s;
+    double sum = 0, d = s->smoothing.spacing, u[3] = {0}, v[3];
+    int used = 0, least = fabs(m->normal[0]) < fabs(m->normal[1]) ? 0 : 1;
+    if (fabs(m->normal[2]) < fabs(m->normal[least])) least = 2;
+    if (s->box.dimension == 2) least = 2;
+    for (int a = 0; a < 3; a++) u[a] = (a == least) - m->normal[least]*m->normal[a];
+    double length = sqrt(u[0]*u[0] + u[1]*u[1] + u[2]*u[2]);
+    for (int a = 0; a < 3; a++) u[a] /= length;
+    for (int a = 0; a < 3; a++) v[a] = m->normal[(a + 1)%3]*u[(a + 2)%3] - m->normal[(a + 2)%3]*u[(a + 1)%3];
+    for (int ring = 0; ring < RINGS; ring++)
+        for (int spoke = 0; spoke < SPOKES; spoke++) {
+            double r = d*sqrt((ring + 0.5)/RINGS), turn = 2*M_PI*(spoke + 0.5*ring)/SPOKES, y[3];
+            for (int a = 0; a < 3; a++) y[a] = m->foot[a] + r*(cos(turn)*u[a] + sin(turn)*v[a]);
+            if (s->box.dimension == 2) y[2] = 0;
+            if (!is_on_wall(m, y)) continue;
+            range cells = cells_around(s, y, s->smoothing.h + d);
+            m->traction = 0;
+            visit(s, y, &cells, press, m);
+            sum += m->traction/open_share(m, y);
+            used++;
+        }
+    return used > 0 ? sum/used : 0;
+}
+
 int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressure, double velocity[3])
 {
     fit f = {.particles = &s->particles, .radius = RADIUS*s->smoothing.spacing};
@@ -131,6 +237,8 @@ int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressu
         for (int k = 0; k < VALUES; k++) value[k] = f.right[0][k]/f.matrix[0][0];
     *pressure = value[0];
     memcpy(velocity, value + 1, 3*sizeof *velocity);
+    membrane wall;
+    if (f.count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
     return f.count;
 }
 

@@ -1,0 +1,46 @@
+#!/usr/bin/python3
+"""A dam breaks onto a box: SPHERIC test 2 against the measurements of MARIN."""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case, interpolate, read_table
+
+case = Case("spheric2", "Dam break onto a box (SPHERIC test 2)", """
+Water 0.55 m deep behind x = 1.992 m in a tank of 3.22 x 1 x 1 m, a box of 0.16 x 0.4 x 0.16 m in its way. Arrival: first level
+above 50 mm at x = 1.488, 0.992 and 0.496 m. Impulse: integral of the pressure over 0.2 s from 15 ms before P1 is hit
+(the measured window is 0.40 to 0.60 s), at z = 21, 61, 101 and 141 mm on the box's face. Levels at 1.0 s are stated.
+Experiment: K. M. T. Kleefsman, G. Fekken, A. E. P. Veldman, B. Iwanowski, B. Buchner, J. Comput. Phys. 206
+(2005) 363, distributed as SPHERIC test 2.""")
+
+# Read off the published signals with the definitions above.
+ARRIVAL = {"H1": 0.250, "H2": 0.410, "H3": 0.935}
+IMPULSE = {"P1": 1395.5, "P2": 1131.5, "P3": 914.4, "P4": 795.7}
+LEVEL = {"H1": 0.155, "H2": 0.179, "H3": 0.151, "H4": 0.279}
+PEAK = {"P1": 11239, "P2": 8127, "P3": 6564, "P4": 7203}
+IMPACT = 0.415
+
+out = case.run("tank", "--spacing", case.pick(0.05, 0.015), *(["--until", 1.0] if case.smoke else []))
+table = read_table(out / "probes.csv")
+time = table["time"]
+for name, expected in ARRIVAL.items():
+    arrival = next((t for t, h in zip(time, table[f"{name}_level"]) if h > 0.05), 99)
+    case.figure(f"{name}: arrival at {arrival:.3f} s against {expected:.3f} s, deviation", arrival/expected - 1,
+                "within 0.05", abs(arrival/expected - 1) <= 0.05)
+    case.hold(f"{name}: the wave arrives within 30 % of the time", abs(arrival/expected - 1) <= 0.3)
+impact = next((t for t, p in zip(time, table["P1_pressure"]) if p > 2000), 99)
+case.figure(f"impact on P1 at {impact:.3f} s against {IMPACT:.3f} s, deviation", impact/IMPACT - 1, "within 0.05",
+            abs(impact/IMPACT - 1) <= 0.05)
+for name, expected in IMPULSE.items():
+    p = table[f"{name}_pressure"]
+    window = [k for k in range(len(time) - 1) if impact - 0.015 <= time[k] < impact + 0.185]
+    value = sum((p[k] + p[k + 1])/2*(time[k + 1] - time[k]) for k in window)
+    case.figure(f"{name}: impulse {value:.0f} against {expected:.0f} Pa s, deviation", value/expected - 1, "within 0.15",
+                abs(value/expected - 1) <= 0.15)
+    case.figure(f"{name}: peak, Pa; measured {PEAK[name]}", max(p[k] for k in window), "stated", True)
+    case.hold(f"{name}: impulse between a third and three times", 1/3 < value/expected < 3)
+    case.plot(f"Pressure {name}", "t, s", "Pa", [("tobiuo", time, p, False)])
+for name, expected in LEVEL.items():
+    h = interpolate(time, table[f"{name}_level"], 1.0)
+    case.figure(f"{name}: level at 1 s; measured {expected} m", h, "stated", True)
+case.finish()
