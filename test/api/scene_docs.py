@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """The page and the schema of scenes: up to date, and of one mind with the reader.
 
-usage: scene_docs.py page|schema PROGRAM
+usage: scene_docs.py page PROGRAM | schema LIBRARY
   page    docs/scene.md and docs/scene.schema.json are what the program prints; the page's example runs
   schema  shipped scenes follow the schema; a damaged scene is refused by the schema exactly when the
           reader refuses it for a key, a type or a range (needs python3-jsonschema, or else answers 77)
 """
 import copy
+import ctypes
 import json
 import os
 import pathlib
@@ -68,12 +69,35 @@ def check_page(program):
     return failed or not commands
 
 
-def full_scene(program):
+class Library:
+    """The few calls of the shared library that a reader of scenes needs."""
+
+    def __init__(self, path):
+        self.c = ctypes.CDLL(path)
+        for name in ("describe", "resolved"):
+            getattr(self.c, "tobi_scene_" + name).restype = ctypes.c_void_p
+        self.c.tobi_report_line.restype = ctypes.c_char_p
+        self.c.tobi_report_line.argtypes = [ctypes.c_void_p, ctypes.c_int]
+        self.c.tobi_report_free.argtypes = self.c.tobi_scene_free.argtypes = [ctypes.c_void_p]
+        self.c.tobi_scene_resolved.argtypes = [ctypes.c_void_p]
+
+    def describe(self, topic):
+        return ctypes.string_at(self.c.tobi_scene_describe(topic.encode())).decode()
+
+    def load(self, path):
+        """(the lines of the report, the scene with every default or None)"""
+        scene, report = ctypes.c_void_p(), ctypes.c_void_p()
+        self.c.tobi_scene_load(str(path).encode(), None, ctypes.byref(scene), ctypes.byref(report), None)
+        lines = [self.c.tobi_report_line(report, i).decode() for i in range(self.c.tobi_report_count(report))]
+        resolved = ctypes.string_at(self.c.tobi_scene_resolved(scene)).decode() if scene else None
+        self.c.tobi_report_free(report)
+        self.c.tobi_scene_free(scene)
+        return lines, resolved and json.loads(resolved)
+
+
+def full_scene(library):
     """A scene that gives every key: the example with its defaults made explicit, and every motion."""
-    file = write_example(pathlib.Path("full"))
-    call(program, "run", str(file), "--quiet", "--force", "--until", "0.001",
-         "--set", "spacing=0.02", "--out", "full/out")
-    scene = json.loads(pathlib.Path("full/out/resolved.json").read_text())
+    scene = library.load(write_example(pathlib.Path("full")))[1]
     pathlib.Path("full/stay.lua").write_text("function place(t) return 0, 0, 0 end\n")
     motions = [
         {"script": "stay.lua", "params": {"any": 1}},
@@ -137,13 +161,13 @@ def damage(scene):
             yield f"{path} = {other!r}", new
 
 
-def check_schema(program):
+def check_schema(library):
     try:
         import jsonschema
     except ImportError:
         print("python3-jsonschema is missing")
         return 77
-    schema = json.loads(call(program, "describe", "schema").stdout)
+    schema = json.loads(library.describe("schema"))
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
     failed = shipped = refused = kept = 0
@@ -152,21 +176,20 @@ def check_schema(program):
             print(f"{file}: {error.message}")
             failed += 1
         shipped += 1
-    scene = full_scene(program)
+    scene = full_scene(library)
     for error in validator.iter_errors(scene):
         print("the full scene:", list(error.path), error.message)
         failed += 1
     for what, damaged in damage(scene):
         pathlib.Path("full/damaged.json").write_text(json.dumps(damaged))
-        result = call(program, "check", "full/damaged.json")
-        lines = [line for line in result.stderr.splitlines() if "damaged.json:" in line]
+        lines = library.load("full/damaged.json")[0]
         reader = [line for line in lines if not READER_ONLY.search(line)]
         by_schema = not validator.is_valid(damaged)
         refused += by_schema
         kept += not by_schema
         if by_schema != bool(reader) and not (by_schema and lines):
             print(f"{what}: the schema {'refuses' if by_schema else 'accepts'} it, the reader says",
-                  (lines or ["nothing"])[0])
+                  (reader or lines or ["nothing"])[0])
             failed += 1
     print(f"{shipped} shipped scenes; {refused} damaged ones refused, {kept} still good; {failed} failed")
     return 1 if failed or shipped < 6 or refused < 300 or kept < 20 else 0
@@ -175,5 +198,5 @@ def check_schema(program):
 if __name__ == "__main__":
     if len(sys.argv) != 3 or sys.argv[1] not in ("page", "schema"):
         sys.exit(__doc__)
-    program = os.path.abspath(sys.argv[2])
-    sys.exit(int((check_page if sys.argv[1] == "page" else check_schema)(program)))
+    tested = os.path.abspath(sys.argv[2])
+    sys.exit(int(check_page(tested) if sys.argv[1] == "page" else check_schema(Library(tested))))
