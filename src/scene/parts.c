@@ -1,16 +1,19 @@
 #include "scene/parts.h"
 #include "world/params.h"
+#include "world/world.h"
 #include <assert.h>
 #include <string.h>
 
 static const tobi_part parts[] = {
-    { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 1, 64, "The fluids." },
-    { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, 1024, "The bodies, if any." },
-    { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, 1024, "The sensors, if any." },
+    { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 1, TOBI_FLUID_LIMIT, "The fluids." },
+    { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,
+      "The bodies, if any." },
+    { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
+      "The sensors, if any." },
     { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },
     { "world", "$schema", TOBI_PART_EDITOR, NULL, 0, 0,
       "Where an editor finds the JSON Schema of scenes; Tobiuo passes over it." },
-    { "fluid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, 256,
+    { "fluid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, TOBI_REGION_LIMIT/TOBI_FLUID_LIMIT,
       "The regions that the fluid fills at the start." },
     { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
       "How the body moves, exactly one kind; without it the body is fixed." },
