@@ -338,6 +338,7 @@ static void overrides_name_themselves(void **state)
                                 "a..b=1",
                                 "=1",
                                 "fluids[=1",
+                                "method=\xFF",
                                 NULL };
     const expected lines[] = {
         { "--set nonsense: ", "must be path=value" },
@@ -348,6 +349,7 @@ static void overrides_name_themselves(void **state)
         { "--set a..b=1: ", "must be path=value" },
         { "--set =1: ", "must be path=value" },
         { "--set fluids[=1: ", "must be path=value" },
+        { "--set method=\xFF: ", "the value is not UTF-8" },
         { "--set spacing=-1: spacing: ", "is -1, allowed is greater than 0 m" },
         { "--set dfsph.suport=3: dfsph.suport: ", "did you mean \"support\"?" },
         { "--set fluids.water.viscosity=thick: fluids[0].viscosity: ", "is the text \"thick\"" },

@@ -105,9 +105,20 @@ static void fluids(void **state)
     tobi_world_destroy(world);
 
     world = make_world(&def, 1);
+    fluid.density = 800;
+    fluid.name = "oil";
+    REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_UNSUPPORTED,
+            "fluid 'oil' differs from 'fluid' in density or viscosity");
+    fluid.density = 1000;
     REFUSED((world->sim.fluid_count = TOBI_FLUID_LIMIT,
              tobi_world_add_fluid(world, &fluid, NULL, 0, &err)), TOBI_UNSUPPORTED, "more than 8 fluids");
     world->sim.fluid_count = 1;
+    tobi_body_def body = tobi_default_body_def();
+    assert_int_equal(tobi_world_start(world, NULL), TOBI_OK);
+    REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_INVALID,
+            "a started world takes no more fluids");
+    REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID,
+            "a started world takes no more bodies");
     tobi_world_destroy(world);
 }
 
@@ -146,9 +157,11 @@ static void particles_beyond_the_machine(void **state)
 static void fields(void **state)
 {
     (void)state;
-    double buffer[3*1000] = { 0 };
+    double buffer[3*150] = { 0 };
     tobi_world_def def = make_def();
     tobi_world *world = make_world(&def, 1);
+    REFUSED(tobi_world_read(world, TOBI_FLUID, "magic", buffer, 150, &err), TOBI_NOT_FOUND,
+            "there is no field 'magic'");
     REFUSED(tobi_world_read(world, TOBI_FLUID, "velocity", buffer, 1, &err), TOBI_INVALID,
             "field 'velocity' has 150 rows, room for 1 given");
     REFUSED(tobi_world_write(world, "density", buffer, 150, &err), TOBI_INVALID,
@@ -183,6 +196,15 @@ static void checkpoints_of_others(void **state)
     world = make_world(&def, 1);
     REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID,
             "the checkpoint is of another scene: it has 0 bodies at spacing 0.1 m");
+    tobi_world_destroy(world);
+
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def small = make_fill(0, 0.2);
+    def.spacing = 0.1;
+    world = make_world(&def, 0);
+    assert_int_equal(tobi_world_add_fluid(world, &fluid, &small, 1, NULL), TOBI_OK);
+    REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID,
+            "other.h5: holds 150 particles, the scene at most 60");
     tobi_world_destroy(world);
     remove("other.h5");
 }
@@ -225,6 +247,8 @@ static void files(void **state)
     tobi_store_close(store);
     REFUSED(tobi_stl_write("s.stl", -1, NULL, 0, NULL, &err), TOBI_INVALID,
             "a negative number of vertices or triangles");
+    REFUSED(tobi_vtu_write("p.vtu", TOBI_COMPRESS_NONE, 3, NULL, NULL, 0, &err), TOBI_INVALID,
+            "p.vtu: no points");
 
     tobi_script *script;
     FILE *file = fopen("long.lua", "wb");
@@ -263,11 +287,17 @@ static void checkpoints_of_runs(void **state)
     assert_int_equal(rename(found.gl_pathv[0], "kept.json"), 0);
     assert_int_equal(rename(found.gl_pathv[1], found.gl_pathv[0]), 0);
     assert_int_equal(rename("kept.json", found.gl_pathv[1]), 0);
-    globfree(&found);
     def.spacing = 0.1;
     world = make_world(&def, 1);
     REFUSED(tobi_run_resume(world, &output, "swapped", &run, &err), TOBI_DAMAGED,
             "does not belong to its checkpoint");
+    tobi_world_destroy(world);
+
+    for (size_t i = 0; i < found.gl_pathc; i++) remove(found.gl_pathv[i]);
+    globfree(&found);
+    world = make_world(&def, 1);
+    REFUSED(tobi_run_resume(world, &output, "swapped", &run, &err), TOBI_DAMAGED,
+            "json: damaged or missing");
     tobi_world_destroy(world);
 }
 
@@ -278,12 +308,17 @@ static void runs(void **state)
     tobi_output_def output = tobi_default_output_def();
     tobi_run *run;
     tobi_world *world = make_world(&def, 1);
-    if (geteuid() != 0) {
-        mkdir("locked", 0500);
-        REFUSED(tobi_run_create(world, &output, "locked", 0, NULL, &run, &err), TOBI_IO,
-                "cannot write to the directory locked: ");
-        rmdir("locked");
-    }
+    REFUSED(tobi_run_create(world, &output, "/proc/tobiuo", 0, NULL, &run, &err), TOBI_IO,
+            "cannot make the directory /proc/tobiuo: ");
+    mkdir("locked", 0555);
+    uid_t user = geteuid();
+    if (user == 0) assert_int_equal(seteuid(65534), 0);      /* root may write anywhere */
+    tobi_error denied = { 0 };
+    tobi_status status = tobi_run_create(world, &output, "locked", 0, NULL, &run, &denied);
+    assert_int_equal(seteuid(user), 0);
+    assert_int_equal(status, TOBI_IO);
+    assert_non_null(strstr(denied.text, "cannot write to the directory locked: "));
+    rmdir("locked");
     mkdir("stuck", 0700);
     mkdir("stuck/fluid", 0700);
     mkdir("stuck/fluid/fluid_000000.vtu", 0700);             /* a folder where a result should be */
