@@ -204,24 +204,32 @@ static void write_fields(FILE *out)
         fprintf(out, "| `%s` | %d | %s |\n", name, components, unit);
 }
 
+/* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */
+static void write_parts(FILE *out, const char *owner, const char *path)
+{
+    tobi_part part;
+    for (int i = 0; tobi_part_at(i, &part); i++) {
+        char inner[100], title[108];
+        if (strcmp(part.owner, owner) != 0) continue;
+        snprintf(inner, sizeof inner, "%s%s%s%s", path, path[0] ? "." : "", part.key,
+                 part.form == TOBI_PART_LIST ? "[]" : "");
+        snprintf(title, sizeof title, "`%s`", inner);
+        if (part.table) write_table(out, title, part.table);
+        if (part.table == &tobi_output_table) write_fields(out);
+        if (part.form == TOBI_PART_MOTION) write_motions(out);
+        if (part.table) write_parts(out, part.table->name, inner);
+    }
+}
+
 char *tobi_scene_manual(void)
 {
-    char *text = NULL, title[100];
+    char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
     fputs(head, out);
     write_table(out, "The scene itself", &tobi_world_table);
-    for (int i = 0; tobi_method_name(i); i++) {
-        snprintf(title, sizeof title, "`%s`", tobi_method_name(i));
-        write_table(out, title, tobi_method_table(tobi_method_name(i)));
-    }
-    write_table(out, "`fluids[]`", &tobi_fluid_table);
-    write_table(out, "`fluids[].fill[]`", &tobi_fill_table);
-    write_table(out, "`bodies[]`", &tobi_body_table);
-    write_motions(out);
-    write_table(out, "`output`", &tobi_output_table);
-    write_fields(out);
+    write_parts(out, tobi_world_table.name, "");
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);

@@ -154,18 +154,21 @@ static void add_help(json_t *schema, const tobi_param *row, const void *def)
     if (value) json_object_set_new(schema, "default", value);
 }
 
-/* Rows "key[0]" and "key[1]" become one property: a word for both sides, or a list of two. */
-static json_t *pair_up(json_t *one)
+/* Rows "key[0]" and "key[1]" become one property: a list of two, or one word for both sides. */
+static json_t *pair_up(json_t *one, const tobi_param *row)
 {
-    json_t *list = make_type("array"), *plain = json_object();
-    json_object_set(plain, "enum", json_object_get(one, "enum"));
+    json_t *list = make_type("array"), *plain = make_value(row);
     json_object_set(list, "items", plain);
     json_object_set_new(list, "minItems", json_integer(2));
     json_object_set_new(list, "maxItems", json_integer(2));
-    json_t *schema = make_either(plain, list);
-    put_text(schema, "description",
-             "Both sides along this axis, one word for both or [lower, upper].");
-    json_object_set(schema, "default", json_object_get(one, "default"));
+    int word = row->type == TOBI_PARAM_CHOICE;
+    json_t *schema = word ? make_either(json_incref(plain), list) : list;
+    char text[600];
+    snprintf(text, sizeof text, "Both sides along this axis: [lower, upper]%s. %s",
+             word ? ", or one word for both" : "", row->doc);
+    put_text(schema, "description", text);
+    if (word) json_object_set(schema, "default", json_object_get(one, "default"));
+    json_decref(plain);
     json_decref(one);
     return schema;
 }
@@ -188,7 +191,7 @@ static void put_row(json_t *schema, const tobi_param *row, const void *def)
     if (row->required) require(schema, name);
     if (!strchr(key, '[')) json_object_set_new(properties, name, value);
     else if (!json_object_get(properties, name))
-        json_object_set_new(properties, name, pair_up(value));
+        json_object_set_new(properties, name, pair_up(value, row));
     else json_decref(value);
 }
 
