@@ -265,6 +265,15 @@ static void rules_between_values(void **state)
           { "s.json:7:51: bodies[0].rotation.axis: ", "is zero, must have a direction" },
           { "s.json:8:11: bodies[1].name: ", "\"b\" is already the name of bodies[0]" },
           { "s.json:8:24: bodies[1].mesh: ", "/ is not a file" });
+    CHECK("{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1], \"walls\": { \"z\": \"no-slip\" },\n"
+          "\"wall_velocity\": { \"x\": [[0, 1, 0], [0, 0, 0]], \"z\": [[0, 0, 1], [1, 0, 0]] } },\n"
+          "\"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": [\n"
+          "{ \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] } } ] } ], \"probes\": [\n"
+          "{ \"name\": \"p\", \"position\": [0, 0, 2] }, { \"name\": \"p\", \"position\": [0, 0, 1] } ] }",
+          { "s.json:2:26: domain.wall_velocity.x[0]: ", "moves a side that is not no-slip" },
+          { "s.json:2:55: domain.wall_velocity.z[0]: ", "is not along the side: z must be 0" },
+          { "s.json:5:28: probes[0].position: ", "is 2 m in z, the domain reaches from 0 to 1 m" },
+          { "s.json:5:51: probes[1].name: ", "\"p\" is already the name of probes[0]" });
     CHECK("{ \"domain\": 3, \"spacing\": 1, \"end_time\": 1, \"fluids\": 2 }",
           { "s.json:1:13: domain: ", "is a number, must be an object { ... }" },
           { "s.json:1:13: domain.min: ", "is missing" },

@@ -75,6 +75,14 @@ static void worlds(void **state)
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
             "domain: only one side along z is periodic; both or none are allowed");
     def = make_def();
+    def.wall_velocity_max[2][0] = 1;
+    REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
+            "domain: a side along z has a velocity but is not no-slip");
+    def.wall_max[2] = TOBI_WALL_NO_SLIP;
+    def.wall_velocity_max[2][2] = 2;
+    REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
+            "domain: a side along z moves by (1, 0, 2) m/s, allowed is along itself");
+    def = make_def();
     def.method = "magic";
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID, "there is no method 'magic'");
     tobi_exec exec;
@@ -122,7 +130,7 @@ static void fluids(void **state)
     tobi_world_destroy(world);
 }
 
-static void bodies(void **state)
+static void bodies_and_probes(void **state)
 {
     (void)state;
     tobi_world_def def = make_def();
@@ -137,6 +145,10 @@ static void bodies(void **state)
     world->sim.body_count = TOBI_BODY_LIMIT;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_UNSUPPORTED, "more than 1024 bodies");
     world->sim.body_count = 0;
+    tobi_probe_def probe = tobi_default_probe_def();
+    world->probe_count = TOBI_PROBE_LIMIT;
+    REFUSED(tobi_world_add_probe(world, &probe, &err), TOBI_UNSUPPORTED, "more than 1024 probes");
+    world->probe_count = 0;
     tobi_world_destroy(world);
 }
 
@@ -310,6 +322,7 @@ static void runs(void **state)
     tobi_world *world = make_world(&def, 1);
     REFUSED(tobi_run_create(world, &output, "/proc/tobiuo", 0, NULL, &run, &err), TOBI_IO,
             "cannot make the directory /proc/tobiuo: ");
+    rmdir("locked");
     mkdir("locked", 0555);
     uid_t user = geteuid();
     if (user == 0) assert_int_equal(seteuid(65534), 0);      /* root may write anywhere */
@@ -335,7 +348,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(worlds),
         cmocka_unit_test(fluids),
-        cmocka_unit_test(bodies),
+        cmocka_unit_test(bodies_and_probes),
         cmocka_unit_test(particles_beyond_the_machine),
         cmocka_unit_test(fields),
         cmocka_unit_test(divergence),
