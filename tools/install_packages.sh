@@ -8,7 +8,8 @@ set -euo pipefail
 
 packages=(gcc libc6-dev cmake ninja-build pkg-config
           libjansson-dev libassimp-dev libluajit-5.1-dev libhdf5-dev zlib1g-dev liblz4-dev libpng-dev)
-test_packages=(g++ git libcmocka-dev python3 python3-numpy python3-matplotlib python3-vtk9)
+test_packages=(g++ git libcmocka-dev python3 python3-numpy python3-matplotlib python3-vtk9
+               python3-jsonschema)
 
 list_only=0
 for argument in "$@"; do

@@ -1,5 +1,5 @@
-/* Scenes: a whole simulation in one JSON file. See docs of the format with `tobiuo describe` and in
-   scenes/. A scene can do no more than a C program can: building one calls only tobiuo.h.
+/* Scenes: a whole simulation in one JSON file; docs/scene.md has every key. A scene can do no more
+   than a C program can: building one calls only tobiuo.h.
 
    The format: JSON in UTF-8 with comments (# or // to the end of the line), SI units, angles in
    degrees. Relative paths are looked up beside the scene file. */
@@ -48,8 +48,9 @@ TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
 TOBI_API char *tobi_scene_resolved(const tobi_scene *scene);
 
 /* Parameters, units, defaults and ranges of a topic, as text: a method ("dfsph"), "world", "fluid",
-   "fill", "body", "motion" or "output"; NULL lists the topics. Owned by the caller (free()).
-   NULL if there is no such topic. */
+   "fill", "body", "motion" or "output"; "scene" is the page of all of them in Markdown
+   (docs/scene.md), "schema" a JSON Schema (draft-07) for editors; NULL lists the topics. Owned by
+   the caller (free()). NULL if there is no such topic. */
 TOBI_API char *tobi_scene_describe(const char *topic);
 
 #ifdef __cplusplus

@@ -82,6 +82,24 @@ void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
     else snprintf(text, size, "%s%s%s", numbers, gap, unit);
 }
 
+void tobi_bind_default(const tobi_param *row, char *text, size_t size)
+{
+    int length = 0;
+    const char *word;
+    if (row->required) snprintf(text, size, "required");
+    else if (row->type == TOBI_PARAM_TEXT)
+        snprintf(text, size, "%s", row->text ? row->text : "none");
+    else if (row->type == TOBI_PARAM_BOOL)
+        snprintf(text, size, "%s", row->def[0] != 0 ? "true" : "false");
+    else if (row->type == TOBI_PARAM_CHOICE) {
+        word = tobi_choice_word(row->choices, (int)row->def[0], &length);
+        snprintf(text, size, "%.*s", length, word);
+    } else if (row->type == TOBI_PARAM_VEC3)
+        snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
+    else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
+    else snprintf(text, size, "%.10g", row->def[0]);
+}
+
 static int is_allowed(const tobi_param *row, double v)
 {
     return isfinite(v) && !(row->positive && !(v > 0)) && !(v < row->min) && !(v > row->max);

@@ -35,5 +35,8 @@ int tobi_bind_has(const tobi_param_table *table, uint64_t rows, const char *key)
  */
 void tobi_bind_limits(const tobi_param *row, char *text, size_t size);
 
+/* The default of a row as text: "0.4", "[0, 0, -9.81]", "slip"; "required" if it has none. */
+void tobi_bind_default(const tobi_param *row, char *text, size_t size);
+
 /* "is a text", "is a number", ... */
 const char *tobi_json_kind(const json_t *value);

@@ -1,30 +1,13 @@
 /* Help texts, made from the parameter tables alone. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
+#include "scene/manual.h"
 #include "scene/motions.h"
 #include "world/params.h"
 #include "tobiuo/scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void write_default(const tobi_param *row, char *text, size_t size)
-{
-    int length = 0;
-    const char *word;
-    if (row->required) snprintf(text, size, "required");
-    else if (row->type == TOBI_PARAM_TEXT)
-        snprintf(text, size, "%s", row->text ? row->text : "none");
-    else if (row->type == TOBI_PARAM_BOOL)
-        snprintf(text, size, "%s", row->def[0] != 0 ? "true" : "false");
-    else if (row->type == TOBI_PARAM_CHOICE) {
-        word = tobi_choice_word(row->choices, (int)row->def[0], &length);
-        snprintf(text, size, "%.*s", length, word);
-    } else if (row->type == TOBI_PARAM_VEC3)
-        snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
-    else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
-    else snprintf(text, size, "%.10g", row->def[0]);
-}
 
 static const char *type_name(const tobi_param *row)
 {
@@ -41,7 +24,7 @@ static void describe_row(FILE *out, const tobi_param *row)
 {
     char limits[200], def[200];
     tobi_bind_limits(row, limits, sizeof limits);
-    write_default(row, def, sizeof def);
+    tobi_bind_default(row, def, sizeof def);
     fprintf(out, "  %s\n      %s\n      ", row->key, row->doc);
     if (row->type == TOBI_PARAM_TEXT) fprintf(out, "%s; ", row->unit);
     else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL)
@@ -63,6 +46,8 @@ static void list_topics(FILE *out)
     for (int i = 0; (table = tobi_param_table_at(i)); i++)
         fprintf(out, "  %-8s %s\n", table->name, table->doc);
     fprintf(out, "  %-8s %s\n", "motion", "The motion of a body: a script, or one by numbers.");
+    fprintf(out, "  %-8s %s\n", "scene", "The whole page: every key of a scene, in Markdown.");
+    fprintf(out, "  %-8s %s\n", "schema", "The JSON Schema of scenes, for editors.");
 }
 
 static const tobi_param_table *find_table(const char *topic)
@@ -75,6 +60,8 @@ static const tobi_param_table *find_table(const char *topic)
 
 char *tobi_scene_describe(const char *topic)
 {
+    if (topic && strcmp(topic, "scene") == 0) return tobi_scene_manual();
+    if (topic && strcmp(topic, "schema") == 0) return tobi_scene_schema();
     char *text = NULL;
     size_t size = 0;
     int is_motion = topic && strcmp(topic, "motion") == 0;

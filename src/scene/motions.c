@@ -1,5 +1,6 @@
 #define _GNU_SOURCE 1
 #include "scene/motions.h"
+#include "scene/parts.h"
 #include "scene/suggest.h"
 #include "scene/write.h"
 #include <math.h>
@@ -69,8 +70,14 @@ const tobi_param_table *tobi_motion_table(int index)
 static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *value,
                                             const tobi_place *place)
 {
-    static const char *const keys[] = { "script", "translation", "rotation", "oscillation",
-                                        "params" };
+    const char *keys[TABLE_COUNT + 1] = { "params" };
+    char all[200] = "";
+    for (size_t i = 0, used = 0; i < TABLE_COUNT; i++) {
+        keys[i + 1] = tables[i].name;
+        if (used < sizeof all)
+            used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "",
+                                     tables[i].name);
+    }
     const tobi_param_table *chosen = NULL;
     int count = 0, unknown = 0;
     const char *key;
@@ -92,15 +99,13 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
                                        near);
         else
             tobi_source_mistake_at_key(binder->source, &at,
-                                       "unknown key; allowed here: script with params, "
-                                       "translation, rotation, oscillation");
+                                       "unknown key; allowed here: %s; params with a script",
+                                       all);
     }
     if (count == 1) return chosen;
     if (count > 1 || !unknown)
         tobi_source_mistake(binder->source, place,
-                            "must have exactly one of script, translation, rotation, "
-                            "oscillation; it has %d",
-                            count);
+                            "must have exactly one of %s; it has %d", all, count);
     return NULL;
 }
 
@@ -129,7 +134,8 @@ static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motio
 tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               tobi_motion_def *def)
 {
-    static const char *const beside_script[] = { "params", NULL };
+    const char *beside_script[TOBI_PARTS];
+    tobi_part_keys("script", beside_script);
     *def = (tobi_motion_def){ 0 };
     int64_t before = tobi_report_total(binder->source->report);
     if (!json_is_object(value)) {

@@ -2,19 +2,19 @@
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
 #include "scene/override.h"
+#include "scene/parts.h"
 #include "scene/write.h"
 #include "world/params.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FLUID_LIMIT = 64, FILL_LIMIT = 256, BODY_LIMIT = 1024, PROBE_LIMIT = 1024 };
-
-/* A list of objects at `key` of `object`, and the memory for what they become. NULL if there is
-   none; mistakes are reported. */
+/* The list of objects at the key of `place`, a part of `owner`. NULL if there is none; mistakes are
+   reported. */
 static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
-                         int limit)
+                         const char *owner)
 {
+    int limit = tobi_part_find(owner, place->key).most;
     json_t *list = json_object_get(object, place->key);
     if (!list) return NULL;
     if (!json_is_array(list)) {
@@ -31,11 +31,12 @@ static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_p
 static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               tobi_scene_fluid *fluid)
 {
-    static const char *const also[] = { "fill", NULL };
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("fluid", also);
     fluid->def = tobi_default_fluid_def();
     tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
     tobi_place fill = { place, "fill", 0 };
-    json_t *list = open_list(binder, value, &fill, FILL_LIMIT);
+    json_t *list = open_list(binder, value, &fill, "fluid");
     if (json_array_size(list) == 0) {
         if (json_is_object(value) && (list || !json_object_get(value, "fill")))
             tobi_source_mistake(binder->source, &fill,
@@ -58,7 +59,7 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
 static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "fluids", 0 };
-    json_t *list = open_list(binder, scene->root, &place, FLUID_LIMIT);
+    json_t *list = open_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->fluids = calloc(json_array_size(list) + 1, sizeof *scene->fluids);
     if (!scene->fluids) return TOBI_NO_MEMORY;
@@ -72,9 +73,10 @@ static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, con
 
 static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
-    static const char *const also[] = { "motion", NULL };
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("body", also);
     tobi_place place = { root, "bodies", 0 };
-    json_t *list = open_list(binder, scene->root, &place, BODY_LIMIT);
+    json_t *list = open_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->bodies = calloc(json_array_size(list) + 1, sizeof *scene->bodies);
     if (!scene->bodies) return TOBI_NO_MEMORY;
@@ -98,7 +100,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
 static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "probes", 0 };
-    json_t *list = open_list(binder, scene->root, &place, PROBE_LIMIT);
+    json_t *list = open_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->probes = calloc(json_array_size(list) + 1, sizeof *scene->probes);
     if (!scene->probes) return TOBI_NO_MEMORY;
@@ -143,9 +145,8 @@ static void flatten_world(tobi_scene *scene)
 
 static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
 {
-    enum { METHODS = 16 };
-    const char *also[METHODS + 5] = { "fluids", "bodies", "probes", "output" };
-    for (int i = 0; i < METHODS && tobi_method_name(i); i++) also[4 + i] = tobi_method_name(i);
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("world", also);
     tobi_place root = { 0 }, output = { &root, "output", 0 };
 
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };

@@ -29,9 +29,9 @@ static json_t *write_names(const char *names)
     return list;
 }
 
-/* NULL for a text that is NULL. */
-static json_t *write_value(const tobi_param *row, const void *member)
+json_t *tobi_write_member(const tobi_param *row, const void *def)
 {
+    const void *member = (const char *)def + row->offset;
     double v[3];
     const char *text;
     int whole, length;
@@ -78,7 +78,7 @@ json_t *tobi_write_def(const tobi_param_table *table, const void *def)
     json_t *object = json_object();
     for (const tobi_param *row = table->rows; object && row->key; row++) {
         const char *last;
-        json_t *value = write_value(row, (const char *)def + row->offset);
+        json_t *value = tobi_write_member(row, def);
         json_t *parent = descend(object, row->key, &last);
         if (!value) continue;
         if (!strchr(last, '[')) {

@@ -28,7 +28,7 @@
       .doc = doc_ " Velocity along itself of a no-slip side: a lid, a belt." }
 
 static const tobi_param world_rows[] = {
-    { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "name", .text = "dfsph",
+    { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "method", .text = "dfsph",
       .doc = "The method that moves the particles." },
     { .key = "dimension", INT, AT(tobi_world_def, dimension), .def = { 3 }, RANGE(2, 3),
       .unit = "1",
@@ -121,7 +121,7 @@ static const tobi_param fluid_rows[] = {
 
 static const tobi_param fill_rows[] = {
     { .key = "box.min", VEC3, AT(tobi_fill_def, box_min), ANY, .unit = "m",
-      .doc = "Lower corner of the filled box." },
+      .doc = "Lower corner of the filled box; a box has both corners." },
     { .key = "box.max", VEC3, AT(tobi_fill_def, box_max), ANY, .unit = "m",
       .doc = "Upper corner of the filled box." },
     { .key = "mesh", TEXT, AT(tobi_fill_def, mesh), .unit = "path",

@@ -4,7 +4,8 @@
    Conventions of the rows, on top of base/param.h:
    - A key with dots is a key of a nested object in a scene: "domain.min" is domain: { min: ... }.
    - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
-   - TOBI_PARAM_TEXT: unit "name", "path" (a file, looked up beside the scene) or "names" (a list).
+   - TOBI_PARAM_TEXT: unit "name", "method" (the name of one), "path" (a file, looked up beside the
+     scene) or "names" (a list, of particle fields).
    - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
    - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */
 #pragma once

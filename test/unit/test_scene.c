@@ -295,6 +295,12 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     text = tobi_scene_describe(NULL);
     assert_non_null(strstr(text, "dfsph"));
     free(text);
+    text = tobi_scene_describe("scene");
+    assert_non_null(strstr(text, "| `spacing` | number | m | **required** | greater than 0 m |"));
+    free(text);
+    text = tobi_scene_describe("schema");
+    assert_non_null(strstr(text, "\"additionalProperties\": false"));
+    free(text);
     assert_null(tobi_scene_describe("nonsense"));
 }
 

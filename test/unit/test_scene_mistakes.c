@@ -245,6 +245,94 @@ static void bodies_and_motions(void **state)
           { "s.json:12:35: output.fields[1]: ", "is a number, must be a name" });
 }
 
+static void rules_between_values(void **state)
+{
+    (void)state;
+    CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
+          "\"end_time\": 1, \"gravity\": [0, -9.81, 1],\n"
+          "\"dfsph\": { \"divergence_iterations_min\": 9, \"divergence_iterations_max\": 3 },\n"
+          "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 1] },\n"
+          "\"velocity\": [0, 0, 1] } ] } ] }",
+          { "s.json:2:27: gravity: ", "is 1 m/s2 in z, must be 0 in a 2-D scene" },
+          { "s.json:3:41: dfsph.divergence_iterations_min: ",
+            "is 9, must not be above divergence_iterations_max, 3" },
+          { "s.json:4:38: fluids[0].fill[0]: ", "moves in z, which a 2-D scene does not have" });
+    CHECK(make(spacing, box,
+               ", \"bodies\": [\n"
+               "{ \"name\": \"b\", \"mesh\": \"/\", \"rotation\": { \"axis\": [0, 0, 0] } },\n"
+               "{ \"name\": \"b\", \"mesh\": \"/\" } ]"),
+          { "s.json:7:24: bodies[0].mesh: ", "/ is not a file" },
+          { "s.json:7:51: bodies[0].rotation.axis: ", "is zero, must have a direction" },
+          { "s.json:8:11: bodies[1].name: ", "\"b\" is already the name of bodies[0]" },
+          { "s.json:8:24: bodies[1].mesh: ", "/ is not a file" });
+    CHECK("{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1], \"walls\": { \"z\": \"no-slip\" },\n"
+          "\"wall_velocity\": { \"x\": [[0, 1, 0], [0, 0, 0]], \"z\": [[0, 0, 1], [1, 0, 0]] } },\n"
+          "\"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": [\n"
+          "{ \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] } } ] } ], \"probes\": [\n"
+          "{ \"name\": \"p\", \"position\": [0, 0, 2] }, { \"name\": \"p\", \"position\": [0, 0, 1] } ] }",
+          { "s.json:2:26: domain.wall_velocity.x[0]: ", "moves a side that is not no-slip" },
+          { "s.json:2:55: domain.wall_velocity.z[0]: ", "is not along the side: z must be 0" },
+          { "s.json:5:28: probes[0].position: ", "is 2 m in z, the domain reaches from 0 to 1 m" },
+          { "s.json:5:51: probes[1].name: ", "\"p\" is already the name of probes[0]" });
+    CHECK("{ \"domain\": 3, \"spacing\": 1, \"end_time\": 1, \"fluids\": 2 }",
+          { "s.json:1:13: domain: ", "is a number, must be an object { ... }" },
+          { "s.json:1:13: domain.min: ", "is missing" },
+          { "s.json:1:13: domain.max: ", "is missing" },
+          { "s.json:1:55: fluids: ", "is a number, must be a list [ { ... } ]" });
+}
+
+static void motions_one_at_a_time(void **state)
+{
+    (void)state;
+    static const char mesh[] = TOBI_SOURCE_DIR "/test/meshes/box.obj";
+    static const struct { const char *motion, *begin, *contains; } cases[] = {
+        { "3", "motion: ", "is a number, must be an object { ... }" },
+        { "{ \"rotatoin\": { } }", "motion.rotatoin: ", "did you mean \"rotation\"?" },
+        { "{ \"quantum\": { } }", "motion.quantum: ",
+          "unknown key; allowed here: script, translation, rotation, oscillation" },
+        { "{ \"translation\": { \"velocity\": [1, 0, 0] }, \"params\": { } }", "motion.params: ",
+          "params belong to a script; translation takes none" },
+        { "{ \"translation\": { }, \"rotation\": { } }", "motion: ", "must have exactly one of" },
+        { "{ \"translation\": 3 }", "motion.translation: ", "is a number, must be an object" },
+        { "{ \"rotation\": { \"center\": [0, 0, 0], \"axis\": [0, 0, 0], \"rate\": 1 } }",
+          "motion.rotation: ", "must not be zero" },
+        { "{ \"script\": \"/\" }", "motion.script: ", "Is a directory" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char rest[1024], text[4096];
+        snprintf(rest, sizeof rest,
+                 ", \"bodies\": [ { \"name\": \"b\", \"mesh\": \"%s\", \"motion\": %s } ]", mesh,
+                 cases[i].motion);
+        snprintf(text, sizeof text, "%s", make(spacing, box, rest));
+        tobi_report *report = fail_text(text, strlen(text), NULL);
+        const char *line = tobi_report_line(report, 0);
+        if (!strstr(line, cases[i].begin) || !strstr(line, cases[i].contains))
+            fail_msg("%s without %s%s", line, cases[i].begin, cases[i].contains);
+        assert_int_equal(tobi_report_count(report), 1);
+        tobi_report_free(report);
+    }
+}
+
+static void too_much(void **state)
+{
+    (void)state;
+    char text[8192] = "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 1, "
+                      "\"end_time\": 1, \"fluids\": [";
+    for (int i = 0; i < 65; i++) strcat(text, i ? ", { }" : "{ }");
+    strcat(text, "] }");
+    CHECK(text, { "s.json:1:92: fluids: ", "has 65 entries, allowed are 8" });
+
+    tobi_scene *scene;
+    tobi_error err = { 0 };
+    FILE *file = fopen("large.json", "wb");
+    assert_int_equal(fseek(file, TOBI_SOURCE_LIMIT, SEEK_SET), 0);
+    fputc(' ', file);
+    fclose(file);
+    assert_int_equal(tobi_scene_load("large.json", NULL, &scene, NULL, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "has 16777217 bytes, a scene has at most 16777216"));
+    remove("large.json");
+}
+
 static void overrides_name_themselves(void **state)
 {
     (void)state;
@@ -259,6 +347,7 @@ static void overrides_name_themselves(void **state)
                                 "a..b=1",
                                 "=1",
                                 "fluids[=1",
+                                "method=\xFF",
                                 NULL };
     const expected lines[] = {
         { "--set nonsense: ", "must be path=value" },
@@ -269,6 +358,7 @@ static void overrides_name_themselves(void **state)
         { "--set a..b=1: ", "must be path=value" },
         { "--set =1: ", "must be path=value" },
         { "--set fluids[=1: ", "must be path=value" },
+        { "--set method=\xFF: ", "the value is not UTF-8" },
         { "--set spacing=-1: spacing: ", "is -1, allowed is greater than 0 m" },
         { "--set dfsph.suport=3: dfsph.suport: ", "did you mean \"support\"?" },
         { "--set fluids.water.viscosity=thick: fluids[0].viscosity: ", "is the text \"thick\"" },
@@ -426,6 +516,9 @@ int main(void)
         cmocka_unit_test(duplicates),
         cmocka_unit_test(domain_and_regions),
         cmocka_unit_test(bodies_and_motions),
+        cmocka_unit_test(rules_between_values),
+        cmocka_unit_test(motions_one_at_a_time),
+        cmocka_unit_test(too_much),
         cmocka_unit_test(overrides_name_themselves),
         cmocka_unit_test(syntax),
         cmocka_unit_test(truncated_anywhere),

@@ -1,0 +1,55 @@
+#include "scene/parts.h"
+#include "world/params.h"
+#include "world/world.h"
+#include <assert.h>
+#include <string.h>
+
+static const tobi_part parts[] = {
+    { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 1, TOBI_FLUID_LIMIT, "The fluids." },
+    { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,
+      "The bodies, if any." },
+    { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
+      "The sensors, if any." },
+    { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },
+    { "world", "$schema", TOBI_PART_EDITOR, NULL, 0, 0,
+      "Where an editor finds the JSON Schema of scenes; Tobiuo passes over it." },
+    { "fluid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, TOBI_REGION_LIMIT/TOBI_FLUID_LIMIT,
+      "The regions that the fluid fills at the start." },
+    { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
+      "How the body moves, exactly one kind; without it the body is fixed." },
+    { "script", "params", TOBI_PART_FREE, NULL, 0, 0,
+      "Any values, handed to the script as its global table `params`." }
+};
+enum { FIXED = sizeof parts / sizeof parts[0] };
+
+bool tobi_part_at(int index, tobi_part *part)
+{
+    if (index < 0) return false;
+    if (index < FIXED) {
+        *part = parts[index];
+        return true;
+    }
+    const char *method = tobi_method_name(index - FIXED);
+    if (!method) return false;
+    const tobi_param_table *table = tobi_method_table(method);
+    *part = (tobi_part){ "world", method, TOBI_PART_OBJECT, table, 0, 0, table->doc };
+    return true;
+}
+
+tobi_part tobi_part_find(const char *owner, const char *key)
+{
+    tobi_part part = { 0 };
+    for (int i = 0; tobi_part_at(i, &part); i++)
+        if (strcmp(part.owner, owner) == 0 && strcmp(part.key, key) == 0) return part;
+    assert(!"no such part");
+    return part;
+}
+
+void tobi_part_keys(const char *owner, const char *keys[TOBI_PARTS])
+{
+    tobi_part part;
+    int count = 0;
+    for (int i = 0; tobi_part_at(i, &part); i++)
+        if (strcmp(part.owner, owner) == 0 && count < TOBI_PARTS - 1) keys[count++] = part.key;
+    keys[count] = NULL;
+}
