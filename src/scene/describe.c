@@ -20,7 +20,8 @@ static void write_default(const tobi_param *row, char *text, size_t size)
     else if (row->type == TOBI_PARAM_CHOICE) {
         word = tobi_choice_word(row->choices, (int)row->def[0], &length);
         snprintf(text, size, "%.*s", length, word);
-    } else if (row->type == TOBI_PARAM_VEC3)
+    } else if (row->type == TOBI_PARAM_VEC3 && row->text) snprintf(text, size, "%s", row->text);
+    else if (row->type == TOBI_PARAM_VEC3)
         snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
     else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
     else snprintf(text, size, "%.10g", row->def[0]);

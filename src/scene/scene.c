@@ -311,6 +311,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
         json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->body_count; i++) {
         json_t *body = tobi_write_def(&tobi_body_table, &scene->bodies[i].def);
+        json_object_del(body, scene->bodies[i].def.mesh ? "box" : "mesh");
         json_t *motion = tobi_motion_write(&scene->bodies[i].motion_def);
         if (motion) json_object_set_new(body, "motion", motion);
         json_array_append_new(bodies, body);

@@ -6,6 +6,8 @@
    - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
    - TOBI_PARAM_TEXT: unit "name", "path" (a file, looked up beside the scene) or "names" (a list).
    - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
+   - TOBI_PARAM_VEC3: text, if set, is a word for the default, which may lie out of the range
+     ("automatic" for a colour).
    - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */
 #pragma once
 #include "base/param.h"
