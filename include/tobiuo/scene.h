@@ -44,7 +44,7 @@ TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
 
 /* Scenes of the Taichi program (SPH_Taichi and its relatives; they have a key `Configuration`) are loaded
    like any other: translated first, so overrides are those of the native scene. This is what became of each
-   of their keys, as a table for people with units and remarks; NULL for a native scene. Owned by the scene. */
+   of their keys, as a table for people with units and remarks; NULL for a native scene. Owned by it. */
 TOBI_API const char *tobi_scene_import_table(const tobi_scene *scene);
 /* Translates such a scene into the file new_path, which appears whole or not at all: the native scene, with
    the table in front as comments. Loading it gives the same scene bit for bit. Paths of files are relative

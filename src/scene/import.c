@@ -29,8 +29,8 @@
 
 #define C(m) IN(tobi_old_config, m)
 #define RADIUS SAY("the spacing is two radii"), C(radius), POSITIVE, UNIT("m"), BECOMES("spacing")
-#define RADIUS_RIGID SAY("the spacing of a body's own particles is two radii; bodies here are smooth surfaces, " \
-                         "so it changes output only"), \
+#define RADIUS_RIGID SAY("two radii are the spacing of a body's own particles, which serve output: the " \
+                         "water meets smooth surfaces"), \
     C(radius_rigid), POSITIVE, UNIT("m"), BECOMES("bodies[0].spacing")
 
 static const tobi_old_key configuration_keys[] = {
@@ -71,8 +71,8 @@ static const tobi_old_key configuration_keys[] = {
       .absent = "0.01 m2/s stood in the old program itself: 10000 times water, which has 1e-6 m2/s; "
                 "for water, set fluids[0].viscosity to 0.001 Pa s" },
     { K("surface_tension"), C(tension), REAL, UNIT("m3/s2"),
-      SAY("not N/m: a pull between particles that changes with their size (Becker and Teschner 2007). There is "
-          "no surface tension now; water has 0.072 N/m, which matters below some millimetres") },
+      SAY("not N/m: a pull between particles that changes with their size (Becker and Teschner 2007). There "
+          "is no surface tension now; water has 0.072 N/m, which matters below some millimetres") },
     { K("cameraPosition"), C(camera_position), VEC3, UNIT("m"), BECOMES("output.camera.position"),
       SAY("where the pictures are taken from") },
     { K("cameraLookat"), C(camera_look_at), VEC3, UNIT("m"), BECOMES("output.camera.look_at"),
@@ -326,8 +326,8 @@ static void read_configuration(tobi_import *im)
     build_configuration(im);
     tobi_import_note(im, &tobi_old_configuration, old, &configuration, "", "");
     if (gives(im, "viscosity"))
-        tobi_import_remark(im, "viscosity", "kinematic in the old program, so times density; %.4g times water, "
-                           "which has 1e-6 m2/s or 0.001 Pa s", im->config.viscosity/1e-6);
+        tobi_import_remark(im, "viscosity", "kinematic in the old program, so times density; %.4g times "
+                           "water, which has 1e-6 m2/s or 0.001 Pa s", im->config.viscosity/1e-6);
     if (gives(im, "cameraLookat") && !gives(im, "cameraPosition"))
         tobi_import_remark(im, "cameraLookat", "nothing without cameraPosition");
 }

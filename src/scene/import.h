@@ -7,11 +7,11 @@
 
 /* One key of an old scene: how it is read, and what it becomes. */
 typedef struct tobi_old_key {
-    tobi_param param;         /* doc is the remark; unit NULL: a list that is not read by the table          */
+    tobi_param param;         /* doc is the remark; unit NULL: a list that is not read by the table        */
     const char *becomes;      /* native key: "a.b" of the scene, ".a" of the native entry, "^a" of its fluid;
-                                 NULL = nothing                                                              */
-    const char *unit;         /* of the native key; NULL = that of the old one                               */
-    const char *absent;       /* what is said if the key is missing; NULL = nothing                          */
+                                 NULL = nothing                                                            */
+    const char *unit;         /* of the native key; NULL = that of the old one                             */
+    const char *absent;       /* what is said if the key is missing; NULL = nothing                        */
 } tobi_old_key;
 
 typedef struct tobi_old_section {

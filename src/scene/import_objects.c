@@ -218,7 +218,7 @@ static json_t *fish_motion(tobi_import *im, const tobi_old_body *b, json_t *obje
     for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++)
         if (is_fish_key(k->param.key))
             json_object_set(params, k->param.key, json_object_get(object, k->param.key));
-    set(params, "lagAngle", json_integer(72));      /* 0.8 of the angle of each point, as its formula has it */
+    set(params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle, as it had */
     set(motion, "params", params);
     free(script);
     return motion;
@@ -307,8 +307,8 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     json_array_append_new(bodies, body);
     tobi_import_note(im, section, object, place, native, "");
     if (remark) tobi_import_remark(im, "geometryFile", "%s", remark);
-    if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old formula "
-                                 "did; motion.params.lagAngle changes it");
+    if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "
+                                 "formula did; motion.params.lagAngle changes it");
     free(mesh);
 }
 

@@ -38,7 +38,8 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
         const char *slash = strrchr(from, '/');
-        tobi_file_print(&file, "# Translated from %s, a scene of the Taichi program. What became of its keys:\n",
+        tobi_file_print(&file, "# Translated from %s, a scene of the Taichi program. What became of\n"
+                        "# its keys:\n",
                         slash ? slash + 1 : from);
         for (const char *line = scene->import_table; *line;) {
             size_t length = strcspn(line, "\n");
@@ -61,8 +62,8 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
     *table = NULL;
     if (report) *report = NULL;
     if (!force && access(new_path, F_OK) == 0)
-        return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or force to "
-                         "replace it)", new_path);
+        return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
+                         "force to replace it)", new_path);
     TOBI_TRY(tobi_scene_load(old_path, NULL, &scene, report, err));
     tobi_status status = TOBI_OK;
     if (!scene->import_table)
