@@ -4,6 +4,7 @@
 #include "scene/suggest.h"
 #include "scene/write.h"
 #include "world/params.h"
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -192,10 +193,25 @@ int tobi_import_has(const tobi_old_section *section, uint64_t given, const char 
     return 0;
 }
 
+json_t *tobi_import_set(tobi_import *im, json_t *object, const char *key, json_t *value)
+{
+    int failed = !value || json_object_set_new(object, key, value) != 0;
+    im->no_memory |= failed;
+    return failed ? NULL : value;
+}
+
+/* Overflow of absurd numbers must reach the checks as a number. */
+static double bounded(double v) { return isnan(v) ? 0 : fmax(-DBL_MAX, fmin(v, DBL_MAX)); }
+
+json_t *tobi_import_real(double v) { return json_real(bounded(v)); }
+
+json_t *tobi_import_vector(const double v[3])
+{
+    return json_pack("[fff]", bounded(v[0]), bounded(v[1]), bounded(v[2]));
+}
+
 /* --- the configuration ------------------------------------------------------------------- */
 
-static void set(json_t *object, const char *key, json_t *value) { json_object_set_new(object, key, value); }
-static json_t *vector(const double v[3]) { return json_pack("[fff]", v[0], v[1], v[2]); }
 
 static const tobi_place root = { 0 };
 static const tobi_place configuration = { &root, "Configuration", 0 };
@@ -270,21 +286,19 @@ static const char *choose_method(tobi_import *im)
 static void build_output(tobi_import *im)
 {
     const tobi_old_config *c = &im->config;
-    json_t *output = json_object(), *camera = json_object();
-    set(im->native, "output", output);
-    if (c->time_step > 0) set(output, "interval", json_real(c->steps*c->time_step));
-    set(output, "frames", json_boolean(c->frames));
-    set(output, "ply", json_boolean(c->ply));
-    set(output, "obj", json_boolean(c->obj));
+    json_t *output = tobi_import_set(im, im->native, "output", json_object());
+    if (c->time_step > 0) tobi_import_set(im, output, "interval", tobi_import_real(c->steps*c->time_step));
+    tobi_import_set(im, output, "frames", json_boolean(c->frames));
+    tobi_import_set(im, output, "ply", json_boolean(c->ply));
+    tobi_import_set(im, output, "obj", json_boolean(c->obj));
     if (gives(im, "cameraPosition")) {
+        json_t *camera = tobi_import_set(im, output, "camera", json_object());
         double middle[3];
         for (int a = 0; a < 3; a++) middle[a] = 0.5*(c->domain_start[a] + c->domain_end[a]);
-        set(camera, "position", vector(c->camera_position));
-        set(camera, "look_at", vector(gives(im, "cameraLookat") ? c->camera_look_at : middle));
-        set(camera, "angle", json_real(c->camera_angle));
-        set(output, "camera", camera);
-    } else {
-        json_decref(camera);
+        tobi_import_set(im, camera, "position", tobi_import_vector(c->camera_position));
+        tobi_import_set(im, camera, "look_at",
+                        tobi_import_vector(gives(im, "cameraLookat") ? c->camera_look_at : middle));
+        tobi_import_set(im, camera, "angle", tobi_import_real(c->camera_angle));
     }
 }
 
@@ -299,21 +313,19 @@ static double end_time(const tobi_import *im)
 static void build_configuration(tobi_import *im)
 {
     const tobi_old_config *c = &im->config;
-    json_t *domain = json_object(), *native = im->native;
+    json_t *native = im->native, *domain = tobi_import_set(im, native, "domain", json_object());
     const char *method = choose_method(im);
-    set(native, "method", json_string(method));
-    set(native, "domain", domain);
-    set(domain, "min", vector(c->domain_start));
-    set(domain, "max", vector(c->domain_end));
-    set(native, "gravity", vector(c->gravitation));
-    set(native, "spacing", json_real(2*c->radius));
-    set(native, "end_time", json_real(end_time(im)));
-    if (c->time_step > 0) set(native, "time_step", json_real(c->time_step));
+    tobi_import_set(im, native, "method", json_string(method));
+    tobi_import_set(im, domain, "min", tobi_import_vector(c->domain_start));
+    tobi_import_set(im, domain, "max", tobi_import_vector(c->domain_end));
+    tobi_import_set(im, native, "gravity", tobi_import_vector(c->gravitation));
+    tobi_import_set(im, native, "spacing", tobi_import_real(2*c->radius));
+    tobi_import_set(im, native, "end_time", tobi_import_real(end_time(im)));
+    if (c->time_step > 0) tobi_import_set(im, native, "time_step", tobi_import_real(c->time_step));
     if (c->method == 0 && (gives(im, "stiffness") || gives(im, "exponent"))) {
-        json_t *tait = json_object();
-        set(native, method, tait);
-        if (gives(im, "stiffness")) set(tait, "stiffness", json_real(c->stiffness));
-        if (gives(im, "exponent")) set(tait, "exponent", json_real(c->exponent));
+        json_t *tait = tobi_import_set(im, native, method, json_object());
+        if (gives(im, "stiffness")) tobi_import_set(im, tait, "stiffness", tobi_import_real(c->stiffness));
+        if (gives(im, "exponent")) tobi_import_set(im, tait, "exponent", tobi_import_real(c->exponent));
     }
 }
 
@@ -371,6 +383,7 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
     tobi_import_bodies(&im);
     build_output(&im);
     tobi_status status = tobi_report_total(source->report) > before ? TOBI_INVALID : TOBI_OK;
+    if (im.no_memory || !im.native) status = TOBI_NO_MEMORY;
     if (status == TOBI_OK) status = tobi_import_finish(&im, table);
     tobi_import_clear(&im);
     return status;

@@ -66,6 +66,12 @@ int tobi_import_applies(const json_t *root);
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
                                   char **table);
 
+/* Puts value, which it takes over, into an object of the native scene and returns it; NULL without memory,
+   which is remembered. A NULL object is fine. */
+json_t *tobi_import_set(tobi_import *im, json_t *object, const char *key, json_t *value);
+json_t *tobi_import_real(double v);
+json_t *tobi_import_vector(const double v[3]);
+
 /* Reads an object by its section into def (section->size bytes); returns the keys given. */
 uint64_t tobi_import_read(tobi_import *im, const tobi_old_section *section, json_t *object,
                           const tobi_place *place, void *def);

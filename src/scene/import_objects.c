@@ -11,8 +11,6 @@
 
 static const tobi_place root = { 0 };
 
-static void set(json_t *object, const char *key, json_t *value) { json_object_set_new(object, key, value); }
-static json_t *vector(const double v[3]) { return json_pack("[fff]", v[0], v[1], v[2]); }
 
 /* The entries of a section; NULL if it is not there or not a list, which is told. */
 static json_t *open_section(tobi_import *im, const tobi_old_section *section)
@@ -25,7 +23,7 @@ static json_t *open_section(tobi_import *im, const tobi_old_section *section)
 }
 
 /* Corners of a block, as the old program placed its particles. */
-static json_t *block_box(const tobi_old_block *b)
+static void set_box(tobi_import *im, json_t *object, const tobi_old_block *b)
 {
     double low[3], high[3];
     for (int a = 0; a < 3; a++) {
@@ -33,16 +31,15 @@ static json_t *block_box(const tobi_old_block *b)
         high[a] = b->scale[a] == 1 ? b->end[a] + b->translation[a]
                                    : low[a] + b->scale[a]*(b->end[a] - b->start[a]);
     }
-    json_t *box = json_object();
-    set(box, "min", vector(low));
-    set(box, "max", vector(high));
-    return box;
+    json_t *box = tobi_import_set(im, object, "box", json_object());
+    tobi_import_set(im, box, "min", tobi_import_vector(low));
+    tobi_import_set(im, box, "max", tobi_import_vector(high));
 }
 
 /* --- water -------------------------------------------------------------------------------- */
 
 /* Blocks that agree in density, colour and visibility are one fluid; a world carries few. */
-static size_t find_fluid(json_t *fluids, json_t *like)
+static size_t find_fluid(tobi_import *im, json_t *fluids, json_t *like)
 {
     static const char *const keys[] = { "density", "viscosity", "color", "visible" };
     for (size_t i = 0; i < json_array_size(fluids); i++) {
@@ -56,10 +53,11 @@ static size_t find_fluid(json_t *fluids, json_t *like)
     }
     char name[32];
     snprintf(name, sizeof name, "fluid_%zu", json_array_size(fluids));
-    set(like, "name", json_string(name));
-    set(like, "fill", json_array());
-    json_array_append(fluids, like);
-    return json_array_size(fluids) - 1;
+    tobi_import_set(im, like, "name", json_string(name));
+    tobi_import_set(im, like, "fill", json_array());
+    size_t index = json_array_size(fluids);
+    im->no_memory |= json_array_append(fluids, like) != 0;
+    return index;
 }
 
 static void add_fluid_block(tobi_import *im, json_t *fluids, json_t *object, const tobi_place *place)
@@ -69,28 +67,29 @@ static void add_fluid_block(tobi_import *im, json_t *fluids, json_t *object, con
     uint64_t given = tobi_import_read(im, section, object, place, &b);
     double density = tobi_import_has(section, given, "density") ? b.density : im->config.density;
     json_t *fluid = json_object(), *fill = json_object();
-    set(fluid, "density", json_real(density));
-    set(fluid, "viscosity", json_real(im->config.viscosity*density));
-    if (tobi_import_has(section, given, "color")) set(fluid, "color", vector(b.color));
-    if (tobi_import_hides(im, b.object)) set(fluid, "visible", json_false());
-    size_t index = find_fluid(fluids, fluid);
+    tobi_import_set(im, fluid, "density", tobi_import_real(density));
+    tobi_import_set(im, fluid, "viscosity", tobi_import_real(im->config.viscosity*density));
+    if (tobi_import_has(section, given, "color"))
+        tobi_import_set(im, fluid, "color", tobi_import_vector(b.color));
+    if (tobi_import_hides(im, b.object)) tobi_import_set(im, fluid, "visible", json_false());
+    size_t index = find_fluid(im, fluids, fluid);
     json_t *fills = json_object_get(json_array_get(fluids, index), "fill");
     json_decref(fluid);
-    set(fill, "box", block_box(&b));
-    set(fill, "velocity", vector(b.velocity));
+    set_box(im, fill, &b);
+    tobi_import_set(im, fill, "velocity", tobi_import_vector(b.velocity));
     char native[2][64];
     snprintf(native[0], sizeof native[0], "fluids[%zu].fill[%zu]", index, json_array_size(fills));
     snprintf(native[1], sizeof native[1], "fluids[%zu]", index);
-    json_array_append_new(fills, fill);
+    im->no_memory |= json_array_append_new(fills, fill) != 0;
     tobi_import_note(im, section, object, place, native[0], native[1]);
 }
 
 void tobi_import_fluids(tobi_import *im)
 {
     tobi_place place = { &root, tobi_old_fluid_block.name, 0 };
-    json_t *list = open_section(im, &tobi_old_fluid_block), *fluids = json_array(), *object;
+    json_t *list = open_section(im, &tobi_old_fluid_block), *object;
+    json_t *fluids = tobi_import_set(im, im->native, "fluids", json_array());
     size_t i;
-    set(im->native, "fluids", fluids);
     if (!json_object_get(im->source->root, place.key) || (list && json_array_size(list) == 0))
         tobi_source_mistake(im->source, &place, "is missing or empty: a scene needs at least one block "
                             "of water, { \"start\": [..], \"end\": [..] }");
@@ -115,13 +114,15 @@ static int is_taken(json_t *bodies, const char *name)
 {
     size_t i;
     json_t *body;
-    json_array_foreach(bodies, i, body)
-        if (strcmp(json_string_value(json_object_get(body, "name")), name) == 0) return 1;
+    json_array_foreach(bodies, i, body) {
+        const char *other = json_string_value(json_object_get(body, "name"));
+        if (other && strcmp(other, name) == 0) return 1;
+    }
     return 0;
 }
 
 /* The stem, or stem_2, stem_3; odd characters become '_'. */
-static void name_body(json_t *bodies, json_t *body, const char *stem, size_t length)
+static void name_body(tobi_import *im, json_t *bodies, json_t *body, const char *stem, size_t length)
 {
     char clean[64], name[80];
     if (length > sizeof clean - 1) length = sizeof clean - 1;
@@ -132,7 +133,17 @@ static void name_body(json_t *bodies, json_t *body, const char *stem, size_t len
     snprintf(name, sizeof name, "%s", clean);
     for (int i = 2; is_taken(bodies, name) || strncmp(name, "fluid_", 6) == 0; i++)
         snprintf(name, sizeof name, "%s%s_%d", strncmp(clean, "fluid_", 6) == 0 ? "body_" : "", clean, i);
-    set(body, "name", json_string(name));
+    tobi_import_set(im, body, "name", json_string(name));
+}
+
+/* What blocks and meshes have in common; NULL: not given. */
+static void set_looks(tobi_import *im, json_t *body, const double *density, const double *color, int object)
+{
+    double radius = im->config.radius_rigid;
+    if (density) tobi_import_set(im, body, "density", tobi_import_real(*density));
+    if (color) tobi_import_set(im, body, "color", tobi_import_vector(color));
+    if (tobi_import_hides(im, object)) tobi_import_set(im, body, "visible", json_false());
+    if (radius > 0) tobi_import_set(im, body, "spacing", tobi_import_real(2*radius));
 }
 
 static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, const tobi_place *place)
@@ -144,14 +155,12 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
     json_t *body = json_object();
     refuse_dynamic(im, b.dynamic, place);
     snprintf(name, sizeof name, "block_%d", b.object);
-    name_body(bodies, body, name, strlen(name));
-    set(body, "box", block_box(&b));
-    if (tobi_import_has(section, given, "density")) set(body, "density", json_real(b.density));
-    if (tobi_import_has(section, given, "color")) set(body, "color", vector(b.color));
-    if (tobi_import_hides(im, b.object)) set(body, "visible", json_false());
-    if (im->config.radius_rigid > 0) set(body, "spacing", json_real(2*im->config.radius_rigid));
+    name_body(im, bodies, body, name, strlen(name));
+    set_box(im, body, &b);
+    set_looks(im, body, tobi_import_has(section, given, "density") ? &b.density : NULL,
+              tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
-    json_array_append_new(bodies, body);
+    im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
 }
 
@@ -206,22 +215,22 @@ static int check_fish(tobi_import *im, uint64_t given, const tobi_place *place)
     return fish;
 }
 
-static json_t *fish_motion(tobi_import *im, const tobi_old_body *b, json_t *object, const tobi_place *place)
+static void set_motion(tobi_import *im, json_t *body, const tobi_old_body *b, json_t *object,
+                       const tobi_place *place)
 {
     char *script = tobi_shipped_scene_file("flying_fish/motion.lua");
-    json_t *motion = json_object(), *params = json_object();
+    json_t *motion = tobi_import_set(im, body, "motion", json_object());
+    tobi_import_set(im, motion, "script", json_string(script ? script : ""));
+    json_t *params = tobi_import_set(im, motion, "params", json_object());
     if (!script)
         tobi_source_mistake(im->source, place, "swims, but the program of its motion, "
                             "scenes/flying_fish/motion.lua, is not where Tobiuo was installed");
-    set(motion, "script", json_string(script ? script : ""));
-    set(params, "translation", vector(b->translation));
+    tobi_import_set(im, params, "translation", tobi_import_vector(b->translation));
     for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++)
         if (is_fish_key(k->param.key))
             json_object_set(params, k->param.key, json_object_get(object, k->param.key));
-    set(params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle, as it had */
-    set(motion, "params", params);
+    tobi_import_set(im, params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle */
     free(script);
-    return motion;
 }
 
 static void mean_vertex(const tobi_mesh *mesh, double mean[3])
@@ -269,18 +278,15 @@ static void fill_rigid_body(tobi_import *im, json_t *body, const tobi_old_body *
                             const char *mesh)
 {
     const tobi_old_section *section = &tobi_old_rigid_body;
-    set(body, "mesh", json_string(mesh));
-    set(body, "scale", vector(b->scale));
+    tobi_import_set(im, body, "mesh", json_string(mesh));
+    tobi_import_set(im, body, "scale", tobi_import_vector(b->scale));
     if (b->angle != 0) {
-        json_t *rotation = json_object();
-        set(rotation, "axis", vector(b->axis));
-        set(rotation, "angle", json_real(b->angle));
-        set(body, "rotation", rotation);
+        json_t *rotation = tobi_import_set(im, body, "rotation", json_object());
+        tobi_import_set(im, rotation, "axis", tobi_import_vector(b->axis));
+        tobi_import_set(im, rotation, "angle", tobi_import_real(b->angle));
     }
-    if (tobi_import_has(section, given, "density")) set(body, "density", json_real(b->density));
-    if (tobi_import_has(section, given, "color")) set(body, "color", vector(b->color));
-    if (tobi_import_hides(im, b->object)) set(body, "visible", json_false());
-    if (im->config.radius_rigid > 0) set(body, "spacing", json_real(2*im->config.radius_rigid));
+    set_looks(im, body, tobi_import_has(section, given, "density") ? &b->density : NULL,
+              tobi_import_has(section, given, "color") ? b->color : NULL, b->object);
 }
 
 static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, const tobi_place *place)
@@ -299,12 +305,12 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
 
     const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
     json_t *body = json_object();
-    name_body(bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
+    name_body(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
-    set(body, "translation", vector(translation));
-    if (fish) set(body, "motion", fish_motion(im, &b, object, place));
+    tobi_import_set(im, body, "translation", tobi_import_vector(translation));
+    if (fish) set_motion(im, body, &b, object, place);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
-    json_array_append_new(bodies, body);
+    im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
     if (remark) tobi_import_remark(im, "geometryFile", "%s", remark);
     if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "
@@ -318,8 +324,7 @@ void tobi_import_bodies(tobi_import *im)
         const tobi_old_section *section;
         void (*add)(tobi_import *im, json_t *bodies, json_t *object, const tobi_place *place);
     } kinds[] = { { &tobi_old_rigid_body, add_rigid_body }, { &tobi_old_rigid_block, add_rigid_block } };
-    json_t *bodies = json_array();
-    set(im->native, "bodies", bodies);
+    json_t *bodies = tobi_import_set(im, im->native, "bodies", json_array());
     for (size_t k = 0; k < sizeof kinds/sizeof *kinds; k++) {
         tobi_place place = { &root, kinds[k].section->name, 0 };
         json_t *list = open_section(im, kinds[k].section), *object;
