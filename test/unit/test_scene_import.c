@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include "geom/mesh.h"
 #include "scene/scene.h"
+#include "world/params.h"
 
 #define OLD TOBI_SOURCE_DIR "/test/scenes/taichi/"
 
@@ -211,6 +212,28 @@ static void the_clock(void **state)
     tobi_scene_free(scene);
 }
 
+/* WCSPH takes the constants of the Tait equation, where it is built; DFSPH has none. */
+static void the_other_solver(void **state)
+{
+    (void)state;
+    const char *text = make(", \"simulationMethod\": 0, \"stiffness\": 40000, \"exponent\": 5",
+                            "\"scale\": 1");
+    tobi_scene *scene;
+    tobi_error err = { 0 };
+    tobi_status status = tobi_scene_parse("old.json", text, strlen(text), NULL, &scene, NULL, &err);
+    if (!tobi_method_table("wcsph")) {
+        assert_int_equal(status, TOBI_INVALID);
+        assert_non_null(strstr(err.text, "simulationMethod: is 0: the method wcsph is not built yet"));
+        return;
+    }
+    assert_int_equal(status, TOBI_OK);
+    char *resolved = tobi_scene_resolved(scene);
+    assert_non_null(strstr(resolved, "\"stiffness\": 40000.0"));
+    assert_non_null(strstr(resolved, "\"exponent\": 5.0"));
+    free(resolved);
+    tobi_scene_free(scene);
+}
+
 static void wrapped_comments(void **state)
 {
     (void)state;
@@ -379,6 +402,7 @@ int main(void)
         cmocka_unit_test(rigid_blocks_are_boxes),
         cmocka_unit_test(a_turn_is_about_the_mean_of_the_vertices),
         cmocka_unit_test(the_clock),
+        cmocka_unit_test(the_other_solver),
         cmocka_unit_test(wrapped_comments),
         cmocka_unit_test(mistakes_of_the_configuration),
         cmocka_unit_test(mistakes_of_bodies),
