@@ -86,6 +86,9 @@ static int check_world(tobi_scene *scene)
     tobi_world_destroy(world);
     if (status != TOBI_OK) return complain("%s", err.text);
     print_scene(scene);
+    if (tobi_scene_import_table(scene))
+        printf("\nA scene of the Taichi program. What became of its keys:\n\n%s\n",
+               tobi_scene_import_table(scene));
     double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     printf("fluid particles  %lld\n", (long long)fluid);
     printf("body particles   %lld\n", (long long)bodies);

@@ -13,6 +13,7 @@ static const struct command {
     { "resume", "DIR", "go on with a run that was stopped", tobiuo_resume },
     { "check", "SCENE", "say what a scene would do, and all its mistakes, without running",
       tobiuo_check },
+    { "import", "SCENE", "translate a scene of the Taichi program into a native one", tobiuo_import },
     { "describe", "[TOPIC]", "parameters with units, defaults and ranges", tobiuo_describe },
     { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench },
     { "info", "", "version, machine, libraries, methods", tobiuo_info },

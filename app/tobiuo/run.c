@@ -83,6 +83,8 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     int length =
         o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
+    if (tobi_scene_import_table(scene) && !o->quiet)
+        printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
     drive_catch_signals();
     int code = length < 0 ? complain("out of memory") : record(scene, world, o, dir);
     free(dir);

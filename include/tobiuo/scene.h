@@ -42,6 +42,18 @@ TOBI_API const char *tobi_scene_name(const tobi_scene *scene);
 TOBI_API const tobi_world_def  *tobi_scene_world_def(const tobi_scene *scene);
 TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
 
+/* Scenes of the Taichi program (SPH_Taichi and its relatives; they have a key `Configuration`) are loaded
+   like any other: translated first, so overrides are those of the native scene. This is what became of each
+   of their keys, as a table for people with units and remarks; NULL for a native scene. Owned by it. */
+TOBI_API const char *tobi_scene_import_table(const tobi_scene *scene);
+/* Translates such a scene into the file new_path, which appears whole or not at all: the native scene, with
+   the table in front as comments. Loading it gives the same scene bit for bit. Paths of files are relative
+   to new_path where they lie below its folder, absolute elsewhere. *table (owned by the caller, free()) is
+   the table; NULL after a failure, as for tobi_scene_load, or TOBI_INVALID if the scene is native already
+   or, with force 0, if new_path exists. */
+TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_path, int force, char **table,
+                                       tobi_report **report, tobi_error *err);
+
 /* The scene as JSON with every default made explicit and paths of files made absolute, so that it
    can be kept in any directory of the same machine; loading it gives the same scene bit for bit.
    Owned by the caller (free()). NULL when out of memory. */

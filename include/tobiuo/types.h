@@ -59,6 +59,8 @@ typedef struct tobi_fluid_def {
     const char *name;
     double density;       /* kg/m3 */
     double viscosity;     /* Pa s, dynamic */
+    double color[3];      /* RGB, 0 to 255, in pictures; all -1 = by its speed */
+    int    visible;       /* 0: left out of pictures */
 } tobi_fluid_def;
 
 /* One region filled with a fluid at the start: a box, or the inside of a closed mesh. */
@@ -75,10 +77,11 @@ typedef struct tobi_fill_def {
 typedef tobi_status (*tobi_motion_fn)(void *user, double t, int64_t n, const double (*rest)[3],
                                       double (*position)[3], tobi_error *err);
 
-/* A body: the inside of a closed mesh, at rest or moved by a motion. */
+/* A body: the inside of a closed mesh or of a box, at rest or moved by a motion. */
 typedef struct tobi_body_def {
     const char *name;
-    const char *mesh;           /* path: OBJ, STL or PLY */
+    const char *mesh;           /* path: OBJ, STL or PLY; NULL = the box                              */
+    double box_min[3], box_max[3];  /* m, corners of a plain box, used when mesh is NULL              */
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */
@@ -86,6 +89,8 @@ typedef struct tobi_body_def {
     double density;             /* kg/m3                                                             */
     double spacing;             /* m, spacing of the body's own particles; 0 = the fluid's           */
     int    friction;            /* tobi_friction felt by the fluid                                   */
+    int    visible;             /* 0: left out of pictures                                           */
+    double color[3];            /* RGB, 0 to 255, in pictures; all -1 = by its number                */
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
     void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */
     int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
@@ -109,6 +114,11 @@ typedef struct tobi_output_def {
     const char *fields;               /* names separated by commas; see tobi_world_field_name         */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
+    int         ply;                  /* 1: write the fluid's positions as PLY                        */
+    int         obj;                  /* 1: write each body's surface as OBJ                          */
+    double      camera_position[3];   /* m, the eye of the pictures                                   */
+    double      camera_look_at[3];    /* m, what it looks at                                          */
+    double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */
 } tobi_output_def;
 
 /* What one step did. */

@@ -45,7 +45,10 @@ tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tob
         int n = 1, i;
         switch (p->type) {
         case TOBI_PARAM_REAL: memcpy(v, at, sizeof(double)); break;
-        case TOBI_PARAM_VEC3: memcpy(v, at, sizeof v); n = 3; break;
+        case TOBI_PARAM_VEC3:
+            memcpy(v, at, sizeof v);
+            n = p->text && memcmp(v, p->def, sizeof v) == 0 ? 0 : 3;      /* the word's value */
+            break;
         case TOBI_PARAM_TEXT: continue;
         default: memcpy(&i, at, sizeof i); v[0] = i; break;
         }

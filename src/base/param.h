@@ -24,7 +24,7 @@ typedef struct tobi_param {
     bool required;               /* a scene must give it                                          */
     const char *unit;            /* "m", "Pa s", "1"                                              */
     const char *choices;         /* "slip|no-slip|periodic", NULL unless TOBI_PARAM_CHOICE        */
-    const char *text;            /* default of TOBI_PARAM_TEXT                                    */
+    const char *text;            /* default of TOBI_PARAM_TEXT; of others a word, see params.h    */
     const char *doc;             /* one sentence                                                  */
 } tobi_param;
 

@@ -15,6 +15,8 @@ typedef struct tobi_body {
     double density;                  /* kg/m3                                                  */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */
+    double color[3];                 /* RGB, 0 to 255, or -1; for pictures                     */
+    int visible;
     tobi_motion_fn motion;           /* NULL = fixed                                           */
     void *motion_user;
     double lower[3];                 /* the box's lower corner: origin of what follows         */

@@ -9,7 +9,12 @@
 
 enum { TOBI_FLUID_LIMIT = 8, TOBI_STAGE_LIMIT = 16 };
 
-typedef struct tobi_fluid { char name[64]; double density, viscosity; } tobi_fluid;
+typedef struct tobi_fluid {
+    char name[64];
+    double density, viscosity;
+    double color[3];                /* RGB, 0 to 255, or -1; for pictures                    */
+    int visible;
+} tobi_fluid;
 
 /* Stage timers of a step, in the order of first use. */
 typedef struct tobi_stages {

@@ -189,7 +189,8 @@ static void free_canvas(canvas *c)
 
 static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
 {
-    *c = (canvas){ .width = f->width*f->samples, .height = f->height*f->samples };
+    *c = (canvas){ .width = f->width*f->samples, .height = f->height*f->samples,
+                    .palette = f->palette, .palette_count = f->palette_count };
     size_t n = (size_t)c->width*(size_t)c->height;
     bool water = f->dimension == 3 && f->particle_count > 0;
     c->color = malloc(n*sizeof *c->color);

@@ -32,6 +32,8 @@ typedef struct tobi_frame {
     int64_t particle_count;
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
     const float *values;               /* colour of each particle, e.g. speed; NULL = lowest colour     */
+    const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
+    int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
     double clarity;                    /* m of water after which 1/e of the light is left; 0 = automatic */

@@ -48,6 +48,8 @@ typedef struct canvas {
     camera  camera;
     vec     light, sky_up;       /* unit vectors in view space: to the key light, against gravity  */
     shadow  shadow;
+    const float (*palette)[3];   /* sRGB; NULL = the usual map                                     */
+    int     palette_count;
     vec    *color;               /* NULL: only depth is drawn                                      */
     float  *depth;               /* of what is opaque, m; INFINITY = background                    */
     float  *surface;             /* of the water's front, m; INFINITY = none                       */
@@ -128,7 +130,9 @@ tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, dou
                        tobi_error *err);
 tobi_status draw_discs(canvas *c, const tobi_frame *frame, double value_min, double value_max,
                        tobi_error *err);
+/* The usual map, and the canvas's own. */
 vec  map_color(float value);
+vec  water_color(const canvas *c, float value);
 
 /* frame_text.c: pixels, after the samples have been averaged. */
 typedef struct image {

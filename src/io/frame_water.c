@@ -24,6 +24,15 @@ vec map_color(float value)
     return vec_mix(linear_color(stop[i]), linear_color(stop[i + 1]), t - (float)i);
 }
 
+vec water_color(const canvas *c, float value)
+{
+    int last = c->palette_count - 1;
+    if (!c->palette) return map_color(value);
+    float t = clampf(value, 0, 1)*(float)last;
+    int i = t < (float)last ? (int)t : last, next = i < last ? i + 1 : last;
+    return vec_mix(linear_color(c->palette[i]), linear_color(c->palette[next]), t - (float)i);
+}
+
 static bool splat_rect(const void *items, int64_t i, int rect[4])
 {
     const splat *s = &((const splat *)items)[i];
@@ -175,7 +184,7 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
 static void splat_disc(const brush *b, const splat *s, const int tile[4])
 {
     canvas *c = b->c;
-    vec color = vec_scale(b->discs, map_color(s->value));
+    vec color = vec_scale(b->discs, water_color(c, s->value));
     int y0, y1, x0, x1;
     clip_rows(s, tile, &y0, &y1);
     for (int y = y0; y <= y1; y++) {
@@ -449,14 +458,15 @@ static vec shade_water(const canvas *c, const vec *back, int x, int y, float cla
     size_t seen = look_through(c, x, y, n);
     float thickness = fmaxf(c->thickness[seen], 0), facing = clampf(vec_dot(n, eye), 0, 1);
     float value = c->value[k];
-    float path = thickness/clarity, veil = 0.18f + 0.75f*value*value;      /* foam hides */
+    float foam = c->palette ? 0.25f : 0.75f*value*value;      /* hides */
+    float path = thickness/clarity, veil = 0.18f + foam;
     vec pass = { expf(-1.5f*path), expf(-1.0f*path), expf(-0.85f*path) };
     pass = vec_scale(1 - veil, pass);
     float lit = lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1);
     float fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }),
                         vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
-    vec scatter = vec_mul(map_color(value), light);
+    vec scatter = vec_mul(water_color(c, value), light);
     vec color = vec_add(vec_mul(pass, back[seen]), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
     /* Schlick 1994, water. */
     float mirror = 0.02f + 0.98f*powf(1 - facing, 5);

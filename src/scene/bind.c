@@ -94,7 +94,8 @@ void tobi_bind_default(const tobi_param *row, char *text, size_t size)
     else if (row->type == TOBI_PARAM_CHOICE) {
         word = tobi_choice_word(row->choices, (int)row->def[0], &length);
         snprintf(text, size, "%.*s", length, word);
-    } else if (row->type == TOBI_PARAM_VEC3)
+    } else if (row->type == TOBI_PARAM_VEC3 && row->text) snprintf(text, size, "%s", row->text);
+    else if (row->type == TOBI_PARAM_VEC3)
         snprintf(text, size, "[%.10g, %.10g, %.10g]", row->def[0], row->def[1], row->def[2]);
     else if (row->def[0] == 0 && row->text) snprintf(text, size, "%s", row->text);
     else snprintf(text, size, "%.10g", row->def[0]);
@@ -176,14 +177,20 @@ static void bind_vector(const slot *s)
 {
     double v[3];
     memcpy(v, s->member, sizeof v);
-    int scale = s->row->positive, two = s->binder->dimension == 2;
+    int scale = s->row->positive, two = s->binder->dimension == 2 && !s->row->text;
+    const char *word = json_string_value(s->value);
+    if (word && s->row->text && strcmp(word, s->row->text) == 0) {
+        memcpy(s->member, s->row->def, sizeof v);
+        return;
+    }
     if (scale && json_is_number(s->value)) {
         v[0] = v[1] = v[2] = json_number_value(s->value);
         if (check_range(s, s->place, v[0])) memcpy(s->member, v, sizeof v);
         return;
     }
-    const char *must = two ? "a list of 2 numbers (x, y), or 3" : scale
-        ? "a number or a list of 3 numbers" : "a list of 3 numbers (x, y, z)";
+    const char *must = two ? "a list of 2 numbers (x, y), or 3"
+                       : scale ? "a number or a list of 3 numbers"
+                       : s->row->text ? "a list of 3 numbers" : "a list of 3 numbers (x, y, z)";
     size_t n = json_array_size(s->value);
     if (!json_is_array(s->value)) {
         report_kind(s, must);

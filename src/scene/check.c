@@ -251,6 +251,28 @@ static void check_fluids(const tobi_scene *scene, tobi_source *source)
     check_overlaps(scene, source);
 }
 
+static void check_body_box(const tobi_scene *scene, tobi_source *source, int body,
+                           const tobi_place *entry)
+{
+    const tobi_body_def *def = &scene->bodies[body].def;
+    json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
+    json_t *given = json_object_get(value, "box");
+    int mesh = json_object_get(value, "mesh") != NULL, good = json_is_array(json_object_get(given, "min")) &&
+                                                              json_is_array(json_object_get(given, "max"));
+    tobi_place box = { entry, "box", 0 };
+    if (!json_is_object(value)) return;
+    if (mesh == (given != NULL))
+        tobi_source_mistake(source, entry, "must have either a mesh or a box, it has %s",
+                            mesh ? "both" : "none");
+    else if (given && !good)
+        tobi_source_mistake(source, &box, "must have two corners, min and max");
+    for (int a = 0; good && !mesh && a < scene->world.dimension; a++)
+        if (!(def->box_max[a] > def->box_min[a]))
+            tobi_source_mistake(source, &box,
+                                "min is %.10g and max is %.10g in %c, max must be greater",
+                                def->box_min[a], def->box_max[a], axis_name[a]);
+}
+
 static void check_bodies(const tobi_scene *scene, tobi_source *source)
 {
     tobi_place bodies = { &root, "bodies", 0 };
@@ -260,6 +282,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         tobi_place rotation = { &entry, "rotation", 0 }, axis = { &rotation, "axis", 0 };
         check_name(scene, source, &entry, -1, i);
         check_file(source, &mesh, body->def.mesh);
+        check_body_box(scene, source, i, &entry);
         if (is_zero(body->def.rotation_axis))
             tobi_source_mistake(source, &axis, "is zero, must have a direction");
     }
@@ -316,6 +339,10 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &interval,
                             "is %.10g s and makes more than %d outputs until end_time, %.10g s",
                             scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
+    tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
+    if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
+        memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)
+        tobi_source_mistake(source, &target, "is the camera's own position");
     char *copy = strdup(scene->output.fields ? scene->output.fields : ""), *next = copy;
     for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
         if (*field) check_field(source, &fields, field);

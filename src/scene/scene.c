@@ -1,6 +1,7 @@
 /* From the text of a scene to its definitions, and from the definitions to a world. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
+#include "scene/import.h"
 #include "scene/override.h"
 #include "scene/parts.h"
 #include "scene/write.h"
@@ -178,8 +179,7 @@ static char *name_scene(const char *directory, const char *path)
     return strndup(file, dot && dot > file ? (size_t)(dot - file) : strlen(file));
 }
 
-/* The absolute directory of a file that may not exist. */
-static char *find_directory(const char *path)
+char *tobi_scene_find_directory(const char *path)
 {
     const char *slash = strrchr(path, '/');
     char *directory = slash == path ? strdup("/")
@@ -193,9 +193,12 @@ static char *find_directory(const char *path)
 static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
                                 const char *const *overrides, tobi_error *err)
 {
+    tobi_status status = TOBI_OK;
+    if (tobi_import_applies(source->root))
+        status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table);
     scene->root = json_incref(source->root);
-    TOBI_TRY(tobi_override_apply(source, overrides, err));
-    tobi_status status = read_scene(scene, source);
+    if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));
+    if (status == TOBI_OK) status = read_scene(scene, source);
     return status == TOBI_NO_MEMORY ? tobi_fail(err, status, "no memory for the scene") : status;
 }
 
@@ -208,7 +211,7 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
     tobi_scene *scene = calloc(1, sizeof *scene);
     tobi_report *report = tobi_report_create();
     tobi_source source = { 0 };
-    if (scene) scene->directory = find_directory(path);
+    if (scene) scene->directory = tobi_scene_find_directory(path);
     if (scene && scene->directory) scene->name = name_scene(scene->directory, path);
     tobi_status status = TOBI_NO_MEMORY;
     if (!scene || !report || !scene->name) tobi_fail(err, status, "no memory for the scene");
@@ -254,6 +257,7 @@ void tobi_scene_free(tobi_scene *scene)
     tobi_texts_free(&scene->texts);
     json_decref(scene->root);
     free(scene->directory);
+    free(scene->import_table);
     free(scene->name);
     free(scene);
 }
@@ -288,6 +292,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
 const char *tobi_scene_name(const tobi_scene *scene) { return scene->name; }
 const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return &scene->world; }
 const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene) { return &scene->output; }
+const char *tobi_scene_import_table(const tobi_scene *scene) { return scene->import_table; }
 
 static json_t *write_fluid(const tobi_scene_fluid *fluid)
 {
@@ -312,6 +317,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
         json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->body_count; i++) {
         json_t *body = tobi_write_def(&tobi_body_table, &scene->bodies[i].def);
+        json_object_del(body, scene->bodies[i].def.mesh ? "box" : "mesh");
         json_t *motion = tobi_motion_write(&scene->bodies[i].motion_def);
         if (motion) json_object_set_new(body, "motion", motion);
         json_array_append_new(bodies, body);

@@ -36,7 +36,11 @@ struct tobi_scene {
     tobi_probe_def *probes;
     int probe_count;
     tobi_output_def output;
+    char *import_table;            /* what old keys became; NULL: it was native   */
 };
+
+/* The absolute directory of a file that may not exist; owned by the caller. */
+char *tobi_scene_find_directory(const char *path);
 
 /* tobi_scene_load from text in memory: path is its name in messages and tells where relative paths
    start. For tests and fuzzing. */

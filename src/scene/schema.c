@@ -68,15 +68,6 @@ static json_t *make_number(const tobi_param *row)
     return schema;
 }
 
-static json_t *make_vector(const tobi_param *row)
-{
-    json_t *list = make_type("array");
-    json_object_set_new(list, "items", make_number(row));
-    json_object_set_new(list, "minItems", json_integer(2));      /* in a 2-D scene */
-    json_object_set_new(list, "maxItems", json_integer(3));
-    return row->positive ? make_either(make_number(row), list) : list;
-}
-
 static json_t *make_words(const char *choices)
 {
     json_t *schema = json_object(), *list = json_array();
@@ -87,6 +78,16 @@ static json_t *make_words(const char *choices)
     }
     json_object_set_new(schema, "enum", list);
     return schema;
+}
+
+static json_t *make_vector(const tobi_param *row)
+{
+    json_t *list = make_type("array");
+    json_object_set_new(list, "items", make_number(row));
+    json_object_set_new(list, "minItems", json_integer(2));      /* in a 2-D scene */
+    json_object_set_new(list, "maxItems", json_integer(3));
+    if (row->text) return make_either(list, make_words(row->text));
+    return row->positive ? make_either(make_number(row), list) : list;
 }
 
 static json_t *make_methods(void)
@@ -230,7 +231,7 @@ static json_t *make_part(const tobi_part *part)
     return schema;
 }
 
-/* A region is a box or a mesh: the table cannot say that either is needed. */
+/* A region or a body is a box or a mesh: the table cannot say that either is needed. */
 static void require_region(json_t *schema)
 {
     json_t *box = json_object_get(json_object_get(schema, "properties"), "box");
@@ -249,7 +250,7 @@ static json_t *make_table(const tobi_param_table *table)
     put_text(schema, "description", table->doc);
     for (const tobi_param *row = table->rows; row->key; row++) put_row(schema, row, def);
     free(def);
-    if (table == &tobi_fill_table) require_region(schema);
+    if (table == &tobi_fill_table || table == &tobi_body_table) require_region(schema);
     tobi_part part;
     for (int i = 0; tobi_part_at(i, &part); i++) {
         if (strcmp(part.owner, table->name) != 0) continue;

@@ -56,6 +56,63 @@ static void blank_comments(char *text, size_t size)
     }
 }
 
+/* One line of a text before its comments are blanked. */
+typedef struct text_line {
+    size_t end;              /* of its newline, or of the text                           */
+    int has_comment;
+    int is_foreign;          /* what stands before the comment cannot be JSON: no ASCII  */
+    int is_blank;
+} text_line;
+
+static text_line read_line(const char *text, size_t size, size_t at)
+{
+    text_line line = { .is_blank = 1 };
+    int in_string = 0, structure = 0, foreign = 0;
+    for (; at < size && text[at] != '\n'; at++) {
+        char c = text[at];
+        if (line.has_comment) continue;
+        if (in_string) {
+            if (c == '\\' && at + 1 < size && text[at + 1] != '\n') at++;
+            else if (c == '"') in_string = 0;
+        } else if (c == '#' || (c == '/' && at + 1 < size && text[at + 1] == '/')) {
+            line.has_comment = 1;
+        } else {
+            if (c == '"') in_string = 1;
+            structure |= strchr("\"{}[]", c) != NULL && c != '\0';
+            foreign |= (unsigned char)c >= 0x80;
+            line.is_blank &= c == ' ' || c == '\t' || c == '\r';
+        }
+    }
+    line.is_foreign = foreign && !structure;
+    line.end = at;
+    return line;
+}
+
+/* A comment copied from a page may have wrapped: its tail stands on a line of its own. Scenes of the Taichi
+   program come like this. Such a line follows a comment and holds letters that no JSON has outside of
+   strings, and no bracket or quote; anything less clear stays a mistake. */
+static void blank_wrapped_tails(char *text, size_t size)
+{
+    int after_comment = 0;
+    if (!memmem(text, size, "\"Configuration\"", 15)) return;
+    for (size_t at = 0; at < size;) {
+        text_line line = read_line(text, size, at);
+        int tail = after_comment && line.is_foreign;
+        if (tail) memset(text + at, ' ', line.end - at);
+        if (!line.is_blank || line.has_comment) after_comment = line.has_comment || tail;
+        at = line.end + 1;
+    }
+}
+
+/* A hint for a line that looks like the tail of a comment. */
+static const char *hint_at_line(const char *text, size_t size, int number)
+{
+    size_t at = 0;
+    while (--number > 0 && at < size) at = read_line(text, size, at).end + 1;
+    return at < size && read_line(text, size, at).is_foreign
+        ? "; if this line belongs to the comment before it, put # in front" : "";
+}
+
 /* Walking valid JSON. Every function takes an offset and returns the one behind what it skipped. */
 
 static size_t skip_space(const char *text, size_t at)
@@ -231,6 +288,46 @@ static void add_mistake(tobi_source *source, size_t offset, const tobi_place *pl
                     path[0] ? ": " : "", what);
 }
 
+tobi_status tobi_source_add_origin(tobi_source *source, const char *native, const tobi_place *old)
+{
+    char path[TOBI_PATH_TEXT];
+    tobi_origin *more =
+        realloc(source->origins, (size_t)(source->origin_count + 1)*sizeof *source->origins);
+    if (!more) return TOBI_NO_MEMORY;
+    source->origins = more;
+    tobi_place_text(old, path);
+    tobi_origin *o = &more[source->origin_count];
+    *o = (tobi_origin){ strdup(native), strdup(path), locate(source, old).value };
+    source->origin_count++;
+    return o->native && o->old ? TOBI_OK : TOBI_NO_MEMORY;
+}
+
+/* The origin that says most about a native path: the longest that it begins with. */
+static const tobi_origin *find_origin(const tobi_source *source, const char *path)
+{
+    const tobi_origin *best = &source->origins[0];
+    size_t longest = 0;
+    for (int i = 0; i < source->origin_count; i++) {
+        const tobi_origin *o = &source->origins[i];
+        size_t n = o->native ? strlen(o->native) : 0;
+        if (n <= longest || strncmp(path, o->native, n) != 0 || !strchr(".[", path[n])) continue;
+        best = o;
+        longest = n;
+    }
+    return best;
+}
+
+static void tell_origin(tobi_source *source, const tobi_place *place, const char *what)
+{
+    char path[TOBI_PATH_TEXT];
+    int line, column;
+    tobi_place_text(place, path);
+    const tobi_origin *o = find_origin(source, path);
+    count_lines(source->text, o->offset, &line, &column);
+    tobi_report_add(source->report, o->offset, "%s:%d:%d: %s (here %s): %s", source->name, line,
+                    column, o->old ? o->old : "", path[0] ? path : "the scene", what);
+}
+
 static void tell(tobi_source *source, const tobi_place *place, int at_key, const char *what)
 {
     for (int i = source->override_count - 1; i >= 0; i--) {
@@ -239,6 +336,10 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
         tobi_place_text(place, path);
         tobi_report_add(source->report, 0, "--set %s: %s: %s", source->overrides[i].text, path,
                         what);
+        return;
+    }
+    if (source->translated && source->origin_count) {
+        tell_origin(source, place, what);
         return;
     }
     spot at = locate(source, place);
@@ -339,14 +440,16 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
     memcpy(source->text, text, size);
     source->text[size] = '\0';
+    blank_wrapped_tails(source->text, size);
     blank_comments(source->text, size);
 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);
     if (!source->root) {
-        tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s", name,
+        tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s%s", name,
                         mistake.line > 0 ? mistake.line : 1,
-                        mistake.column > 0 ? mistake.column : 1, mistake.text);
+                        mistake.column > 0 ? mistake.column : 1, mistake.text,
+                        hint_at_line(source->text, size, mistake.line));
         return TOBI_INVALID;
     }
     tobi_place root = { 0 };
@@ -361,7 +464,12 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
 void tobi_source_clear(tobi_source *source)
 {
     for (int i = 0; i < source->override_count; i++) json_decref(source->overrides[i].steps);
+    for (int i = 0; i < source->origin_count; i++) {
+        free(source->origins[i].native);
+        free(source->origins[i].old);
+    }
     free(source->overrides);
+    free(source->origins);
     json_decref(source->root);
     free(source->text);
     free(source->name);

@@ -21,6 +21,12 @@ typedef struct tobi_override {
     json_t *steps;                 /* list of keys and indices        */
 } tobi_override;
 
+/* A part of a translated scene: mistakes found in it are told at the old key. */
+typedef struct tobi_origin {
+    char *native, *old;            /* paths as texts                  */
+    size_t offset;                 /* of the old value in the text    */
+} tobi_origin;
+
 typedef struct tobi_source {
     char *name;                    /* path as given, for messages     */
     char *text;                    /* comments blanked, NUL at end    */
@@ -28,6 +34,9 @@ typedef struct tobi_source {
     json_t *root;                  /* an object                       */
     tobi_override *overrides;      /* those that were applied         */
     int override_count;
+    struct tobi_origin *origins;   /* where the parts of a translated scene come from; first: all others */
+    int origin_count;
+    int translated;                /* places are those of the native scene, the text is the old one      */
     tobi_report *report;           /* borrowed                        */
 } tobi_source;
 
@@ -46,6 +55,9 @@ void tobi_source_mistake(tobi_source *source, const tobi_place *place, const cha
 /* The same at the place of a key instead of its value: for keys that should not be there. */
 void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, const char *format,
                                 ...) __attribute__((format(printf, 3, 4)));
+
+/* Says that the native path comes from an old place; to be called before `translated` is set. */
+tobi_status tobi_source_add_origin(tobi_source *source, const char *native, const tobi_place *old);
 
 /* Writes "fluids[0].density" into text (at least TOBI_PATH_TEXT bytes); "" for the root. */
 void tobi_place_text(const tobi_place *place, char *text);

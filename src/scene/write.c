@@ -38,6 +38,7 @@ json_t *tobi_write_member(const tobi_param *row, const void *def)
     switch (row->type) {
     case TOBI_PARAM_VEC3:
         memcpy(v, member, sizeof v);
+        if (row->text && memcmp(v, row->def, sizeof v) == 0) return json_string(row->text);
         return json_pack("[fff]", v[0], v[1], v[2]);
     case TOBI_PARAM_TEXT:
         memcpy(&text, member, sizeof text);

@@ -163,7 +163,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
         m->memory.dt = dt;
     }
     if (max_dt <= 0 || dt < 0.5*max_dt) return dt;
-    return dt < max_dt ? 0.5*max_dt : max_dt;
+    return dt < max_dt*(1 - 1e-9) ? 0.5*max_dt : max_dt;      /* a fixed step fits but for rounding */
 }
 
 static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)

@@ -15,6 +15,8 @@
 #define FROM(a)  .min = (a), .max = NAN
 #define RANGE(a, b) .min = (a), .max = (b)
 #define POSITIVE .min = 0, .max = NAN, .positive = true
+/* Red, green and blue; the word of the row stands for the default, which is no colour. */
+#define COLOR .type = TOBI_PARAM_VEC3, .def = { -1, -1, -1 }, .min = 0, .max = 255, .unit = "RGB"
 #define CHOICE(words, count) \
     .type = TOBI_PARAM_CHOICE, .min = 0, .max = (count) - 1, .choices = words, .unit = "word"
 
@@ -116,6 +118,10 @@ static const tobi_param fluid_rows[] = {
       .unit = "kg/m3", .doc = "Rest density." },
     { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, FROM(0),
       .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3." },
+    { .key = "color", COLOR, AT(tobi_fluid_def, color), .text = "speed",
+      .doc = "Colour in pictures, red, green and blue; speed shows how fast the fluid is." },
+    { .key = "visible", BOOL, AT(tobi_fluid_def, visible), .def = { 1 },
+      .doc = "Whether pictures show the fluid." },
     { 0 }
 };
 
@@ -139,8 +145,12 @@ static const tobi_param body_rows[] = {
     { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body",
       .required = true,
       .doc = "Name of the body, used once in a scene and in the names of its files." },
-    { .key = "mesh", TEXT, AT(tobi_body_def, mesh), .unit = "path", .required = true,
-      .doc = "The body's closed surface (OBJ, STL or PLY)." },
+    { .key = "mesh", TEXT, AT(tobi_body_def, mesh), .unit = "path",
+      .doc = "The body's closed surface (OBJ, STL or PLY); a body has either a mesh or a box." },
+    { .key = "box.min", VEC3, AT(tobi_body_def, box_min), ANY, .unit = "m",
+      .doc = "Lower corner of a plain box, instead of a mesh." },
+    { .key = "box.max", VEC3, AT(tobi_body_def, box_max), ANY, .unit = "m",
+      .doc = "Upper corner of the box; scale, rotation and translation apply to it as to a mesh." },
     { .key = "scale", VEC3, AT(tobi_body_def, scale), .def = { 1, 1, 1 }, POSITIVE, .unit = "1",
       .doc = "Size factor, one number or one per axis, about the mesh's own origin, applied "
              "first." },
@@ -157,6 +167,10 @@ static const tobi_param body_rows[] = {
              "the fluid." },
     { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
       .doc = "Whether the fluid slips along the body or sticks to it." },
+    { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
+      .doc = "Whether pictures show the body." },
+    { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
+      .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body." },
     { 0 }
 };
 
@@ -187,6 +201,17 @@ static const tobi_param output_rows[] = {
       .doc = "Write the moving surface of each body as VTP and STL." },
     { .key = "frames", BOOL, AT(tobi_output_def, frames),
       .doc = "Write a PNG picture at each output." },
+    { .key = "ply", BOOL, AT(tobi_output_def, ply),
+      .doc = "Write the positions of the fluid's particles as PLY, for other programs." },
+    { .key = "obj", BOOL, AT(tobi_output_def, obj),
+      .doc = "Write the moving surface of each body as OBJ, for other programs." },
+    { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), ANY, .unit = "m",
+      .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." },
+    { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), ANY, .unit = "m",
+      .doc = "The point in the middle of the pictures." },
+    { .key = "camera.angle", REAL, AT(tobi_output_def, camera_angle), RANGE(0, 150),
+      .unit = "degrees", .text = "fit",
+      .doc = "Vertical field of view; fit shows the whole domain from where it looks best." },
     { 0 }
 };
 

@@ -7,6 +7,8 @@
    - TOBI_PARAM_TEXT: unit "name", "method" (the name of one), "path" (a file, looked up beside the
      scene) or "names" (a list, of particle fields).
    - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
+   - TOBI_PARAM_VEC3: text, if set, is a word for the default, which may lie out of the range
+     ("automatic" for a colour).
    - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */
 #pragma once
 #include "base/param.h"

@@ -1,4 +1,5 @@
-/* The picture of an output: water coloured by speed, bodies by number, seen so that the box fits. */
+/* The picture of an output: water coloured by speed and bodies by number unless they have colours of their
+   own, seen so that the box fits unless there is a camera. */
 #include "io/frame.h"
 #include "world/record.h"
 #include "world/world.h"
@@ -13,7 +14,11 @@ enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
 typedef struct drawing {
     double *positions, *velocities;    /* n x 3        */
-    float *speeds;                     /* n            */
+    float *values;                     /* n, speeds; with a palette the fluid's number  */
+    int64_t count;                     /* particles that are shown                      */
+    float palette[TOBI_FLUID_LIMIT][3];
+    int has_palette;
+    int mesh_count;
     tobi_frame_mesh *meshes;
 } drawing;
 
@@ -21,7 +26,7 @@ static void free_drawing(drawing *d)
 {
     free(d->positions);
     free(d->velocities);
-    free(d->speeds);
+    free(d->values);
     free(d->meshes);
 }
 
@@ -29,16 +34,42 @@ static tobi_status read_fluid(tobi_run *run, int64_t n, drawing *d, tobi_error *
 {
     d->positions = malloc((size_t)n * 3 * sizeof *d->positions + 1);
     d->velocities = malloc((size_t)n * 3 * sizeof *d->velocities + 1);
-    d->speeds = malloc((size_t)n * sizeof *d->speeds + 1);
-    if (!d->positions || !d->velocities || !d->speeds)
+    d->values = malloc((size_t)n * sizeof *d->values + 1);
+    if (!d->positions || !d->velocities || !d->values)
         return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "position", d->positions, 3 * n, err));
     TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "velocity", d->velocities, 3 * n, err));
     for (int64_t i = 0; i < n; i++) {
         const double *v = d->velocities + 3 * i;
-        d->speeds[i] = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        d->values[i] = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     }
+    d->count = n;
     return TOBI_OK;
+}
+
+/* Fluids with colours: the value becomes the fluid's number, the palette their colours; hidden fluids are
+   left out. */
+static void color_fluids(const tobi_run *run, drawing *d)
+{
+    static const float plain[3] = { 0.04f, 0.36f, 0.70f };
+    const tobi_simulation *s = &run->world->sim;
+    int hidden = 0;
+    for (int f = 0; f < s->fluid_count; f++) {
+        const double *color = s->fluid[f].color;
+        for (int k = 0; k < 3; k++)
+            d->palette[f][k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
+        d->has_palette |= color[0] >= 0;
+        hidden |= !s->fluid[f].visible;
+    }
+    if (!hidden && !d->has_palette) return;
+    int64_t n = d->count, kept = 0;
+    for (int64_t i = 0; i < n; i++) {
+        int f = s->particles.fluid[run->world->row_of[i]];      /* rows are fresh: just read */
+        if (!s->fluid[f].visible) continue;
+        memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
+        d->values[kept++] = d->has_palette ? (float)f : d->values[i];
+    }
+    d->count = kept;
 }
 
 static tobi_status read_meshes(tobi_run *run, int count, drawing *d, tobi_error *err)
@@ -46,10 +77,14 @@ static tobi_status read_meshes(tobi_run *run, int count, drawing *d, tobi_error 
     d->meshes = calloc((size_t)count + 1, sizeof *d->meshes);
     if (!d->meshes) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int b = 0; b < count; b++) {
-        tobi_frame_mesh *m = &d->meshes[b];
+        const tobi_body *body = &run->world->sim.bodies[b];
+        tobi_frame_mesh *m = &d->meshes[d->mesh_count];
+        if (!body->visible) continue;
+        d->mesh_count++;
         TOBI_TRY(tobi_world_surface(run->world, b, &m->vertex_count, &m->vertices, &m->triangle_count,
                                     &m->triangles));
         memcpy(m->color, body_colors[b % COLOR_COUNT], sizeof m->color);
+        for (int k = 0; k < 3 && body->color[0] >= 0; k++) m->color[k] = (float)(body->color[k] / 255.0);
     }
     return TOBI_OK;
 }
@@ -74,18 +109,27 @@ static tobi_status draw(tobi_run *run, const char *path, drawing *d, tobi_error 
         frame.box_max[a] = def->domain_max[a];
         frame.up[a] = -def->gravity[a];
     }
-    frame.particle_count = tobi_world_count(run->world, TOBI_FLUID);
-    frame.mesh_count = tobi_world_body_count(run->world);
-    TOBI_TRY(read_fluid(run, frame.particle_count, d, err));
-    TOBI_TRY(read_meshes(run, frame.mesh_count, d, err));
+    TOBI_TRY(read_fluid(run, tobi_world_count(run->world, TOBI_FLUID), d, err));
+    color_fluids(run, d);
+    TOBI_TRY(read_meshes(run, tobi_world_body_count(run->world), d, err));
+    frame.particle_count = d->count;
+    frame.mesh_count = d->mesh_count;
     frame.positions = (const double (*)[3])d->positions;
-    frame.values = d->speeds;
+    frame.values = d->values;
     frame.radius = 0.5 * def->spacing;
-    frame.value_max = color_speed(def);
+    frame.value_max = d->has_palette ? run->world->sim.fluid_count - 1 : color_speed(def);
+    if (d->has_palette) {
+        frame.palette = (const float (*)[3])d->palette;
+        frame.palette_count = run->world->sim.fluid_count;
+    }
+    frame.has_camera = run->output.camera_angle > 0 && def->dimension == 3;
+    memcpy(frame.eye, run->output.camera_position, sizeof frame.eye);
+    memcpy(frame.target, run->output.camera_look_at, sizeof frame.target);
+    if (frame.has_camera) frame.field_of_view = run->output.camera_angle;
     frame.meshes = d->meshes;
     snprintf(title, sizeof title, "t = %.4f s", tobi_world_time(run->world));
     frame.title = title;
-    frame.label = "speed [m/s]";
+    frame.label = d->has_palette ? NULL : "speed [m/s]";
     return tobi_frame_write(path, &frame, err);
 }
 

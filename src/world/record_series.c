@@ -1,4 +1,5 @@
 /* The files per output: particles, surfaces, and the lists that give them their times. */
+#include "io/exchange.h"
 #include "io/vtk.h"
 #include "world/record.h"
 #include <ctype.h>
@@ -77,8 +78,10 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_record_make_dir(run->dir, "fluid", err));
     TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
     if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
+    if (run->output.ply) TOBI_TRY(tobi_record_make_dir(run->dir, "ply", err));
     if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
     TOBI_TRY(tobi_record_make_dir(run->dir, "bodies", err));
+    if (run->output.obj) TOBI_TRY(tobi_record_make_dir(run->dir, "obj", err));
     return run->output.surfaces ? tobi_record_make_dir(run->dir, "surfaces", err) : TOBI_OK;
 }
 
@@ -133,6 +136,21 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
     return status;
 }
 
+static tobi_status write_ply(tobi_run *run, tobi_error *err)
+{
+    int64_t n = tobi_world_count(run->world, TOBI_FLUID);
+    char *path = tobi_record_path(run->dir, "ply/fluid_%06lld.ply", (long long)run->outputs);
+    double *points = malloc((size_t)n * 3 * sizeof *points + 1);
+    tobi_status status =
+        path && points ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (status == TOBI_OK)
+        status = tobi_world_read(run->world, TOBI_FLUID, "position", points, 3 * n, err);
+    if (status == TOBI_OK) status = tobi_ply_write(path, n, (const double (*)[3])points, err);
+    free(points);
+    free(path);
+    return status;
+}
+
 /* --- surfaces -------------------------------------------------------------------------- */
 
 static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
@@ -152,6 +170,20 @@ static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
             tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
     free(vtp);
     free(stl);
+    return status;
+}
+
+static tobi_status write_obj(tobi_run *run, int body, tobi_error *err)
+{
+    int64_t vertices, triangles;
+    const double (*vertex)[3];
+    const int32_t (*triangle)[3];
+    TOBI_TRY(tobi_world_surface(run->world, body, &vertices, &vertex, &triangles, &triangle));
+    char *path = tobi_record_path(run->dir, "obj/%s_%06lld.obj", run->body_file[body],
+                                  (long long)run->outputs);
+    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    tobi_status status = tobi_obj_write(path, vertices, vertex, triangles, triangle, err);
+    free(path);
     return status;
 }
 
@@ -201,6 +233,8 @@ tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
     TOBI_TRY(write_particles(run, TOBI_FLUID, "fluid", err));
     if (bodies) TOBI_TRY(write_particles(run, TOBI_BODIES, "bodies", err));
     for (int b = 0; run->output.surfaces && b < bodies; b++) TOBI_TRY(write_surface(run, b, err));
+    if (run->output.ply) TOBI_TRY(write_ply(run, err));
+    for (int b = 0; run->output.obj && b < bodies; b++) TOBI_TRY(write_obj(run, b, err));
     if (run->output.frames) TOBI_TRY(tobi_record_frame(run, err));
     return write_lists(run, run->outputs + 1, err);
 }

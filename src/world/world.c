@@ -186,6 +186,8 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
     f->density = def->density;
     f->viscosity = def->viscosity;
+    memcpy(f->color, def->color, sizeof f->color);
+    f->visible = def->visible;
     return TOBI_OK;
 }
 

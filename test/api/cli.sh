@@ -3,6 +3,7 @@
 # usage: cli.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
 set -uo pipefail
 program=$(realpath "$1")
+here=$(cd "$(dirname "$0")" && pwd)
 python=/usr/bin/python3
 [ -x $python ] || python=python3
 folder=$(mktemp -d)
@@ -153,6 +154,41 @@ got=0
 check "full disk: exit code 1 (was $got)" test $got = 1
 check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
 check "full disk: no unfinished files" no_parts full
+
+# --- scenes of the Taichi program -------------------------------------------------------------------
+old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
+expect 0 "" check "$old/fish.json"
+check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
+check "the particles of the old scene" grep -q "fluid particles  476836" out.txt
+expect 0 "" run "$old/rigid_blocks.json" --quiet --out old
+check "an old scene's OBJ" test -s old/obj/block_7_000005.obj -a ! -e old/ply
+check "five outputs of two fixed steps" test "$(value old/summary.json steps)" = 10
+expect 2 "--out says where" import "$old/rigid_blocks.json"
+expect 2 "which SCENE?" import
+expect 0 "" import "$old/rigid_blocks.json" --out new.json
+check "import tells what became of it" grep -q "10000 times water" out.txt
+expect 1 "new.json exists" import "$old/rigid_blocks.json" --out new.json
+expect 0 "" import "$old/rigid_blocks.json" --out new.json --force --quiet
+expect 1 "native scene already" import new.json --out newer.json
+expect 1 "nowhere.json" import nowhere.json --out newer.json
+expect 0 "" run new.json --quiet --out imported
+check "an imported scene gives the same results" same_results old imported
+check "an imported scene gives the same state" same_hash old imported
+expect 0 "" run "$old/blocks_y_up.json" --quiet --out blocks --frames --until 0.02
+check "an old scene's PLY and pictures" test -s blocks/ply/fluid_000002.ply -a -s blocks/frames/frame_000002.png
+# Meshes: beside the scene, in the working directory, in the folders above the scene.
+mkdir -p deep/data/scenes deep/data/models deep/elsewhere
+sed 's/"RigidBlocks": .*/"RigidBodies": [ { "geometryFile": ".\/data\/models\/it.obj", "translation": [0.6, 0.2, 0.2] } ] }/; /"RigidBodies"/q' \
+    "$old/rigid_blocks.json" > deep/data/scenes/it.json
+expect 1 "RigidBodies[0].geometryFile (here bodies[0].mesh): cannot find" check deep/data/scenes/it.json
+mkdir -p data/models && cp box.obj data/models/it.obj
+expect 0 "" check deep/data/scenes/it.json
+check "a mesh in the working directory" grep -q "$PWD/data/models/it.obj" out.txt
+cp box.obj deep/data/models/it.obj && rm -r data
+expect 0 "" check deep/data/scenes/it.json
+check "a mesh above the scene" grep -q "deep/data/models/it.obj" out.txt
+expect 0 "" import deep/data/scenes/it.json --out deep/it.json --quiet
+check "a mesh below the new scene has a relative path" grep -q '"data/models/it.obj"' deep/it.json
 
 # --- the same bits ----------------------------------------------------------------------------------
 expect 0 "" run tank.json --quiet --out one --threads 1

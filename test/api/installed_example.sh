@@ -20,6 +20,11 @@ flags="-std=c17 -Wall -Wextra -Werror -O1"
 "$cc" $flags "$here/example.c" -o "$work/static" $(pkg-config --cflags tobiuo) "$libdir/libtobiuo.a" \
     $(pkg-config --static --libs tobiuo | sed 's/-ltobiuo//')
 
+# An installed program finds the scenes that were installed with it.
+"$work/usr/bin/tobiuo" check "$here/../scenes/taichi/fish.json" > "$work/check.txt"
+grep "$work/usr/share/tobiuo/scenes/flying_fish/meshes/fish.obj" "$work/check.txt" > /dev/null ||
+    { echo "the installed program did not find the installed fish"; exit 1; }
+
 LD_LIBRARY_PATH=$libdir "$work/shared" | tee "$work/shared.txt"
 "$work/static" > "$work/static.txt"
 cmp "$work/shared.txt" "$work/static.txt" || { echo "shared and static library disagree"; exit 1; }

@@ -264,6 +264,60 @@ static void motions_by_numbers(void **state)
     tobi_scene_free(scene);
 }
 
+static void colours_boxes_and_a_camera(void **state)
+{
+    (void)state;
+    const char *overrides[] = { "fluids[0].color=[1, 2, 255]",
+                                "fluids[0].visible=false",
+                                "bodies=[{\"name\": \"b\", \"color\": \"automatic\", "
+                                "\"box\": { \"min\": [0, 0, 0], "
+                                "\"max\": [0.5, 0.5, 0.5] }, \"translation\": [0.1, 0, 0] }]",
+                                "output.camera={\"position\": [3, 3, 3], \"angle\": 30}",
+                                NULL };
+    tobi_scene *scene = parse(small, NULL);
+    assert_true(scene->fluids[0].def.color[0] == -1 && scene->output.camera_angle == 0);
+    tobi_scene_free(scene);
+    scene = parse(small, overrides);
+    const tobi_fluid_def *fluid = &scene->fluids[0].def;
+    assert_true(fluid->color[0] == 1 && fluid->color[2] == 255 && fluid->visible == 0);
+    assert_true(scene->bodies[0].def.color[0] == -1 && scene->bodies[0].def.box_max[2] == 0.5);
+    assert_true(scene->output.camera_position[1] == 3 && scene->output.camera_angle == 30);
+    char *text = tobi_scene_resolved(scene);
+    assert_non_null(strstr(text, "\"color\": \"automatic\""));
+    assert_non_null(strstr(text, "\"color\": [1.0, 2.0, 255.0]"));
+    tobi_scene *again = parse(text, NULL);
+    char *second = tobi_scene_resolved(again);
+    assert_string_equal(text, second);
+    free(second);
+    free(text);
+    tobi_scene_free(again);
+
+    tobi_world *world;
+    tobi_body_info info;
+    assert_int_equal(tobi_scene_build(scene, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_body(world, 0, &info), TOBI_OK);
+    assert_true(info.volume > 0.1249999 && info.volume < 0.1250001);
+    assert_true(info.position[0] > 0.3499999 && info.position[0] < 0.3500001);
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
+static void a_box_is_a_rectangle_in_2d(void **state)
+{
+    (void)state;
+    const char *overrides[] = { "bodies=[{\"name\": \"b\", \"box\": { \"min\": [0.2, 0.2], "
+                                "\"max\": [0.5, 0.4] } }]",
+                                NULL };
+    tobi_scene *scene = parse(plane, overrides);
+    tobi_world *world;
+    tobi_body_info info;
+    assert_int_equal(tobi_scene_build(scene, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_body(world, 0, &info), TOBI_OK);
+    assert_true(info.volume > 0.0599999 && info.volume < 0.0600001);
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
 static void builds_a_world(void **state)
 {
     (void)state;
@@ -314,6 +368,8 @@ int main(void)
         cmocka_unit_test(every_shipped_scene_loads),
         cmocka_unit_test(the_fish_is_the_described_one),
         cmocka_unit_test(motions_by_numbers),
+        cmocka_unit_test(colours_boxes_and_a_camera),
+        cmocka_unit_test(a_box_is_a_rectangle_in_2d),
         cmocka_unit_test(builds_a_world),
         cmocka_unit_test(describe_tells_units_defaults_and_ranges),
     };

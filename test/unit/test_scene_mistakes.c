@@ -154,7 +154,7 @@ static void missing_keys(void **state)
           { "s.json:3:14: fluids[0].fill: is missing or empty", "" },
           { "s.json:3:19: fluids[1]: is a number, must be an object", "" },
           { "s.json:4:14: bodies[0].name: is missing", "" },
-          { "s.json:4:14: bodies[0].mesh: is missing", "" },
+          { "s.json:4:14: bodies[0]: ", "must have either a mesh or a box, it has none" },
           { "s.json:4:26: bodies[0].motion: must have exactly one of script", "it has 0" });
 }
 
@@ -331,6 +331,30 @@ static void too_much(void **state)
     assert_int_equal(tobi_scene_load("large.json", NULL, &scene, NULL, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "has 16777217 bytes, a scene has at most 16777216"));
     remove("large.json");
+}
+
+static void boxes_colours_and_the_camera(void **state)
+{
+    (void)state;
+    CHECK(make(spacing, "\"color\": [0, 300, -1], \"visible\": 1,\n"
+                        "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.5] } } ]",
+               ", \"bodies\": [\n"
+               "{ \"name\": \"a\", \"color\": \"red\",\n"
+               "\"box\": { \"min\": [0, 0, 0], \"max\": [1, 0, 1] } },\n"
+               "{ \"name\": \"b\", \"box\": { \"min\": [0, 0, 0] } },\n"
+               "{ \"name\": \"c\", \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] },\n"
+               "\"mesh\": \"no.obj\" } ],\n"
+               "\"output\": { \"camera\": { \"position\": [1, 1, 1],\n"
+               "\"look_at\": [1, 1, 1], \"angle\": 30 } }"),
+          { "s.json:4:14: fluids[0].color[1]: ", "is 300, allowed is 0 to 255 RGB, or \"speed\"" },
+          { "s.json:4:19: fluids[0].color[2]: ", "is -1, allowed is 0 to 255" },
+          { "s.json:4:35: fluids[0].visible: ", "must be true or false" },
+          { "s.json:8:25: bodies[0].color: ", "is the text \"red\", must be a list of 3 numbers" },
+          { "s.json:9:8: bodies[0].box: ", "min is 0 and max is 0 in y, max must be greater" },
+          { "s.json:10:23: bodies[1].box: ", "must have two corners, min and max" },
+          { "s.json:11:1: bodies[2]: ", "must have either a mesh or a box, it has both" },
+          { "s.json:12:9: bodies[2].mesh: ", "cannot find" },
+          { "s.json:14:12: output.camera.look_at: ", "is the camera's own position" });
 }
 
 static void overrides_name_themselves(void **state)
@@ -519,6 +543,7 @@ int main(void)
         cmocka_unit_test(rules_between_values),
         cmocka_unit_test(motions_one_at_a_time),
         cmocka_unit_test(too_much),
+        cmocka_unit_test(boxes_colours_and_the_camera),
         cmocka_unit_test(overrides_name_themselves),
         cmocka_unit_test(syntax),
         cmocka_unit_test(truncated_anywhere),

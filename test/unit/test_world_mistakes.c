@@ -136,7 +136,8 @@ static void bodies_and_probes(void **state)
     tobi_world_def def = make_def();
     tobi_body_def body = tobi_default_body_def();
     tobi_world *world = make_world(&def, 1);
-    REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID, "body 'body' names no mesh");
+    REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID,
+            "body 'body': has no mesh, and its box has max 0 not above min 0 along x");
     body.mesh = box_mesh;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID,
             "sticks out of the domain: a vertex is at x = -0.5 m, allowed is 0 to 1 m");

@@ -1,0 +1,79 @@
+/* Writing a translated scene to a file of its own. */
+#define _GNU_SOURCE 1
+#include "io/file.h"
+#include "scene/import.h"
+#include "scene/scene.h"
+#include "scene/write.h"
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* "directory/a/b" becomes "a/b"; other paths stay. */
+static void shorten(json_t *object, const char *key, const char *directory)
+{
+    const char *path = json_string_value(json_object_get(object, key));
+    size_t n = strlen(directory);
+    if (path && strncmp(path, directory, n) == 0 && path[n] == '/' && n > 1)
+        json_object_set_new(object, key, json_string(path + n + 1));
+}
+
+static void shorten_paths(json_t *root, const char *directory)
+{
+    size_t i;
+    json_t *body;
+    json_array_foreach(json_object_get(root, "bodies"), i, body) {
+        shorten(body, "mesh", directory);
+        shorten(json_object_get(body, "motion"), "script", directory);
+    }
+}
+
+static tobi_status write_scene(const tobi_scene *scene, const char *from, const char *path, tobi_error *err)
+{
+    char *directory = tobi_scene_find_directory(path);
+    json_t *root = directory ? json_deep_copy(scene->root) : NULL;
+    if (root) shorten_paths(root, directory);
+    char *text = root ? tobi_write_json(root) : NULL;
+    tobi_status status = text ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    tobi_file file;
+    if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
+    if (status == TOBI_OK) {
+        const char *slash = strrchr(from, '/');
+        tobi_file_print(&file, "# Translated from %s, a scene of the Taichi program. What became of\n"
+                        "# its keys:\n",
+                        slash ? slash + 1 : from);
+        for (const char *line = scene->import_table; *line;) {
+            size_t length = strcspn(line, "\n");
+            tobi_file_print(&file, "#   %.*s\n", (int)length, line);
+            line += length + (line[length] == '\n');
+        }
+        tobi_file_write(&file, text, strlen(text));
+        status = tobi_file_commit(&file, err);
+    }
+    free(text);
+    json_decref(root);
+    free(directory);
+    return status;
+}
+
+tobi_status tobi_scene_import(const char *old_path, const char *new_path, int force, char **table,
+                              tobi_report **report, tobi_error *err)
+{
+    tobi_scene *scene;
+    *table = NULL;
+    if (report) *report = NULL;
+    if (!force && access(new_path, F_OK) == 0)
+        return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
+                         "force to replace it)", new_path);
+    TOBI_TRY(tobi_scene_load(old_path, NULL, &scene, report, err));
+    tobi_status status = TOBI_OK;
+    if (!scene->import_table)
+        status = tobi_fail(err, TOBI_INVALID, "%s is a native scene already: it has no Configuration",
+                           old_path);
+    if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, err);
+    if (status == TOBI_OK) {
+        *table = strdup(scene->import_table);
+        if (!*table) status = tobi_fail(err, TOBI_NO_MEMORY, "no memory for the table");
+    }
+    tobi_scene_free(scene);
+    return status;
+}
