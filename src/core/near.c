@@ -136,6 +136,30 @@ static int hidden(const look *l, int32_t point)
     return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
 }
 
+/* Around an edge: the faces that turn away. Without them a particle above one face does not feel that the body
+   ends, and the pressure at edges was a tenth too high. The far side of a thin body, whose normal is
+   opposite to the nearest point's, stays out: there is other water. */
+static int add_behind(look *l, int32_t k, const double r[3])
+{
+    const tobi_body *b = l->b;
+    const tobi_smoothing_constants *c = &l->s->smoothing;
+    tobi_near_entry *e = l->entry;
+    const double *n = b->normal[k];
+    double along = fmin(1 + 2*dot(n, e->foot_normal), 1), arm[3];
+    if (!(along > 0) || dot(r, r) >= c->h*c->h || b->area[k] <= 0) return 0;
+    double aw = along*b->area[k]*c->plane_scale*
+                tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
+    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
+    for (int a = 0; a < 3; a++) {
+        int p = (a + 1)%3, q = (a + 2)%3;
+        e->gradient[a] -= aw*n[a];
+        e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
+        e->ghost_lift[a] -= aw*dot(r, l->s->def.gravity)*n[a];
+    }
+    e->wall_flux -= aw*dot(n, b->point_velocity[k]);
+    return 0;
+}
+
 static int add_point(void *user, int32_t k)
 {
     look *l = user;
@@ -143,7 +167,8 @@ static int add_point(void *user, int32_t k)
     const tobi_smoothing_constants *c = &l->s->smoothing;
     tobi_near_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
-    if (!(s > 0) || hidden(l, k)) return 0;
+    if (!(s > 0)) return add_behind(l, k, r);
+    if (hidden(l, k)) return 0;
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->def.gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
@@ -155,6 +180,7 @@ static int add_point(void *user, int32_t k)
         e->gradient[a] -= aw*n[a];
         e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
         e->lift[a] -= aw*gn*(s + reach)*n[a];
+        e->ghost_lift[a] -= aw*dot(r, g)*n[a];
     }
     e->wall_flux -= aw*dot(n, v);
     e->share += aw*reach;
@@ -164,6 +190,19 @@ static int add_point(void *user, int32_t k)
         for (int a = 0; a < 3; a++) e->drag_velocity[a] += rate*v[a];
     }
     return 0;
+}
+
+/* Under pressure the body holds the whole hydrostatic field, as a fluid in its place would; a film that only
+   slides along it is held off along the normal alone, equation (6b). */
+static void blend_lift(const look *l, int32_t i)
+{
+    const tobi_simulation *s = l->s;
+    const double *g = s->def.gravity;
+    tobi_near_entry *e = l->entry;
+    double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*sqrt(dot(g, g));
+    double p = s->particles.pressure[i], wet = p >= full ? 1 : p > 0 ? p/full : 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        e->lift[a] += wet*(e->ghost_lift[a] - e->share*g[a] - e->lift[a]);
 }
 
 static int look_at(look *l, int32_t i, int body)
@@ -179,6 +218,7 @@ static int look_at(look *l, int32_t i, int body)
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
     visit_points(&l->s->near, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
+    blend_lift(l, i);
     return 1;
 }
 

@@ -131,6 +131,15 @@ TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_ac
     v->accel[i] = out;
 }
 
+/* Eq. (6b), 0 .. 1: how much pressure there is to continue into a wall, against that of two spacings' depth. */
+TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
+{
+    float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
+    float full = 2*v->spacing*(float)sqrt(g2)/v->inverse_density[v->fluid[i]];
+    float p = v->pressure[i];
+    return p >= full ? 1 : p > 0 ? p/full : 0;
+}
+
 /* v += dt (g + 2 nu L v - filter L L v + walls), eq. (13), (14): laminar viscosity, a fourth-order
    filter that takes motion at the particle scale and leaves longer waves, no-slip planes (mirrored
    velocity: 2 nu sigma/s) and the lift of planes, the hydrostatic part of their mirrored pressure,
@@ -162,7 +171,8 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
         float sigma = sph_plane_value(v, v->table->sigma, s),
               lambda = sph_plane_value(v, v->table->lambda, s);
         int axis = v->plane[p].axis;
-        add[axis] -= v->gravity[axis]*(lambda + s*sigma);
+        float wet = sph_wetness(v, i);
+        for (int c = 0; c < 3; c++) add[c] -= v->gravity[c]*(c == axis ? lambda + s*sigma : wet*lambda);
         if (!v->plane[p].no_slip) continue;
         for (int c = 0; c < 3; c++)
             if (c != axis) add[c] -= 2*nu*sigma/s*(speed[c] - v->plane[p].velocity[c]);
@@ -174,7 +184,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
 /* Force of the fluid on plane walls: reaction of pressure, lift and friction. totals[0..2]: N. */
 TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
 {
-    float free[6], sigma[6], lambda[6], open = 1;
+    float free[6], sigma[6], lambda[6], s_sigma[6], open = 1;
     int touched = 0;
     for (int k = 0; k < v->plane_count; k++) {
         float s = sph_plane_distance(v, k, i);
@@ -184,7 +194,8 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
         s = s > 0.25f*v->spacing ? s : 0.25f*v->spacing;
         lambda[k] = sph_plane_value(v, v->table->lambda, s);
         sigma[k] = sph_plane_value(v, v->table->sigma, s);
-        lambda[k] += s*sigma[k];
+        s_sigma[k] = s*sigma[k];
+        lambda[k] += s_sigma[k];
         free[k] = 1 - sph_plane_value(v, v->table->lambda, sph_plane_distance(v, k, i));
         open *= free[k];
         touched = 1;
@@ -196,7 +207,9 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
         int axis = v->plane[k].axis;
         float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
         totals[axis] -= 2.0*v->volume*v->pressure[i]*v->plane[k].sign*here*open/free[k];
-        totals[axis] += mass*v->gravity[axis]*lambda[k];
+        float wet = sph_wetness(v, i);
+        for (int c = 0; c < 3; c++)
+            totals[c] += mass*v->gravity[c]*(c == axis ? lambda[k] : wet*(lambda[k] - s_sigma[k]));
         if (!v->plane[k].no_slip) continue;
         float s = sph_plane_distance(v, k, i);
         double drag = 2.0*mass*v->kinematic[v->fluid[i]]*sigma[k]/

@@ -194,6 +194,13 @@ static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t
     for (int i = 0; i < o->count; i++) laplacian(o, in, i, VEL, &out[i][ACC]);
 }
 
+/* Eq. (6b): 0 .. 1 by pressure, 1 from that of two spacings of depth on. */
+static double wetness(const oracle *o, const row *in, int i)
+{
+    double g = sqrt(o->gravity[0]*o->gravity[0] + o->gravity[1]*o->gravity[1] + o->gravity[2]*o->gravity[2]);
+    return fmin(fmax(in[i][PRES]/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
+}
+
 /* Eq. (13), (14), (6). accel holds L v. */
 static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
 {
@@ -207,7 +214,10 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
             if (s >= o->h) continue;
             s = fmax(s, 0.25*o->d);
             double sigma = look_up(o, o->sigma, s);
-            add[o->plane[k].axis] -= o->gravity[o->plane[k].axis]*(s*sigma + look_up(o, o->lambda, s));
+            for (int a = 0; a < 3; a++)
+                add[a] -= o->gravity[a]*look_up(o, o->lambda, s)*
+                          (a == o->plane[k].axis ? 1 : wetness(o, in, i));
+            add[o->plane[k].axis] -= o->gravity[o->plane[k].axis]*s*sigma;
             for (int a = 0; a < 3; a++)
                 if (o->plane[k].no_slip && a != o->plane[k].axis)
                     add[a] -= 2*nu*sigma/s*(in[i][VEL + a] - o->plane[k].velocity[a]);
@@ -229,8 +239,10 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
                 if (l != k) g *= 1 - look_up(o, o->lambda, wall_distance(o, in, i, l));
             t[axis] -= 2*o->volume*in[i][PRES]*o->plane[k].sign*g;
             s = fmax(s, 0.25*o->d);
-            t[axis] += o->volume*o->rho0[o->fluid[i]]*o->gravity[axis]*
-                       (look_up(o, o->lambda, s) + s*look_up(o, o->sigma, s));
+            double mass = o->volume*o->rho0[o->fluid[i]];
+            t[axis] += mass*o->gravity[axis]*s*look_up(o, o->sigma, s);
+            for (int c = 0; c < 3; c++)
+                t[c] += mass*o->gravity[c]*look_up(o, o->lambda, s)*(c == axis ? 1 : wetness(o, in, i));
             if (!o->plane[k].no_slip) continue;
             for (int c = 0; c < 3; c++)
                 if (c != axis)
