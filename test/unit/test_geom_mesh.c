@@ -269,24 +269,6 @@ static void keeps_cavities_and_what_lies_in_them(void **state)
     tobi_mesh_free(&mesh);
 }
 
-static void says_where_a_mesh_is_open(void **state)
-{
-    (void)state;
-    tobi_mesh mesh = make_box((double[3]){0, 0, 0}, (double[3]){1, 2, 3});
-    mesh.triangle_count = 11;
-    REFUSED(tobi_mesh_orient(&mesh, "wing", err), TOBI_INVALID, "mesh 'wing' is not closed: 3 open edges");
-    REFUSED(tobi_mesh_orient(&mesh, "wing", err), TOBI_INVALID, "from (1, 2, 0) to (1, 0, 3)");
-    REFUSED(tobi_mesh_orient(&mesh, "wing", err), TOBI_INVALID, "exactly two");
-    tobi_mesh_free(&mesh);
-    /* two cubes that share an edge: four triangles meet there */
-    tobi_mesh pair = join_meshes(make_cube(1), make_box((double[3]){1, 1, -1}, (double[3]){2, 2, 1}));
-    OK(tobi_mesh_build("pair", pair.vertex_count, (const double (*)[3])pair.vertices, pair.triangle_count,
-                       (const int32_t (*)[3])pair.triangles, &mesh, err));
-    REFUSED(tobi_mesh_orient(&mesh, "pair", err), TOBI_INVALID, "1 edges with more than two");
-    tobi_mesh_free(&mesh);
-    tobi_mesh_free(&pair);
-}
-
 static void refuses_surfaces_without_an_inside(void **state)
 {
     (void)state;
@@ -420,7 +402,6 @@ int main(void)
         cmocka_unit_test(places_a_mesh),
         cmocka_unit_test(turns_triangles_outward),
         cmocka_unit_test(keeps_cavities_and_what_lies_in_them),
-        cmocka_unit_test(says_where_a_mesh_is_open),
         cmocka_unit_test(refuses_surfaces_without_an_inside),
         cmocka_unit_test(refines_without_changing_the_shape),
         cmocka_unit_test(the_fish_is_as_described),

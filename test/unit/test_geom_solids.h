@@ -77,7 +77,8 @@ static inline tobi_mesh make_cube(double half)
 /* Puts b's triangles beside a's; b is freed. */
 static inline tobi_mesh join_meshes(tobi_mesh a, tobi_mesh b)
 {
-    tobi_mesh out = {a.vertex_count + b.vertex_count, a.triangle_count + b.triangle_count, NULL, NULL};
+    tobi_mesh out = {.vertex_count = a.vertex_count + b.vertex_count,
+                     .triangle_count = a.triangle_count + b.triangle_count};
     out.vertices = malloc((size_t)out.vertex_count*sizeof *out.vertices);
     out.triangles = malloc((size_t)out.triangle_count*sizeof *out.triangles);
     memcpy(out.vertices, a.vertices, (size_t)a.vertex_count*sizeof *a.vertices);
