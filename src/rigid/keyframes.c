@@ -149,7 +149,8 @@ static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[
     memcpy(q, (double[4]){1, 0, 0, 0}, 4*sizeof *q);
     if (r->given[QW]) {
         double length = sqrt(v[QW]*v[QW] + v[QX]*v[QX] + v[QY]*v[QY] + v[QZ]*v[QZ]);
-        if (!(length > 1e-100) || !isfinite(length)) return fail_here(r, err, "the quaternion has no length", "");
+        if (!(length > 1e-100) || !isfinite(length))
+            return fail_here(r, err, "the quaternion has no length", "");
         for (int k = 0; k < 4; k++) q[k] = v[QW + k]/length;
     } else if (r->given[AX]) {
         double axis[3] = {v[AX], v[AY], v[AZ]};

@@ -187,7 +187,8 @@ static void bad_files_are_named_with_their_line(void **state)
         FILE *f = fopen("rows.csv", "w");
         fputs(bad[i].text, f);
         fclose(f);
-        if (tobi_motion_keyframes("rows.csv", none, &m, &err) != TOBI_INVALID || !strstr(err.text, bad[i].says))
+        tobi_status status = tobi_motion_keyframes("rows.csv", none, &m, &err);
+        if (status != TOBI_INVALID || !strstr(err.text, bad[i].says))
             fail_msg("<%s>: \"%s\" does not say \"%s\"", bad[i].text, err.text, bad[i].says);
         assert_null(m);
     }
