@@ -283,6 +283,22 @@ static void double_triangles_and_touching_solids(void **state)
     tobi_mesh_free(&mesh);
 }
 
+/* Cubes on a grid of 2 x 2 x 3, the middle layer only on one diagonal: they touch along an edge whose ends
+   lie within the solid, so no vertex there can be doubled. */
+static void an_edge_that_cannot_be_taken_apart_is_refused(void **state)
+{
+    (void)state;
+    static const char solid[3][2][2] = {{{1, 1}, {1, 1}}, {{1, 0}, {0, 1}}, {{1, 1}, {1, 1}}};
+    tobi_mesh all = {0}, mesh;
+    for (int i = 0; i < 12; i++) {
+        double low[3] = {i % 2, i/2 % 2, i/4}, high[3] = {low[0] + 1, low[1] + 1, low[2] + 1};
+        if (solid[i/4][i/2 % 2][i % 2]) all = join_meshes(all, make_box(low, high));
+    }
+    mesh = rebuild(all);
+    REFUSED(tobi_mesh_orient(&mesh, "grid", err), TOBI_INVALID, "1 edges with more than two triangles and 0");
+    tobi_mesh_free(&mesh);
+}
+
 static void odd_sizes_ask_about_units(void **state)
 {
     (void)state;
@@ -316,6 +332,7 @@ int main(void)
         cmocka_unit_test(borders_that_nearly_meet_are_welded),
         cmocka_unit_test(cracks_between_tessellations_are_closed),
         cmocka_unit_test(double_triangles_and_touching_solids),
+        cmocka_unit_test(an_edge_that_cannot_be_taken_apart_is_refused),
         cmocka_unit_test(odd_sizes_ask_about_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
