@@ -107,10 +107,12 @@ void tobi_world_destroy(tobi_world *w)
     if (!w) return;
     if (w->method_state) w->method->free(w->method_state);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
-    for (int k = 0; k < w->region_count; k++) free(w->regions[k].mesh);
+    for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
     free(w->sim.bodies);
     free(w->regions);
     free(w->probes);
+    for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
+    free(w->notes);
     free(w->row_of);
     free(w->method_def);
     tobi_near_free(&w->sim.near);
@@ -120,24 +122,42 @@ void tobi_world_destroy(tobi_world *w)
     free(w);
 }
 
+/* Keeps each line of notes as a text of its own. */
+static tobi_status add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
+                             tobi_error *err)
+{
+    for (const char *end; (end = strchr(notes, '\n')) != NULL; notes = end + 1) {
+        char **more = realloc(w->notes, (size_t)(w->note_count + 1)*sizeof *more);
+        size_t room = (size_t)(end - notes) + strlen(kind) + strlen(name ? name : "") + 8;
+        char *text = malloc(room);
+        if (more) w->notes = more;
+        if (!more || !text) {
+            free(text);
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a note");
+        }
+        snprintf(text, room, "%s '%s': %.*s", kind, name ? name : "", (int)(end - notes), notes);
+        w->notes[w->note_count++] = text;
+    }
+    return TOBI_OK;
+}
+
+const char *tobi_world_note(const tobi_world *w, int note)
+{
+    return note >= 0 && note < w->note_count ? w->notes[note] : NULL;
+}
+
 static tobi_status measure_region(tobi_world *w, const tobi_fill_def *f, tobi_region *r, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
     memcpy(r->lower, f->box_min, sizeof r->lower);
     memcpy(r->upper, f->box_max, sizeof r->upper);
-    memcpy(r->scale, f->scale, sizeof r->scale);
-    memcpy(r->translation, f->translation, sizeof r->translation);
     memcpy(r->velocity, f->velocity, sizeof r->velocity);
     if (f->mesh) {
-        tobi_mesh mesh;
         const double axis[3] = {0, 0, 1};
-        r->mesh = strdup(f->mesh);
-        if (!r->mesh) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a path");
-        TOBI_TRY(tobi_mesh_read(f->mesh, &mesh, err));
-        tobi_status status = tobi_mesh_transform(&mesh, f->scale, axis, 0, f->translation, err);
-        tobi_mesh_box(&mesh, r->lower, r->upper);
-        tobi_mesh_free(&mesh);
-        TOBI_TRY(status);
+        TOBI_TRY(tobi_mesh_read(f->mesh, &r->shape, err));
+        TOBI_TRY(tobi_mesh_transform(&r->shape, f->scale, axis, 0, f->translation, err));
+        TOBI_TRY(tobi_mesh_orient(&r->shape, f->mesh, err));
+        tobi_mesh_box(&r->shape, r->lower, r->upper);
     }
     for (int a = 0; a < s->box.dimension; a++) {
         if (!(r->upper[a] > r->lower[a]))
@@ -178,8 +198,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
         r->fluid = s->fluid_count;
         tobi_status status = measure_region(w, &fills[k], r, err);
         w->region_count++;
+        if (status == TOBI_OK) status = add_notes(w, "fluid", def->name, r->shape.notes, err);
         if (status == TOBI_OK) continue;
-        while (w->region_count > first) free(w->regions[--w->region_count].mesh);
+        while (w->region_count > first) tobi_mesh_free(&w->regions[--w->region_count].shape);
         return status;
     }
     tobi_fluid *f = &s->fluid[s->fluid_count++];
@@ -216,8 +237,9 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a body");
     s->bodies = more;
     tobi_body *b = &s->bodies[s->body_count];
-    TOBI_TRY(tobi_body_create(b, def, s->box.dimension, 0.5*s->smoothing.spacing, s->box.lower, err));
+    TOBI_TRY(tobi_body_create(b, def, &s->box, 0.5*s->smoothing.spacing, err));
     tobi_status status = check_body(w, b, err);
+    if (status == TOBI_OK) status = add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
     else s->body_count++;
     return status;

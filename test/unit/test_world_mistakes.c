@@ -141,6 +141,9 @@ static void bodies_and_probes(void **state)
     body.mesh = box_mesh;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID,
             "sticks out of the domain: a vertex is at x = -0.5 m, allowed is 0 to 1 m");
+    for (int a = 0; a < 3; a++) body.scale[a] = 1000;
+    REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID, "does not fit: the mesh is");
+    for (int a = 0; a < 3; a++) body.scale[a] = 1;
     body.spacing = 1e-6;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_NO_MEMORY, "surface points, about");
     world->sim.body_count = TOBI_BODY_LIMIT;
