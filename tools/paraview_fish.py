@@ -79,6 +79,7 @@ def surface(source, ids, array, value, length, o):
 
 
 def view_of(box):
+    pv._DisableFirstRenderCameraReset()
     view = pv.CreateView("RenderView")
     view.ViewSize = [1200, 800]
     view.OrientationAxesVisibility = 0

@@ -49,7 +49,7 @@ typedef struct plotter {
     FILE *script;
     tobi_scene *scene;          /* NULL: no references, 3-D                           */
     int dimension;
-    table history, bodies;      /* bodies has no columns if there are none            */
+    table history, bodies, probes;      /* the last two have no columns if there is no such file */
     char **files;               /* names of the pictures                              */
     int file_count;
 } plotter;
@@ -195,6 +195,39 @@ static int draw_bodies(plotter *plot)
     return code;
 }
 
+/* All probes that measure the same in one panel: at most CURVE_LIMIT of them. */
+static int draw_probes(plotter *plot, const char *what, const char *title)
+{
+    const table *t = &plot->probes;
+    picture p = { .panels = 1 };
+    size_t length = strlen(what);
+    int code = 0, left_out = 0;
+    snprintf(p.title, sizeof p.title, "%s", title);
+    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s, %s", what, plot_unit(what, 0));
+    for (int k = 0; k < t->columns && code == 0; k++) {
+        size_t size = strlen(t->names[k]);
+        if (size <= length || strcmp(t->names[k] + size - length, what) != 0) continue;
+        if (p.panel[0].curves == CURVE_LIMIT) {
+            left_out++;
+            continue;
+        }
+        curve *c = add_curve(&p.panel[0], t->names[k], t->rows);
+        rows all = { t, NULL };
+        code = c ? 0 : complain("out of memory");
+        if (c) fill_curve(c, &all, k, -1, NULL);
+        if (c) c->colour = p.panel[0].curves - 1;
+    }
+    if (left_out)
+        fprintf(stderr, "tobiuo: note: %d more columns \"%s\" of probes.csv are not drawn\n", left_out,
+                what);
+    set_time_axis(&p, t);
+    char name[40];
+    snprintf(name, sizeof name, "probes_%s", what);
+    if (code == 0 && p.panel[0].curves) code = finish_picture(plot, &p, name);
+    picture_free(&p);
+    return code;
+}
+
 static const char *reference_label(const tobi_reference_def *def)
 {
     const char *slash = strrchr(def->file, '/');
@@ -243,35 +276,38 @@ static int is_same(const char *a, const char *b)
     return a && b ? strcmp(a, b) == 0 : a == b;
 }
 
+static int is_same_column(const tobi_reference_def *a, const tobi_reference_def *b)
+{
+    return is_same(a->column, b->column) && is_same(a->body, b->body) && is_same(a->probe, b->probe);
+}
+
 /* The run's column and every reference for it in one picture. */
 static int draw_comparison(plotter *plot, int index)
 {
     const tobi_reference_def *def = tobi_scene_reference(plot->scene, index), *other;
-    for (int k = 0; k < index; k++) {
-        other = tobi_scene_reference(plot->scene, k);
-        if (is_same(other->column, def->column) && is_same(other->body, def->body)) return 0;
+    for (int k = 0; k < index; k++)
+        if (is_same_column(tobi_scene_reference(plot->scene, k), def)) return 0;
+    rows r = { def->body ? &plot->bodies : def->probe ? &plot->probes : &plot->history, def->body };
+    const char *owner = def->body ? def->body : def->probe ? def->probe : "";
+    char name[300], full[300];
+    snprintf(full, sizeof full, "%s%s%s", owner, owner[0] ? "_" : "", def->column);
+    int column = table_column(r.table, def->probe ? full : def->column);
+    if (column < 0) {
+        complain("the run has no column \"%s\" to compare with %s", full, def->file);
+        return 0;
     }
-    rows r = { def->body ? &plot->bodies : &plot->history, def->body };
-    int column = table_column(r.table, def->column);
-    if (column < 0)
-        return complain("%s has no column %s: is the run older than its scene?",
-                        def->body ? "bodies.csv" : "history.csv", def->column), 0;
     picture p = { .panels = 1 };
     const char *unit = plot_unit(def->column, plot->dimension);
-    char name[300];
-    snprintf(p.title, sizeof p.title, "%s%s%s", def->body ? def->body : "", def->body ? ": " : "",
-             def->column);
+    snprintf(p.title, sizeof p.title, "%s%s%s", owner, owner[0] ? ": " : "", def->column);
     snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s%s%s", def->column,
              unit[0] ? ", " : "", unit);
-    snprintf(name, sizeof name, "compare_%s%s%s", def->body ? def->body : "", def->body ? "_" : "",
-             def->column);
+    snprintf(name, sizeof name, "compare_%.280s", full);
     set_time_axis(&p, r.table);
     curve *c = add_curve(&p.panel[0], "this run", r.table->rows);
     int code = c ? 0 : complain("out of memory");
     if (c) fill_curve(c, &r, column, -1, NULL);
     for (int k = index; code == 0 && (other = tobi_scene_reference(plot->scene, k)); k++)
-        if (is_same(other->column, def->column) && is_same(other->body, def->body))
-            code = add_reference(&p, other);
+        if (is_same_column(other, def)) code = add_reference(&p, other);
     if (code == 0) code = finish_picture(plot, &p, name);
     picture_free(&p);
     return code;
@@ -310,6 +346,8 @@ static int write_script(plotter *plot)
         picture_begin_script(plot->script, plot->options->format);
         code = draw_rows(plot, &all, plot_history);
         if (code == 0) code = draw_bodies(plot);
+        if (code == 0) code = draw_probes(plot, "pressure", "Pressure at the probes");
+        if (code == 0) code = draw_probes(plot, "level", "Level of the fluid at the probes");
         for (int k = 0; code == 0 && plot->scene && tobi_scene_reference(plot->scene, k); k++)
             code = draw_comparison(plot, k);
         int failed = ferror(plot->script);
@@ -364,6 +402,8 @@ static int draw_all(plotter *plot)
     int code = read_table(&plot->history, dir, "history.csv", "step");
     if (code == 0 && has_file(dir, "bodies.csv"))
         code = read_table(&plot->bodies, dir, "bodies.csv", "name");
+    if (code == 0 && has_file(dir, "probes.csv"))
+        code = read_table(&plot->probes, dir, "probes.csv", "time");
     if (code != 0) return code;
     if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
     if (mkdir(plot->folder, 0777) != 0 && errno != EEXIST)
@@ -389,6 +429,7 @@ int tobiuo_plot(int argc, char **argv)
     free(plot.folder);
     table_free(&plot.history);
     table_free(&plot.bodies);
+    table_free(&plot.probes);
     tobi_scene_free(plot.scene);
     return code;
 }

@@ -67,10 +67,11 @@ const picture_row plot_body[] = {
 const char *plot_unit(const char *column, int dimension)
 {
     static const struct { const char *part, *unit, *unit_2d; } units[] = {
-        { "iterations", "", "" }, { "ratio", "", "" }, { "density_error", "", "" },
+        { "iterations", "", "" }, { "residual", "", "" }, { "ratio", "", "" }, { "density_error", "", "" },
         { "divergence", "1/s", "1/s" }, { "angular_velocity", "rad/s", "rad/s" },
         { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
+        { "pressure", "Pa", "Pa" }, { "level", "m", "m" },
         { "energy", "J", "J per m" }, { "momentum", "kg m/s", "kg m/s per m" },
     };
     if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";

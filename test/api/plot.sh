@@ -74,7 +74,10 @@ cat > tank.json <<'END'
 { "domain": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.2]}, "spacing": 0.01, "end_time": 0.04,
   "fluids": [{"name": "water", "fill": [{"box": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.1]}}]}],
   "bodies": [{"name": "the 'box' $(touch pwned)", "mesh": "box.obj", "translation": [0, 0, 0.05]}],
+  "probes": [{"name": "P 1", "position": [0.1, 0, 0.02]}, {"name": "H", "kind": "level", "position": [0.05, 0, 0]}],
   "references": [
+    {"file": "measured.csv", "probe": "P 1", "column": "pressure", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
+     "y_scale": -20},
     {"file": "measured.csv", "column": "wall_force_z", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
      "label": "Müller & <Co> 'it''s' `touch pwned` 10 %"},
     {"file": "measured.csv", "column": "wall_force_z", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
@@ -83,11 +86,15 @@ cat > tank.json <<'END'
      "x": "t [ms]", "x_scale": 1e-3, "y": "other"} ] }
 END
 expect 0 "" check tank.json
-expect 1 'did you mean "wall_force_z"?' check tank.json --set 'references[0].column=wal_force_z'
-expect 1 "a column of bodies.csv needs body" check tank.json --set 'references[0].column=position_x'
-expect 1 'there is no body "fish"' check tank.json --set 'references[2].body=fish'
+expect 1 'did you mean "wall_force_z"?' check tank.json --set 'references[1].column=wal_force_z'
+expect 1 "one of bodies.csv or probes.csv needs body" check tank.json --set 'references[1].column=position_x'
+expect 1 'there is no body "fish"' check tank.json --set 'references[3].body=fish'
+expect 1 'there is no probe "P2"' check tank.json --set 'references[0].probe=P2'
+expect 1 'no column "level" in a point' check tank.json --set 'references[0].column=level'
+expect 1 'no column "pressure" in a level' check tank.json --set 'references[0].probe=H'
+expect 1 "at most one of them" check tank.json --set 'references[3].probe=H'
 expect 1 "cannot find" check tank.json --set 'references[1].file=no_such.csv'
-expect 1 "greater than 0" check tank.json --set 'references[1].x_scale=-1'
+expect 1 "greater than 0" check tank.json --set 'references[2].x_scale=-1'
 expect 1 "file: is missing" check tank.json --set 'references=[{"column": "dt"}]'
 expect 1 "must be a list" check tank.json --set 'references={}'
 expect 1 "one line" check tank.json --set 'references[0].label="a\nb"'
@@ -107,11 +114,11 @@ fi
 expect 0 "" plot tank
 box="the _box_ \$(touch pwned)"
 for file in energies walls incompressibility solver "${box}_motion" "${box}_force" "${box}_torque" \
-            compare_wall_force_z "compare_${box}_pressure_force_z"; do
+            probes_pressure probes_level "compare_P 1_pressure" compare_wall_force_z "compare_${box}_pressure_force_z"; do
     check "a picture of $file" has "tank/plots/$file.svg" "time, s"
     check "$file is listed" grep -qxF "tank/plots/$file.svg" out.txt
 done
-check "9 pictures" test "$(wc -l < out.txt)" = 9
+check "12 pictures" test "$(wc -l < out.txt)" = 12
 check "axes have units" has tank/plots/energies.svg "kinetic energy, J"
 check "the body is named as it is" has "tank/plots/${box}_force.svg" "the 'box' \$(touch pwned)"
 check "the label as well" has tank/plots/compare_wall_force_z.svg "Müller & <Co> 'it''s' \`touch pwned\` 10 %"
@@ -130,7 +137,7 @@ printf 't [ms],"F, N",other\n900,1,1\n' > measured.csv
 expect 0 "no value between 0 and 0.04 s" plot tank
 rm measured.csv
 expect 0 "drawn without reference data" plot tank
-check "only the run's own 7" test "$(wc -l < out.txt)" = 7
+check "only the run's own 9" test "$(wc -l < out.txt)" = 9
 
 # Older or foreign tables: what is there is drawn.
 expect 0 "no values for the picture" plot made
