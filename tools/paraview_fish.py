@@ -90,7 +90,7 @@ def view_of(box):
     view.CameraFocalPoint = centre
     view.CameraPosition = [centre[0] - 1.3*size, centre[1] - 2.2*size, centre[2] + 1.5*size]
     view.CameraViewUp = [0, 0, 1]
-    view.CameraViewAngle = 16
+    view.CameraViewAngle = 18
     return view
 
 

@@ -104,7 +104,7 @@ static void write_style(FILE *script, const curve *c)
 {
     const char *colour = palette[c->colour % COLOURS];
     if (c->style == CURVE_POINTS)
-        fprintf(script, "points pointtype %d pointsize 0.9 linewidth 1.5 linecolor rgb '%s'",
+        fprintf(script, "linespoints pointtype %d pointsize 0.8 linewidth 0.8 linecolor rgb '%s'",
                 point_types[c->colour % POINTS], colour);
     else
         fprintf(script, "lines linewidth %s dashtype %s linecolor rgb '%s'",

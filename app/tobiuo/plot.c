@@ -14,10 +14,13 @@
 
 extern char **environ;
 
-typedef struct plot_options { const char *dir, *format; } plot_options;
+typedef struct plot_options { const char *dir, *format, *scene; } plot_options;
+
+enum { KEY_SCENE = 256 };
 
 static const struct argp_option options[] = {
     { "format", 'f', "FORMAT", 0, "svg (default) or png", 0 },
+    { "scene", KEY_SCENE, "SCENE", 0, "take the references of this scene, not those of the run", 0 },
     { 0 }
 };
 
@@ -30,6 +33,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
             argp_error(state, "--format: '%s' is neither svg nor png", value);
         o->format = value;
         break;
+    case KEY_SCENE: o->scene = value; break;
     case ARGP_KEY_ARG:
         if (o->dir) argp_error(state, "one DIR only");
         o->dir = value;
@@ -380,18 +384,24 @@ static int has_file(const char *dir, const char *name)
     return found;
 }
 
-/* The references and the dimension. A run that was moved away from its meshes is still drawn. */
-static void read_scene(plotter *plot)
+/* The references and the dimension. A run that was moved away from its meshes is still drawn; a scene
+   that was asked for must be right. */
+static int read_scene(plotter *plot)
 {
+    const plot_options *o = plot->options;
     char *path = NULL;
     tobi_error err = { 0 };
-    if (!has_file(plot->options->dir, "resolved.json") ||
-        asprintf(&path, "%s/resolved.json", plot->options->dir) < 0)
-        return;
-    if (tobi_scene_load(path, NULL, &plot->scene, NULL, &err) != TOBI_OK)
-        fprintf(stderr, "tobiuo: note: drawn without reference data, because of %s\n", err.text);
-    else plot->dimension = tobi_scene_world_def(plot->scene)->dimension;
+    tobi_report *report = NULL;
+    if (!o->scene && !has_file(o->dir, "resolved.json")) return 0;
+    if (o->scene) path = scene_path(o->scene);
+    else if (asprintf(&path, "%s/resolved.json", o->dir) < 0) return complain("out of memory");
+    tobi_status status = tobi_scene_load(path, NULL, &plot->scene, &report, &err);
     free(path);
+    if (status == TOBI_OK) plot->dimension = tobi_scene_world_def(plot->scene)->dimension;
+    else if (o->scene) return complain_scene(report, &err);
+    else fprintf(stderr, "tobiuo: note: drawn without reference data, because of %s\n", err.text);
+    tobi_report_free(report);
+    return 0;
 }
 
 static int draw_all(plotter *plot)
@@ -408,8 +418,8 @@ static int draw_all(plotter *plot)
     if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
     if (mkdir(plot->folder, 0777) != 0 && errno != EEXIST)
         return complain("cannot make %s: %s", plot->folder, strerror(errno));
-    read_scene(plot);
-    code = write_script(plot);
+    code = read_scene(plot);
+    if (code == 0) code = write_script(plot);
     if (code == 0) code = run_gnuplot(plot);
     for (int k = 0; k < plot->file_count && code == 0; k++)
         printf("%s/%s\n", plot->folder, plot->files[k]);

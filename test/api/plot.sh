@@ -126,6 +126,12 @@ check "a reference without label shows its file" has tank/plots/compare_wall_for
 check "the marks within the run's time: twice 3, and 2 in the legend" \
     test "$(points tank/plots/compare_wall_force_z.svg)" = 8
 check "no name was run as a command" test ! -e pwned -a ! -e tank/plots/pwned
+sed 's/"y_scale": -20}/"y_scale": -20, "label": "later"}/' tank.json > later.json
+expect 0 "" plot tank --scene later.json
+check "references may come later" has "tank/plots/compare_P 1_pressure.svg" "later"
+expect 1 "nowhere.json" plot tank --scene nowhere.json
+sed 's/measured/forgotten/' later.json > wrong.json
+expect 1 "wrong.json:" plot tank --scene wrong.json
 expect 0 "" plot tank --format png
 check "png" cmp -n 8 tank/plots/energies.png <(printf '\211PNG\r\n\032\n')
 
