@@ -11,6 +11,7 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
+int tobiuo_plot(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
 int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);

@@ -25,6 +25,7 @@ TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
+TOBI_API tobi_reference_def tobi_default_reference_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def), NULL = its
    defaults. On failure *world is NULL and err says why. */

@@ -121,6 +121,18 @@ typedef struct tobi_output_def {
     double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */
 } tobi_output_def;
 
+/* Measured or published values that a column of a run's tables is compared with. */
+typedef struct tobi_reference_def {
+    const char *file;             /* path of a CSV file: a row of names, then numbers; # begins comments */
+    const char *column;           /* of history.csv, or of bodies.csv or probes.csv, see below       */
+    const char *body;             /* name of a body: column is one of bodies.csv; or NULL            */
+    const char *probe;            /* name of a probe: column is what it measures, "pressure"; or NULL */
+    const char *x;                /* column of file with the times                                   */
+    const char *y;                /* column of file with the values; NULL = named like column        */
+    double x_scale, y_scale;      /* factors that turn x into s and y into the unit of column        */
+    const char *label;            /* name in pictures; NULL = the file's                             */
+} tobi_reference_def;
+
 /* What one step did. */
 typedef struct tobi_step_info {
     int64_t step;                 /* number of this step, first = 1                                   */

@@ -114,6 +114,23 @@ static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, con
     return TOBI_OK;
 }
 
+static tobi_status read_references(tobi_scene *scene, const tobi_binder *binder,
+                                   const tobi_place *root)
+{
+    tobi_place place = { root, "references", 0 };
+    json_t *list = open_list(binder, scene->root, &place, "world");
+    if (!list) return TOBI_OK;
+    scene->references = calloc(json_array_size(list) + 1, sizeof *scene->references);
+    if (!scene->references) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        tobi_reference_def *def = &scene->references[scene->reference_count++];
+        *def = tobi_default_reference_def();
+        tobi_bind(binder, &tobi_reference_table, json_array_get(list, i), &entry, NULL, def);
+    }
+    return TOBI_OK;
+}
+
 /* Parameters of methods that are not chosen are checked too. */
 static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
@@ -163,6 +180,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     scene->output = tobi_default_output_def();
     json_t *value = json_object_get(scene->root, "output");
     if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
+    TOBI_TRY(read_references(scene, &binder, &root));
     tobi_scene_check(scene, source);
     return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
 }
@@ -253,6 +271,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->fluids);
     free(scene->bodies);
     free(scene->probes);
+    free(scene->references);
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
     json_decref(scene->root);
@@ -330,6 +349,12 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     if (scene->probe_count) json_object_set(root, "probes", probes);
     json_decref(probes);
     json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
+    json_t *references = json_array();
+    for (int i = 0; i < scene->reference_count; i++)
+        json_array_append_new(references,
+                              tobi_write_def(&tobi_reference_table, &scene->references[i]));
+    if (scene->reference_count) json_object_set(root, "references", references);
+    json_decref(references);
     char *text = root ? tobi_write_json(root) : NULL;
     json_decref(root);
     return text;

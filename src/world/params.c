@@ -215,6 +215,30 @@ static const tobi_param output_rows[] = {
     { 0 }
 };
 
+static const tobi_param reference_rows[] = {
+    { .key = "file", TEXT, AT(tobi_reference_def, file), .unit = "path", .required = true,
+      .doc = "CSV file: a row with the names of its columns, then numbers; lines with # in front "
+             "are comments." },
+    { .key = "column", TEXT, AT(tobi_reference_def, column), .unit = "name", .required = true,
+      .doc = "Column of history.csv that the values belong to, or of bodies.csv with body, or what a "
+             "probe measures." },
+    { .key = "body", TEXT, AT(tobi_reference_def, body), .unit = "name",
+      .doc = "Name of the body, for a column of bodies.csv." },
+    { .key = "probe", TEXT, AT(tobi_reference_def, probe), .unit = "name",
+      .doc = "Name of the probe, for a column of probes.csv: pressure, velocity_x .. z or level." },
+    { .key = "x", TEXT, AT(tobi_reference_def, x), .unit = "text", .text = "time",
+      .doc = "Column of the file with the times." },
+    { .key = "y", TEXT, AT(tobi_reference_def, y), .unit = "text",
+      .doc = "Column of the file with the values; without it the one that is named like column." },
+    { .key = "x_scale", REAL, AT(tobi_reference_def, x_scale), .def = { 1 }, POSITIVE, .unit = "1",
+      .doc = "Factor that turns x into seconds of the run." },
+    { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, ANY, .unit = "1",
+      .doc = "Factor that turns y into the unit of column." },
+    { .key = "label", TEXT, AT(tobi_reference_def, label), .unit = "text",
+      .doc = "Name in the picture, such as the publication; without it the name of the file." },
+    { 0 }
+};
+
 const tobi_param_table tobi_world_table = {
     "world", "The box, the fluid resolution and the clock: keys at the top of a scene.",
     sizeof(tobi_world_def), world_rows };
@@ -233,6 +257,9 @@ const tobi_param_table tobi_probe_table = {
     "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 const tobi_param_table tobi_output_table = {
     "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
+const tobi_param_table tobi_reference_table = {
+    "reference", "An entry of references: data that `tobiuo plot` draws beside the run's.",
+    sizeof(tobi_reference_def), reference_rows };
 
 static const tobi_param_table *const methods[] = { &tobi_dfsph_table };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
@@ -241,7 +268,8 @@ const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
         &tobi_world_table, &tobi_dfsph_table, &tobi_fluid_table,
-        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table
+        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table,
+        &tobi_reference_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
 }
@@ -290,3 +318,4 @@ DEFAULT(fill)
 DEFAULT(body)
 DEFAULT(probe)
 DEFAULT(output)
+DEFAULT(reference)
