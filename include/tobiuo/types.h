@@ -23,7 +23,7 @@ typedef enum tobi_compression {
 
 /* The box, the fluid resolution and the clock. */
 typedef struct tobi_world_def {
-    const char *method;          /* name in the method list, "dfsph"                                 */
+    const char *method;          /* name in the method list: "dfsph", "wcsph"                        */
     int         dimension;       /* 2 or 3; 2-D lives in x-y, masses and forces are per metre depth   */
     double      domain_min[3];   /* m, any sign                                                      */
     double      domain_max[3];   /* m                                                                */
@@ -53,6 +53,16 @@ typedef struct tobi_dfsph_def {
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */
     double shifting;                  /* 1, strength of particle shifting in flows without a surface  */
 } tobi_dfsph_def;
+
+/* Parameters of the WCSPH method. */
+typedef struct tobi_wcsph_def {
+    int    kernel;                    /* tobi_smoothing                                               */
+    double support;                   /* support radius in spacings, 2 to 4                           */
+    double stiffness;                 /* Pa, B of p = B ((rho/rho0)^exponent - 1)                     */
+    double exponent;                  /* 1                                                            */
+    double damping;                   /* 1, bulk viscosity over density, speed of sound and spacing   */
+    double filter;                    /* 1, share of the particle-scale motion taken out per step     */
+} tobi_wcsph_def;
 
 /* A fluid: one material. */
 typedef struct tobi_fluid_def {

@@ -53,5 +53,8 @@ typedef struct sph_view {
     const float *coarse;                      /* Pa at the preconditioner's nodes, NULL = none  */
     double cells_per_metre[3];                /* of its cells                                   */
     int   nodes[3];
+    float stiffness, exponent;                /* Pa, 1: of the Tait equation            */
+    float damping;                            /* Pa s, of sound: pressure per rate of compression */
+    float relaxation;                         /* share of the density error shifted away per step */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;

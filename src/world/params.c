@@ -111,6 +111,29 @@ static const tobi_param dfsph_rows[] = {
     { 0 }
 };
 
+static const tobi_param wcsph_rows[] = {
+    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(tobi_wcsph_def, kernel),
+      .doc = "Smoothing kernel." },
+    { .key = "support", REAL, AT(tobi_wcsph_def, support), .def = { 2 }, RANGE(2, 4),
+      .unit = "spacings",
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." },
+    { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, POSITIVE,
+      .unit = "Pa",
+      .doc = "B of the Tait equation p = B ((rho/rho0)^exponent - 1). The speed of sound is "
+             "sqrt(exponent B/rho0); ten times the fastest flow keeps the density within 1 %." },
+    { .key = "exponent", REAL, AT(tobi_wcsph_def, exponent), .def = { 7 }, RANGE(1, 20),
+      .unit = "1", .doc = "Exponent of the Tait equation." },
+    { .key = "damping", REAL, AT(tobi_wcsph_def, damping), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Damping of sound: a bulk viscosity of damping times density, speed of sound and "
+             "spacing. Shear and slow flow do not feel it." },
+    { .key = "filter", REAL, AT(tobi_wcsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Share of particle-scale motion taken out per step of a tenth of the speed of sound; "
+             "longer waves are left alone." },
+    { 0 }
+};
+
 static const tobi_param fluid_rows[] = {
     { .key = "name", TEXT, AT(tobi_fluid_def, name), .unit = "name", .text = "fluid",
       .required = true, .doc = "Name of the fluid, used once in a scene." },
@@ -221,6 +244,9 @@ const tobi_param_table tobi_world_table = {
 const tobi_param_table tobi_dfsph_table = {
     "dfsph", "Divergence-free SPH (Bender & Koschier 2015, 2017) for incompressible liquids.",
     sizeof(tobi_dfsph_def), dfsph_rows };
+const tobi_param_table tobi_wcsph_table = {
+    "wcsph", "Weakly compressible SPH: pressure from density by the Tait equation, no solver.",
+    sizeof(tobi_wcsph_def), wcsph_rows };
 const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 const tobi_param_table tobi_fill_table = {
@@ -234,13 +260,13 @@ const tobi_param_table tobi_probe_table = {
 const tobi_param_table tobi_output_table = {
     "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
 
-static const tobi_param_table *const methods[] = { &tobi_dfsph_table };
+static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
 const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
-        &tobi_world_table, &tobi_dfsph_table, &tobi_fluid_table,
+        &tobi_world_table, &tobi_dfsph_table, &tobi_wcsph_table, &tobi_fluid_table,
         &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
@@ -285,6 +311,7 @@ int tobi_choice_count(const char *choices)
     }
 DEFAULT(world)
 DEFAULT(dfsph)
+DEFAULT(wcsph)
 DEFAULT(fluid)
 DEFAULT(fill)
 DEFAULT(body)

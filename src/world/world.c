@@ -163,9 +163,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
         (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity))
         return tobi_fail(
             err, TOBI_UNSUPPORTED,
-            "fluid '%s' differs from '%s' in density or viscosity; dfsph carries one material, "
+            "fluid '%s' differs from '%s' in density or viscosity; %s carries one material, "
             "allowed are several fluids with the same values",
-            def->name ? def->name : "", s->fluid[0].name);
+            def->name ? def->name : "", s->fluid[0].name, w->method->name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);

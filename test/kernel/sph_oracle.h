@@ -31,6 +31,7 @@ typedef struct oracle {
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;
     double cells_per_metre[3];
+    double stiffness, exponent, damping, relaxation;
     double isolated, sheet_limit, surface_gradient, core, push, background;
 } oracle;
 
@@ -470,4 +471,33 @@ static void oracle_center_pressure(const oracle *o, const row *in, row *out, dou
 {
     (void)t;
     for (int i = 0; i < o->count; i++) out[i][PRES] = out[i][PAYLOAD] = in[i][PRES] - o->mean;
+}
+
+/* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
+static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double rate = compression(o, in, i, VEL, in[i][FLUX]);
+        double p = in[i][PRES] + o->dt*o->exponent*(in[i][PRES] + o->stiffness)*rate;
+        double push = p + o->damping*rate;
+        if (in[i][SURF] > 0) p = fmax(p, 0);
+        if (in[i][SURF] > 0) push = fmax(push, 0);
+        if (in[i][DIAG] <= o->isolated) p = push = 0;
+        out[i][PRES] = p;
+        out[i][DELTA] = out[i][PAYLOAD] = push;
+        t[0] += fabs(rate);
+        t[1] += fabs(p);
+        t[6] = fmax(t[6], fabs(rate));
+    }
+}
+
+/* Eq. (23). */
+static void oracle_relax(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double e = in[i][RHO] - 1;
+        e = e > 0 ? fmin(e, 0.1) : in[i][SURF] > 0 ? 0 : fmax(e, -0.1);
+        out[i][PAYLOAD] = in[i][DIAG] > o->isolated ? o->relaxation*e/(o->dt*o->dt*in[i][DIAG]) : 0;
+    }
 }

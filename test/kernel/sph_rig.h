@@ -84,6 +84,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->sheet_limit = 0.6f*(float)k->dimension; v->surface_gradient = (float)(0.5/g->c.h);
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
+    v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
 }
 
 /* A grid of 4 nodes along each axis: 3 cells, or 4 where the last meets the first. */
@@ -123,6 +124,8 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->sheet_limit = v->sheet_limit; o->surface_gradient = v->surface_gradient;
     o->core = v->core; o->isolated = v->isolated; o->push = v->push; o->background = v->background;
     o->speed_cap = v->speed_cap;
+    o->stiffness = v->stiffness; o->exponent = v->exponent; o->damping = v->damping;
+    o->relaxation = v->relaxation;
     oracle_normalise(o);
 }
 

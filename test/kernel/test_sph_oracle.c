@@ -37,6 +37,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_shift oracle_shift
 #define oracle_sph_center_direction oracle_center_direction
 #define oracle_sph_center_pressure oracle_center_pressure
+#define oracle_sph_tait oracle_tait
+#define oracle_sph_relax oracle_relax
 static const entry kernels[] = {
 #define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
 #define FOR(K) PAIR(K)
