@@ -104,13 +104,14 @@ static double choose_dt(const tobi_simulation *s, dfsph *m)
     double d = s->smoothing.spacing, dt, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
     for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
+    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed +
+                                           4*s->fluid[0].tension/(s->fluid[0].density*d));
     m->motion_dt = fmin(0.25*sqrt(d/fmax(sqrt(g2), 1e-12)),
                         s->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
-        dt = fmin(m->motion_dt, sph_viscous_dt(s));
+        dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
         if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         m->memory.dt = dt;

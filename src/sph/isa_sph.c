@@ -3,6 +3,7 @@
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"
+#include "sph/tension.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

@@ -21,13 +21,26 @@ static void bind_planes(const tobi_simulation *s, sph_view *v)
     }
 }
 
+/* Mean depth of the band at a flat surface: layers at (k + 1/2) d, weighted as sph_normal weighs them. */
+static double band_depth(const tobi_smoothing_constants *c)
+{
+    double d = c->spacing, weight = 0, sum = 0, first = 0;
+    for (double s = 0.5*d; s < c->h; s += d) {
+        double g = c->plane.sigma[(int)(s/c->h*TOBI_PLANE_SAMPLES)];
+        if (!(first > 0)) first = g;
+        weight += fmax(g/first - 0.2, 0);
+        sum += s*fmax(g/first - 0.2, 0);
+    }
+    return sum/weight;
+}
+
 void sph_bind_view(const tobi_simulation *s, sph_view *v)
 {
     const tobi_particles *p = &s->particles;
     const tobi_smoothing_constants *c = &s->smoothing;
     v->count = p->count;
     v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->wall = p->wall;
+    v->wall = p->wall; v->normal = p->normal; v->capillary = p->capillary;
     v->density = p->density;
     v->diagonal = p->diagonal;
     v->precondition = p->precondition;
@@ -47,7 +60,10 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v)
     for (int f = 0; f < s->fluid_count; f++) {
         v->inverse_density[f] = (float)(1/s->fluid[f].density);
         v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
+        v->tension[f] = (float)s->fluid[f].tension;
     }
+    v->band_depth = (float)band_depth(c);
+    v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
     for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
 }
 
@@ -58,6 +74,15 @@ double sph_viscous_dt(const tobi_simulation *s)
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].viscosity > 0)
             dt = fmin(dt, 0.8*s->fluid[f].density/(s->fluid[f].viscosity*rate));
+    return dt;
+}
+
+double sph_tension_dt(const tobi_simulation *s)
+{
+    double d = s->smoothing.spacing, dt = INFINITY;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0)
+            dt = fmin(dt, 0.4*sqrt(s->fluid[f].density*d*d*d/(2*acos(-1)*s->fluid[f].tension)));
     return dt;
 }
 
@@ -103,11 +128,24 @@ tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *er
     return TOBI_OK;
 }
 
+static void apply_tension(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+{
+    double most = 0;
+    for (int f = 0; f < s->fluid_count; f++) most = fmax(most, s->fluid[f].tension);
+    if (!(most > 0)) return;
+    launch(s, v, k->sph_normal, NULL);
+    launch(s, v, k->sph_smooth_normal, NULL);
+    if (s->body_count > 0) tobi_near_contact(s);
+    launch(s, v, k->sph_curvature, NULL);
+    launch(s, v, k->sph_tension, NULL);
+}
+
 void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->body_count > 0) tobi_near_add_forces(s);
+    apply_tension(s, v, k);
     tobi_stage_end(&s->stages, "forces", clock);
 }
 
@@ -158,6 +196,7 @@ static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kerne
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->body_count > 0) tobi_near_add_forces(s);
+    apply_tension(s, v, k);
     s->dt = step;
     v->dt = dt;
     for (int64_t i = 0; i < p->count; i++)
@@ -165,6 +204,7 @@ static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kerne
             float kick = (&p->velocity[i].x)[a] - kept[a][i];
             (&p->velocity[i].x)[a] = kept[a][i];
             kept[a][i] = kick;
+            p->record[i].w = p->pressure[i];
         }
     launch(s, v, k->sph_pressure_accel, NULL);
     for (int64_t i = 0; i < p->count; i++)

@@ -7,6 +7,8 @@
 void sph_bind_view(const tobi_simulation *s, sph_view *v);
 /* 0.8/(nu rate): the longest step of explicit viscosity at a no-slip wall, s; without it INFINITY. */
 double sph_viscous_dt(const tobi_simulation *s);
+/* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
+double sph_tension_dt(const tobi_simulation *s);
 /* dt, or less, so that what is left up to max_dt (0 = no end) is no sliver of a step; into s and v. */
 void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt);
 
@@ -18,7 +20,7 @@ tobi_status sph_find_full(tobi_simulation *s, sph_view *v, const sph_kernels *k,
                           double *clock, tobi_error *err);
 /* The bodies' velocities over the coming step. */
 tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err);
-/* v += dt (gravity, viscosity, filter, friction, lift); v->filter is set. */
+/* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
 void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */
 void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);

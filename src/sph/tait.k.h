@@ -15,8 +15,9 @@ TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *
     float p = v->pressure[i] + v->dt*v->exponent*(v->pressure[i] + v->stiffness)*rate;
     float push = p + v->damping*rate;
     if (v->diagonal[i] <= v->isolated) p = push = 0;
-    if (v->surface[i] && p < 0) p = 0;
-    if (v->surface[i] && push < 0) push = 0;
+    float least = sph_floor(v, i);
+    if (v->surface[i] && p < least) p = least;
+    if (v->surface[i] && push < least) push = least;
     v->pressure[i] = p;
     v->delta[i] = push;
     v->record[i].w = push;

@@ -81,7 +81,7 @@ static double choose_dt(const tobi_simulation *s, const wcsph *m)
     if (s->def.time_step > 0) return s->def.time_step;
     for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
     double dt = fmin(s->def.cfl*d/(m->sound + speed), 0.25*sqrt(d/fmax(sqrt(g2), 1e-12)));
-    dt = fmin(dt, sph_viscous_dt(s));
+    dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
 
