@@ -351,7 +351,7 @@ void tobi_near_contact(tobi_simulation *s)
             u[c] -= across*e->foot_normal[c];
             size += u[c]*u[c];
         }
-        if (e->distance >= s->smoothing.spacing || !(size > 1e-6)) continue;
+        if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
         double cosine = s->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }

@@ -68,7 +68,7 @@ TOBI_FN void sph_smooth_normal_finish(const sph_view *v, int64_t i, sph_smooth_n
     (void)totals;
     for (int c = 0; c < 3; c++) n[c] = size > 0 ? n[c]/size : 0;
     for (int k = 0; k < v->plane_count && size > 0; k++) {
-        if (sph_plane_distance(v, k, i) >= v->spacing) continue;
+        if (sph_plane_distance(v, k, i) >= 1.5f*v->spacing) continue;
         float w[3] = {0, 0, 0};
         w[v->plane[k].axis] = v->plane[k].sign;
         sph_meet_wall(n, w, v->contact_cosine);

@@ -145,7 +145,9 @@ static const tobi_param fluid_rows[] = {
     { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, FROM(0),
       .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3." },
     { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), FROM(0), .unit = "N/m",
-      .text = "none", .doc = "Tension of the free surface; water at 20 degrees C has 0.0728." },
+      .text = "none",
+      .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "
+             "2.5 to 3." },
     { .key = "color", COLOR, AT(tobi_fluid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the fluid is." },
     { .key = "visible", BOOL, AT(tobi_fluid_def, visible), .def = { 1 },

@@ -535,7 +535,7 @@ static void oracle_smooth_normal(const oracle *o, const row *in, row *out, doubl
         for (int k = 0; k < o->plane_count && size > 0; k++) {
             int axis = o->plane[k].axis;
             double along = 1 - n[axis]*n[axis];
-            if (wall_distance(o, in, i, k) >= o->d || along <= 1e-6) continue;
+            if (wall_distance(o, in, i, k) >= 1.5*o->d || along <= 1e-6) continue;
             for (int c = 0; c < 3; c++) n[c] *= sin(o->contact)/sqrt(along);
             n[axis] = o->plane[k].sign*cos(o->contact);
         }

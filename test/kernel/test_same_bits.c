@@ -31,6 +31,7 @@ static tobi_world *make(int threads, int body)
     w.wall_min[2] = TOBI_WALL_NO_SLIP;
     f.name = "water";
     f.viscosity = 0.05;
+    f.surface_tension = 0.05;
     if (tobi_world_create(&w, NULL, &world, &err)) fail_msg("%s", err.text);
     if (tobi_world_add_fluid(world, &f, &fill, 1, &err)) fail_msg("%s", err.text);
     b.name = "post";
