@@ -164,7 +164,8 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
          def->surface_tension != s->fluid[0].tension))
         return tobi_fail(
             err, TOBI_UNSUPPORTED,
-            "fluid '%s' differs from '%s' in density, viscosity or surface tension; %s carries one material, "
+            "fluid '%s' differs from '%s' in density or viscosity or surface tension; "
+            "%s carries one material, "
             "allowed are several fluids with the same values",
             def->name ? def->name : "", s->fluid[0].name, w->method->name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
