@@ -20,6 +20,7 @@ TOBI_API const char *tobi_status_text(tobi_status status);
 
 TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
+TOBI_API tobi_wcsph_def  tobi_default_wcsph_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
@@ -27,7 +28,7 @@ TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
 
-/* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def), NULL = its
+/* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
 TOBI_API tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
                                        tobi_world **world, tobi_error *err);

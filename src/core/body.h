@@ -14,6 +14,7 @@ typedef struct tobi_body {
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
     tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
     double density;                  /* kg/m3                                                  */
+    double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */
     double color[3];                 /* RGB, 0 to 255, or -1; for pictures                     */

@@ -342,6 +342,21 @@ void tobi_near_add_forces(tobi_simulation *s)
     }
 }
 
+void tobi_near_contact(tobi_simulation *s)
+{
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_float4 *n = &s->particles.normal[i];
+        double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
+        for (int c = 0; c < 3; c++) {
+            u[c] -= across*e->foot_normal[c];
+            size += u[c]*u[c];
+        }
+        if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
+        double cosine = s->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
+        for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
+    }
+}
+
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */
 static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e, double force[3])
@@ -375,7 +390,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*s->particles.pressure[e->particle];
+        double push = r->viscous ? 0 : 2*s->smoothing.volume*(s->particles.pressure[e->particle] -
+                                                             s->particles.capillary[e->particle]);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*e->gradient[a];

@@ -26,6 +26,8 @@ enum { TOBI_STATE = 1, TOBI_SCRATCH = 2 };
     X(float,        product,             TOBI_SCRATCH, "1/s2",  "A q in a solve; else the mean pressure") \
     X(float,        delta,               TOBI_SCRATCH, "Pa",    "pressure change of this solve")             \
     X(float,        correction,          TOBI_SCRATCH, "Pa",    "potential of the position correction")      \
+    X(tobi_float4,  normal,              TOBI_SCRATCH, "1",     "unit normal of the surface; w = weight") \
+    X(float,        capillary,           TOBI_SCRATCH, "Pa",    "surface tension times curvature")         \
     X(uint8_t,      surface,             TOBI_SCRATCH, "1",     "1 at a free surface")                       \
     X(int32_t,      near,                TOBI_SCRATCH, "1",     "last near-body entry, -1 = none")          \
     X(uint32_t,     list_start,          TOBI_SCRATCH, "8",     "first neighbour, in groups of 8")           \

@@ -16,6 +16,7 @@
 
 extern const tobi_param_table tobi_world_table;
 extern const tobi_param_table tobi_dfsph_table;
+extern const tobi_param_table tobi_wcsph_table;
 extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_fill_table;
 extern const tobi_param_table tobi_body_table;

@@ -180,12 +180,14 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
     if (s->fluid_count > 0 &&
-        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity))
+        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity ||
+         def->surface_tension != s->fluid[0].tension))
         return tobi_fail(
             err, TOBI_UNSUPPORTED,
-            "fluid '%s' differs from '%s' in density or viscosity; dfsph carries one material, "
+            "fluid '%s' differs from '%s' in density or viscosity or surface tension; "
+            "%s carries one material, "
             "allowed are several fluids with the same values",
-            def->name ? def->name : "", s->fluid[0].name);
+            def->name ? def->name : "", s->fluid[0].name, w->method->name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);
@@ -207,6 +209,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
     f->density = def->density;
     f->viscosity = def->viscosity;
+    f->tension = def->surface_tension;
     memcpy(f->color, def->color, sizeof f->color);
     f->visible = def->visible;
     return TOBI_OK;

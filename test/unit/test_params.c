@@ -45,6 +45,7 @@ static void every_member_has_a_row(void **state)
     size_t motion = sizeof(tobi_motion_fn) + sizeof(void *) + sizeof(int);
     assert_int_equal(count_uncovered(&tobi_world_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_dfsph_table), hole);
+    assert_int_equal(count_uncovered(&tobi_wcsph_table), hole);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), 0);
     assert_int_equal(count_uncovered(&tobi_body_table), motion + hole);
@@ -179,8 +180,10 @@ static void methods_are_found_by_name(void **state)
     assert_ptr_equal(tobi_method_table("dfsph"), &tobi_dfsph_table);
     assert_null(tobi_method_table("dfsp"));
     assert_null(tobi_method_table(NULL));
+    assert_ptr_equal(tobi_method_table("wcsph"), &tobi_wcsph_table);
     assert_string_equal(tobi_method_name(0), "dfsph");
-    assert_null(tobi_method_name(1));
+    assert_string_equal(tobi_method_name(1), "wcsph");
+    assert_null(tobi_method_name(2));
 }
 
 int main(void)
