@@ -35,8 +35,9 @@ static void read_back(const tobi_scene *scene)
     if (status != TOBI_OK) fprintf(stderr, "%s\n%s\n", err.text, text);
     PROMISE(status == TOBI_OK);
     char *twice = tobi_scene_resolved(again);
-    if (!twice || strcmp(text, twice) != 0) fprintf(stderr, "%s\n%s\n", text, twice);
-    PROMISE(twice && strcmp(text, twice) == 0);
+    PROMISE(twice);
+    if (strcmp(text, twice) != 0) fprintf(stderr, "%s\n%s\n", text, twice);
+    PROMISE(strcmp(text, twice) == 0);
     free(twice);
     free(text);
     tobi_scene_free(again);
