@@ -89,12 +89,9 @@ static hid_t memory_type(tobi_vtk_type type)
     return -1;
 }
 
-/* 1.8's format has checksums on metadata, but no mark that the file is open for writing, which would
-   stand in an image taken before closing. */
 static hid_t access_list(void)
 {
     hid_t list = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(list, H5F_LIBVER_V18, H5F_LIBVER_V18);
     H5Pset_file_locking(list, 0, 1);
     H5Pset_fclose_degree(list, H5F_CLOSE_STRONG);
     return list;
@@ -122,6 +119,9 @@ static tobi_status create_image(tobi_store *store, tobi_error *err)
     hid_t access = access_list(), create = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(create, SEAL_BYTES);
     H5Pset_fapl_core(access, GROWTH_BYTES, 0);
+    /* 1.8's format has checksums on metadata, but no mark that the file is open for writing, which
+       would stand in an image taken before closing. */
+    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
     store->file = H5Fcreate(store->path, H5F_ACC_TRUNC, create, access);
     H5Pclose(create);
     H5Pclose(access);
@@ -188,10 +188,13 @@ static seal make_seal(const unsigned char *image, uint64_t bytes)
 static tobi_status write_image(tobi_store *store, tobi_error *err)
 {
     void *image = NULL;
-    hsize_t bytes = 0;
-    if (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(store->file, &bytes) < 0 ||
-        H5Fget_vfd_handle(store->file, H5P_DEFAULT, &image) < 0 || bytes <= SEAL_BYTES)
+    if (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 ||
+        H5Fget_vfd_handle(store->file, H5P_DEFAULT, &image) < 0)
         return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+    /* What is used of the grown memory, counted from behind the seal. */
+    ssize_t used = H5Fget_file_image(store->file, NULL, 0);
+    if (used <= 0) return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+    uint64_t bytes = (uint64_t)used + SEAL_BYTES;
     const unsigned char *start = *(unsigned char **)image;
     seal s = make_seal(start, bytes);
     tobi_file_write(&store->out, &s, sizeof s);
