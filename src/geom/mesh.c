@@ -12,6 +12,9 @@
 #include <string.h>
 
 #define WELD_TOLERANCE 1e-9     /* of the longest side of the box */
+/* m: squares of coordinates are kept as float in the tree, products of six in the integrals */
+#define LARGEST        1e15
+#define SMALLEST_SIZE  1e-15
 
 typedef struct weld {
     double origin[3], tolerance;
@@ -153,7 +156,7 @@ static tobi_status weld_vertices(const tobi_mesh *mesh, double tolerance, const 
     weld w = {.vertices = (const double (*)[3])mesh->vertices};
     tobi_mesh_box(mesh, w.origin, max);
     for (int k = 0; k < 3; k++) size = fmax(size, max[k] - w.origin[k]);
-    w.tolerance = size > 0 ? tolerance*size : 1;
+    w.tolerance = size > SMALLEST_SIZE ? tolerance*size : 1;      /* or all become one point */
     uint64_t slots = 16;
     while (slots < (uint64_t)mesh->vertex_count*2) slots *= 2;
     w.mask = slots - 1;
@@ -217,10 +220,9 @@ static tobi_status check_input(const char *name, int64_t vertex_count, const dou
                          (long long)triangle_count, INT32_MAX, INT32_MAX/3);
     for (int64_t i = 0; i < vertex_count; i++) {
         const double *x = vertices[i];
-        /* squares of coordinates must stay finite too */
-        if (!(fabs(x[0]) < 1e100 && fabs(x[1]) < 1e100 && fabs(x[2]) < 1e100))
+        if (!(fabs(x[0]) < LARGEST && fabs(x[1]) < LARGEST && fabs(x[2]) < LARGEST))
             return tobi_fail(err, TOBI_INVALID, "mesh '%s': vertex %lld is (%g, %g, %g); coordinates "
-                             "must be finite numbers", name, (long long)i + 1, x[0], x[1], x[2]);
+                             "must be finite numbers below 1e15", name, (long long)i + 1, x[0], x[1], x[2]);
     }
     for (int64_t t = 0; t < triangle_count; t++)
         for (int k = 0; k < 3; k++)
@@ -302,6 +304,14 @@ tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const do
     if (!isfinite(translation[0] + translation[1] + translation[2]))
         return tobi_fail(err, TOBI_INVALID, "translation (%g, %g, %g) must be finite", translation[0],
                          translation[1], translation[2]);
+    double reach = 0;
+    for (int64_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) reach = fmax(reach, fabs(scale[k]*mesh->vertices[i][k]));
+    reach = 2*reach + fmax(fabs(translation[0]), fmax(fabs(translation[1]), fabs(translation[2])));
+    if (!(reach < LARGEST))
+        return tobi_fail(err, TOBI_INVALID, "scale (%g, %g, %g) and translation (%g, %g, %g) put the mesh "
+                         "further than %g m away", scale[0], scale[1], scale[2], translation[0],
+                         translation[1], translation[2], LARGEST);
     make_rotation(unit, degrees, r);
     for (int64_t i = 0; i < mesh->vertex_count; i++) {
         double *x = mesh->vertices[i], s[3] = {scale[0]*x[0], scale[1]*x[1], scale[2]*x[2]};

@@ -3,9 +3,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Far more than any machine takes; sums of a scene's regions, in bytes, still fit in 64 bits. */
+#define COUNT_LIMIT 1e12
+
 /* Layers of a side of length a, and their distance: the lattice is stretched to fill the box evenly, so
    that no gap of part of a spacing is left at a wall. */
-static int64_t layers(double a, double d) { return (int64_t)fmax(1, floor(a/d + 0.5)); }
+static double layers(double a, double d) { return fmax(1, floor(a/d + 0.5)); }
 
 static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
 {
@@ -13,7 +16,8 @@ static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3]
     for (int a = 0; a < 3; a++) {
         double side = r->upper[a] - r->lower[a];
         int flat = a == 2 && s->box.dimension == 2;
-        n[a] = flat ? 1 : r->shape.triangle_count ? (int64_t)ceil(side/d) : layers(side, d);
+        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : layers(side, d);
+        n[a] = count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
         step[a] = r->shape.triangle_count ? d : side/(double)n[a];
     }
 }
@@ -23,7 +27,8 @@ int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
     int64_t n[3];
     double step[3];
     lattice(s, r, n, step);
-    return n[0]*n[1]*n[2];
+    double count = (double)n[0]*(double)n[1]*(double)n[2];
+    return count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
 }
 
 static int inside_body(const tobi_simulation *s, const double x[3])

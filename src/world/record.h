@@ -63,7 +63,7 @@ bool tobi_record_has_results(const char *dir);
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
-/* Steps of the checkpoints in dir, newest first; at most limit. */
+/* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
 /* record_tables.c: history.csv, bodies.csv and probes.csv. */

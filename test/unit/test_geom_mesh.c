@@ -288,6 +288,7 @@ static void places_a_mesh(void **state)
     REFUSED(tobi_mesh_transform(&mesh, one, none, 10, none, err), TOBI_INVALID, "axis");
     REFUSED(tobi_mesh_transform(&mesh, one, x, NAN, none, err), TOBI_INVALID, "angle");
     REFUSED(tobi_mesh_transform(&mesh, one, x, 0, (double[3]){0, INFINITY, 0}, err), TOBI_INVALID, "finite");
+    REFUSED(tobi_mesh_transform(&mesh, (double[3]){1e20, 1, 1}, x, 0, none, err), TOBI_INVALID, "further");
     tobi_mesh_free(&mesh);
 }
 
