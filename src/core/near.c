@@ -390,8 +390,9 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*(s->particles.pressure[e->particle] -
-                                                             s->particles.capillary[e->particle]);
+        float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
+        double push = r->viscous ? 0
+                                 : 2*s->smoothing.volume*(s->particles.pressure[e->particle] - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*e->gradient[a];

@@ -86,7 +86,8 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
 /* The least pressure of a free surface: none that pulls, but what tension carries where it is hollow. */
 TOBI_FN float sph_floor(const sph_view *v, int64_t i)
 {
-    return v->capillary[i] < 0 ? v->capillary[i] : 0;
+    float c = sph_capillary(v, i);
+    return c < 0 ? c : 0;
 }
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free

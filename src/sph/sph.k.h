@@ -191,11 +191,12 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
     }
     if (!touched) return;
     double mass = v->volume/v->inverse_density[v->fluid[i]];
+    float push = v->pressure[i] - sph_capillary(v, i);
     for (int k = 0; k < v->plane_count; k++) {
         if (!(sigma[k] > 0)) continue;
         int axis = v->plane[k].axis;
         float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
-        totals[axis] -= 2.0*v->volume*(v->pressure[i] - v->capillary[i])*v->plane[k].sign*here*open/free[k];
+        totals[axis] -= 2.0*v->volume*push*v->plane[k].sign*here*open/free[k];
         totals[axis] += mass*v->gravity[axis]*lambda[k];
         if (!v->plane[k].no_slip) continue;
         float s = sph_plane_distance(v, k, i);

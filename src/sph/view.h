@@ -18,7 +18,7 @@ typedef struct sph_view {
                 *TOBI_RESTRICT normal;
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
-    float *TOBI_RESTRICT capillary;
+    float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand */
     uint8_t *TOBI_RESTRICT surface;
     const uint8_t *TOBI_RESTRICT fluid;
@@ -63,3 +63,6 @@ typedef struct sph_view {
     float relaxation;                         /* share of the density error shifted away per step */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;
+
+/* Surface tension times curvature, Pa; 0 where no fluid has tension. */
+TOBI_FN float sph_capillary(const sph_view *v, int64_t i) { return v->capillary ? v->capillary[i] : 0; }

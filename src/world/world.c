@@ -141,6 +141,17 @@ static tobi_status add_notes(tobi_world *w, const char *kind, const char *name, 
     return TOBI_OK;
 }
 
+/* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
+static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
+{
+    double support = w->sim.smoothing.h/w->sim.smoothing.spacing;
+    char text[100];
+    if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
+    snprintf(text, sizeof text, "surface tension needs a support of 2.5 or more (3 is better); it is %g\n",
+             support);
+    return add_notes(w, "fluid", def->name, text, err);
+}
+
 const char *tobi_world_note(const tobi_world *w, int note)
 {
     return note >= 0 && note < w->note_count ? w->notes[note] : NULL;
@@ -190,6 +201,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
             def->name ? def->name : "", s->fluid[0].name, w->method->name);
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
+    TOBI_TRY(note_support(w, def, err));
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for fluid regions");
     w->regions = more;
@@ -248,6 +260,15 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     return status;
 }
 
+/* The kinds of particle fields that this world needs. */
+static int needed_fields(const tobi_simulation *s)
+{
+    int kinds = TOBI_STATE | TOBI_SCRATCH;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0) kinds |= TOBI_TENSION;
+    return kinds;
+}
+
 static int64_t list_bytes(const tobi_simulation *s)
 {
     double r = s->smoothing.h/s->smoothing.spacing;
@@ -264,7 +285,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
     if (w->started) fluid = w->sim.particles.count;
     *fluid_particles = fluid;
     *body_particles = body;
-    *bytes = fluid*(tobi_particles_row_bytes() + list_bytes(&w->sim)) + body*48;
+    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(&w->sim)) + list_bytes(&w->sim)) + body*48;
     return TOBI_OK;
 }
 
@@ -318,7 +339,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a fluid region or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_create(&s->particles, fluid, err));
+    TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(s), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     int64_t n = s->particles.count;
     if (n + body == 0)
@@ -435,8 +456,9 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 int64_t tobi_world_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
-    return s->particles.capacity * (tobi_particles_row_bytes() + 4) + s->cells.list_capacity * 4 +
-           s->cells.total * 4 + s->near.capacity * (int64_t)sizeof(tobi_near_entry);
+    return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(s)) + 4) +
+           s->cells.list_capacity * 4 + s->cells.total * 4 +
+           s->near.capacity * (int64_t)sizeof(tobi_near_entry);
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
