@@ -130,6 +130,25 @@ static void limit_child(const allowance *allowed)
 #endif
 }
 
+/* NULL with a text in the header if that did not work. */
+static const struct aiScene *import(const char *path, import_header *header)
+{
+    const unsigned flags = aiProcess_ValidateDataStructure | aiProcess_Triangulate;
+    const char *dot = strrchr(path, '.');
+    char *text = NULL;
+    size_t size = 0;
+    int changed = dot && !strcasecmp(dot, ".obj") ? tobi_obj_add_zeros(path, &text, &size) : 0;
+    const struct aiScene *scene = NULL;
+    if (changed > 0) scene = aiImportFileFromMemory(text, (unsigned)size, flags, "obj");
+    else if (changed == 0) scene = aiImportFile(path, flags);
+    free(text);
+    if (scene) return scene;
+    snprintf(header->text, sizeof header->text, "%s",
+             changed < 0 ? "it cannot be held in memory" : aiGetErrorString());
+    if (!header->text[0]) strcpy(header->text, "the importer gave up without a reason");
+    return NULL;
+}
+
 static _Noreturn void run_child(const char *path, int fd, const allowance *allowed)
 {
     static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
@@ -142,10 +161,8 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     }
     import_header header = {.magic = "tobimesh"};
     struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    collector c = {.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate)};
+    collector c = {.scene = import(path, &header)};
     if (!c.scene) {
-        snprintf(header.text, sizeof header.text, "%s", aiGetErrorString());
-        if (!header.text[0]) strcpy(header.text, "the importer gave up without a reason");
         write_all(fd, &header, sizeof header);
         _exit(0);
     }

@@ -51,6 +51,21 @@ static void reads_polygons_and_decimal_numbers_as_written(void **state)
     tobi_mesh_free(&mesh);
 }
 
+/* As some programs write them; the importer alone would miss these vertices or refuse the file. */
+static void reads_numbers_without_leading_zero(void **state)
+{
+    (void)state;
+    tobi_mesh mesh;
+    write_text("points.obj", "v .0 -.25 .0\nv 1 .0 0\nv 0 1 +.5e-1\nv .0\t.0\t.125\n"
+               "vt .5 .5\nf 1/1 3/1 2/1\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    OK(tobi_mesh_read("points.obj", &mesh, err));
+    double min[3], max[3];
+    tobi_mesh_box(&mesh, min, max);
+    assert_int_equal(mesh.vertex_count, 4);
+    assert_true(min[1] == -0.25 && max[2] == 0.125 && max[0] == 1);
+    tobi_mesh_free(&mesh);
+}
+
 static void reads_ascii_stl_and_ply(void **state)
 {
     (void)state;
@@ -451,6 +466,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_obj_with_groups_and_both_kinds_of_vt),
         cmocka_unit_test(reads_polygons_and_decimal_numbers_as_written),
+        cmocka_unit_test(reads_numbers_without_leading_zero),
         cmocka_unit_test(reads_ascii_stl_and_ply),
         cmocka_unit_test(reads_binary_stl),
         cmocka_unit_test(refuses_bad_files),
