@@ -186,12 +186,15 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
 json_t *tobi_motion_write(const tobi_motion_def *def)
 {
     if (!def->table) return NULL;
-    json_t *own = tobi_write_def(def->table, &def->as);
+    json_t *own = tobi_write_def(def->table, &def->as), *motion = own;
+    int failed = !own;
     if (def->table == &tables[0]) {
-        if (own && def->params) json_object_set(own, "params", def->params);
-        return own;
+        if (def->params) failed |= json_object_set(own, "params", def->params);
+    } else {
+        motion = json_object();
+        failed |= json_object_set_new(motion, def->table->name, own);
     }
-    json_t *motion = json_object();
-    json_object_set_new(motion, def->table->name, own);
-    return motion;
+    if (!failed) return motion;
+    json_decref(motion);
+    return NULL;
 }
