@@ -59,7 +59,7 @@ char *tobi_record_path(const char *dir, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* Makes dir and its parents, tells whether it holds results, locks it against other runs. */
 tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err);
-bool tobi_record_has_results(const char *dir);
+tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *err);
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);

@@ -121,11 +121,16 @@ static bool note_result(void *user, const char *path, int kind)
     return kind != 1;
 }
 
-bool tobi_record_has_results(const char *dir)
+static tobi_status fail_listing(const char *dir, tobi_error *err)
 {
-    bool found = false;
-    bool complete = visit_ours(dir, note_result, &found);
-    return found || !complete;      /* in doubt, nothing may be replaced */
+    return tobi_fail(err, TOBI_IO, "cannot list what is in %s; nothing was changed", dir);
+}
+
+tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *err)
+{
+    *found = false;
+    bool complete = visit_ours(dir, note_result, found);
+    return complete || *found ? TOBI_OK : fail_listing(dir, err);
 }
 
 typedef struct clear_job { bool only_parts; tobi_status status; tobi_error *err; } clear_job;
@@ -144,7 +149,7 @@ tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err)
     clear_job job = { only_parts, TOBI_OK, err };
     bool complete = visit_ours(dir, remove_one, &job);
     if (!complete && job.status == TOBI_OK)
-        return tobi_fail(err, TOBI_IO, "cannot list what is in %s", dir);
+        return tobi_fail(err, TOBI_IO, "cannot list all that is in %s", dir);
     if (job.status != TOBI_OK || only_parts) return job.status;
     for (size_t k = 1; k < sizeof folders / sizeof *folders; k++) {
         char *folder = tobi_record_path(dir, "%s", folders[k]);
