@@ -31,6 +31,7 @@ UNTESTED = {
     "a scene must be an object": "said inside source.c, past the notes; test_scene_mistakes expects it",
     "output.fields: more than": "there are fewer fields than room for them",
     "cannot list": "needs opendir to fail, which root is never refused",
+    "swims, but the program of its motion": "needs an installation without its scenes",
     "a speed reached": "needs a speed that no particle has any more after the step",
 }
 

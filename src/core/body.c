@@ -280,8 +280,6 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
 {
     int dimension = box->dimension;
     memset(b, 0, sizeof *b);
-    if (def->mesh && !def->mesh[0])
-        return tobi_fail(err, TOBI_INVALID, "body '%s' names no mesh", def->name ? def->name : "");
     snprintf(b->name, sizeof b->name, "%s", def->name && def->name[0] ? def->name : "body");
     b->density = def->density;
     b->friction = def->friction;
