@@ -1,6 +1,7 @@
 #!/bin/bash
 # Installs the Debian 12 packages that Tobiuo needs and that are missing; nothing else.
-# usage: tools/install_packages.sh [--test] [--list]
+# usage: tools/install_packages.sh [--plot] [--test] [--list]
+#   --plot   also what `tobiuo plot` draws with
 #   --test   also what the tests need
 #   --list   only print the missing packages
 # Needs root or sudo only if something is missing.
@@ -8,15 +9,17 @@ set -euo pipefail
 
 packages=(gcc libc6-dev cmake ninja-build pkg-config
           libjansson-dev libassimp-dev libluajit-5.1-dev libhdf5-dev zlib1g-dev liblz4-dev libpng-dev)
-test_packages=(g++ git libcmocka-dev python3 python3-numpy python3-matplotlib python3-vtk9
-               python3-jsonschema)
+plot_packages=(gnuplot-nox)
+test_packages=("${plot_packages[@]}" g++ git libcmocka-dev python3 python3-numpy python3-matplotlib
+               python3-vtk9 python3-jsonschema)
 
 list_only=0
 for argument in "$@"; do
     case $argument in
+    --plot) packages+=("${plot_packages[@]}") ;;
     --test) packages+=("${test_packages[@]}") ;;
     --list) list_only=1 ;;
-    *) sed -n '2,6s/^# //p' "$0"; [ "$argument" = --help ] && exit 0; exit 2 ;;
+    *) sed -n '2,7s/^# //p' "$0"; [ "$argument" = --help ] && exit 0; exit 2 ;;
     esac
 done
 

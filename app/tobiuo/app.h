@@ -5,11 +5,13 @@
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 #include <argp.h>
+#include <stdio.h>
 
 enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
+int tobiuo_plot(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
 int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);
@@ -20,6 +22,9 @@ int tobiuo_info(int argc, char **argv);
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */
 int complain_scene(tobi_report *report, const tobi_error *err);
+
+/* Prints the world's notes on its meshes, a line each after `head`. */
+void print_notes(const tobi_world *world, FILE *file, const char *head);
 
 /* overrides.c: "path=value" texts for tobi_scene_load, ended by NULL. */
 typedef struct overrides { char **text; int count; } overrides;

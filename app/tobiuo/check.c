@@ -83,9 +83,12 @@ static int check_world(tobi_scene *scene)
     int64_t fluid = 0, bodies = 0, bytes = 0;
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = tobi_world_estimate(world, &fluid, &bodies, &bytes, &err);
+    if (status == TOBI_OK) {
+        print_scene(scene);
+        print_notes(world, stdout, "note             ");
+    }
     tobi_world_destroy(world);
     if (status != TOBI_OK) return complain("%s", err.text);
-    print_scene(scene);
     if (tobi_scene_import_table(scene))
         printf("\nA scene of the Taichi program. What became of its keys:\n\n%s\n",
                tobi_scene_import_table(scene));

@@ -14,6 +14,12 @@ int complain(const char *format, ...)
     return EXIT_ERROR;
 }
 
+void print_notes(const tobi_world *world, FILE *file, const char *head)
+{
+    const char *text;
+    for (int k = 0; (text = tobi_world_note(world, k)); k++) fprintf(file, "%s%s\n", head, text);
+}
+
 int complain_scene(tobi_report *report, const tobi_error *err)
 {
     int count = tobi_report_count(report);

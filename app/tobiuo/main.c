@@ -14,6 +14,7 @@ static const struct command {
     { "check", "SCENE", "say what a scene would do, and all its mistakes, without running",
       tobiuo_check },
     { "import", "SCENE", "translate a scene of the Taichi program into a native one", tobiuo_import },
+    { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot },
     { "describe", "[TOPIC]", "parameters with units, defaults and ranges", tobiuo_describe },
     { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench },
     { "info", "", "version, machine, libraries, methods", tobiuo_info },

@@ -81,6 +81,7 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     tobi_world *world = NULL;
     char *dir = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
+    if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     int length =
         o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
     if (tobi_scene_import_table(scene) && !o->quiet)

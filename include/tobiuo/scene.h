@@ -41,6 +41,9 @@ TOBI_API tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **world, tob
 TOBI_API const char *tobi_scene_name(const tobi_scene *scene);
 TOBI_API const tobi_world_def  *tobi_scene_world_def(const tobi_scene *scene);
 TOBI_API const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene);
+/* The data that the scene names for comparison, NULL past the end. Only their files' existence was
+   checked. */
+TOBI_API const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene, int index);
 
 /* Scenes of the Taichi program (SPH_Taichi and its relatives; they have a key `Configuration`) are loaded
    like any other: translated first, so overrides are those of the native scene. This is what became of each
@@ -60,7 +63,7 @@ TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_pat
 TOBI_API char *tobi_scene_resolved(const tobi_scene *scene);
 
 /* Parameters, units, defaults and ranges of a topic, as text: a method ("dfsph"), "world", "fluid",
-   "fill", "body", "motion" or "output"; "scene" is the page of all of them in Markdown
+   "fill", "body", "motion", "output" or "reference"; "scene" is the page of all of them in Markdown
    (docs/scene.md), "schema" a JSON Schema (draft-07) for editors; NULL lists the topics. Owned by
    the caller (free()). NULL if there is no such topic. */
 TOBI_API char *tobi_scene_describe(const char *topic);

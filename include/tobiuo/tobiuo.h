@@ -20,13 +20,15 @@ TOBI_API const char *tobi_status_text(tobi_status status);
 
 TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
+TOBI_API tobi_wcsph_def  tobi_default_wcsph_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
+TOBI_API tobi_reference_def tobi_default_reference_def(void);
 
-/* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def), NULL = its
+/* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
 TOBI_API tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
                                        tobi_world **world, tobi_error *err);
@@ -36,11 +38,16 @@ TOBI_API void tobi_world_destroy(tobi_world *world);
    lower corner (from the domain's lower corner for meshes); those inside a body are cut out at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
-/* Adds a body. The mesh must be closed and oriented outwards (flipped meshes are turned). */
+/* Adds a body. Its mesh is closed and oriented outwards if the file leaves no doubt how; what was
+   repaired is in the notes. */
 TOBI_API tobi_status tobi_world_add_body(tobi_world *world, const tobi_body_def *def, tobi_error *err);
 
 /* Adds a probe, at any time. TOBI_INVALID if it sits outside the domain. */
 TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_def *def, tobi_error *err);
+
+/* What was repaired or looks odd in the meshes of bodies and fluids, a sentence each, by index; NULL past
+   the end. Owned by the world, valid until it is destroyed. */
+TOBI_API const char *tobi_world_note(const tobi_world *world, int note);
 
 /* Counts particles and bytes without allocating them. */
 TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,

@@ -23,7 +23,7 @@ typedef enum tobi_compression {
 
 /* The box, the fluid resolution and the clock. */
 typedef struct tobi_world_def {
-    const char *method;          /* name in the method list, "dfsph"                                 */
+    const char *method;          /* name in the method list: "dfsph", "wcsph"                        */
     int         dimension;       /* 2 or 3; 2-D lives in x-y, masses and forces are per metre depth   */
     double      domain_min[3];   /* m, any sign                                                      */
     double      domain_max[3];   /* m                                                                */
@@ -37,6 +37,7 @@ typedef struct tobi_world_def {
     double      time_step;       /* s, fixed step; 0 = adaptive                                      */
     double      time_step_max;   /* s, cap of the adaptive step; 0 = none                            */
     double      cfl;             /* 1, dt <= cfl d / |v|max                                          */
+    double      contact_angle;   /* degrees, in the liquid, at the sides of the box                  */
     double      speed_limit;     /* m/s, a faster particle stops the run as diverged; 0 = automatic  */
     int         threads;         /* 0 = all cores                                                    */
 } tobi_world_def;
@@ -54,11 +55,22 @@ typedef struct tobi_dfsph_def {
     double shifting;                  /* 1, strength of particle shifting in flows without a surface  */
 } tobi_dfsph_def;
 
+/* Parameters of the WCSPH method. */
+typedef struct tobi_wcsph_def {
+    int    kernel;                    /* tobi_smoothing                                               */
+    double support;                   /* support radius in spacings, 2 to 4                           */
+    double stiffness;                 /* Pa, B of p = B ((rho/rho0)^exponent - 1)                     */
+    double exponent;                  /* 1                                                            */
+    double damping;                   /* 1, bulk viscosity over density, speed of sound and spacing   */
+    double filter;                    /* 1, share of the particle-scale motion taken out per step     */
+} tobi_wcsph_def;
+
 /* A fluid: one material. */
 typedef struct tobi_fluid_def {
     const char *name;
     double density;       /* kg/m3 */
     double viscosity;     /* Pa s, dynamic */
+    double surface_tension; /* N/m, of its free surface */
     double color[3];      /* RGB, 0 to 255, in pictures; all -1 = by its speed */
     int    visible;       /* 0: left out of pictures */
 } tobi_fluid_def;
@@ -91,6 +103,7 @@ typedef struct tobi_body_def {
     int    friction;            /* tobi_friction felt by the fluid                                   */
     int    visible;             /* 0: left out of pictures                                           */
     double color[3];            /* RGB, 0 to 255, in pictures; all -1 = by its number                */
+    double contact_angle;       /* degrees, in the liquid                                            */
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
     void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */
     int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
@@ -120,6 +133,18 @@ typedef struct tobi_output_def {
     double      camera_look_at[3];    /* m, what it looks at                                          */
     double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */
 } tobi_output_def;
+
+/* Measured or published values that a column of a run's tables is compared with. */
+typedef struct tobi_reference_def {
+    const char *file;             /* path of a CSV file: a row of names, then numbers; # begins comments */
+    const char *column;           /* of history.csv, or of bodies.csv or probes.csv, see below       */
+    const char *body;             /* name of a body: column is one of bodies.csv; or NULL            */
+    const char *probe;            /* name of a probe: column is what it measures, "pressure"; or NULL */
+    const char *x;                /* column of file with the times                                   */
+    const char *y;                /* column of file with the values; NULL = named like column        */
+    double x_scale, y_scale;      /* factors that turn x into s and y into the unit of column        */
+    const char *label;            /* name in pictures; NULL = the file's                             */
+} tobi_reference_def;
 
 /* What one step did. */
 typedef struct tobi_step_info {

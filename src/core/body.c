@@ -40,6 +40,28 @@ static int compare_keys(const void *a, const void *b)
     return p->piece < q->piece ? -1 : p->piece > q->piece;
 }
 
+/* Where parts of the mesh overlap, pieces with the same side of the surface before and behind them are
+   no boundary of the body: they go. Judged once, in the pose the body starts in. */
+static void drop_inner_pieces(tobi_body *b, double width)
+{
+    tobi_surface *s = &b->surface;
+    int64_t kept = 0;
+    if (!b->mesh.overlapping) return;
+    tobi_bvh_use_winding(b->bvh);
+    tobi_surface_update(s, (const double(*)[3])b->vertex, (const int32_t(*)[3])b->mesh.triangles, b->piece,
+                        b->piece_normal, b->piece_area);
+    for (int64_t i = 0; i < s->count; i++) {
+        double before[3], behind[3];
+        for (int a = 0; a < 3; a++) {
+            before[a] = b->piece[i][a] + 1e-3*width*b->piece_normal[i][a];
+            behind[a] = b->piece[i][a] - 1e-3*width*b->piece_normal[i][a];
+        }
+        if (tobi_bvh_inside(b->bvh, before) == tobi_bvh_inside(b->bvh, behind)) continue;
+        tobi_surface_move(s, i, kept++);
+    }
+    s->count = kept;
+}
+
 /* Meshes finer than the fluid would cost more than they tell: pieces of one cell that face the same
    way become one quadrature point. */
 static tobi_status group_pieces(tobi_body *b, double width, tobi_error *err)
@@ -233,12 +255,18 @@ static tobi_status make_box(tobi_body *b, const tobi_body_def *def, int dimensio
     return tobi_mesh_build(b->name, 8, (const double (*)[3])vertices, 12, triangles, &b->mesh, err);
 }
 
-static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimension,
+static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err)
 {
+    int dimension = box->dimension;
+    char hint[200];
     TOBI_TRY(def->mesh ? tobi_mesh_read(def->mesh, &b->mesh, err) : make_box(b, def, dimension, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
+    tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint);
+    if (strstr(hint, "larger"))
+        return tobi_fail(err, TOBI_INVALID, "body '%s' does not fit: %s", b->name, hint);
+    if (hint[0]) tobi_mesh_note(&b->mesh, "%s", hint);
     TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh ? def->mesh : b->name, err));
     if (dimension == 3) TOBI_TRY(tobi_massprops_volume(&b->mesh, &b->rest, err));
     else TOBI_TRY(tobi_massprops_section(&b->mesh, &b->rest, err));
@@ -247,22 +275,22 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, int dimensi
     return tobi_mesh_refine(&b->mesh, 3*b->spacing, err);
 }
 
-tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
-                             const double lower[3], tobi_error *err)
+tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
+                             double point_spacing, tobi_error *err)
 {
+    int dimension = box->dimension;
     memset(b, 0, sizeof *b);
-    if (def->mesh && !def->mesh[0])
-        return tobi_fail(err, TOBI_INVALID, "body '%s' names no mesh", def->name ? def->name : "");
     snprintf(b->name, sizeof b->name, "%s", def->name && def->name[0] ? def->name : "body");
     b->density = def->density;
     b->friction = def->friction;
+    b->contact_cosine = cos(def->contact_angle*acos(-1)/180);
     b->visible = def->visible;
     memcpy(b->color, def->color, sizeof b->color);
     b->spacing = def->spacing > 0 ? def->spacing : 2*point_spacing;
     b->motion = def->motion;
     b->motion_user = def->motion_user;
-    memcpy(b->lower, lower, sizeof b->lower);
-    tobi_status status = load_mesh(b, def, dimension, point_spacing, err);
+    memcpy(b->lower, box->lower, sizeof b->lower);
+    tobi_status status = load_mesh(b, def, box, point_spacing, err);
     if (status == TOBI_OK)
         status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
     if (status == TOBI_OK)
@@ -274,6 +302,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimensi
         status = tobi_bvh_build(b->mesh.vertex_count, (const double(*)[3])b->vertex,
                                 b->mesh.triangle_count, (const int32_t(*)[3])b->mesh.triangles,
                                 &b->bvh, err);
+    if (status == TOBI_OK) drop_inner_pieces(b, point_spacing);
     if (status == TOBI_OK) status = group_pieces(b, point_spacing, err);
     if (status == TOBI_OK) status = tobi_body_place(b, 0, err);
     if (status != TOBI_OK) {

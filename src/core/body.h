@@ -1,6 +1,7 @@
 /* Bodies in the fluid: a closed surface of quadrature points that moves as its mesh moves, and the
    body's own particles, which serve output only. */
 #pragma once
+#include "core/cells.h"
 #include "geom/bvh.h"
 #include "geom/massprops.h"
 #include "geom/mesh.h"
@@ -13,6 +14,7 @@ typedef struct tobi_body {
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
     tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
     double density;                  /* kg/m3                                                  */
+    double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */
     double color[3];                 /* RGB, 0 to 255, or -1; for pictures                     */
@@ -43,9 +45,10 @@ typedef struct tobi_body {
     tobi_body_info info;
 } tobi_body;
 
-/* Reads, places, checks and samples a body at time 0. point_spacing: of the quadrature points, m. */
-tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, int dimension, double point_spacing,
-                             const double lower[3], tobi_error *err);
+/* Reads, places, checks and samples a body at time 0, in the domain box. point_spacing: of the
+   quadrature points, m. What was repaired or looks odd is in b->mesh.notes. */
+tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
+                             double point_spacing, tobi_error *err);
 void tobi_body_free(tobi_body *b);
 /* Puts the body where its motion has it at time t. */
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);

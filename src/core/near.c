@@ -136,8 +136,8 @@ static int hidden(const look *l, int32_t point)
     return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
 }
 
-/* Around an edge: the faces that turn away. Without them a particle above one face does not feel that the body
-   ends, and the pressure at edges was a tenth too high. The far side of a thin body, whose normal is
+/* Around an edge: the faces that turn away. Without them a particle above one face does not feel that the
+   body ends, and the pressure at edges was a tenth too high. The far side of a thin body, whose normal is
    opposite to the nearest point's, stays out: there is other water. */
 static int add_behind(look *l, int32_t k, const double r[3])
 {
@@ -382,6 +382,21 @@ void tobi_near_add_forces(tobi_simulation *s)
     }
 }
 
+void tobi_near_contact(tobi_simulation *s)
+{
+    FOR_NEAR_PARTICLES(s, k, i, e) {
+        tobi_float4 *n = &s->particles.normal[i];
+        double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
+        for (int c = 0; c < 3; c++) {
+            u[c] -= across*e->foot_normal[c];
+            size += u[c]*u[c];
+        }
+        if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
+        double cosine = s->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
+        for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
+    }
+}
+
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */
 static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e, double force[3])
@@ -415,7 +430,9 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*s->particles.pressure[e->particle];
+        float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
+        double push = r->viscous ? 0
+                                 : 2*s->smoothing.volume*(s->particles.pressure[e->particle] - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*e->gradient[a];

@@ -4,22 +4,24 @@
 
 enum { PAD_ROWS = 16 };
 
-tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, tobi_error *err)
+tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int kinds, tobi_error *err)
 {
     memset(p, 0, sizeof *p);
     p->capacity = capacity;
     size_t rows = (size_t)capacity + PAD_ROWS;
     int failed = 0;
 #define X(type, name, kind, unit, doc)                                          \
-    p->name = aligned_alloc(64, (rows*sizeof(type) + 63)/64*64);                \
-    if (p->name) memset(p->name, 0, (rows*sizeof(type) + 63)/64*64);            \
-    else failed = 1;
+    if ((kind) & kinds) {                                                       \
+        p->name = aligned_alloc(64, (rows*sizeof(type) + 63)/64*64);            \
+        if (p->name) memset(p->name, 0, (rows*sizeof(type) + 63)/64*64);        \
+        else failed = 1;                                                        \
+    }
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     if (!failed) return TOBI_OK;
     tobi_particles_free(p);
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)",
-                     (long long)capacity, (long long)tobi_particles_row_bytes());
+                     (long long)capacity, (long long)tobi_particles_row_bytes(kinds));
 }
 
 void tobi_particles_free(tobi_particles *p)
@@ -30,10 +32,10 @@ void tobi_particles_free(tobi_particles *p)
     memset(p, 0, sizeof *p);
 }
 
-int64_t tobi_particles_row_bytes(void)
+int64_t tobi_particles_row_bytes(int kinds)
 {
     int64_t bytes = 0;
-#define X(type, name, kind, unit, doc) bytes += (int64_t)sizeof(type);
+#define X(type, name, kind, unit, doc) bytes += (kind) & kinds ? (int64_t)sizeof(type) : 0;
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     return bytes;

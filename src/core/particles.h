@@ -6,13 +6,14 @@
 #include "exec/portable.h"
 
 /* STATE fields survive a step: they are sorted with the particles and stored in checkpoints.
-   SCRATCH fields are recomputed every step. */
-enum { TOBI_STATE = 1, TOBI_SCRATCH = 2 };
+   SCRATCH fields are recomputed every step; those of TENSION exist only where a fluid has surface
+   tension and are NULL elsewhere. */
+enum { TOBI_STATE = 1, TOBI_SCRATCH = 2, TOBI_TENSION = 4 };
 
 /*   type          name                 kind          unit     meaning */
 #define TOBI_PARTICLE_FIELDS(X)                                                                              \
     X(tobi_double3, position,            TOBI_STATE,   "m",     "position from the domain's lower corner")   \
-    X(tobi_float4,  velocity,            TOBI_STATE,   "m/s",   "velocity; w unused")                        \
+    X(tobi_float4,  velocity,            TOBI_STATE,   "m/s",   "velocity; w: eq. (6b), 0 to 1")             \
     X(float,        pressure,            TOBI_STATE,   "Pa",    "pressure")                                  \
     X(int64_t,      id,                  TOBI_STATE,   "1",     "stable particle id")                        \
     X(uint8_t,      fluid,               TOBI_STATE,   "1",     "fluid index")                               \
@@ -26,6 +27,8 @@ enum { TOBI_STATE = 1, TOBI_SCRATCH = 2 };
     X(float,        product,             TOBI_SCRATCH, "1/s2",  "A q in a solve; else the mean pressure") \
     X(float,        delta,               TOBI_SCRATCH, "Pa",    "pressure change of this solve")             \
     X(float,        correction,          TOBI_SCRATCH, "Pa",    "potential of the position correction")      \
+    X(tobi_float4,  normal,              TOBI_TENSION, "1",     "unit normal of the surface; w = weight") \
+    X(float,        capillary,           TOBI_TENSION, "Pa",    "surface tension times curvature")         \
     X(uint8_t,      surface,             TOBI_SCRATCH, "1",     "1 at a free surface")                       \
     X(int32_t,      near,                TOBI_SCRATCH, "1",     "last near-body entry, -1 = none")          \
     X(uint32_t,     list_start,          TOBI_SCRATCH, "8",     "first neighbour, in groups of 8")           \
@@ -38,11 +41,11 @@ typedef struct tobi_particles {
 #undef X
 } tobi_particles;
 
-/* Allocates every field for `capacity` particles; count becomes 0. */
-tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, tobi_error *err);
+/* Allocates the fields of `kinds` (a sum of the kinds above) for `capacity` particles; count becomes 0. */
+tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int kinds, tobi_error *err);
 void tobi_particles_free(tobi_particles *p);
-/* Bytes per particle of all fields, without neighbour lists. */
-int64_t tobi_particles_row_bytes(void);
+/* Bytes per particle of the fields of `kinds`, without neighbour lists. */
+int64_t tobi_particles_row_bytes(int kinds);
 
 /* Reorders every STATE field: row k takes the old row order[k]. scratch holds count rows of the widest
    state field (tobi_particles_widest bytes each). */

@@ -45,7 +45,9 @@ void tobi_simulation_measure(tobi_simulation *s)
 
 double tobi_simulation_speed_scale(const tobi_simulation *s)
 {
-    double fall = 0;
+    double fall = 0, capillary = 0;
     for (int a = 0; a < s->box.dimension; a++) fall += fabs(s->def.gravity[a])*s->box.size[a];
-    return sqrt(2*fall) + s->body_speed + 2*s->start_speed;
+    for (int f = 0; f < s->fluid_count; f++)
+        capillary = fmax(capillary, 8*s->fluid[f].tension/(s->fluid[f].density*s->smoothing.spacing));
+    return sqrt(2*fall + capillary) + s->body_speed + 2*s->start_speed;
 }

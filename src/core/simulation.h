@@ -11,7 +11,7 @@ enum { TOBI_FLUID_LIMIT = 8, TOBI_STAGE_LIMIT = 16 };
 
 typedef struct tobi_fluid {
     char name[64];
-    double density, viscosity;
+    double density, viscosity, tension;
     double color[3];                /* RGB, 0 to 255, or -1; for pictures                    */
     int visible;
 } tobi_fluid;

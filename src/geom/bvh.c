@@ -278,7 +278,8 @@ int tobi_bvh_closest(const tobi_bvh *b, const double p[3], double max_distance, 
     memcpy(hit->normal, feature_normal(b, hit->triangle, best.feature), sizeof hit->normal);
     hit->distance = sqrt(best.distance2);
     vec3_sub(away, p, hit->point);
-    hit->signed_distance = vec3_dot(away, hit->normal) < 0 ? -hit->distance : hit->distance;
+    int inside = b->by_winding ? tobi_bvh_winding(b, p) > 0 : vec3_dot(away, hit->normal) < 0;
+    hit->signed_distance = inside ? -hit->distance : hit->distance;
     return 1;
 }
 
@@ -286,6 +287,7 @@ int tobi_bvh_inside(const tobi_bvh *b, const double p[3])
 {
     for (int k = 0; k < 3; k++)
         if (!(p[k] >= b->min[k] && p[k] <= b->max[k])) return 0;
+    if (b->by_winding) return tobi_bvh_winding(b, p) > 0;
     tobi_bvh_hit hit;
     return tobi_bvh_closest(b, p, INFINITY, &hit) && hit.signed_distance < 0;
 }

@@ -39,6 +39,18 @@ int tobi_bvh_closest(const tobi_bvh *bvh, const double p[3], double max_distance
 /* 1 if p is inside. */
 int tobi_bvh_inside(const tobi_bvh *bvh, const double p[3]);
 
+/* How often the surface winds around p: 1 inside, 0 outside, 2 where two solids overlap. Exact for a
+   closed mesh. */
+int tobi_bvh_winding(const tobi_bvh *bvh, const double p[3]);
+/* From now on inside, also for the sign of tobi_bvh_closest, is where the winding number is above 0: for
+   meshes that overlap themselves, where the nearest feature may lie within the solid. */
+void tobi_bvh_use_winding(tobi_bvh *bvh);
+
+/* Calls visit for every triangle that the line from p along +z meets; turn is +1 where the line enters,
+   -1 where it leaves. */
+typedef void tobi_bvh_crossing_fn(void *user, int32_t triangle, int turn);
+void tobi_bvh_look_up(const tobi_bvh *bvh, const double p[3], tobi_bvh_crossing_fn *visit, void *user);
+
 /* 1 if a triangle lies strictly between a and b: touching with an end, or running within the plane
    of a triangle, is no hit. Neighbouring triangles decide about their common edge with the same
    arithmetic, so nothing slips through an edge. */

@@ -19,6 +19,7 @@ typedef struct bvh_corners {
 
 struct tobi_bvh {
     int64_t vertex_count, triangle_count, node_count;
+    int     by_winding;              /* see tobi_bvh_use_winding                             */
     double  origin[3];               /* middle of the box                                    */
     double  min[3], max[3];          /* m, around all triangles                              */
     bvh_node *nodes;

@@ -13,7 +13,9 @@ typedef struct tobi_massprops {
 
 /* Volume, centre and inertia of an oriented closed mesh by sums over the tetrahedra that its
    triangles span with one fixed point (Mirtich, J. Graphics Tools 1 (1996); Blow & Binstock 2004
-   for the covariance form). A mesh without volume is TOBI_INVALID. */
+   for the covariance form). Where parts overlap (mesh->overlapping) what they share counts once; that
+   share is taken by lines a 1000th of the box apart, the rest stays exact. A mesh without volume is
+   TOBI_INVALID. */
 tobi_status tobi_massprops_volume(const tobi_mesh *mesh, tobi_massprops *out, tobi_error *err);
 
 /* The same per metre of depth for the section of the mesh with the plane z = 0 (Green's theorem over

@@ -4,11 +4,17 @@
    neighbouring cells only where the vertex is close to their border. The first of the vertices
    that meet keeps its exact position, so the result depends only on the order of the input. */
 #include "geom/mesh.h"
+#include "geom/mesh_mend.h"
 #include "geom/vec3.h"
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define WELD_TOLERANCE 1e-9     /* of the longest side of the box */
+/* m: squares of coordinates are kept as float in the tree, products of six in the integrals */
+#define LARGEST        1e15
+#define SMALLEST_SIZE  1e-15
 
 typedef struct weld {
     double origin[3], tolerance;
@@ -41,11 +47,24 @@ tobi_status tobi_mesh_copy(const tobi_mesh *mesh, tobi_mesh *out, tobi_error *er
 {
     *out = (tobi_mesh){0};
     TOBI_TRY(allocate_mesh(out, mesh->vertex_count, mesh->triangle_count, err));
+    out->overlapping = mesh->overlapping;
+    memcpy(out->notes, mesh->notes, sizeof out->notes);
     if (mesh->vertex_count)
         memcpy(out->vertices, mesh->vertices, (size_t)mesh->vertex_count*sizeof *out->vertices);
     if (mesh->triangle_count)
         memcpy(out->triangles, mesh->triangles, (size_t)mesh->triangle_count*sizeof *out->triangles);
     return TOBI_OK;
+}
+
+void tobi_mesh_note(tobi_mesh *mesh, const char *format, ...)
+{
+    size_t used = strlen(mesh->notes), room = sizeof mesh->notes - used;
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(mesh->notes + used, room, format, args);
+    va_end(args);
+    if (length < 0 || (size_t)length + 2 > room) mesh->notes[used] = 0;
+    else strcpy(mesh->notes + used + length, "\n");
 }
 
 void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3])
@@ -61,6 +80,31 @@ void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3])
             if (x > max[k]) max[k] = x;
         }
     }
+}
+
+void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
+                          size_t room)
+{
+    static const struct { const char *name; double factor; } units[] = {
+        {"millimetres", 0.001}, {"inches", 0.0254}, {"centimetres", 0.01}, {"micrometres", 1e-6}};
+    double min[3], max[3], mine = 0, domain = 0;
+    text[0] = 0;
+    tobi_mesh_box(mesh, min, max);
+    for (int k = 0; k < dimension; k++) {
+        mine = fmax(mine, max[k] - min[k]);
+        domain = fmax(domain, size[k]);
+    }
+    if (!(mine > 0 && domain > 0) || (mine <= 10*domain && mine >= 1e-3*domain)) return;
+    int used = snprintf(text, room, "the mesh is %.4g m long, %s than the domain of %.4g m: ", mine,
+                        mine > domain ? "far larger" : "far smaller", domain);
+    for (size_t i = 0; i < sizeof units/sizeof *units && mine > domain; i++) {
+        double fitted = mine*units[i].factor/domain;
+        if (fitted > 1 || fitted < 0.01) continue;
+        snprintf(text + used, room - (size_t)used, "are its units %s? Multiply its scale by %g",
+                 units[i].name, units[i].factor);
+        return;
+    }
+    snprintf(text + used, room - (size_t)used, "is its scale right?");
 }
 
 static uint64_t hash_cell(const weld *w, const int64_t cell[3])
@@ -103,14 +147,16 @@ static int32_t find_welded(const weld *w, const double x[3], int64_t own[3])
     return best;
 }
 
-/* Fills merged[i] with the lowest vertex that i coincides with (itself if none). */
-static tobi_status weld_vertices(const tobi_mesh *mesh, int32_t *merged)
+/* Fills merged[i] with the lowest vertex that i coincides with (itself if none); tolerance as a part of
+   the box. only: which vertices may move, NULL = all. */
+static tobi_status weld_vertices(const tobi_mesh *mesh, double tolerance, const char *only,
+                                 int32_t *merged)
 {
     double max[3], size = 0;
     weld w = {.vertices = (const double (*)[3])mesh->vertices};
     tobi_mesh_box(mesh, w.origin, max);
     for (int k = 0; k < 3; k++) size = fmax(size, max[k] - w.origin[k]);
-    w.tolerance = size > 0 ? WELD_TOLERANCE*size : 1;
+    w.tolerance = size > SMALLEST_SIZE ? tolerance*size : 1;      /* or all become one point */
     uint64_t slots = 16;
     while (slots < (uint64_t)mesh->vertex_count*2) slots *= 2;
     w.mask = slots - 1;
@@ -120,8 +166,10 @@ static tobi_status weld_vertices(const tobi_mesh *mesh, int32_t *merged)
         memset(w.head, 0xff, slots*sizeof *w.head);
         for (int32_t i = 0; i < mesh->vertex_count; i++) {
             int64_t own[3];
+            merged[i] = i;
+            if (only && !only[i]) continue;
             int32_t same = find_welded(&w, w.vertices[i], own);
-            merged[i] = same >= 0 ? same : i;
+            if (same >= 0) merged[i] = same;
             if (same >= 0) continue;
             uint64_t slot = hash_cell(&w, own);
             w.next[i] = w.head[slot];
@@ -172,10 +220,9 @@ static tobi_status check_input(const char *name, int64_t vertex_count, const dou
                          (long long)triangle_count, INT32_MAX, INT32_MAX/3);
     for (int64_t i = 0; i < vertex_count; i++) {
         const double *x = vertices[i];
-        /* squares of coordinates must stay finite too */
-        if (!(fabs(x[0]) < 1e100 && fabs(x[1]) < 1e100 && fabs(x[2]) < 1e100))
+        if (!(fabs(x[0]) < LARGEST && fabs(x[1]) < LARGEST && fabs(x[2]) < LARGEST))
             return tobi_fail(err, TOBI_INVALID, "mesh '%s': vertex %lld is (%g, %g, %g); coordinates "
-                             "must be finite numbers", name, (long long)i + 1, x[0], x[1], x[2]);
+                             "must be finite numbers below 1e15", name, (long long)i + 1, x[0], x[1], x[2]);
     }
     for (int64_t t = 0; t < triangle_count; t++)
         for (int k = 0; k < 3; k++)
@@ -192,12 +239,13 @@ tobi_status tobi_mesh_build(const char *name, int64_t vertex_count, const double
 {
     *out = (tobi_mesh){0};
     TOBI_TRY(check_input(name, vertex_count, vertices, triangle_count, triangles, err));
-    tobi_mesh raw = {vertex_count, triangle_count, (double (*)[3])(uintptr_t)vertices,
-                     (int32_t (*)[3])(uintptr_t)triangles};
+    tobi_mesh raw = {.vertex_count = vertex_count, .triangle_count = triangle_count,
+                     .vertices = (double (*)[3])(uintptr_t)vertices,
+                     .triangles = (int32_t (*)[3])(uintptr_t)triangles};
     tobi_mesh mesh;
     TOBI_TRY(tobi_mesh_copy(&raw, &mesh, err));
     int32_t *merged = malloc((size_t)vertex_count*2*sizeof *merged);
-    if (!merged || weld_vertices(&mesh, merged) != TOBI_OK) {
+    if (!merged || weld_vertices(&mesh, WELD_TOLERANCE, NULL, merged) != TOBI_OK) {
         free(merged);
         tobi_mesh_free(&mesh);
         return tobi_fail(err, TOBI_NO_MEMORY, "mesh '%s': no memory to weld %lld vertices", name,
@@ -212,6 +260,15 @@ tobi_status tobi_mesh_build(const char *name, int64_t vertex_count, const double
     }
     *out = mesh;
     return TOBI_OK;
+}
+
+tobi_status tobi_mesh_weld(tobi_mesh *mesh, double tolerance, const char *only)
+{
+    int32_t *merged = malloc((size_t)(mesh->vertex_count + 1)*2*sizeof *merged);
+    tobi_status status = merged ? weld_vertices(mesh, tolerance, only, merged) : TOBI_NO_MEMORY;
+    if (status == TOBI_OK) compact_mesh(mesh, merged, merged + mesh->vertex_count);
+    free(merged);
+    return status;
 }
 
 /* Rodrigues' rotation matrix for a unit axis. */
@@ -247,6 +304,14 @@ tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const do
     if (!isfinite(translation[0] + translation[1] + translation[2]))
         return tobi_fail(err, TOBI_INVALID, "translation (%g, %g, %g) must be finite", translation[0],
                          translation[1], translation[2]);
+    double reach = 0;
+    for (int64_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) reach = fmax(reach, fabs(scale[k]*mesh->vertices[i][k]));
+    reach = 2*reach + fmax(fabs(translation[0]), fmax(fabs(translation[1]), fabs(translation[2])));
+    if (!(reach < LARGEST))
+        return tobi_fail(err, TOBI_INVALID, "scale (%g, %g, %g) and translation (%g, %g, %g) put the mesh "
+                         "further than %g m away", scale[0], scale[1], scale[2], translation[0],
+                         translation[1], translation[2], LARGEST);
     make_rotation(unit, degrees, r);
     for (int64_t i = 0; i < mesh->vertex_count; i++) {
         double *x = mesh->vertices[i], s[3] = {scale[0]*x[0], scale[1]*x[1], scale[2]*x[2]};

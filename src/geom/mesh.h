@@ -2,14 +2,20 @@
 
    A tobi_mesh owns its two arrays (malloc); tobi_mesh_free releases them. Coordinates in metres.
    A triangle's vertices run counter-clockwise seen from outside once tobi_mesh_orient has passed.
-   Every function that fails leaves its output empty or its mesh as it was. */
+   Every function that fails leaves its output empty or its mesh as it was, if it does not say
+   otherwise. */
 #pragma once
 #include "base/error.h"
+
+enum { TOBI_MESH_NOTES = 1000 };
 
 typedef struct tobi_mesh {
     int64_t vertex_count, triangle_count;
     double  (*vertices)[3];
     int32_t (*triangles)[3];
+    int     overlapping;               /* parts of the surface lie inside others: inside is where the
+                                          winding number is above 0, see bvh.h                      */
+    char    notes[TOBI_MESH_NOTES];    /* what was repaired, a line each, with a newline            */
 } tobi_mesh;
 
 /* Reads an OBJ, STL (ASCII or binary) or PLY file; all its groups become one surface, duplicate
@@ -39,10 +45,22 @@ tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const do
 
 void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3]);
 
-/* Checks that every edge belongs to exactly two triangles, makes the triangles of each connected
-   shell agree, and turns the outermost shells outward, shells inside one other shell inward
-   (cavities), and so on by depth. name goes into error texts. */
+/* Makes a surface as CAD writes it a closed one, oriented outwards, and says in mesh->notes what it
+   changed: borders that nearly meet are welded, double triangles dropped, edges of more than two
+   triangles taken apart, the triangles of each shell made to agree, holes closed by patches, the
+   outermost shells turned outward, shells inside one other shell inward (cavities), and so on by depth;
+   marks shells that overlap. docs/decisions/0008-meshes-from-cad.md says by which rules. name goes into
+   error texts. Errors: TOBI_INVALID when the file does not say what is inside (holes with their number
+   and place), TOBI_NO_MEMORY. The mesh may be partly repaired after a failure. */
 tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err);
+
+/* Adds a line to mesh->notes, as far as there is room. */
+void tobi_mesh_note(tobi_mesh *mesh, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Compares the mesh with a domain of size (m): text receives a question about the units when it is more
+   than 10 times larger ("larger" is in the text) or 1000 times smaller, "" if it is neither. */
+void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
+                          size_t room);
 
 /* Splits edges longer than max_edge (m) at their middle, longest first, in both neighbours: the
    shape stays, the surface stays closed. Needs a mesh that passed tobi_mesh_orient. Splitting the

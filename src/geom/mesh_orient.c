@@ -1,13 +1,21 @@
-/* Closedness and orientation: match edges, flood each connected shell until its triangles agree,
-   then turn whole shells by how many other shells they lie in (even outward, odd inward).
+/* Closedness and orientation: match edges, mend and patch what is open, flood each connected shell until
+   its triangles agree, then turn whole shells by how many other shells they lie in (even outward, odd
+   inward).
 
-   A shell lies in another one when its box does and the winding number (solid angle sum of
-   van Oosterom & Strackee 1983) of three of its triangles says so. Drawback: shells that overlap
-   without one holding the other count as separate solids. */
+   A shell lies in another one when the winding number of that one is not 0 at points all over it; one
+   that pokes out is a solid of its own, and what both hold counts once (mesh->overlapping). */
+#include "geom/bvh.h"
 #include "geom/edges.h"
+#include "geom/lines.h"
 #include "geom/mesh.h"
+#include "geom/mesh_mend.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
+#include <string.h>
+
+#define DOUBT_ALLOWED 0.02       /* of the volume, between two ways to close the holes     */
+#define OVERLAP_SEEN 1e-3        /* of the volume: less is left alone                      */
+enum { SAMPLES = 9, LINES = 200 };
 
 typedef struct shell_set {
     int64_t count;
@@ -22,7 +30,10 @@ typedef struct orient_work {
     int32_t (*opposite)[3];
     int32_t *stack;
     signed char *turn;           /* -1 unseen, 0 as is, 1 to be turned      */
+    int64_t turned;              /* triangles that disagreed with most      */
     shell_set shells;
+    tobi_holes holes;
+    const char *name;
 } orient_work;
 
 static void free_work(orient_work *w)
@@ -39,7 +50,9 @@ static void free_work(orient_work *w)
 
 static tobi_status allocate_work(orient_work *w, int64_t n)
 {
-    *w = (orient_work){0};
+    orient_work fresh = {.holes = w->holes, .turned = w->turned, .name = w->name};
+    free_work(w);
+    *w = fresh;
     w->opposite = malloc((size_t)n*sizeof *w->opposite);
     w->stack = malloc((size_t)n*sizeof *w->stack);
     w->turn = malloc((size_t)n);
@@ -49,16 +62,15 @@ static tobi_status allocate_work(orient_work *w, int64_t n)
                ? TOBI_OK : TOBI_NO_MEMORY;
 }
 
-static tobi_status fail_open(const tobi_mesh *mesh, const char *name, const tobi_edge_report *r,
-                             tobi_error *err)
+static tobi_status fail_crowded(const tobi_mesh *mesh, const char *name, const tobi_edge_report *r,
+                                tobi_error *err)
 {
     const double *a = mesh->vertices[r->ends[0]], *b = mesh->vertices[r->ends[1]];
-    return tobi_fail(err, TOBI_INVALID, "mesh '%s' is not closed: %lld open edges (one triangle) and "
-                     "%lld edges with more than two triangles, the first from (%.6g, %.6g, %.6g) to "
-                     "(%.6g, %.6g, %.6g); allowed is a surface whose every edge belongs to exactly two "
-                     "triangles (%lld triangles were read)", name, (long long)r->open,
-                     (long long)r->crowded, a[0], a[1], a[2], b[0], b[1], b[2],
-                     (long long)mesh->triangle_count);
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s' does not say what is inside: %lld edges with more than "
+                     "two triangles and %lld with one, the first from (%.6g, %.6g, %.6g) to "
+                     "(%.6g, %.6g, %.6g): sheets without thickness? A closed surface is needed (%lld "
+                     "triangles were read)", name, (long long)r->crowded, (long long)r->open, a[0], a[1],
+                     a[2], b[0], b[1], b[2], (long long)mesh->triangle_count);
 }
 
 /* True if half-edges h and g run from the same vertex, that is, if their triangles disagree. */
@@ -67,18 +79,21 @@ static int runs_alike(const tobi_mesh *mesh, int32_t h, int32_t g)
     return mesh->triangles[h/3][h % 3] == mesh->triangles[g/3][g % 3];
 }
 
-/* Visits one shell from a seed triangle. Returns the half-edge where two triangles cannot be made to
-   agree, or -1. */
+/* Visits one shell from a seed triangle; if most of it is to be turned, the rest is instead. Returns the
+   half-edge where two triangles cannot be made to agree, or -1. */
 static int32_t flood_shell(const tobi_mesh *mesh, orient_work *w, int32_t seed, int32_t shell)
 {
-    int64_t top = 0;
+    int64_t top = 0, seen = 0, turned = 0;
     w->stack[top++] = seed;
     w->turn[seed] = 0;
     w->shells.of_triangle[seed] = shell;
     while (top) {
         int32_t t = w->stack[--top];
+        w->shells.order[seen++] = t;
+        turned += w->turn[t];
         for (int k = 0; k < 3; k++) {
             int32_t g = w->opposite[t][k], u = g/3;
+            if (g < 0) continue;
             signed char turn = (signed char)(w->turn[t] ^ runs_alike(mesh, 3*t + k, g));
             if (w->turn[u] < 0) {
                 w->turn[u] = turn;
@@ -89,6 +104,8 @@ static int32_t flood_shell(const tobi_mesh *mesh, orient_work *w, int32_t seed, 
             }
         }
     }
+    for (int64_t i = 0; i < seen && 2*turned > seen; i++) w->turn[w->shells.order[i]] ^= 1;
+    w->turned += 2*turned > seen ? seen - turned : turned;
     return -1;
 }
 
@@ -134,62 +151,148 @@ static tobi_status measure_shells(const tobi_mesh *mesh, shell_set *s)
     return TOBI_OK;
 }
 
-/* Winding number of p in one shell: +-1 inside, 0 outside. */
-static double wind_around(const tobi_mesh *mesh, const shell_set *s, int64_t shell, const double p[3])
+/* Which shells a line crosses: the winding number of each at the point. */
+typedef struct shell_census {
+    const shell_set *s;
+    int *wound, *holds;          /* at the present point; at how many points not 0 */
+    int32_t touched[1024];       /* shells with wound set                          */
+    int count;
+} shell_census;
+
+static void count_crossing(void *user, int32_t triangle, int turn)
 {
-    double sum = 0;
-    for (int64_t j = s->start[shell]; j < s->start[shell + 1]; j++) {
-        double e[3][3], n[3], l[3];
-        for (int c = 0; c < 3; c++) {
-            vec3_sub(e[c], mesh->vertices[mesh->triangles[s->order[j]][c]], p);
-            l[c] = vec3_length(e[c]);
-        }
-        vec3_cross(n, e[1], e[2]);
-        sum += atan2(vec3_dot(e[0], n), l[0]*l[1]*l[2] + vec3_dot(e[0], e[1])*l[2] +
-                     vec3_dot(e[1], e[2])*l[0] + vec3_dot(e[2], e[0])*l[1]);
-    }
-    return sum/(2*3.14159265358979323846);
+    shell_census *c = user;
+    int32_t shell = c->s->of_triangle[triangle];
+    int known = 0;
+    for (int i = 0; i < c->count && !known; i++) known = c->touched[i] == shell;
+    if (!known && c->count == 1024) return;
+    if (!known) c->touched[c->count++] = shell;
+    c->wound[shell] -= turn;
 }
 
-static int lies_in(const tobi_mesh *mesh, const shell_set *s, int64_t inner, int64_t outer)
+/* How many shells hold this one: at all of up to SAMPLES of its triangles. */
+static int find_depth(const tobi_mesh *mesh, const tobi_bvh *bvh, int64_t shell, shell_census *c)
 {
-    const double *a = s->box[inner], *b = s->box[outer];
-    for (int k = 0; k < 3; k++)
-        if (a[k] < b[k] || a[3 + k] > b[3 + k]) return 0;
-    int64_t first = s->start[inner], n = s->start[inner + 1] - first;
-    for (int i = 0; i < 3; i++) {
-        const int32_t *t = mesh->triangles[s->order[first + i*(n - 1)/2]];
+    const shell_set *s = c->s;
+    int64_t first = s->start[shell], n = s->start[shell + 1] - first;
+    int32_t holders[1024];
+    int samples = n < SAMPLES ? (int)n : SAMPLES, depth = 0, candidates = 0;
+    for (int i = 0; i < samples; i++) {
+        const int32_t *t = mesh->triangles[s->order[first + i*(n - 1)/(samples > 1 ? samples - 1 : 1)]];
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = (mesh->vertices[t[0]][k] + mesh->vertices[t[1]][k] + mesh->vertices[t[2]][k])/3;
-        if (fabs(wind_around(mesh, s, outer, p)) < 0.5) return 0;
+        c->count = 0;
+        tobi_bvh_look_up(bvh, p, count_crossing, c);
+        for (int j = 0; j < c->count; j++) {
+            int32_t other = c->touched[j];
+            if (c->wound[other] && other != shell) c->holds[other]++;
+            if (i == 0) holders[candidates++] = other;
+            c->wound[other] = 0;
+        }
+        /* a shell not seen by the first point cannot hold all */
+        for (int j = 0; i && j < c->count; j++) {
+            int seen = 0;
+            for (int k = 0; k < candidates && !seen; k++) seen = holders[k] == c->touched[j];
+            if (!seen) c->holds[c->touched[j]] = 0;
+        }
     }
-    return 1;
+    for (int k = 0; k < candidates; k++) {
+        depth += c->holds[holders[k]] == samples;
+        c->holds[holders[k]] = 0;
+    }
+    return depth;
 }
 
-static tobi_status turn_shells(tobi_mesh *mesh, shell_set *s, const char *name, tobi_error *err)
+static tobi_status find_depths(const tobi_mesh *mesh, const shell_set *s, int *depth, tobi_error *err)
 {
+    tobi_bvh *bvh = NULL;
+    if (s->count == 1) return TOBI_OK;
+    TOBI_TRY(tobi_bvh_build(mesh->vertex_count, (const double (*)[3])mesh->vertices, mesh->triangle_count,
+                            (const int32_t (*)[3])mesh->triangles, &bvh, err));
+    shell_census c = {.s = s};
+    c.wound = calloc((size_t)s->count, sizeof *c.wound);
+    c.holds = calloc((size_t)s->count, sizeof *c.holds);
+    for (int64_t i = 0; c.wound && c.holds && i < s->count; i++) depth[i] = find_depth(mesh, bvh, i, &c);
+    tobi_status status = c.wound && c.holds ? TOBI_OK : TOBI_NO_MEMORY;
+    free(c.wound);
+    free(c.holds);
+    tobi_bvh_free(bvh);
+    return status;
+}
+
+static tobi_status fail_flat(const orient_work *w, const double b[6], tobi_error *err)
+{
+    char holes[600] = "";
+    if (w->holes.count) tobi_holes_describe(&w->holes, holes, sizeof holes);
+    return tobi_fail(err, TOBI_INVALID, "mesh '%s': the shell around (%.6g, %.6g, %.6g) encloses no volume; "
+                     "a body needs an inside%s%s", w->name, (b[0] + b[3])/2, (b[1] + b[4])/2,
+                     (b[2] + b[5])/2, holes[0] ? ". The surface has " : "", holes);
+}
+
+static tobi_status turn_shells(tobi_mesh *mesh, orient_work *w, tobi_error *err)
+{
+    shell_set *s = &w->shells;
+    int64_t turned = 0, hollow = 0;
     for (int64_t i = 0; i < s->count; i++) {
         const double *b = s->box[i];
-        double size = fmax(b[3] - b[0], fmax(b[4] - b[1], b[5] - b[2])), depth = 0;
-        if (fabs(s->volume[i]) <= 1e-12*size*size*size)
-            return tobi_fail(err, TOBI_INVALID, "mesh '%s': the shell around (%.6g, %.6g, %.6g) encloses "
-                             "no volume; a body needs an inside", name, (b[0] + b[3])/2,
-                             (b[1] + b[4])/2, (b[2] + b[5])/2);
-        for (int64_t j = 0; j < s->count; j++)
-            if (j != i && lies_in(mesh, s, i, j)) depth++;
-        if ((s->volume[i] < 0) == (fmod(depth, 2) == 1)) continue;
+        double size = fmax(b[3] - b[0], fmax(b[4] - b[1], b[5] - b[2]));
+        if (fabs(s->volume[i]) <= 1e-12*size*size*size) return fail_flat(w, b, err);
+    }
+    int *depth = calloc((size_t)s->count, sizeof *depth);
+    tobi_status status = depth ? find_depths(mesh, s, depth, err) : TOBI_NO_MEMORY;
+    for (int64_t i = 0; status == TOBI_OK && i < s->count; i++) {
+        hollow += depth[i] % 2;
+        if ((s->volume[i] < 0) == (depth[i] % 2 == 1)) continue;
+        turned++;
         for (int64_t j = s->start[i]; j < s->start[i + 1]; j++) turn_triangle(mesh->triangles[s->order[j]]);
     }
+    free(depth);
+    if (hollow)
+        tobi_mesh_note(mesh, "%lld of %lld shells lie inside another one and are hollows",
+                       (long long)hollow, (long long)s->count);
+    if (turned)
+        tobi_mesh_note(mesh, "%lld of %lld shells turned: the outermost look outwards, hollows inwards",
+                       (long long)turned, (long long)s->count);
+    return status;
+}
+
+/* Looks for volume that is inside more than once, or inside out. */
+static tobi_status find_overlaps(tobi_mesh *mesh, tobi_error *err)
+{
+    double min[3], max[3], size = 0, inside = 0, twice = 0, negative = 0;
+    tobi_lines l = {0};
+    tobi_mesh_box(mesh, min, max);
+    for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
+    tobi_status status = tobi_lines_cut(&l, mesh, NULL, size/LINES, err);
+    for (int64_t line = 0; status == TOBI_OK && line < l.size[0]*l.size[1]; line++) {
+        int wound = 0;
+        for (int64_t c = l.start[line]; c + 1 < l.start[line + 1]; c++) {
+            double length = l.cuts[c + 1].at - l.cuts[c].at;
+            wound += l.cuts[c].turn;
+            if (wound > 0) inside += length;
+            if (wound > 1) twice += length;
+            if (wound < 0) negative += length;
+        }
+    }
+    tobi_lines_free(&l);
+    TOBI_TRY(status);
+    mesh->overlapping = twice + negative > OVERLAP_SEEN*inside;
+    if (mesh->overlapping && twice > 0)
+        tobi_mesh_note(mesh, "parts of the surface overlap: %.2g %% of the volume lies in more than one "
+                       "and counts once", 100*twice/inside);
+    if (mesh->overlapping && negative > OVERLAP_SEEN*inside)
+        tobi_mesh_note(mesh, "parts of the surface are inside out: %.2g %% of the volume, which counts as "
+                       "outside", 100*negative/inside);
     return TOBI_OK;
 }
 
-static tobi_status orient_mesh(tobi_mesh *mesh, const char *name, orient_work *w, tobi_error *err)
+/* Matches edges and makes the triangles of each shell agree, over open edges or not. */
+static tobi_status flood_mesh(tobi_mesh *mesh, orient_work *w, tobi_edge_report *report, tobi_error *err)
 {
-    tobi_edge_report report;
+    TOBI_TRY(allocate_work(w, mesh->triangle_count));
     TOBI_TRY(tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
-                              (const int32_t (*)[3])mesh->triangles, w->opposite, &report));
-    if (report.open || report.crowded) return fail_open(mesh, name, &report, err);
+                              (const int32_t (*)[3])mesh->triangles, w->opposite, report));
     for (int64_t t = 0; t < mesh->triangle_count; t++) w->turn[t] = -1;
     for (int64_t t = 0; t < mesh->triangle_count; t++) {
         if (w->turn[t] >= 0) continue;
@@ -197,21 +300,64 @@ static tobi_status orient_mesh(tobi_mesh *mesh, const char *name, orient_work *w
         if (bad < 0) continue;
         const double *x = mesh->vertices[mesh->triangles[bad/3][bad % 3]];
         return tobi_fail(err, TOBI_INVALID, "mesh '%s' has no inside: its triangles cannot be made to "
-                         "agree at (%.6g, %.6g, %.6g), as on a Moebius band", name, x[0], x[1], x[2]);
+                         "agree at (%.6g, %.6g, %.6g), as on a Moebius band", w->name, x[0], x[1], x[2]);
     }
     for (int64_t t = 0; t < mesh->triangle_count; t++)
         if (w->turn[t]) turn_triangle(mesh->triangles[t]);
+    return TOBI_OK;
+}
+
+static tobi_status close_holes(tobi_mesh *mesh, orient_work *w, tobi_edge_report *report, tobi_error *err)
+{
+    TOBI_TRY(tobi_mesh_patch(mesh, (const int32_t (*)[3])w->opposite, &w->holes));
+    return flood_mesh(mesh, w, report, err);
+}
+
+/* The holes are closed; was it clear how? */
+static tobi_status judge_holes(tobi_mesh *mesh, orient_work *w, tobi_error *err)
+{
+    char text[600];
+    double doubt;
+    TOBI_TRY(tobi_holes_doubt(mesh, &w->holes, &doubt));
+    tobi_holes_describe(&w->holes, text, sizeof text);
+    if (doubt > DOUBT_ALLOWED)
+        return tobi_fail(err, TOBI_INVALID, "mesh '%s' does not say what is inside: %s. Flat patches and the "
+                         "winding number of the open surface disagree about %.2g %% of the volume, allowed "
+                         "are %.2g %%; close the surface", w->name, text, fmin(100*doubt, 1e6),
+                         100*DOUBT_ALLOWED);
+    tobi_mesh_note(mesh, "%s closed by patches; the winding number of the open surface agrees, so volume, "
+                   "centre and inertia are those of the patched surface, to within %.2g %%", text,
+                   fmax(100*doubt, 0.1));
+    return TOBI_OK;
+}
+
+static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
+{
+    tobi_edge_report report = {0};
+    TOBI_TRY(tobi_edges_match(mesh->vertex_count, mesh->triangle_count,
+                              (const int32_t (*)[3])mesh->triangles, w->opposite, &report));
+    if (report.open || report.crowded) TOBI_TRY(tobi_mesh_mend(mesh));
+    TOBI_TRY(flood_mesh(mesh, w, &report, err));
+    if (w->turned)
+        tobi_mesh_note(mesh, "%lld of %lld triangles turned to agree with their neighbours",
+                       (long long)w->turned, (long long)mesh->triangle_count);
+    if (report.crowded) return fail_crowded(mesh, w->name, &report, err);
+    int patched = report.open > 0;
+    if (patched) TOBI_TRY(close_holes(mesh, w, &report, err));
+    if (report.open || report.crowded) return fail_crowded(mesh, w->name, &report, err);
     TOBI_TRY(measure_shells(mesh, &w->shells));
-    return turn_shells(mesh, &w->shells, name, err);
+    TOBI_TRY(turn_shells(mesh, w, err));
+    if (patched) TOBI_TRY(judge_holes(mesh, w, err));
+    return find_overlaps(mesh, err);
 }
 
 tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
 {
     if (!mesh->triangle_count)
         return tobi_fail(err, TOBI_INVALID, "mesh '%s': no triangles; a closed surface is needed", name);
-    orient_work w;
+    orient_work w = {.name = name};
     tobi_status status = allocate_work(&w, mesh->triangle_count);
-    if (status == TOBI_OK) status = orient_mesh(mesh, name, &w, err);
+    if (status == TOBI_OK) status = orient_mesh(mesh, &w, err);
     if (status == TOBI_NO_MEMORY)
         tobi_fail(err, status, "mesh '%s': no memory to check %lld triangles", name,
                   (long long)mesh->triangle_count);

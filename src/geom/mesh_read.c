@@ -5,9 +5,13 @@
    ends the child only. Drawback: the arrays are copied once through the pipe, and a host that
    reaps all children itself loses the exit cause (the text then says only that it ended).
 
+   Binary STL is read without it (file_checks.h): large scans come so, and its records hold nothing that
+   could surprise.
+
    assimp holds coordinates as float. Each is replaced by the shortest decimal that reads back as the
    same float, so that 0.1 in a text file arrives as the double 0.1. */
 #define _GNU_SOURCE
+#include "geom/file_checks.h"
 #include "geom/mesh.h"
 #include "geom/obj_scan.h"
 #include <assimp/cimport.h>
@@ -38,6 +42,7 @@
 typedef struct allowance {
     double seconds;
     rlim_t bytes;
+    int64_t size;                         /* of the file */
 } allowance;
 
 typedef struct import_header {
@@ -56,16 +61,6 @@ typedef struct collector {
 
 /* --- in the child ------------------------------------------------------------------------- */
 
-static double shortest_decimal(float x)
-{
-    char text[32];
-    for (int digits = 6; digits < 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)x);
-        if (strtof(text, NULL) == x) return strtod(text, NULL);
-    }
-    return x;
-}
-
 static void collect_mesh(collector *c, const struct aiMesh *m, const struct aiMatrix4x4 *x)
 {
     int64_t first = c->vertex_count;
@@ -75,9 +70,9 @@ static void collect_mesh(collector *c, const struct aiMesh *m, const struct aiMa
         struct aiVector3D v = m->mVertices[i];
         if (!identity) aiTransformVecByMatrix4(&v, x);
         double *out = c->vertices[first + i];
-        out[0] = shortest_decimal(v.x);
-        out[1] = shortest_decimal(v.y);
-        out[2] = shortest_decimal(v.z);
+        out[0] = tobi_shortest_decimal(v.x);
+        out[1] = tobi_shortest_decimal(v.y);
+        out[2] = tobi_shortest_decimal(v.z);
     }
     c->vertex_count += m->mNumVertices;
     for (unsigned i = 0; i < m->mNumFaces; i++) {
@@ -135,6 +130,25 @@ static void limit_child(const allowance *allowed)
 #endif
 }
 
+/* NULL with a text in the header if that did not work. */
+static const struct aiScene *import(const char *path, import_header *header)
+{
+    const unsigned flags = aiProcess_ValidateDataStructure | aiProcess_Triangulate;
+    const char *dot = strrchr(path, '.');
+    char *text = NULL;
+    size_t size = 0;
+    int changed = dot && !strcasecmp(dot, ".obj") ? tobi_obj_add_zeros(path, &text, &size) : 0;
+    const struct aiScene *scene = NULL;
+    if (changed > 0) scene = aiImportFileFromMemory(text, (unsigned)size, flags, "obj");
+    else if (changed == 0) scene = aiImportFile(path, flags);
+    free(text);
+    if (scene) return scene;
+    snprintf(header->text, sizeof header->text, "%s",
+             changed < 0 ? "it cannot be held in memory" : aiGetErrorString());
+    if (!header->text[0]) strcpy(header->text, "the importer gave up without a reason");
+    return NULL;
+}
+
 static _Noreturn void run_child(const char *path, int fd, const allowance *allowed)
 {
     static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
@@ -147,10 +161,8 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     }
     import_header header = {.magic = "tobimesh"};
     struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    collector c = {.scene = aiImportFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate)};
+    collector c = {.scene = import(path, &header)};
     if (!c.scene) {
-        snprintf(header.text, sizeof header.text, "%s", aiGetErrorString());
-        if (!header.text[0]) strcpy(header.text, "the importer gave up without a reason");
         write_all(fd, &header, sizeof header);
         _exit(0);
     }
@@ -303,6 +315,7 @@ static tobi_status check_file(const char *path, allowance *allowed, tobi_error *
     if (access(path, R_OK))
         return tobi_fail(err, TOBI_IO, "mesh '%s': %s", path, strerror(errno));
     if (info.st_size == 0) return tobi_fail(err, TOBI_INVALID, "mesh '%s' is an empty file", path);
+    allowed->size = info.st_size;
     allowed->seconds = SECONDS_BASE + SECONDS_PER_BYTE*(double)info.st_size;
     allowed->bytes = BYTES_BASE + BYTES_PER_BYTE*(rlim_t)info.st_size;
     return TOBI_OK;
@@ -311,7 +324,19 @@ static tobi_status check_file(const char *path, allowance *allowed, tobi_error *
 tobi_status tobi_mesh_read(const char *path, tobi_mesh *out, tobi_error *err)
 {
     *out = (tobi_mesh){0};
-    allowance allowed;
+    allowance allowed = {0};
     TOBI_TRY(check_file(path, &allowed, err));
+    const char *dot = strrchr(path, '.');
+    if (!strcasecmp(dot, ".ply")) TOBI_TRY(tobi_ply_check(path, allowed.size, err));
+    if (!strcasecmp(dot, ".stl")) {
+        tobi_mesh raw = {0};
+        tobi_status status;
+        int found = tobi_stl_read_binary(path, allowed.size, &raw, &status, err);
+        if (found > 0)
+            status = tobi_mesh_build(path, raw.vertex_count, (const double (*)[3])raw.vertices,
+                                     raw.triangle_count, (const int32_t (*)[3])raw.triangles, out, err);
+        tobi_mesh_free(&raw);
+        if (found) return status;
+    }
     return import_apart(path, &allowed, out, err);
 }

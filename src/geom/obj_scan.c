@@ -1,5 +1,4 @@
-/* A plain reading of the v and f lines only, run after the importer refused a file: it says that an
-   index is wrong but not where. */
+/* What the importer does not do: it says that an index is wrong but not where, and it knows no .5. */
 #define _POSIX_C_SOURCE 200809L
 #include "geom/obj_scan.h"
 #include <stdio.h>
@@ -44,4 +43,45 @@ int tobi_obj_scan(const char *path, tobi_obj_fault *fault)
     free(line);
     fclose(f);
     return found;
+}
+
+static int is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/* Is text[i] the point of a number without digits before it? */
+static int lacks_zero(const char *text, size_t i, size_t size)
+{
+    if (text[i] != '.' || i == 0 || i + 1 == size || text[i + 1] < '0' || text[i + 1] > '9') return 0;
+    int sign = text[i - 1] == '-' || text[i - 1] == '+';
+    return is_blank(text[i - 1]) || (sign && i > 1 && is_blank(text[i - 2]));
+}
+
+static char *read_whole(const char *path, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    long length = f && fseek(f, 0, SEEK_END) == 0 ? ftell(f) : -1;
+    char *text = length >= 0 ? malloc((size_t)length + 1) : NULL;
+    *size = (size_t)length;
+    if (text && (fseek(f, 0, SEEK_SET) != 0 || fread(text, 1, *size, f) != *size)) {
+        free(text);
+        text = NULL;
+    }
+    if (f) fclose(f);
+    return text;
+}
+
+int tobi_obj_add_zeros(const char *path, char **text, size_t *size)
+{
+    size_t length, lacking = 0, at = 0;
+    char *old = read_whole(path, &length);
+    *text = NULL;
+    if (!old) return -1;
+    for (size_t i = 0; i < length; i++) lacking += (size_t)lacks_zero(old, i, length);
+    *size = length + lacking;
+    if (lacking) *text = malloc(*size);
+    for (size_t i = 0; *text && i < length; i++) {
+        if (lacks_zero(old, i, length)) (*text)[at++] = '0';
+        (*text)[at++] = old[i];
+    }
+    free(old);
+    return !lacking ? 0 : *text ? 1 : -1;
 }

@@ -1,11 +1,10 @@
 /* Lattice points inside a body.
 
-   Lines along z (2-D: along y) through a lattice four times finer in the other directions are cut
+   Lines (lines.h) through a lattice four times finer in the other directions are cut
    with the mesh once; every shift of the body's lattice by quarters of its spacing is then counted
-   from the same cuts, without testing a single point. Lines are cut by the half-open rule of polygon
-   filling (an edge's upper end is not part of it), each edge always from its lower-numbered vertex,
-   so a line through an edge or a vertex is still cut an even number of times. */
+   from the same cuts, without testing a single point. */
 #include "geom/sample.h"
+#include "geom/lines.h"
 #include "geom/massprops.h"
 #include "geom/section.h"
 #include "geom/vec3.h"
@@ -13,165 +12,16 @@
 #include <string.h>
 
 enum { FINE = 4 };                /* shifts per axis                                               */
-#define MAX_LINES 400000000LL
 #define GOOD 0.005                /* relative volume error that needs no better lattice            */
 #define ALLOWED 0.01
-
-typedef struct cut {
-    double at;                    /* along the line, from the middle                               */
-    int turn;                     /* +1 enters, -1 leaves                                          */
-} cut;
-
-/* Lines of one pose of the mesh. Line (i, j) runs through x = middle + i fine, y = middle + j fine. */
-typedef struct lines {
-    double fine, middle[3];
-    int64_t low[2], size[2];      /* range of i and j; 2-D: one j                                  */
-    int64_t *start;               /* offsets into cuts, size[0] size[1] + 1                        */
-    cut *cuts;
-    int dimension;
-} lines;
 
 /* Sums over the points of one shift. */
 typedef struct moments {
     double count, first[3], second[3];
 } moments;
 
-static void free_lines(lines *l)
-{
-    free(l->start);
-    free(l->cuts);
-}
-
-static int64_t line_index(const lines *l, int64_t i, int64_t j)
-{
-    return (i - l->low[0])*l->size[1] + j - l->low[1];
-}
-
-/* Files a cut (pass 1), or only counts it (pass 0). */
-static void add_cut(lines *l, int pass, int64_t line, double at, int turn)
-{
-    if (pass == 0) l->start[line + 2]++;
-    else l->cuts[l->start[line + 1]++] = (cut){at, turn};
-}
-
-/* Where the row y cuts the edge from p to q, which it straddles: x and z. */
-static void cut_edge(const double p[3], const double q[3], double y, double out[2])
-{
-    double s = (y - p[1])/(q[1] - p[1]);
-    out[0] = p[0] + s*(q[0] - p[0]);
-    out[1] = p[2] + s*(q[2] - p[2]);
-}
-
-/* Cuts the lines of one row that meet a triangle (corners relative to the middle). */
-static void cut_row(lines *l, int pass, double corner[3][3], const int32_t t[3], int64_t j)
-{
-    double y = (double)j*l->fine, rise[2] = {0}, fall[2] = {0};
-    int found = 0;
-    for (int k = 0; k < 3; k++) {
-        int next = (k + 1) % 3;
-        int up = corner[k][1] <= y && corner[next][1] > y, down = corner[next][1] <= y && corner[k][1] > y;
-        if (!up && !down) continue;
-        int from = t[k] < t[next] ? k : next, to = from == k ? next : k;
-        cut_edge(corner[from], corner[to], y, up ? rise : fall);
-        found++;
-    }
-    if (found != 2 || rise[0] == fall[0]) return;
-    /* a rising edge on the right: seen from +z the triangle runs counter-clockwise and faces up */
-    int turn = rise[0] > fall[0] ? -1 : 1;
-    const double *left = turn < 0 ? fall : rise, *right = turn < 0 ? rise : fall;
-    int64_t i = (int64_t)ceil(left[0]/l->fine) - 1, end = (int64_t)ceil(right[0]/l->fine) + 1;
-    for (; i <= end; i++) {
-        double x = (double)i*l->fine;
-        if (x < left[0] || x >= right[0]) continue;
-        double s = (x - left[0])/(right[0] - left[0]);
-        add_cut(l, pass, line_index(l, i, j), left[1] + s*(right[1] - left[1]), turn);
-    }
-}
-
-static void cut_triangles(lines *l, int pass, const tobi_mesh *mesh)
-{
-    for (int64_t t = 0; t < mesh->triangle_count; t++) {
-        double corner[3][3], low = INFINITY, high = -INFINITY;
-        for (int c = 0; c < 3; c++) {
-            vec3_sub(corner[c], mesh->vertices[mesh->triangles[t][c]], l->middle);
-            low = fmin(low, corner[c][1]);
-            high = fmax(high, corner[c][1]);
-        }
-        int64_t end = (int64_t)floor(high/l->fine);
-        for (int64_t j = (int64_t)ceil(low/l->fine); j <= end; j++)
-            cut_row(l, pass, corner, mesh->triangles[t], j);
-    }
-}
-
-static void cut_pieces(lines *l, int pass, const tobi_section *s)
-{
-    for (int64_t n = 0; n < s->count; n++) {
-        double a[2], b[2];
-        for (int k = 0; k < 2; k++) {
-            a[k] = s->from[n][k] - l->middle[k];
-            b[k] = s->to[n][k] - l->middle[k];
-        }
-        /* the inside lies on the left: a piece running to +x is entered on the way up */
-        int turn = a[0] < b[0] ? 1 : -1;
-        const double *left = turn > 0 ? a : b, *right = turn > 0 ? b : a;
-        int64_t i = (int64_t)ceil(left[0]/l->fine) - 1, end = (int64_t)ceil(right[0]/l->fine) + 1;
-        for (; i <= end; i++) {
-            double x = (double)i*l->fine;
-            if (x < left[0] || x >= right[0]) continue;
-            double f = (x - left[0])/(right[0] - left[0]);
-            add_cut(l, pass, line_index(l, i, 0), left[1] + f*(right[1] - left[1]), turn);
-        }
-    }
-}
-
-static int compare_cuts(const void *a, const void *b)
-{
-    const cut *p = a, *q = b;
-    if (p->at != q->at) return p->at < q->at ? -1 : 1;
-    return q->turn - p->turn;
-}
-
-static tobi_status cut_lines(lines *l, const tobi_mesh *mesh, const tobi_section *section,
-                             double spacing, tobi_error *err)
-{
-    double min[3], max[3];
-    tobi_mesh_box(mesh, min, max);
-    l->dimension = section ? 2 : 3;
-    l->fine = spacing/FINE;
-    for (int k = 0; k < 3; k++) l->middle[k] = section && k == 2 ? 0 : 0.5*(min[k] + max[k]);
-    double estimate = 1;
-    for (int k = 0; k < 2; k++) {
-        double half = section && k ? 0 : 0.5*(max[k] - min[k])/l->fine;
-        estimate *= 2*half + 3;
-        if (!(estimate < (double)MAX_LINES))
-            return tobi_fail(err, TOBI_INVALID,
-                             "a body spacing of %g m is too fine for a body of %g x %g x "
-                             "%g m",
-                             spacing, max[0] - min[0], max[1] - min[1], max[2] - min[2]);
-        l->low[k] = -(int64_t)half - 2;
-        l->size[k] = section && k ? 1 : 2*((int64_t)half + 2) + 1;
-        if (section && k) l->low[k] = 0;
-    }
-    int64_t n = l->size[0]*l->size[1];
-    l->start = calloc((size_t)n + 2, sizeof *l->start);
-    for (int pass = 0; pass < 2 && l->start; pass++) {
-        if (section) cut_pieces(l, pass, section);
-        else cut_triangles(l, pass, mesh);
-        if (pass) continue;
-        for (int64_t i = 0; i < n; i++) l->start[i + 2] += l->start[i + 1];
-        l->cuts = malloc((size_t)(l->start[n + 1] + 1)*sizeof *l->cuts);
-        if (!l->cuts) break;
-    }
-    if (!l->start || !l->cuts)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory to fill a body at a spacing of %g m", spacing);
-    for (int64_t i = 0; i < n; i++)
-        qsort(l->cuts + l->start[i], (size_t)(l->start[i + 1] - l->start[i]), sizeof *l->cuts,
-              compare_cuts);
-    return TOBI_OK;
-}
-
 /* First lattice number k whose point (FINE k + shift) fine lies at or beyond z. */
-static int64_t first_point(const lines *l, double z, int shift)
+static int64_t first_point(const tobi_lines *l, double z, int shift)
 {
     int64_t k = (int64_t)floor(z/(l->fine*FINE)) - 1;
     while ((double)(FINE*k + shift)*l->fine < z) k++;
@@ -181,9 +31,9 @@ static int64_t first_point(const lines *l, double z, int shift)
 /* Calls for each run [k0, k1) of lattice points of a shift that lies inside on one line. */
 typedef void run_fn(void *to, const double xy[2], int64_t k0, int64_t k1);
 
-static void visit_line(const lines *l, int64_t i, int64_t j, int shift, run_fn *visit, void *to)
+static void visit_line(const tobi_lines *l, int64_t i, int64_t j, int shift, run_fn *visit, void *to)
 {
-    int64_t line = line_index(l, i, j);
+    int64_t line = tobi_line_index(l, i, j);
     double xy[2] = {(double)i*l->fine, (double)j*l->fine};
     int wound = 0;
     for (int64_t c = l->start[line]; c + 1 < l->start[line + 1]; c++) {
@@ -201,7 +51,7 @@ static int64_t first_shifted(int64_t low, int shift)
     return low + (rest < 0 ? rest + FINE : rest);
 }
 
-static void visit_lattice(const lines *l, const int shift[3], run_fn *visit, void *to)
+static void visit_lattice(const tobi_lines *l, const int shift[3], run_fn *visit, void *to)
 {
     int64_t end[2] = {l->low[0] + l->size[0], l->low[1] + l->size[1]};
     int flat = l->dimension == 2;
@@ -231,7 +81,7 @@ static void count_run(void *to, const double xy[2], int64_t k0, int64_t k1)
 }
 
 /* Means of x and x^2 over the body itself about the middle of the lines. */
-static moments measure_body(const lines *l, const tobi_massprops *p)
+static moments measure_body(const tobi_lines *l, const tobi_massprops *p)
 {
     moments m = {.count = 1};
     double trace = p->inertia[0] + p->inertia[4] + p->inertia[8];
@@ -244,7 +94,7 @@ static moments measure_body(const lines *l, const tobi_massprops *p)
 
 /* How badly the points of one shift stand for the body: volume first, then second moments and
    centre. Each point stands for its cell, hence the spread. */
-static double score_shift(const lines *l, const moments *m, const moments *body, double volume_error)
+static double score_shift(const tobi_lines *l, const moments *m, const moments *body, double volume_error)
 {
     double cell = l->fine*FINE, score = 2*volume_error + 20*fmax(0, volume_error - GOOD);
     if (m->count == 0) return INFINITY;
@@ -257,7 +107,7 @@ static double score_shift(const lines *l, const moments *m, const moments *body,
 }
 
 /* The best shift of the lattice for these lines; returns its relative volume error. */
-static double choose_shift(const lines *l, const tobi_massprops *whole, int best_shift[3])
+static double choose_shift(const tobi_lines *l, const tobi_massprops *whole, int best_shift[3])
 {
     moments body = measure_body(l, whole);
     double cell = pow(l->fine*FINE, l->dimension), best = INFINITY, best_error = INFINITY;
@@ -278,7 +128,7 @@ static double choose_shift(const lines *l, const tobi_massprops *whole, int best
 }
 
 typedef struct writer {
-    const lines *l;
+    const tobi_lines *l;
     double (*points)[3];
     int64_t count;
     int shift;
@@ -295,7 +145,7 @@ static void write_run(void *to, const double xy[2], int64_t k0, int64_t k1)
     }
 }
 
-static tobi_status write_points(const lines *l, const int shift[3], double (**points)[3], int64_t *count,
+static tobi_status write_points(const tobi_lines *l, const int shift[3], double (**points)[3], int64_t *count,
                                 tobi_error *err)
 {
     tally c = {.fine = l->fine, .shift = shift[2], .along = l->dimension - 1};
@@ -334,7 +184,7 @@ static tobi_status try_pose(const tobi_mesh *mesh, const pose *p, double spacing
     tobi_mesh turned;
     tobi_section section = {0};
     tobi_massprops whole;
-    lines l = {0};
+    tobi_lines l = {0};
     int shift[3] = {0, 0, 0};
     TOBI_TRY(tobi_mesh_copy(mesh, &turned, err));
     tobi_status status = tobi_mesh_transform(&turned, no_scale, p->axis, p->degrees, no_translation, err);
@@ -342,7 +192,7 @@ static tobi_status try_pose(const tobi_mesh *mesh, const pose *p, double spacing
         status = (dimension == 2 ? tobi_massprops_section : tobi_massprops_volume)(&turned, &whole, err);
     if (status == TOBI_OK && dimension == 2) status = tobi_section_cut(&turned, &section, err);
     if (status == TOBI_OK)
-        status = cut_lines(&l, &turned, dimension == 2 ? &section : NULL, spacing, err);
+        status = tobi_lines_cut(&l, &turned, dimension == 2 ? &section : NULL, spacing/FINE, err);
     if (status == TOBI_OK) *error = choose_shift(&l, &whole, shift);
     if (status == TOBI_OK && points) {
         status = write_points(&l, shift, points, count, err);
@@ -350,7 +200,7 @@ static tobi_status try_pose(const tobi_mesh *mesh, const pose *p, double spacing
         if (status == TOBI_OK)
             status = tobi_mesh_transform(&cloud, no_scale, p->axis, -p->degrees, no_translation, err);
     }
-    free_lines(&l);
+    tobi_lines_free(&l);
     tobi_section_free(&section);
     tobi_mesh_free(&turned);
     return status;

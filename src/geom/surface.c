@@ -146,6 +146,14 @@ tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimens
                           : build_triangles(mesh, spacing, out, err);
 }
 
+void tobi_surface_move(tobi_surface *s, int64_t from, int64_t to)
+{
+    s->triangle[to] = s->triangle[from];
+    memmove(s->a[to], s->a[from], sizeof *s->a);
+    if (s->b) memmove(s->b[to], s->b[from], sizeof *s->b);
+    if (s->fraction) s->fraction[to] = s->fraction[from];
+}
+
 /* --- moving ------------------------------------------------------------------------------- */
 
 static void update_part(const tobi_surface *s, int64_t i, const double *const x[3], double middle[3],

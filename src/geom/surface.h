@@ -22,6 +22,9 @@ tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimens
                                tobi_surface *out, tobi_error *err);
 void tobi_surface_free(tobi_surface *surface);
 
+/* Copies piece `from` over piece `to`, to leave some out; the caller sets count. */
+void tobi_surface_move(tobi_surface *surface, int64_t from, int64_t to);
+
 /* Fills position (m), outward unit normal and area (m2; in 2-D length, m) of every piece for the given
    vertices. A piece that a motion has squeezed to nothing has area 0 and normal 0. In 2-D positions
    and normals lie in the plane z = 0. Any output may be NULL. Parallel, same bits for any number of

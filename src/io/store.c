@@ -1,6 +1,6 @@
-/* HDF5 answers a full disk badly (a file that cannot be closed), so every put reserves its bytes on
-   the disk first, and HDF5 only ever writes into reserved space. What is left over is cut off at
-   the end. */
+/* HDF5 answers a failing disk badly: a file that cannot be closed, and a crash when the program ends.
+   So it works in memory only (its core driver), and the finished image goes to the disk like any
+   other file. Drawback: while it is written, a checkpoint is in memory once more. */
 #define _GNU_SOURCE 1
 #include "io/store.h"
 #include "io/file.h"
@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { SEAL_BYTES = 512, CHUNK_BYTES = 1 << 18 };
+enum { SEAL_BYTES = 512, CHUNK_BYTES = 1 << 18, GROWTH_BYTES = 1 << 22 };
 
 typedef struct seal {
     char     magic[16];
@@ -28,9 +28,9 @@ _Static_assert(sizeof(seal) == SEAL_BYTES, "the seal is the HDF5 user block");
 static const char magic[16] = "tobiuo store 1\n";
 
 struct tobi_store {
-    char *path, *part;     /* part is NULL when reading */
-    hid_t file;
-    int   fd;              /* the same file, for reserving space; -1 when reading */
+    char *path;
+    hid_t file;            /* in memory when writing */
+    tobi_file out;         /* where the image will go; unused when reading */
 };
 
 /* HDF5 prints its errors unless told otherwise; the caller's setting comes back after each call. */
@@ -92,7 +92,6 @@ static hid_t memory_type(tobi_vtk_type type)
 static hid_t access_list(void)
 {
     hid_t list = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(list, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);   /* checksums on metadata */
     H5Pset_file_locking(list, 0, 1);
     H5Pset_fclose_degree(list, H5F_CLOSE_STRONG);
     return list;
@@ -100,69 +99,45 @@ static hid_t access_list(void)
 
 static void release(tobi_store *store)
 {
-    if (store->fd >= 0) close(store->fd);
     free(store->path);
-    free(store->part);
     free(store);
 }
 
-static tobi_store *allocate(const char *path, int writing)
+static tobi_store *allocate(const char *path)
 {
     tobi_store *store = calloc(1, sizeof *store);
     if (!store) return NULL;
-    store->fd = -1;
     store->file = -1;
     store->path = strdup(path);
-    store->part = writing ? tobi_file_part_name(path) : NULL;
-    if (store->path && (!writing || store->part)) return store;
+    if (store->path) return store;
     release(store);
     return NULL;
 }
 
-/* Makes sure that this many more bytes, rounded up to whole chunks, will fit on the disk. */
-static tobi_status reserve(tobi_store *store, size_t bytes, tobi_error *err)
-{
-    hsize_t size = 0;
-    if (H5Fget_filesize(store->file, &size) < 0)
-        return fail_hdf5(err, TOBI_IO, store, "measure", store->part);
-    int code = posix_fallocate(store->fd, (off_t)size, (off_t)(bytes + bytes/256 + 2*CHUNK_BYTES));
-    if (code == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_IO, "cannot write %s: %s", store->path, strerror(code));
-}
-
-static tobi_status create_file(tobi_store *store, tobi_error *err)
+static tobi_status create_image(tobi_store *store, tobi_error *err)
 {
     hid_t access = access_list(), create = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(create, SEAL_BYTES);
-    store->file = H5Fcreate(store->part, H5F_ACC_TRUNC, create, access);
+    H5Pset_fapl_core(access, GROWTH_BYTES, 0);
+    /* 1.8's format has checksums on metadata, but no mark that the file is open for writing, which
+       would stand in an image taken before closing. */
+    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
+    store->file = H5Fcreate(store->path, H5F_ACC_TRUNC, create, access);
     H5Pclose(create);
     H5Pclose(access);
-    if (store->file < 0) return fail_hdf5(err, TOBI_IO, store, "create", store->part);
-    return reserve(store, 0, err);
+    return store->file < 0 ? fail_hdf5(err, TOBI_NO_MEMORY, store, "create", store->path) : TOBI_OK;
 }
 
 tobi_status tobi_store_create(const char *path, tobi_store **store, tobi_error *err)
 {
     *store = NULL;
-    tobi_store *s = allocate(path, 1);
+    tobi_store *s = allocate(path);
     if (!s) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
-    /* Opened by hand first, for the reason in the system's words. */
-    s->fd = open(s->part, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (s->fd < 0) {
-        tobi_fail(err, TOBI_IO, "cannot write %s: %s", path, strerror(errno));
-        release(s);
-        return TOBI_IO;
-    }
-    /* The first bytes must fit before HDF5 starts. */
-    int code = posix_fallocate(s->fd, 0, CHUNK_BYTES);
-    tobi_status status = TOBI_OK;
-    if (code) {
-        status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", path, strerror(code));
-    } else {
-        quiet q = begin_quiet();
-        status = create_file(s, err);
-        end_quiet(q);
-    }
+    /* Opened first: a path that cannot be written should not cost the work. */
+    tobi_status status = tobi_file_open(&s->out, path, err);
+    quiet q = begin_quiet();
+    if (status == TOBI_OK) status = create_image(s, err);
+    end_quiet(q);
     if (status == TOBI_OK) *store = s;
     else tobi_store_close(s);
     return status;
@@ -174,7 +149,7 @@ void tobi_store_close(tobi_store *store)
     quiet q = begin_quiet();
     if (store->file >= 0) H5Fclose(store->file);
     end_quiet(q);
-    if (store->part) unlink(store->part);
+    tobi_file_abandon(&store->out);
     release(store);
 }
 
@@ -201,42 +176,38 @@ static int sum_file(int fd, uint64_t bytes, uint32_t *crc)
     return code;
 }
 
-static int write_seal(int fd, uint64_t bytes)
+static seal make_seal(const unsigned char *image, uint64_t bytes)
 {
     seal s = { .file_bytes = bytes };
     memcpy(s.magic, magic, sizeof magic);
-    int code = ftruncate(fd, (off_t)bytes) != 0 ? errno : sum_file(fd, bytes, &s.crc);
-    if (code) return code;
+    s.crc = (uint32_t)crc32_z(crc32(0, NULL, 0), image + SEAL_BYTES, bytes - SEAL_BYTES);
     s.seal_crc = (uint32_t)crc32(crc32(0, NULL, 0), (const Bytef *)&s, offsetof(seal, seal_crc));
-    ssize_t n = pwrite(fd, &s, sizeof s, 0);
-    return n == (ssize_t)sizeof s ? 0 : n < 0 ? errno : ENOSPC;
+    return s;
+}
+
+static tobi_status write_image(tobi_store *store, tobi_error *err)
+{
+    void *image = NULL;
+    if (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 ||
+        H5Fget_vfd_handle(store->file, H5P_DEFAULT, &image) < 0)
+        return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+    /* What is used of the grown memory, counted from behind the seal. */
+    ssize_t used = H5Fget_file_image(store->file, NULL, 0);
+    if (used <= 0) return fail_hdf5(err, TOBI_NO_MEMORY, store, "finish", store->path);
+    uint64_t bytes = (uint64_t)used + SEAL_BYTES;
+    const unsigned char *start = *(unsigned char **)image;
+    seal s = make_seal(start, bytes);
+    tobi_file_write(&store->out, &s, sizeof s);
+    tobi_file_write(&store->out, start + sizeof s, bytes - sizeof s);
+    return tobi_file_commit(&store->out, err);
 }
 
 tobi_status tobi_store_commit(tobi_store *store, tobi_error *err)
 {
     quiet q = begin_quiet();
-    hsize_t bytes = 0;
-    tobi_status status = reserve(store, 0, err);
-    if (status == TOBI_OK &&
-        (H5Fflush(store->file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(store->file, &bytes) < 0))
-        status = fail_hdf5(err, TOBI_IO, store, "write", store->part);
-    if (H5Fclose(store->file) < 0 && status == TOBI_OK)
-        status = fail_hdf5(err, TOBI_IO, store, "close", store->part);
-    store->file = -1;
-    int code = 0;
-    if (status == TOBI_OK) code = write_seal(store->fd, bytes);
-    if (status == TOBI_OK && !code) {
-        /* HDF5 must agree that nothing was cut off before an older checkpoint is replaced. */
-        hid_t access = access_list(), again = H5Fopen(store->part, H5F_ACC_RDONLY, access);
-        H5Pclose(access);
-        if (again < 0) status = fail_hdf5(err, TOBI_IO, store, "read back", store->part);
-        else H5Fclose(again);
-    }
+    tobi_status status = write_image(store, err);
     end_quiet(q);
-    if (status == TOBI_OK && !code && rename(store->part, store->path) != 0) code = errno;
-    if (code) status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", store->path, strerror(code));
-    if (status != TOBI_OK) unlink(store->part);
-    release(store);
+    tobi_store_close(store);
     return status;
 }
 
@@ -276,7 +247,7 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     tobi_status status = check_seal(path, fd, err);
     close(fd);
     TOBI_TRY(status);
-    tobi_store *s = allocate(path, 0);
+    tobi_store *s = allocate(path);
     if (!s) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
     quiet q = begin_quiet();
     hid_t access = access_list();
@@ -319,14 +290,12 @@ tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type ty
         return tobi_fail(err, TOBI_INVALID, "%s: array '%s' of %" PRId64 " rows x %d, type %d cannot "
                          "be stored", store->path, name, n, components, (int)type);
     quiet q = begin_quiet();
-    tobi_status status = reserve(store, (size_t)n*row, err);
-    if (status == TOBI_OK) {
-        hid_t set = create_dataset(store, name, type, n, components);
-        if (set < 0 || (n > 0 && H5Dwrite(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
-            status = fail_hdf5(err, TOBI_IO, store, "write", name);
-        if (set >= 0 && H5Dclose(set) < 0 && status == TOBI_OK)
-            status = fail_hdf5(err, TOBI_IO, store, "write", name);
-    }
+    tobi_status status = TOBI_OK;
+    hid_t set = create_dataset(store, name, type, n, components);
+    if (set < 0 || (n > 0 && H5Dwrite(set, memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
+    if (set >= 0 && H5Dclose(set) < 0 && status == TOBI_OK)
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
     end_quiet(q);
     return status;
 }
@@ -335,12 +304,11 @@ static tobi_status put_value(tobi_store *store, const char *name, hid_t on_disk,
                              const void *value,
                              tobi_error *err)
 {
-    tobi_status status = reserve(store, H5Tget_size(on_disk), err);
-    TOBI_TRY(status);
+    tobi_status status = TOBI_OK;
     hid_t space = H5Screate(H5S_SCALAR);
     hid_t attribute = H5Acreate2(store->file, name, on_disk, space, H5P_DEFAULT, H5P_DEFAULT);
     if (attribute < 0 || H5Awrite(attribute, in_memory, value) < 0)
-        status = fail_hdf5(err, TOBI_IO, store, "write", name);
+        status = fail_hdf5(err, TOBI_NO_MEMORY, store, "store", name);
     if (attribute >= 0) H5Aclose(attribute);
     H5Sclose(space);
     return status;

@@ -14,7 +14,8 @@
 
 typedef struct tobi_store tobi_store;
 
-/* Starts a new file at PATH (written as PATH.part until tobi_store_commit). TOBI_IO, TOBI_NO_MEMORY. */
+/* Starts a new file at PATH. Its content grows in memory; tobi_store_commit writes it, as PATH.part
+   first. TOBI_IO, TOBI_NO_MEMORY. */
 tobi_status tobi_store_create(const char *path, tobi_store **store, tobi_error *err);
 /* Opens for reading. TOBI_NOT_FOUND if there is no such file, TOBI_IO if it cannot be read,
  * TOBI_DAMAGED. */

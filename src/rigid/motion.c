@@ -1,6 +1,7 @@
-/* The four kinds of motion behind one type. Three are formulas, evaluated here; the fourth asks a
-   script. All rigid kinds end in one place: pose a point about a pivot. */
+/* The kinds of motion behind one type. Three are formulas, evaluated here; others ask a script or rows of
+   a file. All rigid kinds end in one place: pose a point about a pivot. */
 #include "rigid/motion.h"
+#include "rigid/keyframes.h"
 #include "rigid/script.h"
 #include <math.h>
 #include <stdlib.h>
@@ -11,14 +12,16 @@ typedef enum motion_kind {
     KIND_SCRIPT,
     KIND_TRANSLATION,
     KIND_ROTATION,
-    KIND_OSCILLATION
+    KIND_OSCILLATION,
+    KIND_KEYFRAMES
 } motion_kind;
 
 struct tobi_motion {
     motion_kind kind;
     tobi_script *script;    /* KIND_SCRIPT, owned                                          */
+    tobi_keyframes *frames; /* KIND_KEYFRAMES, owned                                       */
     double vector[3];       /* velocity m/s | unit axis | unit direction                   */
-    double centre[3];       /* m, KIND_ROTATION                                            */
+    double centre[3];       /* m, KIND_ROTATION and KIND_KEYFRAMES                         */
     double amplitude;       /* m                                                           */
     double rate;            /* degrees/s | Hz                                              */
     double phase;           /* degrees                                                     */
@@ -103,9 +106,27 @@ tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_
     return TOBI_OK;
 }
 
+tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_motion **out,
+                                  tobi_error *err)
+{
+    *out = NULL;
+    tobi_keyframes *frames = NULL;
+    TOBI_TRY(check_finite("pivot", pivot, 3, err));
+    TOBI_TRY(tobi_keyframes_load(path, &frames, err));
+    tobi_status status = make(KIND_KEYFRAMES, out, err);
+    if (status != TOBI_OK) {
+        tobi_keyframes_free(frames);
+        return status;
+    }
+    for (int a = 0; a < 3; a++) (*out)->centre[a] = pivot[a];
+    (*out)->frames = frames;
+    return TOBI_OK;
+}
+
 void tobi_motion_free(tobi_motion *motion)
 {
     if (!motion) return;
+    tobi_keyframes_free(motion->frames);
     tobi_script_free(motion->script);
     free(motion);
 }
@@ -130,17 +151,22 @@ static void fill_rotation(const double axis[3], double degrees, double m[3][3])
 }
 
 /* position = pivot + shift + R (rest - pivot). */
+static void turn_points(const double m[3][3], const double p[3], const double shift[3], int64_t n,
+                        const double (*rest)[3], double (*position)[3])
+{
+    for (int64_t i = 0; i < n; i++) {
+        double x = rest[i][0] - p[0], y = rest[i][1] - p[1], z = rest[i][2] - p[2];
+        for (int a = 0; a < 3; a++)
+            position[i][a] = p[a] + shift[a] + (m[a][0] * x + m[a][1] * y + m[a][2] * z);
+    }
+}
+
 static void pose_points(const tobi_pose *pose, int64_t n, const double (*rest)[3],
                         double (*position)[3])
 {
     double m[3][3];
-    const double *p = pose->pivot;
     fill_rotation(pose->axis, pose->degrees, m);
-    for (int64_t i = 0; i < n; i++) {
-        double x = rest[i][0] - p[0], y = rest[i][1] - p[1], z = rest[i][2] - p[2];
-        for (int a = 0; a < 3; a++)
-            position[i][a] = p[a] + pose->shift[a] + (m[a][0] * x + m[a][1] * y + m[a][2] * z);
-    }
+    turn_points((const double (*)[3])m, pose->pivot, pose->shift, n, rest, position);
 }
 
 /* Pure shifts keep the points' shape to the last bit, so they skip the matrix. */
@@ -183,6 +209,12 @@ tobi_status tobi_motion_positions(void *user, double t, int64_t n, const double 
         double s = sin(2.0 * PI * fmod(motion->rate * t, 1.0) + motion->phase * (PI / 180.0));
         for (int a = 0; a < 3; a++) pose.shift[a] = motion->vector[a] * motion->amplitude * s;
         break;
+    }
+    case KIND_KEYFRAMES: {
+        double m[3][3];
+        tobi_keyframes_pose(motion->frames, t, pose.shift, m);
+        turn_points((const double (*)[3])m, motion->centre, pose.shift, n, rest, position);
+        return TOBI_OK;
     }
     }
     move_points(&pose, n, rest, position);

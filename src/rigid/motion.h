@@ -1,4 +1,5 @@
-/* Prescribed motion of a body: a user's Lua script, or translation, rotation, oscillation.
+/* Prescribed motion of a body: a user's Lua script, translation, rotation, oscillation, or keyframes from a
+   CSV file.
 
    A motion is a pure function of time and rest position, so that rates by central difference, a
    restart and any order of evaluation give the same numbers. One motion belongs to one body; it is
@@ -27,6 +28,11 @@ tobi_status tobi_motion_rotation(const double centre[3], const double axis[3],
 tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_m,
                                     double frequency_hz, double phase_deg, tobi_motion **out,
                                     tobi_error *err);
+
+/* Rows of a CSV file, see keyframes.h for its columns: position = pivot + shift + R (rest - pivot), cubic
+   between the rows. Errors as in tobi_keyframes_load. */
+tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_motion **out,
+                                  tobi_error *err);
 
 /* Frees a motion; NULL is fine. */
 void tobi_motion_free(tobi_motion *motion);

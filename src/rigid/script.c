@@ -3,7 +3,8 @@
    Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
    user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
    into it and runs at the speed of C. Endless loops end through the guards of script_guard.c,
-   memory through a counting allocator.
+   memory through a counting allocator. Turns alone would not do: one comparison of two texts of
+   10 MB takes as long as a million turns, so every 256 of them the guard looks at the clock.
 
    The optimiser's constant folding is off: it computes x^2 as x*x where the interpreter calls pow,
    and a restart, which begins interpreted, would not repeat the bits of a run that is compiled. */
@@ -23,6 +24,7 @@
 #define MEMORY_LIMIT (64u << 20)      /* bytes a script may hold            */
 #define FILE_LIMIT   (4 << 20)        /* bytes of a script file             */
 #define TICK_LIMIT   10000000         /* loop turns and calls per point     */
+#define SECONDS_LIMIT 3               /* processor time per point           */
 #define DEPTH_LIMIT  50               /* nesting of params                  */
 
 struct tobi_script {
@@ -30,16 +32,17 @@ struct tobi_script {
     size_t bytes;             /* held by Lua now                             */
     char *path;
     bool rigid;
+    bool open;                /* Lua's libraries are, and DRIVER has run     */
     int deform, place;        /* registry references of the walks in DRIVER  */
     double pivot[3];          /* m                                           */
 };
 
 /* Our side: gets the user's environment, returns the walks. `at` tells C which point is in work. */
 static const char DRIVER[] =
-    "local user, limit = ...\n"
+    "local user, limit, seconds = ...\n"
     "local ffi, math, string = require('ffi'), math, string\n"
     "require('jit.opt').start('-fold')\n"
-    "local error, type = error, type\n"
+    "local error, type, tonumber = error, type, tonumber\n"
     "for _, name in ipairs{'ipairs', 'pairs', 'next', 'select', 'tonumber', 'tostring', 'type',\n"
     "                      'unpack', 'error', 'assert'} do user[name] = _G[name] end\n"
     "user.math, user.table, user.string = {}, {}, {}\n"
@@ -50,9 +53,21 @@ static const char DRIVER[] =
     "    user.string[k] = string[k]\n"
     "end\n"
     "getmetatable('').__index = user.string\n"
-    "local count = 0\n"
+    "ffi.cdef'struct tobi_time { long s, ns; }; int clock_gettime(int, struct tobi_time *);'\n"
+    "local C, time = ffi.C, ffi.new('struct tobi_time')\n"
+    "local count, look, began = 0, 256, 0\n"
+    "local function is_late()\n"
+    "    C.clock_gettime(3, time)\n"                     /* CLOCK_THREAD_CPUTIME_ID */
+    "    local now = tonumber(time.s) + 1e-9*tonumber(time.ns)\n"
+    "    if look == 256 then began = now end\n"
+    "    look = look + 256\n"
+    "    return now - began > seconds\n"
+    "end\n"
     "user." TOBI_SCRIPT_TICK " = function()\n"
     "    count = count + 1\n"
+    "    if count >= look and is_late() then\n"
+    "        error('endless loop? stopped after ' .. seconds .. ' s at one point', 2)\n"
+    "    end\n"
     "    if count > limit then\n"
     "        error('endless loop? stopped after ' .. limit .. ' turns and calls', 2)\n"
     "    end\n"
@@ -72,7 +87,7 @@ static const char DRIVER[] =
     "    at = ffi.cast('double *', at)\n"
     "    for i = 0, n - 1 do\n"
     "        local k = 3 * i\n"
-    "        at[0], count = i, 0\n"
+    "        at[0], count, look = i, 0, 256\n"
     "        local x, y, z, more = f(rest[k], rest[k + 1], rest[k + 2], t)\n"
     "        if type(x) ~= 'number' or type(y) ~= 'number' or type(z) ~= 'number' or more ~= nil then\n"
     "            error('deform must return three numbers', 0)\n"
@@ -80,7 +95,7 @@ static const char DRIVER[] =
     "        position[k], position[k + 1], position[k + 2] = x, y, z\n"
     "    end\n"
     "end\n"
-    "local function place(t) count = 0 return g(t) end\n"
+    "local function place(t) count, look = 0, 256 return g(t) end\n"
     "return seal, bind, deform, place\n";
 
 static void *allocate(void *user, void *p, size_t old, size_t size)
@@ -178,10 +193,12 @@ static int load_protected(lua_State *lua)
     if (luaL_loadbufferx(lua, DRIVER, sizeof DRIVER - 1, "=driver", "t")) return lua_error(lua);
     lua_pushvalue(lua, user);
     lua_pushnumber(lua, TICK_LIMIT);
-    lua_call(lua, 2, 4);
+    lua_pushnumber(lua, SECONDS_LIMIT);
+    lua_call(lua, 3, 4);
     int seal = user + 1, bind = user + 2;
     job->script->place = luaL_ref(lua, LUA_REGISTRYINDEX);
     job->script->deform = luaL_ref(lua, LUA_REGISTRYINDEX);
+    job->script->open = true;
 
     if (luaL_loadbufferx(lua, job->text, strlen(job->text), job->name, "t")) return lua_error(lua);
     lua_pushvalue(lua, user);
@@ -275,7 +292,8 @@ tobi_status tobi_script_load(const char *path, const char *params_json, tobi_scr
 void tobi_script_free(tobi_script *script)
 {
     if (!script) return;
-    if (script->lua) lua_close(script->lua);
+    /* LuaJIT crashes when it closes a state whose libraries memory did not suffice for; it stays. */
+    if (script->lua && script->open) lua_close(script->lua);
     free(script->path);
     free(script);
 }

@@ -255,6 +255,13 @@ static int is_name(const char *name)
     return 1;
 }
 
+static int is_line(const char *text)
+{
+    for (const char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ' || *c == 127) return 0;
+    return text[0] && strlen(text) <= 200;
+}
+
 static char *join_path(const char *directory, const char *path)
 {
     char *joined;
@@ -288,11 +295,13 @@ static void bind_text(const slot *s)
 {
     const char *given = json_string_value(s->value), *kept = given;
     int is_path = strcmp(s->row->unit, "path") == 0, is_list = strcmp(s->row->unit, "names") == 0;
+    int is_free = strcmp(s->row->unit, "text") == 0;
     if (!given && !(is_list && json_is_array(s->value))) {
         tobi_source_mistake(s->binder->source, s->place, "is %s, must be %s",
                             tobi_json_kind(s->value),
                             is_path   ? "the path of a file"
                             : is_list ? "a list of names"
+                            : is_free ? "a text"
                                       : "a name");
         return;
     }
@@ -305,6 +314,12 @@ static void bind_text(const slot *s)
         kept = tobi_texts_keep(s->binder->texts, join_path(s->binder->directory, given));
     } else if (!given) {
         kept = tobi_texts_keep(s->binder->texts, join_names(s));
+    } else if (is_free) {
+        if (!is_line(given)) {
+            tobi_source_mistake(s->binder->source, s->place,
+                                "must be 1 to 200 characters in one line");
+            return;
+        }
     } else if (!is_list && !is_name(given)) {
         tobi_source_mistake(s->binder->source, s->place,
                             "is not usable as a name: 1 to 100 characters, no "

@@ -359,4 +359,5 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_bodies(scene, source);
     check_probes(scene, source);
     check_output(scene, source);
+    tobi_references_check(scene, source);
 }

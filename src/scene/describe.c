@@ -44,10 +44,10 @@ static void list_topics(FILE *out)
     const tobi_param_table *table;
     fprintf(out, "Topics:\n");
     for (int i = 0; (table = tobi_param_table_at(i)); i++)
-        fprintf(out, "  %-8s %s\n", table->name, table->doc);
-    fprintf(out, "  %-8s %s\n", "motion", "The motion of a body: a script, or one by numbers.");
-    fprintf(out, "  %-8s %s\n", "scene", "The whole page: every key of a scene, in Markdown.");
-    fprintf(out, "  %-8s %s\n", "schema", "The JSON Schema of scenes, for editors.");
+        fprintf(out, "  %-9s %s\n", table->name, table->doc);
+    fprintf(out, "  %-9s %s\n", "motion", "The motion of a body: a script, or one by numbers.");
+    fprintf(out, "  %-9s %s\n", "scene", "The whole page: every key of a scene, in Markdown.");
+    fprintf(out, "  %-9s %s\n", "schema", "The JSON Schema of scenes, for editors.");
 }
 
 static const tobi_param_table *find_table(const char *topic)

@@ -72,8 +72,8 @@ static const tobi_old_key configuration_keys[] = {
       .absent = "0.01 m2/s stood in the old program itself: 10000 times water, which has 1e-6 m2/s; "
                 "for water, set fluids[0].viscosity to 0.001 Pa s" },
     { K("surface_tension"), C(tension), REAL, UNIT("m3/s2"),
-      SAY("not N/m: a pull between particles that changes with their size (Becker and Teschner 2007). There "
-          "is no surface tension now; water has 0.072 N/m, which matters below some millimetres") },
+      SAY("kappa of Becker and Teschner (2007), not N/m: a pull between particles that changes with their "
+          "size. Now fluids[].surface_tension is in N/m: 0.0728 for water, with a support of 2.5 or more") },
     { K("cameraPosition"), C(camera_position), VEC3, UNIT("m"), BECOMES("output.camera.position"),
       SAY("where the pictures are taken from") },
     { K("cameraLookat"), C(camera_look_at), VEC3, UNIT("m"), BECOMES("output.camera.look_at"),
@@ -277,9 +277,6 @@ static const char *choose_method(tobi_import *im)
     if (im->config.method != 0 && im->config.method != 4)
         tobi_source_mistake(im->source, &place, "is %d; there are 0 (WCSPH) and 4 (DFSPH)",
                             im->config.method);
-    else if (!tobi_method_table(method))
-        tobi_source_mistake(im->source, &place, "is %d: the method %s is not built yet; 4 is DFSPH",
-                            im->config.method, method);
     return method;
 }
 

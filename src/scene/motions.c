@@ -48,6 +48,20 @@ static const tobi_param oscillation_rows[] = {
       .doc = "Phase at time 0." },
     { 0 }
 };
+static const tobi_param keyframes_rows[] = {
+    { .key = "file",
+      .type = TOBI_PARAM_TEXT,
+      .offset = offsetof(tobi_keyframes_def, file),
+      .unit = "path",
+      .required = true,
+      .doc = "A CSV file whose first line names its columns: time (s), the shift x, y, z from the rest "
+             "pose (m), and for a turn qw, qx, qy, qz or ax, ay, az, angle (degrees) or roll, pitch, yaw "
+             "(degrees, about x, then y, then z). Cubic between the rows; before the first and after the "
+             "last the body stays." },
+    { .key = "pivot", VEC3(tobi_keyframes_def, pivot), .unit = "m",
+      .doc = "The point of the rest pose that turns are about." },
+    { 0 }
+};
 
 static const tobi_param_table tables[] = {
     { "script", "motion: a user's program in Lua, for rigid and deforming bodies.",
@@ -57,7 +71,8 @@ static const tobi_param_table tables[] = {
     { "rotation", "motion.rotation: a constant turn about a fixed axis.", sizeof(tobi_rotation_def),
       rotation_rows },
     { "oscillation", "motion.oscillation: to and fro along a line.", sizeof(tobi_oscillation_def),
-      oscillation_rows }
+      oscillation_rows },
+    { "keyframes", "motion.keyframes: rows of a CSV file.", sizeof(tobi_keyframes_def), keyframes_rows }
 };
 enum { TABLE_COUNT = sizeof tables / sizeof tables[0] };
 
@@ -127,6 +142,8 @@ static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motio
         return tobi_motion_translation(def->as.translation.velocity, motion, err);
     if (def->table == &tables[2])
         return tobi_motion_rotation(turn->center, turn->axis, turn->rate, motion, err);
+    if (def->table == &tables[4])
+        return tobi_motion_keyframes(def->as.keyframes.file, def->as.keyframes.pivot, motion, err);
     return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency,
                                    swing->phase, motion, err);
 }
@@ -169,12 +186,15 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
 json_t *tobi_motion_write(const tobi_motion_def *def)
 {
     if (!def->table) return NULL;
-    json_t *own = tobi_write_def(def->table, &def->as);
+    json_t *own = tobi_write_def(def->table, &def->as), *motion = own;
+    int failed = !own;
     if (def->table == &tables[0]) {
-        if (own && def->params) json_object_set(own, "params", def->params);
-        return own;
+        if (def->params) failed |= json_object_set(own, "params", def->params);
+    } else {
+        motion = json_object();
+        failed |= json_object_set_new(motion, def->table->name, own);
     }
-    json_t *motion = json_object();
-    json_object_set_new(motion, def->table->name, own);
-    return motion;
+    if (!failed) return motion;
+    json_decref(motion);
+    return NULL;
 }

@@ -1,4 +1,5 @@
-/* The `motion` of a body in a scene: a script, or translation, rotation, oscillation by numbers. */
+/* The `motion` of a body in a scene: a script, keyframes, or translation, rotation, oscillation by
+   numbers. */
 #pragma once
 #include "rigid/motion.h"
 #include "scene/bind.h"
@@ -13,14 +14,17 @@ typedef struct tobi_oscillation_def {
 
 typedef struct tobi_script_def { const char *script; } tobi_script_def;
 
+typedef struct tobi_keyframes_def { const char *file; double pivot[3]; } tobi_keyframes_def;
+
 /* One motion as the scene gives it. */
 typedef struct tobi_motion_def {
-    const tobi_param_table *table;     /* which of the four; NULL = no motion            */
+    const tobi_param_table *table;     /* which of them; NULL = no motion                */
     union {
         tobi_script_def script;
         tobi_translation_def translation;
         tobi_rotation_def rotation;
         tobi_oscillation_def oscillation;
+        tobi_keyframes_def keyframes;
     } as;
     json_t *params;                    /* of a script; borrowed from the scene, or NULL  */
 } tobi_motion_def;

@@ -10,6 +10,8 @@ static const tobi_part parts[] = {
       "The bodies, if any." },
     { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
       "The sensors, if any." },
+    { "world", "references", TOBI_PART_LIST, &tobi_reference_table, 0, 64,
+      "Data that `tobiuo plot` draws beside the run's, if any." },
     { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },
     { "world", "$schema", TOBI_PART_EDITOR, NULL, 0, 0,
       "Where an editor finds the JSON Schema of scenes; Tobiuo passes over it." },

@@ -114,6 +114,23 @@ static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, con
     return TOBI_OK;
 }
 
+static tobi_status read_references(tobi_scene *scene, const tobi_binder *binder,
+                                   const tobi_place *root)
+{
+    tobi_place place = { root, "references", 0 };
+    json_t *list = open_list(binder, scene->root, &place, "world");
+    if (!list) return TOBI_OK;
+    scene->references = calloc(json_array_size(list) + 1, sizeof *scene->references);
+    if (!scene->references) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        tobi_reference_def *def = &scene->references[scene->reference_count++];
+        *def = tobi_default_reference_def();
+        tobi_bind(binder, &tobi_reference_table, json_array_get(list, i), &entry, NULL, def);
+    }
+    return TOBI_OK;
+}
+
 /* Parameters of methods that are not chosen are checked too. */
 static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
@@ -163,6 +180,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     scene->output = tobi_default_output_def();
     json_t *value = json_object_get(scene->root, "output");
     if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
+    TOBI_TRY(read_references(scene, &binder, &root));
     tobi_scene_check(scene, source);
     return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
 }
@@ -253,6 +271,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->fluids);
     free(scene->bodies);
     free(scene->probes);
+    free(scene->references);
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
     json_decref(scene->root);
@@ -294,42 +313,62 @@ const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return &sc
 const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene) { return &scene->output; }
 const char *tobi_scene_import_table(const tobi_scene *scene) { return scene->import_table; }
 
+/* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
+static json_t *whole(json_t *value, int failed)
+{
+    if (!failed) return value;
+    json_decref(value);
+    return NULL;
+}
+
 static json_t *write_fluid(const tobi_scene_fluid *fluid)
 {
     json_t *object = tobi_write_def(&tobi_fluid_table, &fluid->def), *fills = json_array();
+    int failed = 0;
     for (int i = 0; i < fluid->fill_count; i++) {
         json_t *fill = tobi_write_def(&tobi_fill_table, &fluid->fills[i].def);
         json_object_del(fill, fluid->fills[i].def.mesh ? "box" : "scale");
         if (!fluid->fills[i].def.mesh) json_object_del(fill, "translation");
-        json_array_append_new(fills, fill);
+        failed |= json_array_append_new(fills, fill);
     }
-    json_object_set_new(object, "fill", fills);
-    return object;
+    failed |= json_object_set_new(object, "fill", fills);
+    return whole(object, failed);
+}
+
+static json_t *write_body(const tobi_scene_body *body)
+{
+    json_t *object = tobi_write_def(&tobi_body_table, &body->def);
+    int failed = 0;
+    json_object_del(object, body->def.mesh ? "box" : "mesh");
+    if (body->motion_def.table)
+        failed = json_object_set_new(object, "motion", tobi_motion_write(&body->motion_def));
+    return whole(object, failed);
 }
 
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
-    json_t *fluids = json_array(), *bodies = json_array();
-    json_object_set_new(root, scene->method->name,
-                        tobi_write_def(scene->method, scene->method_def));
+    json_t *fluids = json_array(), *bodies = json_array(), *probes = json_array(),
+           *references = json_array();
+    int failed = json_object_set_new(root, scene->method->name,
+                                     tobi_write_def(scene->method, scene->method_def));
     for (int i = 0; i < scene->fluid_count; i++)
-        json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
-    for (int i = 0; i < scene->body_count; i++) {
-        json_t *body = tobi_write_def(&tobi_body_table, &scene->bodies[i].def);
-        json_object_del(body, scene->bodies[i].def.mesh ? "box" : "mesh");
-        json_t *motion = tobi_motion_write(&scene->bodies[i].motion_def);
-        if (motion) json_object_set_new(body, "motion", motion);
-        json_array_append_new(bodies, body);
-    }
-    json_object_set_new(root, "fluids", fluids);
-    json_object_set_new(root, "bodies", bodies);
-    json_t *probes = json_array();
+        failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
+    for (int i = 0; i < scene->body_count; i++)
+        failed |= json_array_append_new(bodies, write_body(&scene->bodies[i]));
     for (int i = 0; i < scene->probe_count; i++)
-        json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
-    if (scene->probe_count) json_object_set(root, "probes", probes);
+        failed |= json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
+    for (int i = 0; i < scene->reference_count; i++)
+        failed |= json_array_append_new(
+            references, tobi_write_def(&tobi_reference_table, &scene->references[i]));
+    failed |= json_object_set_new(root, "fluids", fluids);
+    failed |= json_object_set_new(root, "bodies", bodies);
+    if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
+    failed |= json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
+    if (scene->reference_count) failed |= json_object_set(root, "references", references);
     json_decref(probes);
-    json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
+    json_decref(references);
+    root = whole(root, failed);
     char *text = root ? tobi_write_json(root) : NULL;
     json_decref(root);
     return text;

@@ -37,6 +37,8 @@ struct tobi_scene {
     int probe_count;
     tobi_output_def output;
     char *import_table;            /* what old keys became; NULL: it was native   */
+    tobi_reference_def *references;
+    int reference_count;
 };
 
 /* The absolute directory of a file that may not exist; owned by the caller. */
@@ -47,6 +49,9 @@ char *tobi_scene_find_directory(const char *path);
 tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
                              const char *const *overrides, tobi_scene **scene, tobi_report **report,
                              tobi_error *err);
+
+/* references.c: reports columns, bodies, probes and files that are not there. */
+void tobi_references_check(const tobi_scene *scene, tobi_source *source);
 
 /* Reports what no table can see: corners, pairs of walls, regions, names, files. */
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source);

@@ -118,6 +118,10 @@ static json_t *make_text(const tobi_param *row)
     json_t *schema = make_type("string");
     json_object_set_new(schema, "minLength", json_integer(1));
     if (strcmp(row->unit, "path") == 0) return schema;
+    if (strcmp(row->unit, "text") == 0) {
+        json_object_set_new(schema, "maxLength", json_integer(200));
+        return schema;
+    }
     json_object_set_new(schema, "maxLength", json_integer(100));
     put_text(schema, "pattern", "^[^./\\\\:*?\"<>|,][^/\\\\:*?\"<>|,]*$");
     return schema;

@@ -21,12 +21,15 @@ static json_t *write_number(const tobi_param *row, const void *member)
 static json_t *write_names(const char *names)
 {
     json_t *list = json_array();
+    int failed = !list;
     for (const char *c = names; *c;) {
         size_t length = strcspn(c, ",");
-        json_array_append_new(list, json_stringn(c, length));
+        failed |= json_array_append_new(list, json_stringn(c, length));
         c += length + (c[length] == ',');
     }
-    return list;
+    if (!failed) return list;
+    json_decref(list);
+    return NULL;
 }
 
 json_t *tobi_write_member(const tobi_param *row, const void *def)
@@ -57,7 +60,7 @@ json_t *tobi_write_member(const tobi_param *row, const void *def)
     }
 }
 
-/* Goes down to the object that "a.b.c" belongs to, making what is missing; *last is "c". */
+/* Goes down to the object that "a.b.c" belongs to, making what is missing; *last is "c". Or NULL. */
 static json_t *descend(json_t *object, const char *key, const char **last)
 {
     for (const char *dot; object && (dot = strchr(key, '.')); key = dot + 1) {
@@ -66,7 +69,7 @@ static json_t *descend(json_t *object, const char *key, const char **last)
         json_t *child = json_object_get(object, name);
         if (!child) {
             child = json_object();
-            json_object_set_new(object, name, child);
+            if (json_object_set_new(object, name, child)) child = NULL;
         }
         object = child;
     }
@@ -74,24 +77,36 @@ static json_t *descend(json_t *object, const char *key, const char **last)
     return object;
 }
 
+static int is_left_out(const tobi_param *row, const void *def)
+{
+    const char *text = "";
+    if (row->type == TOBI_PARAM_TEXT) memcpy(&text, (const char *)def + row->offset, sizeof text);
+    return !text;
+}
+
+/* 0, or -1 when out of memory; jansson's calls answer NULL arguments with -1. */
+static int write_row(json_t *object, const tobi_param *row, const void *def)
+{
+    const char *last;
+    json_t *parent = descend(object, row->key, &last);
+    if (is_left_out(row, def)) return parent ? 0 : -1;
+    json_t *value = tobi_write_member(row, def);
+    if (!strchr(last, '[')) return json_object_set_new(parent, last, value);
+    char name[48];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(last, "["), last);
+    if (!json_object_get(parent, name)) json_object_set_new(parent, name, json_array());
+    return json_array_append_new(json_object_get(parent, name), value);
+}
+
 json_t *tobi_write_def(const tobi_param_table *table, const void *def)
 {
     json_t *object = json_object();
-    for (const tobi_param *row = table->rows; object && row->key; row++) {
-        const char *last;
-        json_t *value = tobi_write_member(row, def);
-        json_t *parent = descend(object, row->key, &last);
-        if (!value) continue;
-        if (!strchr(last, '[')) {
-            json_object_set_new(parent, last, value);
-            continue;
-        }
-        char name[48];
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(last, "["), last);
-        if (!json_object_get(parent, name)) json_object_set_new(parent, name, json_array());
-        json_array_append_new(json_object_get(parent, name), value);
-    }
-    return object;
+    int failed = !object;
+    for (const tobi_param *row = table->rows; !failed && row->key; row++)
+        failed = write_row(object, row, def);
+    if (!failed) return object;
+    json_decref(object);
+    return NULL;
 }
 
 /* The shortest decimal number that reads back to the same bits. */
@@ -120,15 +135,18 @@ static int is_short(const json_t *list)
 
 static void write_indent(FILE *out, int depth) { fprintf(out, "\n%*s", 2*depth, ""); }
 
-static void write_text(FILE *out, const json_t *value)
+/* Nonzero when out of memory, as write_json. */
+static int write_text(FILE *out, const json_t *value)
 {
     char *text = json_dumps(value, JSON_ENCODE_ANY);
-    fputs(text ? text : "null", out);
+    if (text) fputs(text, out);
     free(text);
+    return !text;
 }
 
-static void write_json(FILE *out, const json_t *value, int depth)
+static int write_json(FILE *out, const json_t *value, int depth)
 {
+    int failed = 0;
     size_t i;
     const char *key;
     json_t *entry;
@@ -139,10 +157,10 @@ static void write_json(FILE *out, const json_t *value, int depth)
             json_t *name = json_string(key);
             fputs(gap, out);
             write_indent(out, depth + 1);
-            write_text(out, name);
+            failed |= write_text(out, name);
             json_decref(name);
             fputs(": ", out);
-            write_json(out, entry, depth + 1);
+            failed |= write_json(out, entry, depth + 1);
             gap = ",";
         }
         if (json_object_size(value)) write_indent(out, depth);
@@ -153,15 +171,16 @@ static void write_json(FILE *out, const json_t *value, int depth)
         json_array_foreach(value, i, entry) {
             if (i) fputs(brief ? ", " : ",", out);
             if (!brief) write_indent(out, depth + 1);
-            write_json(out, entry, depth + 1);
+            failed |= write_json(out, entry, depth + 1);
         }
         if (!brief) write_indent(out, depth);
         fputc(']', out);
     } else if (json_is_real(value)) {
         write_real(out, json_real_value(value));
     } else {
-        write_text(out, value);
+        failed = write_text(out, value);
     }
+    return failed;
 }
 
 char *tobi_write_json(const json_t *value)
@@ -170,9 +189,9 @@ char *tobi_write_json(const json_t *value)
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return NULL;
-    write_json(out, value, 0);
+    int failed = write_json(out, value, 0);
     fputc('\n', out);
-    int failed = ferror(out);
+    failed |= ferror(out);
     if (fclose(out) != 0 || failed) {
         free(text);
         return NULL;

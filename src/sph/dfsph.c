@@ -9,6 +9,7 @@
 #include "sph/dfsph.h"
 #include "sph/kernels.h"
 #include "sph/multigrid.h"
+#include "sph/stages.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,59 +65,17 @@ static void choose_smoothing(const void *def, int *shape, double *support)
     *support = d->support;
 }
 
-static void bind_planes(const tobi_simulation *s, sph_view *v)
-{
-    v->plane_count = 0;
-    for (int a = 0; a < s->box.dimension; a++) {
-        if (s->box.periodic[a]) continue;
-        const double *lower = s->def.wall_velocity_min[a], *upper = s->def.wall_velocity_max[a];
-        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP,
-                                                  {(float)lower[0], (float)lower[1], (float)lower[2]}};
-        v->plane[v->plane_count++] =
-            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP,
-                         {(float)upper[0], (float)upper[1], (float)upper[2]}};
-    }
-}
-
-static float surface_limit(const tobi_smoothing_constants *c)
-{
-    return (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
-}
-
 static void bind_view(const tobi_simulation *s, dfsph *m)
 {
-    const tobi_particles *p = &s->particles;
-    const tobi_smoothing_constants *c = &s->smoothing;
     sph_view *v = &m->view;
-    v->count = p->count;
-    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->wall = p->wall;
-    v->density = p->density;
-    v->diagonal = p->diagonal;
-    v->precondition = p->precondition;
-    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
-    v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
-    v->list = s->cells.list;
-    memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
-    v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
-    v->weight = (float)c->weight; v->slope = (float)c->slope;
-    v->spacing = (float)c->spacing; v->volume = (float)c->volume;
-    v->dimension = c->dimension;
-    v->surface_limit = m->memory.vessel == VESSEL_FULL ? -1e30f : surface_limit(c);
-    v->sheet_limit = 0.6f*(float)c->dimension;
-    v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
-    v->core = (float)(CORE*c->spacing);
+    sph_bind_view(s, v);
+    if (m->memory.vessel == VESSEL_FULL) v->surface_limit = -1e30f;
+    v->core = (float)(CORE*s->smoothing.spacing);
     v->push = PUSH;
-    v->table = &c->plane;
-    for (int f = 0; f < s->fluid_count; f++) {
-        v->inverse_density[f] = (float)(1/s->fluid[f].density);
-        v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
-    }
     for (int a = 0; a < 3; a++) {
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
     }
-    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
 }
 
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
@@ -125,7 +84,6 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
     m->def = *(const tobi_dfsph_def *)def;
     m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
-    bind_planes(s, &m->view);
     *state = m;
     return TOBI_OK;
 }
@@ -140,37 +98,25 @@ static int list_memory(void *state, double **values)
 /* dt <= min(cfl d/|v|, cfl d/(2 sqrt(|p|/rho)), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
    viscous sum of a particle at a no-slip wall. The pressure keeps
    particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
-   Not above a tenth more than the last; the rest up to max_dt is shared evenly, so that no sliver
-   of a step is left. */
-static double choose_dt(const tobi_simulation *s, dfsph *m, double max_dt)
+   Not above a tenth more than the last. */
+static double choose_dt(const tobi_simulation *s, dfsph *m)
 {
     double d = s->smoothing.spacing, dt, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
     for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed);
+    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed +
+                                           4*s->fluid[0].tension/(s->fluid[0].density*d));
     m->motion_dt = fmin(0.25*sqrt(d/fmax(sqrt(g2), 1e-12)),
                         s->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
-        dt = m->motion_dt;
-        double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*d);
-        for (int f = 0; f < s->fluid_count; f++)
-            if (s->fluid[f].viscosity > 0)
-                dt = fmin(dt, 0.8*s->fluid[f].density/(s->fluid[f].viscosity*rate));
+        dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
         if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         m->memory.dt = dt;
     }
-    if (max_dt <= 0 || dt < 0.5*max_dt) return dt;
-    return dt < max_dt*(1 - 1e-9) ? 0.5*max_dt : max_dt;      /* a fixed step fits but for rounding */
-}
-
-static void set_dt(tobi_simulation *s, dfsph *m, double max_dt)
-{
-    s->dt = choose_dt(s, m, max_dt);
-    m->view.dt = (float)s->dt;
-    m->view.inverse_dt = (float)(1/s->dt);
+    return dt;
 }
 
 /* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
@@ -241,18 +187,6 @@ static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, t
     return TOBI_OK;
 }
 
-static tobi_status see_bodies(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
-{
-    launch(s, m, m->kernel->sph_walls, NULL);
-    if (s->body_count > 0) {
-        TOBI_TRY(tobi_near_find(s, err));
-        tobi_near_cut_pairs(s);
-        tobi_near_add_gradients(s);
-    }
-    tobi_stage_end(&s->stages, "walls and bodies", clock);
-    return TOBI_OK;
-}
-
 static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, double *clock)
 {
     double t[TOBI_TOTALS];
@@ -266,28 +200,14 @@ static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, doubl
     tobi_stage_end(&s->stages, "density", clock);
 }
 
-/* Once, at the start: full if fewer particles see a surface than a tenth of a cube's face has. */
+/* Once, at the start. */
 static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
-    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    int full;
     if (m->memory.vessel != VESSEL_UNKNOWN) return TOBI_OK;
-    TOBI_TRY(see_bodies(s, m, clock, err));
-    m->view.pressure = s->particles.pressure;
-    m->view.smooth = 0;
-    launch(s, m, m->kernel->sph_density, t);
-    int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
     m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
     bind_view(s, m);
-    return TOBI_OK;
-}
-
-/* The bodies' velocities over the coming step. */
-static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
-{
-    s->body_speed = s->wall_speed;
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
-    tobi_stage_end(&s->stages, "motion", clock);
     return TOBI_OK;
 }
 
@@ -296,10 +216,7 @@ static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
     double scale = 2*s->smoothing.rate;
     /* per motion step: a step made short by viscosity or by the user filters less */
     m->view.filter = (float)(m->def.filter/(fmax(s->dt, m->motion_dt)*scale*scale));
-    launch(s, m, m->kernel->sph_laplacian, NULL);
-    launch(s, m, m->kernel->sph_kick, NULL);
-    if (s->body_count > 0) tobi_near_add_forces(s);
-    tobi_stage_end(&s->stages, "forces", clock);
+    sph_apply_forces(s, &m->view, m->kernel, clock);
 }
 
 /* Pressure of the step: v becomes divergence-free. */
@@ -359,55 +276,22 @@ static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
     tobi_stage_end(&s->stages, "density solve", clock);
 }
 
-static void measure_forces(tobi_simulation *s, dfsph *m, double *clock)
-{
-    double t[TOBI_TOTALS];
-    m->view.pressure = s->particles.pressure;
-    launch(s, m, m->kernel->sph_wall_force, t);
-    memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
-    if (s->body_count > 0) tobi_near_body_forces(s);
-    tobi_stage_end(&s->stages, "walls and bodies", clock);
-}
-
-static void advance(tobi_simulation *s, dfsph *m, double *clock)
-{
-    double t[TOBI_TOTALS];
-    m->view.speed_cap = (float)(1.5*tobi_simulation_speed_scale(s));
-    launch(s, m, m->kernel->sph_advance, t);
-    m->memory.speed = sqrt(t[6]);
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
-    s->info.contacts = (int64_t)t[0];
-    s->info.speed_max = sqrt(t[7]);
-    s->info.capped = (int64_t)t[4];
-    tobi_stage_end(&s->stages, "advance", clock);
-}
-
-static tobi_status advance_bodies(tobi_simulation *s, double *clock, tobi_error *err)
-{
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
-    if (s->body_count > 0) tobi_near_push_out(s);
-    s->info.contacts += s->near.contacts;
-    tobi_stage_end(&s->stages, "motion", clock);
-    return TOBI_OK;
-}
-
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     dfsph *m = state;
     double clock = tobi_clock();
-    set_dt(s, m, max_dt);
-    TOBI_TRY(predict_bodies(s, &clock, err));
+    sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
+    TOBI_TRY(sph_predict_bodies(s, &clock, err));
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
-    TOBI_TRY(see_bodies(s, m, &clock, err));
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     measure_density(s, m, PRESSURE_SMOOTHING, &clock);
     apply_forces(s, m, &clock);
     remove_divergence(s, m, &clock);
     correct_density(s, m, &clock);
-    measure_forces(s, m, &clock);
-    advance(s, m, &clock);
-    TOBI_TRY(advance_bodies(s, &clock, err));
+    sph_measure_forces(s, &m->view, m->kernel, &clock);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+    TOBI_TRY(sph_move_bodies(s, &clock, err));
     s->time += s->dt;
     s->step++;
     return TOBI_OK;
@@ -419,43 +303,15 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
-    TOBI_TRY(see_bodies(s, m, &clock, err));
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     measure_density(s, m, 0, &clock);
     return TOBI_OK;
-}
-
-/* accel = sum of all forces per mass but the filter: the kick over one second, then taken back, and the
-   pressure. Scratch of the solves keeps the velocity meanwhile. */
-static void derive_acceleration(tobi_simulation *s, dfsph *m)
-{
-    tobi_particles *p = &s->particles;
-    float *kept[3] = {p->residual, p->delta, p->correction}, dt = m->view.dt;
-    double step = s->dt;
-    for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) kept[a][i] = (&p->velocity[i].x)[a];
-    s->dt = m->view.dt = 1;
-    m->view.filter = 0;
-    launch(s, m, m->kernel->sph_laplacian, NULL);
-    launch(s, m, m->kernel->sph_kick, NULL);
-    if (s->body_count > 0) tobi_near_add_forces(s);
-    s->dt = step;
-    m->view.dt = dt;
-    for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) {
-            float kick = (&p->velocity[i].x)[a] - kept[a][i];
-            (&p->velocity[i].x)[a] = kept[a][i];
-            kept[a][i] = kick;
-        }
-    launch(s, m, m->kernel->sph_pressure_accel, NULL);
-    for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) (&p->accel[i].x)[a] += kept[a][i];
 }
 
 static void derive(tobi_simulation *s, void *state, const char *field)
 {
     dfsph *m = state;
-    if (strcmp(field, "vorticity") == 0) launch(s, m, m->kernel->sph_vorticity, NULL);
-    else derive_acceleration(s, m);
+    sph_derive(s, &m->view, m->kernel, field);
 }
 
 static void free_state(void *state)

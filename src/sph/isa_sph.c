@@ -2,6 +2,8 @@
 #include "sph/kernels.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
+#include "sph/tait.k.h"
+#include "sph/tension.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

@@ -83,6 +83,13 @@ TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compressio
     return v->slope*lane_sum(a->sum) + 2*(g.x*u.x + g.y*u.y + g.z*u.z - wall_speed*g.w);
 }
 
+/* The least pressure of a free surface: none that pulls, but what tension carries where it is hollow. */
+TOBI_FN float sph_floor(const sph_view *v, int64_t i)
+{
+    float c = sph_capillary(v, i);
+    return c < 0 ? c : 0;
+}
+
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
    (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign.
@@ -114,7 +121,8 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_compression_acc
 {
     float rate = sph_compression_value(v, i, a, v->velocity, 1);
     float r = v->inverse_dt*rate;
-    int active = v->diagonal[i] > v->isolated && (!v->surface[i] || r > 0 || v->pressure[i] > 0);
+    int active = v->diagonal[i] > v->isolated &&
+                 (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
     v->record[i].w = v->pressure[i];
@@ -227,14 +235,16 @@ TOBI_FN void sph_center_direction(const sph_view *v, int64_t i, double *totals)
 TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    if ((v->surface[i] && v->pressure[i] < 0) || v->diagonal[i] <= v->isolated) v->pressure[i] = 0;
+    float least = sph_floor(v, i);
+    if (v->surface[i] && v->pressure[i] < least) v->pressure[i] = least;
+    if (v->diagonal[i] <= v->isolated) v->pressure[i] = 0;
 }
 
 /* Adds the correction, clamped at free surfaces; payload = the pressure. totals: |p|/rho, m2/s2; p. */
 TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
 {
     float p = v->pressure[i] + v->delta[i];
-    if (v->surface[i] && p < 0) p = 0;
+    if (v->surface[i] && p < sph_floor(v, i)) p = sph_floor(v, i);
     totals[0] += (double)fabsf(p)*v->inverse_density[v->fluid[i]];
     totals[1] += p;
     v->pressure[i] = p;

@@ -131,7 +131,7 @@ TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_ac
     v->accel[i] = out;
 }
 
-/* Eq. (6b), 0 .. 1: how much pressure there is to continue into a wall, against that of two spacings' depth. */
+/* Eq. (6b), 0 .. 1: the pressure there is to continue into a wall, over that of two spacings of depth. */
 TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 {
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
@@ -143,7 +143,7 @@ TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 /* v += dt (g + 2 nu L v - filter L L v + walls), eq. (13), (14): laminar viscosity, a fourth-order
    filter that takes motion at the particle scale and leaves longer waves, no-slip planes (mirrored
    velocity: 2 nu sigma/s) and the lift of planes, the hydrostatic part of their mirrored pressure,
-   -(g . n)(s sigma + lambda) n, eq. (6). */
+   -(g . n)(s sigma + lambda) n and along them -lambda g, eq. (6), (6b). */
 typedef sph_laplacian_acc sph_kick_acc;
 TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
 {
@@ -159,7 +159,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
 {
     float nu = v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
     tobi_float4 u = v->velocity[i], l = v->accel[i];
-    float speed[3] = {u.x, u.y, u.z};
+    float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
     float add[3] = {v->gravity[0] + 2 * nu * l.x + k * lane_sum(a->ax),
                     v->gravity[1] + 2 * nu * l.y + k * lane_sum(a->ay),
                     v->gravity[2] + 2 * nu * l.z + k * lane_sum(a->az)};
@@ -171,13 +171,13 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
         float sigma = sph_plane_value(v, v->table->sigma, s),
               lambda = sph_plane_value(v, v->table->lambda, s);
         int axis = v->plane[p].axis;
-        float wet = sph_wetness(v, i);
         for (int c = 0; c < 3; c++) add[c] -= v->gravity[c]*(c == axis ? lambda + s*sigma : wet*lambda);
         if (!v->plane[p].no_slip) continue;
         for (int c = 0; c < 3; c++)
             if (c != axis) add[c] -= 2*nu*sigma/s*(speed[c] - v->plane[p].velocity[c]);
     }
     u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
+    u.w = wet;      /* the walls' reaction needs the same */
     v->velocity[i] = u;
 }
 
@@ -202,12 +202,12 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
     }
     if (!touched) return;
     double mass = v->volume/v->inverse_density[v->fluid[i]];
+    float push = v->pressure[i] - sph_capillary(v, i), wet = v->velocity[i].w;
     for (int k = 0; k < v->plane_count; k++) {
         if (!(sigma[k] > 0)) continue;
         int axis = v->plane[k].axis;
         float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
-        totals[axis] -= 2.0*v->volume*v->pressure[i]*v->plane[k].sign*here*open/free[k];
-        float wet = sph_wetness(v, i);
+        totals[axis] -= 2.0*v->volume*push*v->plane[k].sign*here*open/free[k];
         for (int c = 0; c < 3; c++)
             totals[c] += mass*v->gravity[c]*(c == axis ? lambda[k] : wet*(lambda[k] - s_sigma[k]));
         if (!v->plane[k].no_slip) continue;
@@ -276,7 +276,7 @@ TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
             w[pl->axis] = 0;
         }
     }
-    tobi_float4 out = {w[0], w[1], w[2], 0};
+    tobi_float4 out = {w[0], w[1], w[2], u.w};
     tobi_double3 at = {x[0], x[1], x[2]};
     v->velocity[i] = out;
     v->position[i] = at;

@@ -14,9 +14,11 @@ typedef struct sph_view {
     /* particle arrays, see core/particles.h */
     tobi_double3 *TOBI_RESTRICT position;
     tobi_record *TOBI_RESTRICT record;
-    tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall;
+    tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall,
+                *TOBI_RESTRICT normal;
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
+    float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand */
     uint8_t *TOBI_RESTRICT surface;
     const uint8_t *TOBI_RESTRICT fluid;
@@ -35,6 +37,9 @@ typedef struct sph_view {
     /* fluids, by index */
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
+    float tension[TOBI_MAX_FLUIDS];           /* N/m     */
+    float band_depth;                         /* m, mean depth of the band below the surface */
+    float contact_cosine;                     /* of the angle of contact at planes   */
     /* walls */
     int plane_count;
     tobi_plane plane[6];
@@ -53,5 +58,11 @@ typedef struct sph_view {
     const float *coarse;                      /* Pa at the preconditioner's nodes, NULL = none  */
     double cells_per_metre[3];                /* of its cells                                   */
     int   nodes[3];
+    float stiffness, exponent;                /* Pa, 1: of the Tait equation            */
+    float damping;                            /* Pa s, of sound: pressure per rate of compression */
+    float relaxation;                         /* share of the density error shifted away per step */
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;
+
+/* Surface tension times curvature, Pa; 0 where no fluid has tension. */
+TOBI_FN float sph_capillary(const sph_view *v, int64_t i) { return v->capillary ? v->capillary[i] : 0; }

@@ -3,9 +3,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Far more than any machine takes; sums of a scene's regions, in bytes, still fit in 64 bits. */
+#define COUNT_LIMIT 1e12
+
 /* Layers of a side of length a, and their distance: the lattice is stretched to fill the box evenly, so
    that no gap of part of a spacing is left at a wall. */
-static int64_t layers(double a, double d) { return (int64_t)fmax(1, floor(a/d + 0.5)); }
+static double layers(double a, double d) { return fmax(1, floor(a/d + 0.5)); }
 
 static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
 {
@@ -13,8 +16,9 @@ static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3]
     for (int a = 0; a < 3; a++) {
         double side = r->upper[a] - r->lower[a];
         int flat = a == 2 && s->box.dimension == 2;
-        n[a] = flat ? 1 : r->mesh ? (int64_t)ceil(side/d) : layers(side, d);
-        step[a] = r->mesh ? d : side/(double)n[a];
+        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : layers(side, d);
+        n[a] = count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
+        step[a] = r->shape.triangle_count ? d : side/(double)n[a];
     }
 }
 
@@ -23,7 +27,8 @@ int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
     int64_t n[3];
     double step[3];
     lattice(s, r, n, step);
-    return n[0]*n[1]*n[2];
+    double count = (double)n[0]*(double)n[1]*(double)n[2];
+    return count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
 }
 
 static int inside_body(const tobi_simulation *s, const double x[3])
@@ -49,27 +54,16 @@ static void add_particle(tobi_simulation *s, const tobi_region *r, const double 
     p->id[i] = i;
 }
 
-static tobi_status load_region_mesh(const tobi_region *r, tobi_mesh *mesh, tobi_bvh **tree, tobi_error *err)
-{
-    const double axis[3] = {0, 0, 1};
-    TOBI_TRY(tobi_mesh_read(r->mesh, mesh, err));
-    TOBI_TRY(tobi_mesh_transform(mesh, r->scale, axis, 0, r->translation, err));
-    TOBI_TRY(tobi_mesh_orient(mesh, r->mesh, err));
-    return tobi_bvh_build(mesh->vertex_count, (const double (*)[3])mesh->vertices, mesh->triangle_count,
-                          (const int32_t (*)[3])mesh->triangles, tree, err);
-}
-
 tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
 {
     int64_t n[3];
     double step[3];
-    tobi_mesh mesh = {0};
+    const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
-    if (r->mesh) {
-        tobi_status status = load_region_mesh(r, &mesh, &tree, err);
-        tobi_mesh_free(&mesh);
-        if (status != TOBI_OK) return status;
-    }
+    if (m->triangle_count)
+        TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
+                                (const int32_t (*)[3])m->triangles, &tree, err));
+    if (m->overlapping) tobi_bvh_use_winding(tree);
     lattice(s, r, n, step);
     for (int64_t k = 0; k < n[2]; k++)
         for (int64_t j = 0; j < n[1]; j++)

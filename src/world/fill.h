@@ -2,12 +2,11 @@
 #pragma once
 #include "core/simulation.h"
 
-/* One region of one fluid; strings owned. */
+/* One region of one fluid; its mesh is owned. */
 typedef struct tobi_region {
     int fluid;
     double lower[3], upper[3];     /* m, world; the box, or the mesh's box */
-    char *mesh;                    /* path or NULL */
-    double scale[3], translation[3];
+    tobi_mesh shape;               /* placed and oriented; without triangles: the box */
     double velocity[3];
 } tobi_region;
 

@@ -1,9 +1,11 @@
 #include "world/methods.h"
 #include "sph/dfsph.h"
+#include "sph/wcsph.h"
 #include <string.h>
 
 static const tobi_method *const methods[] = {
     &tobi_dfsph,
+    &tobi_wcsph,
 };
 
 const tobi_method *tobi_method_at(int index)

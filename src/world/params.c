@@ -45,6 +45,9 @@ static const tobi_param world_rows[] = {
     WALL("domain.walls.y[1]", wall_max, 1, "Side at the upper y."),
     WALL("domain.walls.z[0]", wall_min, 2, "Side at the lower z."),
     WALL("domain.walls.z[1]", wall_max, 2, "Side at the upper z."),
+    { .key = "domain.contact_angle", REAL, AT(tobi_world_def, contact_angle), .def = { 90 },
+      RANGE(10, 170), .unit = "degrees",
+      .doc = "Angle, measured in the liquid, at which a surface with tension meets the sides." },
     WALL_VELOCITY("domain.wall_velocity.x[0]", wall_velocity_min, 0, "The side at the lower x."),
     WALL_VELOCITY("domain.wall_velocity.x[1]", wall_velocity_max, 0, "The side at the upper x."),
     WALL_VELOCITY("domain.wall_velocity.y[0]", wall_velocity_min, 1, "The side at the lower y."),
@@ -111,6 +114,29 @@ static const tobi_param dfsph_rows[] = {
     { 0 }
 };
 
+static const tobi_param wcsph_rows[] = {
+    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(tobi_wcsph_def, kernel),
+      .doc = "Smoothing kernel." },
+    { .key = "support", REAL, AT(tobi_wcsph_def, support), .def = { 2 }, RANGE(2, 4),
+      .unit = "spacings",
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." },
+    { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, POSITIVE,
+      .unit = "Pa",
+      .doc = "B of the Tait equation p = B ((rho/rho0)^exponent - 1). The speed of sound is "
+             "sqrt(exponent B/rho0); ten times the fastest flow keeps the density within 1 %." },
+    { .key = "exponent", REAL, AT(tobi_wcsph_def, exponent), .def = { 7 }, RANGE(1, 20),
+      .unit = "1", .doc = "Exponent of the Tait equation." },
+    { .key = "damping", REAL, AT(tobi_wcsph_def, damping), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Damping of sound: a bulk viscosity of damping times density, speed of sound and "
+             "spacing. Shear and slow flow do not feel it." },
+    { .key = "filter", REAL, AT(tobi_wcsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Share of particle-scale motion taken out per step of a tenth of the speed of sound; "
+             "longer waves are left alone." },
+    { 0 }
+};
+
 static const tobi_param fluid_rows[] = {
     { .key = "name", TEXT, AT(tobi_fluid_def, name), .unit = "name", .text = "fluid",
       .required = true, .doc = "Name of the fluid, used once in a scene." },
@@ -118,6 +144,10 @@ static const tobi_param fluid_rows[] = {
       .unit = "kg/m3", .doc = "Rest density." },
     { .key = "viscosity", REAL, AT(tobi_fluid_def, viscosity), .def = { 1.0e-3 }, FROM(0),
       .unit = "Pa s", .doc = "Dynamic viscosity; water at 20 degrees C has 1.0e-3." },
+    { .key = "surface_tension", REAL, AT(tobi_fluid_def, surface_tension), FROM(0), .unit = "N/m",
+      .text = "none",
+      .doc = "Tension of the free surface; water at 20 degrees C has 0.0728. It wants a support of "
+             "2.5 to 3." },
     { .key = "color", COLOR, AT(tobi_fluid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the fluid is." },
     { .key = "visible", BOOL, AT(tobi_fluid_def, visible), .def = { 1 },
@@ -167,6 +197,9 @@ static const tobi_param body_rows[] = {
              "the fluid." },
     { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
       .doc = "Whether the fluid slips along the body or sticks to it." },
+    { .key = "contact_angle", REAL, AT(tobi_body_def, contact_angle), .def = { 90 },
+      RANGE(10, 170), .unit = "degrees",
+      .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },
     { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
@@ -215,12 +248,39 @@ static const tobi_param output_rows[] = {
     { 0 }
 };
 
+static const tobi_param reference_rows[] = {
+    { .key = "file", TEXT, AT(tobi_reference_def, file), .unit = "path", .required = true,
+      .doc = "CSV file: a row with the names of its columns, then numbers; lines with # in front "
+             "are comments." },
+    { .key = "column", TEXT, AT(tobi_reference_def, column), .unit = "name", .required = true,
+      .doc = "Column of history.csv that the values belong to, or of bodies.csv with body, or what a "
+             "probe measures." },
+    { .key = "body", TEXT, AT(tobi_reference_def, body), .unit = "name",
+      .doc = "Name of the body, for a column of bodies.csv." },
+    { .key = "probe", TEXT, AT(tobi_reference_def, probe), .unit = "name",
+      .doc = "Name of the probe, for a column of probes.csv: pressure, velocity_x .. z or level." },
+    { .key = "x", TEXT, AT(tobi_reference_def, x), .unit = "text", .text = "time",
+      .doc = "Column of the file with the times." },
+    { .key = "y", TEXT, AT(tobi_reference_def, y), .unit = "text",
+      .doc = "Column of the file with the values; without it the one that is named like column." },
+    { .key = "x_scale", REAL, AT(tobi_reference_def, x_scale), .def = { 1 }, POSITIVE, .unit = "1",
+      .doc = "Factor that turns x into seconds of the run." },
+    { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, ANY, .unit = "1",
+      .doc = "Factor that turns y into the unit of column." },
+    { .key = "label", TEXT, AT(tobi_reference_def, label), .unit = "text",
+      .doc = "Name in the picture, such as the publication; without it the name of the file." },
+    { 0 }
+};
+
 const tobi_param_table tobi_world_table = {
     "world", "The box, the fluid resolution and the clock: keys at the top of a scene.",
     sizeof(tobi_world_def), world_rows };
 const tobi_param_table tobi_dfsph_table = {
     "dfsph", "Divergence-free SPH (Bender & Koschier 2015, 2017) for incompressible liquids.",
     sizeof(tobi_dfsph_def), dfsph_rows };
+const tobi_param_table tobi_wcsph_table = {
+    "wcsph", "Weakly compressible SPH: pressure from density by the Tait equation, no solver.",
+    sizeof(tobi_wcsph_def), wcsph_rows };
 const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 const tobi_param_table tobi_fill_table = {
@@ -233,15 +293,19 @@ const tobi_param_table tobi_probe_table = {
     "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 const tobi_param_table tobi_output_table = {
     "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
+const tobi_param_table tobi_reference_table = {
+    "reference", "An entry of references: data that `tobiuo plot` draws beside the run's.",
+    sizeof(tobi_reference_def), reference_rows };
 
-static const tobi_param_table *const methods[] = { &tobi_dfsph_table };
+static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
 const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
-        &tobi_world_table, &tobi_dfsph_table, &tobi_fluid_table,
-        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table
+        &tobi_world_table, &tobi_dfsph_table, &tobi_wcsph_table, &tobi_fluid_table,
+        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table,
+        &tobi_reference_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
 }
@@ -285,8 +349,10 @@ int tobi_choice_count(const char *choices)
     }
 DEFAULT(world)
 DEFAULT(dfsph)
+DEFAULT(wcsph)
 DEFAULT(fluid)
 DEFAULT(fill)
 DEFAULT(body)
 DEFAULT(probe)
 DEFAULT(output)
+DEFAULT(reference)

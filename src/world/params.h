@@ -5,7 +5,7 @@
    - A key with dots is a key of a nested object in a scene: "domain.min" is domain: { min: ... }.
    - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
    - TOBI_PARAM_TEXT: unit "name", "method" (the name of one), "path" (a file, looked up beside the
-     scene) or "names" (a list, of particle fields).
+     scene), "names" (a list, of particle fields) or "text" (anything in one line).
    - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
    - TOBI_PARAM_VEC3: text, if set, is a word for the default, which may lie out of the range
      ("automatic" for a colour).
@@ -16,11 +16,13 @@
 
 extern const tobi_param_table tobi_world_table;
 extern const tobi_param_table tobi_dfsph_table;
+extern const tobi_param_table tobi_wcsph_table;
 extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_fill_table;
 extern const tobi_param_table tobi_body_table;
 extern const tobi_param_table tobi_probe_table;
 extern const tobi_param_table tobi_output_table;
+extern const tobi_param_table tobi_reference_table;
 
 /* Every table by index, NULL past the end. */
 const tobi_param_table *tobi_param_table_at(int index);

@@ -79,7 +79,9 @@ static tobi_status begin(tobi_run *run, tobi_error *err)
 
 static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_error *err)
 {
-    if (tobi_record_has_results(run->dir) && !force)
+    bool found = false;
+    if (!force) TOBI_TRY(tobi_record_find_results(run->dir, &found, err));
+    if (found)
         return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
                          " (choose another directory, or force to replace them)", run->dir);
     /* A world that cannot start must not cost the old results. */
@@ -124,7 +126,9 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
                             tobi_run **out, tobi_error *err)
 {
     *out = NULL;
-    if (!tobi_record_has_results(dir))
+    bool found = false;
+    TOBI_TRY(tobi_record_find_results(dir, &found, err));
+    if (!found)
         return tobi_fail(err, TOBI_NOT_FOUND, "%s: there is no run to resume", dir);
     tobi_run *run = NULL;
     tobi_status status = open_run(world, output, dir, &run, err);

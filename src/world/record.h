@@ -59,11 +59,11 @@ char *tobi_record_path(const char *dir, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* Makes dir and its parents, tells whether it holds results, locks it against other runs. */
 tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err);
-bool tobi_record_has_results(const char *dir);
+tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *err);
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
-/* Steps of the checkpoints in dir, newest first; at most limit. */
+/* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
 /* record_tables.c: history.csv, bodies.csv and probes.csv. */
@@ -72,6 +72,11 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
 /* The row of probes.csv that is due after the step from `before`, if any. */
 tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
+/* Names of columns, NULL past the end. In probes.csv they follow the probe's name and "_". */
+typedef enum tobi_table {
+    TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL
+} tobi_table;
+const char *tobi_tables_column(tobi_table table, int index);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 

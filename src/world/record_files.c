@@ -90,24 +90,28 @@ tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
     return TOBI_OK;
 }
 
-/* Calls visit for each of our files in dir; stops at the first that returns false. */
-static void visit_ours(const char *dir, bool (*visit)(void *user, const char *path, int kind),
+/* Calls visit for each of our files in dir; stops at the first that returns false. Returns false if a
+   folder that is there could not be listed. */
+static bool visit_ours(const char *dir, bool (*visit)(void *user, const char *path, int kind),
                        void *user)
 {
-    bool going = true;
+    bool going = true, complete = true;
     for (size_t k = 0; going && k < sizeof folders / sizeof *folders; k++) {
         char *folder = tobi_record_path(dir, "%s", folders[k]);
         DIR *list = folder ? opendir(folder) : NULL;
         const struct dirent *entry;
+        if (!list && (!folder || (errno != ENOENT && errno != ENOTDIR))) complete = false;
         while (list && going && (entry = readdir(list))) {
             int kind = classify(folders[k], entry->d_name);
             char *path = kind ? tobi_record_path(folder, "%s", entry->d_name) : NULL;
             if (path) going = visit(user, path, kind);
+            else if (kind) complete = false;
             free(path);
         }
         if (list) closedir(list);
         free(folder);
     }
+    return complete;
 }
 
 static bool note_result(void *user, const char *path, int kind)
@@ -117,11 +121,16 @@ static bool note_result(void *user, const char *path, int kind)
     return kind != 1;
 }
 
-bool tobi_record_has_results(const char *dir)
+static tobi_status fail_listing(const char *dir, tobi_error *err)
 {
-    bool found = false;
-    visit_ours(dir, note_result, &found);
-    return found;
+    return tobi_fail(err, TOBI_IO, "cannot list what is in %s; nothing was changed", dir);
+}
+
+tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *err)
+{
+    *found = false;
+    bool complete = visit_ours(dir, note_result, found);
+    return complete || *found ? TOBI_OK : fail_listing(dir, err);
 }
 
 typedef struct clear_job { bool only_parts; tobi_status status; tobi_error *err; } clear_job;
@@ -138,7 +147,9 @@ static bool remove_one(void *user, const char *path, int kind)
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err)
 {
     clear_job job = { only_parts, TOBI_OK, err };
-    visit_ours(dir, remove_one, &job);
+    bool complete = visit_ours(dir, remove_one, &job);
+    if (!complete && job.status == TOBI_OK)
+        return tobi_fail(err, TOBI_IO, "cannot list all that is in %s", dir);
     if (job.status != TOBI_OK || only_parts) return job.status;
     for (size_t k = 1; k < sizeof folders / sizeof *folders; k++) {
         char *folder = tobi_record_path(dir, "%s", folders[k]);
@@ -169,6 +180,7 @@ int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit)
     DIR *list = folder ? opendir(folder) : NULL;
     const struct dirent *entry;
     int count = 0;
+    if (!list && (!folder || errno != ENOENT)) count = -1;
     while (list && (entry = readdir(list))) {
         long long step;
         int end = 0;
@@ -178,6 +190,6 @@ int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit)
     }
     if (list) closedir(list);
     free(folder);
-    qsort(steps, (size_t)count, sizeof *steps, compare_descending);
+    if (count > 1) qsort(steps, (size_t)count, sizeof *steps, compare_descending);
     return count;
 }

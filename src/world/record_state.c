@@ -170,6 +170,8 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err)
     int count = tobi_record_checkpoints(run->dir, steps, LIMIT);
     tobi_error first = { 0 }, why;
     *found = count > 0;
+    if (count < 0)
+        return tobi_fail(err, TOBI_IO, "cannot list the checkpoints in %s", run->dir);
     for (int k = 0; k < count; k++) {
         tobi_status status = load_one(run, steps[k], &why);
         if (k == 0 && status != TOBI_OK) first = why;

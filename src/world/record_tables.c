@@ -121,11 +121,31 @@ static tobi_status open_table(const tobi_run *run, const char *name, bool contin
     return status;
 }
 
+#define H(column, kind, value) { column, NULL },
+static const tobi_csv_column history_columns[] = { HISTORY(H) };
+#undef H
+#define B(column, value) { column, NULL },
+static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
+#undef B
+static const tobi_csv_column point_columns[] = {
+    { "pressure", NULL }, { "velocity_x", NULL }, { "velocity_y", NULL }, { "velocity_z", NULL } };
+static const tobi_csv_column level_columns[] = { { "level", NULL } };
+
+static const struct { const tobi_csv_column *columns; int count; } tables[] = {
+#define LIST(columns) { columns, (int)(sizeof columns / sizeof *columns) }
+    [TOBI_TABLE_HISTORY] = LIST(history_columns), [TOBI_TABLE_BODIES] = LIST(body_columns),
+    [TOBI_TABLE_POINT] = LIST(point_columns), [TOBI_TABLE_LEVEL] = LIST(level_columns),
+#undef LIST
+};
+
+const char *tobi_tables_column(tobi_table table, int index)
+{
+    return index >= 0 && index < tables[table].count ? tables[table].columns[index].name : NULL;
+}
+
 /* Columns of probes.csv: time, then P_pressure, P_velocity_x .. z of a point P, H_level of a level H. */
 static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
 {
-    static const char *const of_point[] = { "pressure", "velocity_x", "velocity_y", "velocity_z", NULL };
-    static const char *const of_level[] = { "level", NULL };
     enum { NAME = 128, MOST = 4 };
     int probes = tobi_world_probe_count(run->world), count = 1;
     if (probes == 0) return TOBI_OK;
@@ -134,9 +154,10 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
     if (columns) columns[0].name = "time";
     for (int k = 0; columns && names && k < probes; k++) {
         tobi_probe_kind kind;
-        const char *name = tobi_world_probe_name(run->world, k, &kind);
-        for (const char *const *v = kind == TOBI_PROBE_LEVEL ? of_level : of_point; *v; v++, count++) {
-            snprintf(names[count], NAME, "%s_%s", name, *v);
+        const char *name = tobi_world_probe_name(run->world, k, &kind), *column;
+        tobi_table table = kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
+        for (int v = 0; (column = tobi_tables_column(table, v)); v++, count++) {
+            snprintf(names[count], NAME, "%s_%s", name, column);
             columns[count].name = names[count];
         }
     }
@@ -150,17 +171,11 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
-#define H(column, kind, value) { column, NULL },
-    static const tobi_csv_column history[] = { HISTORY(H) };
-#undef H
-#define B(column, value) { column, NULL },
-    static const tobi_csv_column bodies[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
-#undef B
-    TOBI_TRY(open_table(run, "history.csv", continued, history,
-                        (int)(sizeof history / sizeof *history), &run->history, err));
+    TOBI_TRY(open_table(run, "history.csv", continued, history_columns,
+                        tables[TOBI_TABLE_HISTORY].count, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
-        TOBI_TRY(open_table(run, "bodies.csv", continued, bodies, (int)(sizeof bodies / sizeof *bodies),
-                            &run->bodies, err));
+        TOBI_TRY(open_table(run, "bodies.csv", continued, body_columns,
+                            tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
     return open_probes(run, continued, err);
 }
 

@@ -17,6 +17,8 @@ struct tobi_world {
     int region_count;
     tobi_probe *probes;
     int probe_count;
+    char **notes;                  /* owned texts                                            */
+    int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };

@@ -102,6 +102,26 @@ rm -rf out
 # --- check ------------------------------------------------------------------------------------------
 expect 0 "" check tank.json
 check "check counts particles" grep -q "fluid particles  [1-9]" out.txt
+check "a good mesh needs no note" test -z "$(grep ^note out.txt)"
+grep -v "^f 1 3 4 2" box.obj > open.obj
+sed 's/box\.obj/open.obj/' tank.json > open.json
+expect 0 "" check open.json
+check "check says what was repaired" grep -q "^note  .*'box': 1 hole (4 open edges)" out.txt
+expect 1 "Multiply its scale by 0.001" check tank.json --set 'bodies[0].scale=[1000,1000,1000]'
+
+# --- keyframes --------------------------------------------------------------------------------------
+printf 'time,x,yaw\n0,0,0\n0.01,0.001,1\n0.02,0.002,2\n' > rows.csv
+sed 's/"motion": {.*}}/"motion": {"keyframes": {"file": "rows.csv", "pivot": [0, 0, 0.05]}}}/' tank.json > rows.json
+expect 0 "" run rows.json --quiet -o rows --until 0.02
+check "the body is where the rows say" $python - rows/bodies.csv <<'END'
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+x = [float(v) for k, v in rows[-1].items() if k.startswith("position_x") or k == "x"]
+assert len(x) == 1 and abs(x[0] - 0.002) < 1e-9, rows[-1]
+END
+echo "0.02,1,1" >> rows.csv
+expect 1 "rows.csv:5: time 0.02 s does not come after" check rows.json
+rm -rf rows
 
 # --- a run ------------------------------------------------------------------------------------------
 expect 0 "" run tank.json --quiet

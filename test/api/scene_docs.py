@@ -22,7 +22,8 @@ PAGES = {"scene": "docs/scene.md", "schema": "docs/scene.schema.json"}
 READER_ONLY = re.compile(
     r"must be greater|is zero|already the name|cannot find|has 2 entries|reaches from|overlaps|"
     r"must not be above|periodic on one side|more than \d+ outputs|the domain has only|"
-    r"params belong|in a 2-D scene|not no-slip|along the side|the domain reaches")
+    r"params belong|in a 2-D scene|not no-slip|along the side|the domain reaches|"
+    r"there is no (column|body|probe) ")
 
 
 def call(program, *arguments):
@@ -111,6 +112,9 @@ def full_scene(library):
     scene["fluids"][0]["fill"].append(
         {"mesh": "box.obj", "scale": 0.02, "translation": [0.1, 0.05, 0.2], "velocity": [0, 0, 0]})
     scene["probes"] = [{"name": "gauge", "kind": "level", "position": [0.1, 0.05, 0.1]}]
+    rest = {"file": "box.obj", "x": "t [s]", "y": "F/m, g", "x_scale": 0.001, "y_scale": -1, "label": "a, b"}
+    scene["references"] = [{"body": "body0", "column": "position_x", **rest},
+                           {"probe": "gauge", "column": "level", **rest}]
     scene["$schema"] = "scene.schema.json"
     return scene
 

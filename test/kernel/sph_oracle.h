@@ -8,13 +8,14 @@
 
 /* One row per particle: everything a kernel may read or write, in double. */
 enum {
-    POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, WALL = ACC + 3, FLUX = WALL + 3, RHO, DIAG, PRE, RES,
-    PROD, DELTA, PRES, SURF, COLUMNS
+    POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
+    FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
-    "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "Gx", "Gy", "Gz", "flux", "density",
-    "diagonal", "precondition", "residual", "product", "delta", "pressure", "surface"
+    "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
+    "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
+    "residual", "product", "delta", "pressure", "surface", "wetness"
 };
 
 enum { TABLE = 4000 };
@@ -31,6 +32,8 @@ typedef struct oracle {
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;
     double cells_per_metre[3];
+    double tension[2], contact, band_depth;
+    double stiffness, exponent, damping, relaxation;
     double isolated, sheet_limit, surface_gradient, core, push, background;
 } oracle;
 
@@ -223,6 +226,7 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
                     add[a] -= 2*nu*sigma/s*(in[i][VEL + a] - o->plane[k].velocity[a]);
         }
         for (int a = 0; a < 3; a++) out[i][VEL + a] += o->dt*add[a];
+        out[i][WET] = wetness(o, in, i);
     }
 }
 
@@ -237,12 +241,12 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
             if (s >= o->h) continue;
             for (int l = 0; l < o->plane_count; l++)
                 if (l != k) g *= 1 - look_up(o, o->lambda, wall_distance(o, in, i, l));
-            t[axis] -= 2*o->volume*in[i][PRES]*o->plane[k].sign*g;
+            t[axis] -= 2*o->volume*(in[i][PRES] - in[i][CAPILLARY])*o->plane[k].sign*g;
             s = fmax(s, 0.25*o->d);
             double mass = o->volume*o->rho0[o->fluid[i]];
             t[axis] += mass*o->gravity[axis]*s*look_up(o, o->sigma, s);
             for (int c = 0; c < 3; c++)
-                t[c] += mass*o->gravity[c]*look_up(o, o->lambda, s)*(c == axis ? 1 : wetness(o, in, i));
+                t[c] += mass*o->gravity[c]*look_up(o, o->lambda, s)*(c == axis ? 1 : in[i][WET]);
             if (!o->plane[k].no_slip) continue;
             for (int c = 0; c < 3; c++)
                 if (c != axis)
@@ -356,7 +360,8 @@ static void oracle_source(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double s = compression(o, in, i, VEL, in[i][FLUX])/o->dt;
-        int active = in[i][DIAG] > o->isolated && (in[i][SURF] == 0 || s > 0 || in[i][PRES] > 0);
+        int active = in[i][DIAG] > o->isolated &&
+                     (in[i][SURF] == 0 || s > 0 || in[i][PRES] > fmin(in[i][CAPILLARY], 0));
         out[i][PRE] = active ? 1/in[i][DIAG] : 0;
         out[i][RES] = active ? s : 0;
         out[i][PAYLOAD] = in[i][PRES];
@@ -451,7 +456,7 @@ static void oracle_warm_start(const oracle *o, const row *in, row *out, double *
     (void)t;
     for (int i = 0; i < o->count; i++)
         if (in[i][DIAG] <= o->isolated) out[i][PRES] = 0;
-        else if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], 0);
+        else if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], fmin(in[i][CAPILLARY], 0));
 }
 
 static void oracle_center_residual(const oracle *o, const row *in, row *out, double *t)
@@ -471,7 +476,7 @@ static void oracle_correct_pressure(const oracle *o, const row *in, row *out, do
 {
     for (int i = 0; i < o->count; i++) {
         double p = in[i][PRES] + in[i][DELTA];
-        if (in[i][SURF] > 0) p = fmax(p, 0);
+        if (in[i][SURF] > 0) p = fmax(p, fmin(in[i][CAPILLARY], 0));
         out[i][PRES] = out[i][PAYLOAD] = p;
         t[0] += fabs(p)/o->rho0[o->fluid[i]];
         t[1] += p;
@@ -482,4 +487,114 @@ static void oracle_center_pressure(const oracle *o, const row *in, row *out, dou
 {
     (void)t;
     for (int i = 0; i < o->count; i++) out[i][PRES] = out[i][PAYLOAD] = in[i][PRES] - o->mean;
+}
+
+/* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
+static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double rate = compression(o, in, i, VEL, in[i][FLUX]);
+        double p = in[i][PRES] + o->dt*o->exponent*(in[i][PRES] + o->stiffness)*rate;
+        double push = p + o->damping*rate;
+        if (in[i][SURF] > 0) p = fmax(p, fmin(in[i][CAPILLARY], 0));
+        if (in[i][SURF] > 0) push = fmax(push, fmin(in[i][CAPILLARY], 0));
+        if (in[i][DIAG] <= o->isolated) p = push = 0;
+        out[i][PRES] = p;
+        out[i][DELTA] = out[i][PAYLOAD] = push;
+        t[0] += fabs(rate);
+        t[1] += fabs(p);
+        t[6] = fmax(t[6], fabs(rate));
+    }
+}
+
+/* Eq. (23). */
+static void oracle_relax(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double e = in[i][RHO] - 1;
+        e = e > 0 ? fmin(e, 0.1) : in[i][SURF] > 0 ? 0 : fmax(e, -0.1);
+        out[i][PAYLOAD] = in[i][DIAG] > o->isolated ? o->relaxation*e/(o->dt*o->dt*in[i][DIAG]) : 0;
+    }
+}
+
+/* Eq. (31), (32) of surface_tension.md. */
+static void oracle_normal(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double size = 0;
+        for (int c = 0; c < 3; c++) out[i][ACC + c] = in[i][WALL + c];
+        EACH_NEIGHBOUR(o, in, i, j, x, r)
+            for (int c = 0; c < 3; c++) out[i][ACC + c] -= o->volume*o->g_scale*oracle_f(o, r)*x[c];
+        for (int c = 0; c < 3; c++) size += out[i][ACC + c]*out[i][ACC + c];
+        double band = sqrt(size)/(2.5*o->surface_gradient) - 0.2;
+        out[i][BAND] = in[i][SURF] > 0 ? fmax(band, 0) : 0;
+    }
+}
+
+/* Eq. (33), (36). */
+static void oracle_smooth_normal(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double n[3], size = 0, whole = oracle_w(o, 0)*in[i][BAND];
+        for (int c = 0; c < 3; c++) n[c] = -whole*in[i][ACC + c];
+        EACH_NEIGHBOUR(o, in, i, j, x, r)
+            for (int c = 0; c < 3; c++) n[c] -= oracle_w(o, r)*in[j][BAND]*in[j][ACC + c] + 0*x[c];
+        for (int c = 0; c < 3; c++) size += n[c]*n[c];
+        for (int c = 0; c < 3; c++) n[c] = size > 0 ? n[c]/sqrt(size) : 0;
+        for (int k = 0; k < o->plane_count && size > 0; k++) {
+            int axis = o->plane[k].axis;
+            double along = 1 - n[axis]*n[axis];
+            if (wall_distance(o, in, i, k) >= 1.5*o->d || along <= 1e-6) continue;
+            for (int c = 0; c < 3; c++) n[c] *= sin(o->contact)/sqrt(along);
+            n[axis] = o->plane[k].sign*cos(o->contact);
+        }
+        for (int c = 0; c < 3; c++) out[i][NORMAL + c] = n[c];
+        out[i][NORMAL_BAND] = in[i][BAND];
+    }
+}
+
+/* Eq. (34), (35). */
+static void oracle_curvature(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double turn = 0, area = 0, weight = 0, depth = 0, kappa = 0;
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            double own = 0, other = 0, b = in[j][NORMAL_BAND]*oracle_f(o, r);
+            for (int c = 0; c < 3; c++) {
+                own += in[i][NORMAL + c]*x[c];
+                other += in[j][NORMAL + c]*x[c];
+            }
+            turn += b*(own - other);
+            area += b*(r*r - pow((own + other)/2, 2));
+            depth += b*(own + other)/2;
+            weight += b;
+        }
+        if (area > 0 && in[i][NORMAL_BAND] > 0) {
+            kappa = fmax(fmin(turn/area, 0.7/o->d), -0.7/o->d);
+            kappa *= (o->dimension - 1)/(1 + kappa*(o->band_depth - depth/weight/2));
+        }
+        out[i][PAYLOAD] = kappa;
+    }
+}
+
+/* Eq. (30), (37). */
+static void oracle_tension(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double weight = 0, sum = 0, p;
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            double b = oracle_w(o, r)*in[j][NORMAL_BAND] + 0*x[0];
+            weight += b;
+            sum += b*in[j][PAYLOAD];
+        }
+        p = in[i][NORMAL_BAND] > 0 ? in[i][PAYLOAD] : weight > 0 ? sum/weight : 0;
+        p *= o->tension[o->fluid[i]];
+        out[i][CAPILLARY] = p;
+        for (int c = 0; c < 3; c++) out[i][VEL + c] += o->dt*2*p*in[i][ACC + c]/o->rho0[o->fluid[i]];
+    }
 }

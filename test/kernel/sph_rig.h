@@ -45,6 +45,7 @@ static void rig_fill(rig *g, const rig_case *k, const int n[3])
                 for (int a = 0; a < 3; a++)
                     q[a] = a < k->dimension ? (at[a] + 0.5 + k->jitter*rig_random())*d : 0;
                 for (int a = 0; a < k->dimension; a++) (&g->p.velocity[i].x)[a] = (float)rig_random();
+                g->p.velocity[i].w = (float)(0.5 + 0.5*rig_random());
                 g->p.pressure[i] = (float)(1000*rig_random() + 500);
                 g->p.id[i] = i;
                 g->p.fluid[i] = (uint8_t)(k->fluids > 1 && x%3 == 0);
@@ -84,6 +85,10 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->sheet_limit = 0.6f*(float)k->dimension; v->surface_gradient = (float)(0.5/g->c.h);
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
+    v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
+    v->normal = p->normal; v->capillary = p->capillary;
+    v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
+    v->band_depth = (float)(0.6*g->c.spacing);
 }
 
 /* A grid of 4 nodes along each axis: 3 cells, or 4 where the last meets the first. */
@@ -123,6 +128,10 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->sheet_limit = v->sheet_limit; o->surface_gradient = v->surface_gradient;
     o->core = v->core; o->isolated = v->isolated; o->push = v->push; o->background = v->background;
     o->speed_cap = v->speed_cap;
+    o->stiffness = v->stiffness; o->exponent = v->exponent; o->damping = v->damping;
+    o->relaxation = v->relaxation;
+    o->tension[0] = v->tension[0]; o->tension[1] = v->tension[1];
+    o->contact = acos(v->contact_cosine); o->band_depth = v->band_depth;
     oracle_normalise(o);
 }
 
@@ -143,7 +152,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, count, err)) return 1;
+    if (tobi_particles_create(&g->p, count, TOBI_STATE | TOBI_SCRATCH | TOBI_TENSION, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);
@@ -173,10 +182,13 @@ static void rig_get(const rig *g, row *s)
             s[i][ACC + a] = (&p->accel[i].x)[a];
         }
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&p->wall[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&p->normal[i].x)[a];
+        s[i][BAND] = p->accel[i].w; s[i][CAPILLARY] = p->capillary[i];
         s[i][PAYLOAD] = p->record[i].w;
         s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
         s[i][RES] = p->residual[i]; s[i][PROD] = p->product[i]; s[i][DELTA] = p->delta[i];
         s[i][PRES] = p->pressure[i]; s[i][SURF] = p->surface[i];
+        s[i][WET] = p->velocity[i].w;
     }
 }
 
@@ -189,7 +201,10 @@ static void rig_set(rig *g, const row *s)
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
             (&p->accel[i].x)[a] = (float)s[i][ACC + a];
         }
+        p->velocity[i].w = (float)s[i][WET];
         for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
+        for (int a = 0; a < 4; a++) (&p->normal[i].x)[a] = (float)s[i][NORMAL + a];
+        p->accel[i].w = (float)s[i][BAND]; p->capillary[i] = (float)s[i][CAPILLARY];
         p->record[i].w = (float)s[i][PAYLOAD];
         p->density[i] = (float)s[i][RHO]; p->diagonal[i] = (float)s[i][DIAG];
         p->precondition[i] = (float)s[i][PRE]; p->residual[i] = (float)s[i][RES];

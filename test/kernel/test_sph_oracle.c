@@ -37,6 +37,12 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_shift oracle_shift
 #define oracle_sph_center_direction oracle_center_direction
 #define oracle_sph_center_pressure oracle_center_pressure
+#define oracle_sph_tait oracle_tait
+#define oracle_sph_relax oracle_relax
+#define oracle_sph_normal oracle_normal
+#define oracle_sph_smooth_normal oracle_smooth_normal
+#define oracle_sph_curvature oracle_curvature
+#define oracle_sph_tension oracle_tension
 static const entry kernels[] = {
 #define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
 #define FOR(K) PAIR(K)
@@ -74,7 +80,7 @@ static void create(rig *g, const rig_case *k)
 /* Vector components share a scale: a component may be zero but for rounding. */
 static void check_rows(const rig *g, const row *a, const row *b, double tolerance, const char *what)
 {
-    static const int group[] = {POS, VEL, ACC, WALL};
+    static const int group[] = {POS, VEL, ACC, NORMAL, WALL};
     double scale[COLUMNS] = {0}, worst[COLUMNS] = {0};
     int where[COLUMNS] = {0};
     for (int c = 0; c < COLUMNS; c++)
@@ -83,7 +89,7 @@ static void check_rows(const rig *g, const row *a, const row *b, double toleranc
             scale[c] = fmax(scale[c], fabs(b[i][c]));
             if (!(e <= worst[c])) { worst[c] = e; where[c] = i; }
         }
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         double s = fmax(fmax(scale[group[k]], scale[group[k] + 1]), scale[group[k] + 2]);
         for (int c = 0; c < 3; c++) scale[group[k] + c] = s;
     }

@@ -77,12 +77,13 @@ static inline tobi_mesh make_cube(double half)
 /* Puts b's triangles beside a's; b is freed. */
 static inline tobi_mesh join_meshes(tobi_mesh a, tobi_mesh b)
 {
-    tobi_mesh out = {a.vertex_count + b.vertex_count, a.triangle_count + b.triangle_count, NULL, NULL};
+    tobi_mesh out = {.vertex_count = a.vertex_count + b.vertex_count,
+                     .triangle_count = a.triangle_count + b.triangle_count};
     out.vertices = malloc((size_t)out.vertex_count*sizeof *out.vertices);
     out.triangles = malloc((size_t)out.triangle_count*sizeof *out.triangles);
-    memcpy(out.vertices, a.vertices, (size_t)a.vertex_count*sizeof *a.vertices);
+    if (a.vertex_count) memcpy(out.vertices, a.vertices, (size_t)a.vertex_count*sizeof *a.vertices);
     memcpy(out.vertices + a.vertex_count, b.vertices, (size_t)b.vertex_count*sizeof *b.vertices);
-    memcpy(out.triangles, a.triangles, (size_t)a.triangle_count*sizeof *a.triangles);
+    if (a.triangle_count) memcpy(out.triangles, a.triangles, (size_t)a.triangle_count*sizeof *a.triangles);
     for (int64_t t = 0; t < b.triangle_count; t++)
         for (int k = 0; k < 3; k++)
             out.triangles[a.triangle_count + t][k] = b.triangles[t][k] + (int32_t)a.vertex_count;

@@ -45,10 +45,12 @@ static void every_member_has_a_row(void **state)
     size_t motion = sizeof(tobi_motion_fn) + sizeof(void *) + sizeof(int);
     assert_int_equal(count_uncovered(&tobi_world_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_dfsph_table), hole);
+    assert_int_equal(count_uncovered(&tobi_wcsph_table), hole);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), 0);
     assert_int_equal(count_uncovered(&tobi_body_table), motion + hole);
     assert_int_equal(count_uncovered(&tobi_output_table), hole);
+    assert_int_equal(count_uncovered(&tobi_reference_table), 0);
 }
 
 static void check_row(const tobi_param_table *table, const tobi_param *row)
@@ -81,7 +83,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 7);
+    assert_int_equal(tables, 9);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }
@@ -178,8 +180,10 @@ static void methods_are_found_by_name(void **state)
     assert_ptr_equal(tobi_method_table("dfsph"), &tobi_dfsph_table);
     assert_null(tobi_method_table("dfsp"));
     assert_null(tobi_method_table(NULL));
+    assert_ptr_equal(tobi_method_table("wcsph"), &tobi_wcsph_table);
     assert_string_equal(tobi_method_name(0), "dfsph");
-    assert_null(tobi_method_name(1));
+    assert_string_equal(tobi_method_name(1), "wcsph");
+    assert_null(tobi_method_name(2));
 }
 
 int main(void)

@@ -74,8 +74,8 @@ static void reads_a_linear_field(void **state)
     tobi_world_destroy(world);
 }
 
-/* On a wall the sensor is the fluid's force per area. With particles on the lattice, half a spacing away, what
-   is left is the unevenness between them and of the product rule of corners. */
+/* On a wall the sensor is the fluid's force per area. With particles on the lattice, half a spacing away,
+   what is left is the unevenness between them and of the product rule of corners. */
 static void reads_walls_and_corners(void **state)
 {
     (void)state;

@@ -358,6 +358,32 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     assert_null(tobi_scene_describe("nonsense"));
 }
 
+/* resolved.json is whole or not written: every allocation of jansson fails once. */
+static long left;
+static void *scarce(size_t size) { return left-- == 0 ? NULL : malloc(size); }
+
+static void resolved_is_whole_or_nothing(void **state)
+{
+    (void)state;
+    tobi_scene *scene;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_scene_load(FISH, NULL, &scene, NULL, &err), TOBI_OK);
+    char *expected = tobi_scene_resolved(scene);
+    int refused = 0;
+    json_set_alloc_funcs(scarce, free);
+    for (long n = 0; n == 0 || left < 0; n++) {      /* until none was left to fail */
+        left = n;
+        char *got = tobi_scene_resolved(scene);
+        if (got) assert_string_equal(got, expected);
+        refused += !got;
+        free(got);
+    }
+    json_set_alloc_funcs(malloc, free);
+    assert_true(refused > 100);
+    free(expected);
+    tobi_scene_free(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -365,6 +391,7 @@ int main(void)
         cmocka_unit_test(overrides_win_and_are_checked),
         cmocka_unit_test(two_dimensions_take_two_numbers),
         cmocka_unit_test(resolved_gives_the_same_scene),
+        cmocka_unit_test(resolved_is_whole_or_nothing),
         cmocka_unit_test(every_shipped_scene_loads),
         cmocka_unit_test(the_fish_is_the_described_one),
         cmocka_unit_test(motions_by_numbers),

@@ -281,6 +281,32 @@ static void rules_between_values(void **state)
           { "s.json:1:55: fluids: ", "is a number, must be a list [ { ... } ]" });
 }
 
+static void references_to_nothing(void **state)
+{
+    (void)state;
+    CHECK(make(spacing, box,
+               ", \"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ], \"references\": [\n"
+               "{ \"file\": \"/\", \"column\": \"kinetic_enrgy\" },\n"
+               "{ \"file\": \"no.csv\", \"column\": \"pressure\", \"body\": \"b\", \"probe\": \"p\" },\n"
+               "{ \"file\": \"no.csv\", \"column\": \"level\", \"probe\": \"p\", \"label\": \"a\\nb\" },\n"
+               "{ \"column\": 3, \"probe\": \"q\", \"x_scale\": 0, \"y\": 4 } ]"),
+          { "s.json:7:11: references[0].file: ", "/ is not a file" },
+          { "s.json:7:26: references[0].column: ",
+            "no column \"kinetic_enrgy\" in history.csv (one of bodies.csv or probes.csv needs body or "
+            "probe); did you mean \"kinetic_energy\"?" },
+          { "s.json:8:1: references[1]: ", "has a body and a probe, must have at most one of them" },
+          { "s.json:8:11: references[1].file: ", "cannot find" },
+          { "s.json:8:51: references[1].body: ", "there is no body \"b\"" },
+          { "s.json:9:11: references[2].file: ", "cannot find" },
+          { "s.json:9:31: references[2].column: ", "no column \"level\" in a point of probes.csv" },
+          { "s.json:9:63: references[2].label: ", "must be 1 to 200 characters in one line" },
+          { "s.json:10:1: references[3].file: ", "is missing" },
+          { "s.json:10:13: references[3].column: ", "is a number, must be a name" },
+          { "s.json:10:25: references[3].probe: ", "there is no probe \"q\"" },
+          { "s.json:10:41: references[3].x_scale: ", "is 0, allowed is greater than 0" },
+          { "s.json:10:49: references[3].y: ", "is a number, must be a text" });
+}
+
 static void motions_one_at_a_time(void **state)
 {
     (void)state;
@@ -541,6 +567,7 @@ int main(void)
         cmocka_unit_test(domain_and_regions),
         cmocka_unit_test(bodies_and_motions),
         cmocka_unit_test(rules_between_values),
+        cmocka_unit_test(references_to_nothing),
         cmocka_unit_test(motions_one_at_a_time),
         cmocka_unit_test(too_much),
         cmocka_unit_test(boxes_colours_and_the_camera),

@@ -141,6 +141,9 @@ static void bodies_and_probes(void **state)
     body.mesh = box_mesh;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID,
             "sticks out of the domain: a vertex is at x = -0.5 m, allowed is 0 to 1 m");
+    for (int a = 0; a < 3; a++) body.scale[a] = 1000;
+    REFUSED(tobi_world_add_body(world, &body, &err), TOBI_INVALID, "does not fit: the mesh is");
+    for (int a = 0; a < 3; a++) body.scale[a] = 1;
     body.spacing = 1e-6;
     REFUSED(tobi_world_add_body(world, &body, &err), TOBI_NO_MEMORY, "surface points, about");
     world->sim.body_count = TOBI_BODY_LIMIT;
@@ -344,11 +347,36 @@ static void runs(void **state)
     tobi_world_destroy(world);
 }
 
+/* Tension is told what it needs, and only a fluid that has it pays for its fields. */
+static void surface_tension(void **state)
+{
+    (void)state;
+    int64_t fluid, body, bytes[2];
+    for (int k = 0; k < 3; k++) {
+        tobi_world_def def = make_def();
+        tobi_dfsph_def method = tobi_default_dfsph_def();
+        tobi_fluid_def water = tobi_default_fluid_def();
+        tobi_fill_def fill = make_fill(0, 0.5);
+        tobi_world *world;
+        tobi_error err = { 0 };
+        method.support = k == 2 ? 2.5 : 2;
+        water.surface_tension = k > 0 ? 0.0728 : 0;
+        assert_int_equal(tobi_world_create(&def, &method, &world, &err), TOBI_OK);
+        assert_int_equal(tobi_world_add_fluid(world, &water, &fill, 1, &err), TOBI_OK);
+        assert_int_equal(!tobi_world_note(world, 0), k != 1);
+        if (k == 1) assert_non_null(strstr(tobi_world_note(world, 0), "needs a support of 2.5 or more"));
+        if (k < 2) tobi_world_estimate(world, &fluid, &body, &bytes[k], &err);
+        tobi_world_destroy(world);
+    }
+    assert_int_equal(bytes[1] - bytes[0], 20*fluid);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(worlds),
         cmocka_unit_test(fluids),
+        cmocka_unit_test(surface_tension),
         cmocka_unit_test(bodies_and_probes),
         cmocka_unit_test(particles_beyond_the_machine),
         cmocka_unit_test(fields),

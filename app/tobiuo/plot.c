@@ -1,0 +1,445 @@
+/* tobiuo plot DIR: the tables of a run as pictures, drawn by gnuplot. */
+#define _GNU_SOURCE
+#include "plot.h"
+#include "app.h"
+#include "table.h"
+#include <errno.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+typedef struct plot_options { const char *dir, *format, *scene; } plot_options;
+
+enum { KEY_SCENE = 256 };
+
+static const struct argp_option options[] = {
+    { "format", 'f', "FORMAT", 0, "svg (default) or png", 0 },
+    { "scene", KEY_SCENE, "SCENE", 0, "take the references of this scene, not those of the run", 0 },
+    { 0 }
+};
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    plot_options *o = state->input;
+    switch (key) {
+    case 'f':
+        if (strcmp(value, "svg") != 0 && strcmp(value, "png") != 0)
+            argp_error(state, "--format: '%s' is neither svg nor png", value);
+        o->format = value;
+        break;
+    case KEY_SCENE: o->scene = value; break;
+    case ARGP_KEY_ARG:
+        if (o->dir) argp_error(state, "one DIR only");
+        o->dir = value;
+        break;
+    case ARGP_KEY_END:
+        if (!o->dir) argp_error(state, "which DIR?");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+/* Everything about one call. */
+typedef struct plotter {
+    const plot_options *options;
+    char *folder;               /* DIR/plots                                          */
+    FILE *script;
+    tobi_scene *scene;          /* NULL: no references, 3-D                           */
+    int dimension;
+    table history, bodies, probes;      /* the last two have no columns if there is no such file */
+    char **files;               /* names of the pictures                              */
+    int file_count;
+} plotter;
+
+/* The rows of a table that belong to one body; name NULL = all rows. */
+typedef struct rows { const table *table; const char *name; } rows;
+
+static int is_row(const rows *r, size_t row)
+{
+    int column = r->name ? table_column(r->table, "name") : -1;
+    return !r->name ||
+           (column >= 0 &&
+            strcmp(r->table->cells[row*(size_t)r->table->columns + (size_t)column], r->name) == 0);
+}
+
+/* Adds a curve to the panel; takes x and y over. */
+static curve *add_curve(panel *a, const char *label, size_t room)
+{
+    curve *c = a->curves < CURVE_LIMIT ? &a->curve[a->curves] : NULL;
+    if (!c) return NULL;
+    *c = (curve){ .label = label, .x = calloc(room + 1, sizeof(double)),
+                  .y = calloc(room + 1, sizeof(double)) };
+    a->curves++;
+    return c->x && c->y ? c : NULL;
+}
+
+/* Whether a column has a value other than 0 in these rows. */
+static int has_values(const rows *r, int column)
+{
+    for (size_t i = 0; column >= 0 && i < r->table->rows; i++)
+        if (is_row(r, i) && fabs(table_number(r->table, i, column)) > 0) return 1;
+    return 0;
+}
+
+static void fill_curve(curve *c, const rows *r, int column, int plus, const panel_row *row)
+{
+    int time = table_column(r->table, "time");
+    double first = NAN, scale = row && row->scale != 0 ? row->scale : 1;
+    for (size_t i = 0; i < r->table->rows; i++) {
+        if (!is_row(r, i) || (row && row->of_steps && table_number(r->table, i, time) == 0)) continue;
+        double y = table_number(r->table, i, column);
+        if (plus >= 0) y += table_number(r->table, i, plus);
+        if (isnan(first)) first = y;
+        c->x[c->count] = table_number(r->table, i, time);
+        c->y[c->count++] = scale*(row && row->from_start ? y - first : y);
+    }
+}
+
+/* Columns that older runs lack are left out. */
+static int add_panel(picture *p, const rows *r, const panel_row *row, int dimension)
+{
+    panel *a = &p->panel[p->panels];
+    snprintf(a->y_label, sizeof a->y_label, "%s%s", row->y_label,
+             dimension == 2 && row->per_depth ? " per m" : "");
+    a->logarithmic = row->logarithmic;
+    for (const curve_row *k = row->curves; k < row->curves + 5 && k->column; k++) {
+        int column = table_column(r->table, k->column), plus = -1;
+        if (column < 0 || (k->plus && (plus = table_column(r->table, k->plus)) < 0)) continue;
+        if (k->needs && !has_values(r, table_column(r->table, k->needs))) continue;
+        curve *c = add_curve(a, k->label, r->table->rows);
+        if (!c) return complain("out of memory");
+        c->style = k->style;
+        c->colour = k->colour;
+        fill_curve(c, r, column, plus, row);
+    }
+    p->panels++;
+    return 0;
+}
+
+static void set_time_axis(picture *p, const table *t)
+{
+    int time = table_column(t, "time");
+    p->begin = INFINITY;
+    p->end = -INFINITY;
+    for (size_t i = 0; i < t->rows; i++) {
+        p->begin = fmin(p->begin, table_number(t, i, time));
+        p->end = fmax(p->end, table_number(t, i, time));
+    }
+}
+
+/* Parts of file names come from tables that anybody may have edited. */
+static void clean_name(char *name)
+{
+    for (char *c = name; *c; c++)
+        if ((unsigned char)*c < ' ' || strchr("/\\:*?\"<>|,'", *c)) *c = '_';
+}
+
+/* Writes the picture's commands and remembers its file; frees the picture. */
+static int finish_picture(plotter *plot, picture *p, const char *name)
+{
+    size_t count = (size_t)plot->file_count + 1;
+    char *file = NULL, **files = reallocarray(plot->files, count, sizeof *files);
+    int code = 0;
+    if (files) plot->files = files;
+    if (!files || asprintf(&file, "%s.%s", name, plot->options->format) < 0) {
+        code = complain("out of memory");
+    } else {
+        clean_name(file);
+        picture_write(plot->script, p, file);
+        plot->files[plot->file_count++] = file;
+    }
+    picture_free(p);
+    return code;
+}
+
+static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
+{
+    int code = 0;
+    for (const picture_row *row = list; row->file && code == 0; row++) {
+        picture p = { 0 };
+        char name[300];
+        snprintf(p.title, sizeof p.title, "%s%s%s", row->title, r->name ? " " : "",
+                 r->name ? r->name : "");
+        snprintf(name, sizeof name, "%s%s%s", r->name ? r->name : "", r->name ? "_" : "", row->file);
+        set_time_axis(&p, r->table);
+        int drawn = 0;
+        for (int k = 0; k < PANEL_LIMIT && row->panels[k].y_label && code == 0; k++)
+            code = add_panel(&p, r, &row->panels[k], plot->dimension);
+        for (int k = 0; k < p.panels; k++) drawn += panel_has_values(&p, &p.panel[k]);
+        if (!drawn && code == 0)
+            fprintf(stderr, "tobiuo: note: %s has no values for the picture \"%s\"\n",
+                    r->table->path, p.title);
+        if (drawn && code == 0) code = finish_picture(plot, &p, name);
+        picture_free(&p);
+    }
+    return code;
+}
+
+/* One set of pictures per name in bodies.csv. */
+static int draw_bodies(plotter *plot)
+{
+    const table *t = &plot->bodies;
+    int name = table_column(t, "name"), code = 0;
+    for (size_t i = 0; i < t->rows && code == 0; i++) {
+        const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
+        int seen = 0;
+        for (size_t j = 0; j < i && !seen; j++)
+            seen = strcmp(t->cells[j*(size_t)t->columns + (size_t)name], body) == 0;
+        if (seen) break;           /* every output lists the bodies once, in the same order */
+        rows r = { t, body };
+        code = draw_rows(plot, &r, plot_body);
+    }
+    return code;
+}
+
+/* All probes that measure the same in one panel: at most CURVE_LIMIT of them. */
+static int draw_probes(plotter *plot, const char *what, const char *title)
+{
+    const table *t = &plot->probes;
+    picture p = { .panels = 1 };
+    size_t length = strlen(what);
+    int code = 0, left_out = 0;
+    snprintf(p.title, sizeof p.title, "%s", title);
+    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s, %s", what, plot_unit(what, 0));
+    for (int k = 0; k < t->columns && code == 0; k++) {
+        size_t size = strlen(t->names[k]);
+        if (size <= length || strcmp(t->names[k] + size - length, what) != 0) continue;
+        if (p.panel[0].curves == CURVE_LIMIT) {
+            left_out++;
+            continue;
+        }
+        curve *c = add_curve(&p.panel[0], t->names[k], t->rows);
+        rows all = { t, NULL };
+        code = c ? 0 : complain("out of memory");
+        if (c) fill_curve(c, &all, k, -1, NULL);
+        if (c) c->colour = p.panel[0].curves - 1;
+    }
+    if (left_out)
+        fprintf(stderr, "tobiuo: note: %d more columns \"%s\" of probes.csv are not drawn\n", left_out,
+                what);
+    set_time_axis(&p, t);
+    char name[40];
+    snprintf(name, sizeof name, "probes_%s", what);
+    if (code == 0 && p.panel[0].curves) code = finish_picture(plot, &p, name);
+    picture_free(&p);
+    return code;
+}
+
+static const char *reference_label(const tobi_reference_def *def)
+{
+    const char *slash = strrchr(def->file, '/');
+    return def->label ? def->label : slash ? slash + 1 : def->file;
+}
+
+/* Adds the points of one reference. A file that cannot serve is told, and the picture drawn without
+   it: -1 only without memory. */
+static int add_reference(picture *p, const tobi_reference_def *def)
+{
+    table t;
+    const char *y_name = def->y ? def->y : def->column;
+    panel *a = &p->panel[0];
+    if (table_read(&t, def->file) != 0) return 0;
+    int x = table_column(&t, def->x), y = table_column(&t, y_name), code = 0;
+    if (x < 0 || y < 0) {
+        char list[400];
+        table_list_columns(&t, list, sizeof list);
+        complain("%s has no column \"%s\"; its columns are %s", def->file, x < 0 ? def->x : y_name,
+                 list);
+    } else if (a->curves == CURVE_LIMIT) {
+        complain("more than %d references for %s: %s is not drawn", CURVE_LIMIT - 1, def->column,
+                 def->file);
+    } else {
+        curve *c = add_curve(a, reference_label(def), t.rows);
+        code = c ? 0 : complain("out of memory");
+        for (size_t i = 0; c && i < t.rows; i++) {
+            c->x[c->count] = def->x_scale*table_number(&t, i, x);
+            c->y[c->count++] = def->y_scale*table_number(&t, i, y);
+        }
+        if (c) {
+            c->style = CURVE_POINTS;
+            c->colour = a->curves - 1;
+            panel alone = { .curves = 1, .curve = { *c } };
+            if (!panel_has_values(p, &alone))
+                fprintf(stderr, "tobiuo: note: %s has no value between %g and %g s\n", def->file,
+                        p->begin, p->end);
+        }
+    }
+    table_free(&t);
+    return code;
+}
+
+static int is_same(const char *a, const char *b)
+{
+    return a && b ? strcmp(a, b) == 0 : a == b;
+}
+
+static int is_same_column(const tobi_reference_def *a, const tobi_reference_def *b)
+{
+    return is_same(a->column, b->column) && is_same(a->body, b->body) && is_same(a->probe, b->probe);
+}
+
+/* The run's column and every reference for it in one picture. */
+static int draw_comparison(plotter *plot, int index)
+{
+    const tobi_reference_def *def = tobi_scene_reference(plot->scene, index), *other;
+    for (int k = 0; k < index; k++)
+        if (is_same_column(tobi_scene_reference(plot->scene, k), def)) return 0;
+    rows r = { def->body ? &plot->bodies : def->probe ? &plot->probes : &plot->history, def->body };
+    const char *owner = def->body ? def->body : def->probe ? def->probe : "";
+    char name[300], full[300];
+    snprintf(full, sizeof full, "%s%s%s", owner, owner[0] ? "_" : "", def->column);
+    int column = table_column(r.table, def->probe ? full : def->column);
+    if (column < 0) {
+        complain("the run has no column \"%s\" to compare with %s", full, def->file);
+        return 0;
+    }
+    picture p = { .panels = 1 };
+    const char *unit = plot_unit(def->column, plot->dimension);
+    snprintf(p.title, sizeof p.title, "%s%s%s", owner, owner[0] ? ": " : "", def->column);
+    snprintf(p.panel[0].y_label, sizeof p.panel[0].y_label, "%s%s%s", def->column,
+             unit[0] ? ", " : "", unit);
+    snprintf(name, sizeof name, "compare_%.280s", full);
+    set_time_axis(&p, r.table);
+    curve *c = add_curve(&p.panel[0], "this run", r.table->rows);
+    int code = c ? 0 : complain("out of memory");
+    if (c) fill_curve(c, &r, column, -1, NULL);
+    for (int k = index; code == 0 && (other = tobi_scene_reference(plot->scene, k)); k++)
+        if (is_same_column(other, def)) code = add_reference(&p, other);
+    if (code == 0) code = finish_picture(plot, &p, name);
+    picture_free(&p);
+    return code;
+}
+
+/* Runs gnuplot in the folder, without a shell and without the user's settings. */
+static int run_gnuplot(const plotter *plot)
+{
+    char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
+    posix_spawn_file_actions_t actions;
+    pid_t child;
+    int state = 0;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addchdir_np(&actions, plot->folder);
+    int failed = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed == ENOENT)
+        return complain("gnuplot is missing, and it draws the pictures. On Debian: "
+                        "apt-get install gnuplot-nox");
+    if (failed) return complain("gnuplot does not start: %s", strerror(failed));
+    while (waitpid(child, &state, 0) < 0)
+        if (errno != EINTR) return complain("gnuplot: %s", strerror(errno));
+    if (!WIFEXITED(state) || WEXITSTATUS(state) != 0)
+        return complain("gnuplot failed on %s/plots.gnuplot", plot->folder);
+    return 0;
+}
+
+static int write_script(plotter *plot)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/plots.gnuplot", plot->folder) < 0) return complain("out of memory");
+    plot->script = fopen(path, "w");
+    int code = plot->script ? 0 : complain("cannot write %s: %s", path, strerror(errno));
+    if (code == 0) {
+        rows all = { &plot->history, NULL };
+        picture_begin_script(plot->script, plot->options->format);
+        code = draw_rows(plot, &all, plot_history);
+        if (code == 0) code = draw_bodies(plot);
+        if (code == 0) code = draw_probes(plot, "pressure", "Pressure at the probes");
+        if (code == 0) code = draw_probes(plot, "level", "Level of the fluid at the probes");
+        for (int k = 0; code == 0 && plot->scene && tobi_scene_reference(plot->scene, k); k++)
+            code = draw_comparison(plot, k);
+        int failed = ferror(plot->script);
+        if ((fclose(plot->script) != 0 || failed) && code == 0)
+            code = complain("cannot write %s: %s", path, strerror(errno));
+    }
+    free(path);
+    return code;
+}
+
+static int read_table(table *t, const char *dir, const char *name, const char *key)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", dir, name) < 0) return complain("out of memory");
+    int code = table_read(t, path) == 0 ? 0 : EXIT_ERROR;
+    if (code == 0 && (table_column(t, "time") < 0 || table_column(t, key) < 0))
+        code = complain("%s has no column \"%s\": it is not a table of a run", path,
+                        table_column(t, "time") < 0 ? "time" : key);
+    else if (code == 0 && t->rows == 0) code = complain("%s has no rows yet", path);
+    free(path);
+    return code;
+}
+
+static int has_file(const char *dir, const char *name)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", dir, name) < 0) return 0;
+    int found = access(path, F_OK) == 0;
+    free(path);
+    return found;
+}
+
+/* The references and the dimension. A run that was moved away from its meshes is still drawn; a scene
+   that was asked for must be right. */
+static int read_scene(plotter *plot)
+{
+    const plot_options *o = plot->options;
+    char *path = NULL;
+    tobi_error err = { 0 };
+    tobi_report *report = NULL;
+    if (!o->scene && !has_file(o->dir, "resolved.json")) return 0;
+    if (o->scene) path = scene_path(o->scene);
+    else if (asprintf(&path, "%s/resolved.json", o->dir) < 0) return complain("out of memory");
+    tobi_status status = tobi_scene_load(path, NULL, &plot->scene, &report, &err);
+    free(path);
+    if (status == TOBI_OK) plot->dimension = tobi_scene_world_def(plot->scene)->dimension;
+    else if (o->scene) return complain_scene(report, &err);
+    else fprintf(stderr, "tobiuo: note: drawn without reference data, because of %s\n", err.text);
+    tobi_report_free(report);
+    return 0;
+}
+
+static int draw_all(plotter *plot)
+{
+    const char *dir = plot->options->dir;
+    if (!has_file(dir, "history.csv"))
+        return complain("%s: there is no run to draw (no history.csv)", dir);
+    int code = read_table(&plot->history, dir, "history.csv", "step");
+    if (code == 0 && has_file(dir, "bodies.csv"))
+        code = read_table(&plot->bodies, dir, "bodies.csv", "name");
+    if (code == 0 && has_file(dir, "probes.csv"))
+        code = read_table(&plot->probes, dir, "probes.csv", "time");
+    if (code != 0) return code;
+    if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
+    if (mkdir(plot->folder, 0777) != 0 && errno != EEXIST)
+        return complain("cannot make %s: %s", plot->folder, strerror(errno));
+    code = read_scene(plot);
+    if (code == 0) code = write_script(plot);
+    if (code == 0) code = run_gnuplot(plot);
+    for (int k = 0; k < plot->file_count && code == 0; k++)
+        printf("%s/%s\n", plot->folder, plot->files[k]);
+    return code;
+}
+
+int tobiuo_plot(int argc, char **argv)
+{
+    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
+        .doc = "Draw the tables of the run in DIR as pictures in DIR/plots, with gnuplot." };
+    plot_options o = { .format = "svg" };
+    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    plotter plot = { .options = &o, .dimension = 3 };
+    int code = draw_all(&plot);
+    for (int k = 0; k < plot.file_count; k++) free(plot.files[k]);
+    free(plot.files);
+    free(plot.folder);
+    table_free(&plot.history);
+    table_free(&plot.bodies);
+    table_free(&plot.probes);
+    tobi_scene_free(plot.scene);
+    return code;
+}

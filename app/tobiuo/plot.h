@@ -1,0 +1,31 @@
+/* What `tobiuo plot` draws: which columns share a panel, and in which unit. */
+#pragma once
+#include "picture.h"
+
+typedef struct curve_row {
+    const char *label, *column;
+    const char *plus;               /* a column to add, or NULL                     */
+    curve_style style;
+    int colour;
+    const char *needs;              /* drawn only if this column has a value other than 0, or NULL */
+} curve_row;
+
+typedef struct panel_row {
+    const char *y_label;            /* after scaling                                */
+    double scale;                   /* of the column, 0 = 1                         */
+    int per_depth;                  /* in 2-D the values are per metre of depth     */
+    int logarithmic;
+    int from_start;                 /* the change since the first row               */
+    int of_steps;                   /* values of a step: the row before any step has none */
+    curve_row curves[5];            /* ended by a row without column                */
+} panel_row;
+
+typedef struct picture_row {
+    const char *file, *title;
+    panel_row panels[PANEL_LIMIT];  /* ended by a row without y_label               */
+} picture_row;
+
+/* Of history.csv, and of one body in bodies.csv; ended by a row without file. */
+extern const picture_row plot_history[], plot_body[];
+/* The unit of any column of the two tables, "" if it has none; with "/m" in two dimensions. */
+const char *plot_unit(const char *column, int dimension);

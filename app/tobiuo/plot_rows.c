@@ -1,0 +1,81 @@
+/* The pictures of `tobiuo plot`, as tables. */
+#include "plot.h"
+#include <string.h>
+
+/* Three curves of a vector's parts. */
+#define XYZ(column)                                   \
+    { { "x", column "_x", NULL, CURVE_LINE, 1, NULL },  \
+      { "y", column "_y", NULL, CURVE_LINE, 2, NULL },  \
+      { "z", column "_z", NULL, CURVE_LINE, 0, NULL } }
+
+const picture_row plot_history[] = {
+    { "energies", "Energy of the fluid", {
+        { "kinetic energy, J", 0, 1, 0, 0, 0,
+          { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL } } },
+        { "change since the start, J", 0, 1, 0, 1, 0,
+          { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL },
+            { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL },
+            { "sum", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL } } } } },
+    { "walls", "Force of the fluid on the walls of the domain", {
+        { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
+        { "force along gravity / weight", 0, 0, 0, 0, 1,
+          { { "1 = at rest", "wall_force_ratio", NULL, CURVE_LINE, 0, NULL } } } } },
+    { "incompressibility", "How incompressible the fluid stays", {
+        { "density error, %", 100, 0, 1, 0, 0,
+          { { "largest", "density_error_max", NULL, CURVE_LINE, 1, NULL },
+            { "mean", "density_error_mean", NULL, CURVE_LINE, 0, NULL } } },
+        { "|divergence|, 1/s", 0, 0, 1, 0, 1,
+          { { "largest", "divergence_max", NULL, CURVE_LINE, 1, NULL },
+            { "mean", "divergence_mean", NULL, CURVE_LINE, 0, NULL } } } } },
+    { "solver", "Work of the solver", {
+        { "iterations per step", 0, 0, 0, 0, 1,
+          { { "density solve, mean", "density_iterations_mean", NULL, CURVE_LINE, 0, NULL },
+            { "divergence solve, mean", "divergence_iterations_mean", NULL, CURVE_LINE, 1, NULL },
+            { "steps not converged", "unconverged_steps", NULL, CURVE_DASHED, 7,
+              "unconverged_steps" } } },
+        { "time step, ms", 1e3, 0, 0, 0, 1, { { "time step", "dt", NULL, CURVE_LINE, 2, NULL } } },
+        { "speed, m/s", 0, 0, 0, 0, 0,
+          { { "fastest particle", "speed_max", NULL, CURVE_LINE, 3, NULL } } } } },
+    { 0 }
+};
+
+/* One panel of a force or torque: its mean since the last output, its parts (unless the viscous one is
+   0: then the sum is the pressure), and the last step's. */
+#define SUM(label, when, noun, axis, style, colour)                                              \
+    { label, when "pressure_" noun "_" axis, when "viscous_" noun "_" axis, style, colour, NULL }
+#define PART(label, part, noun, axis, style, colour)                                             \
+    { label, "mean_" part "_" noun "_" axis, NULL, style, colour, "mean_viscous_" noun "_" axis }
+#define PARTS(noun, axis, unit)                                                                  \
+    { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
+      { SUM("sum, last step", "", noun, axis, CURVE_THIN, 6),                                    \
+        SUM("sum, mean", "mean_", noun, axis, CURVE_LINE, 7),                                    \
+        PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
+        PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1) } }
+
+const picture_row plot_body[] = {
+    { "motion", "Motion of", {
+        { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
+        { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
+        { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
+    { "force", "Force of the fluid on", {
+        PARTS("force", "x", "N"), PARTS("force", "y", "N"), PARTS("force", "z", "N") } },
+    { "torque", "Torque of the fluid about the centre of mass of", {
+        PARTS("torque", "x", "N m"), PARTS("torque", "y", "N m"), PARTS("torque", "z", "N m") } },
+    { 0 }
+};
+
+const char *plot_unit(const char *column, int dimension)
+{
+    static const struct { const char *part, *unit, *unit_2d; } units[] = {
+        { "iterations", "", "" }, { "residual", "", "" }, { "ratio", "", "" }, { "density_error", "", "" },
+        { "divergence", "1/s", "1/s" }, { "angular_velocity", "rad/s", "rad/s" },
+        { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
+        { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
+        { "pressure", "Pa", "Pa" }, { "level", "m", "m" },
+        { "energy", "J", "J per m" }, { "momentum", "kg m/s", "kg m/s per m" },
+    };
+    if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (strstr(column, units[k].part)) return dimension == 2 ? units[k].unit_2d : units[k].unit;
+    return "";
+}

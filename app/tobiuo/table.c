@@ -1,0 +1,156 @@
+#define _GNU_SOURCE
+#include "table.h"
+#include "app.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { SIZE_LIMIT = 1 << 29, COLUMN_LIMIT = 1000 };      /* bytes of a file; columns of a table */
+
+static char *read_whole(const char *path)
+{
+    struct stat st;
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        complain("cannot read %s: %s", path, strerror(errno));
+        return NULL;
+    }
+    char *text = NULL;
+    if (fstat(fileno(file), &st) != 0 || !S_ISREG(st.st_mode)) {
+        complain("%s is not a file", path);
+    } else if (st.st_size > SIZE_LIMIT) {
+        complain("%s has more than %d MiB", path, SIZE_LIMIT >> 20);
+    } else if (!(text = malloc((size_t)st.st_size + 1))) {
+        complain("out of memory");
+    } else {
+        size_t size = fread(text, 1, (size_t)st.st_size, file);
+        text[size] = '\0';
+        if (ferror(file) || strlen(text) != size) {
+            complain(ferror(file) ? "cannot read %s" : "%s is not a text", path);
+            free(text);
+            text = NULL;
+        }
+    }
+    fclose(file);
+    return text;
+}
+
+/* Cuts one field off *rest, in place: without quotes and the blanks around it. *last says that the
+   row ends with it. */
+static char *cut_field(char **rest, int *last)
+{
+    char *from = *rest + strspn(*rest, " \t"), *to = from, *field = from;
+    if (*from == '"') {
+        for (from++; *from && (*from != '"' || from[1] == '"'); from++) {
+            if (*from == '"') from++;
+            *to++ = *from;
+        }
+        from += strcspn(from, ",\n");
+    } else {
+        from += strcspn(from, ",\n");
+        to = from;
+        while (to > field && strchr(" \t\r", to[-1])) to--;
+    }
+    *last = *from != ',';
+    *rest = *from ? from + 1 : from;
+    *to = '\0';
+    return field;
+}
+
+static int is_skipped(const char *line)
+{
+    size_t blanks = strspn(line, " \t\r");
+    return line[blanks] == '#' || line[blanks] == '\n' || line[blanks] == '\0';
+}
+
+static char *skip_lines(char *rest)
+{
+    while (*rest && is_skipped(rest)) {
+        rest += strcspn(rest, "\n");
+        rest += *rest == '\n';
+    }
+    return rest;
+}
+
+static int read_names(table *t, char **rest)
+{
+    t->names = calloc(COLUMN_LIMIT, sizeof *t->names);
+    if (!t->names) return complain("out of memory");
+    for (int last = 0; !last;) {
+        if (t->columns == COLUMN_LIMIT)
+            return complain("%s has more than %d columns", t->path, COLUMN_LIMIT);
+        t->names[t->columns++] = cut_field(rest, &last);
+    }
+    return 0;
+}
+
+static int read_rows(table *t, char *rest)
+{
+    size_t room = 0;
+    while (*(rest = skip_lines(rest))) {
+        if (t->rows == room) {
+            room = room ? 2 * room : 256;
+            char **cells = reallocarray(t->cells, room, (size_t)t->columns * sizeof *cells);
+            if (!cells) return complain("out of memory");
+            t->cells = cells;
+        }
+        char **row = t->cells + t->rows++ * (size_t)t->columns;
+        for (int k = 0; k < t->columns; k++) row[k] = "";
+        for (int k = 0, last = 0; !last; k++) {
+            char *field = cut_field(&rest, &last);
+            if (k < t->columns) row[k] = field;
+        }
+    }
+    return 0;
+}
+
+int table_read(table *t, const char *path)
+{
+    *t = (table){ .path = strdup(path), .text = read_whole(path) };
+    char *rest = t->text;
+    int code = t->path && t->text ? 0 : EXIT_ERROR;
+    if (code == 0) {
+        if (strncmp(rest, "\xef\xbb\xbf", 3) == 0) rest += 3;       /* byte order mark */
+        rest = skip_lines(rest);
+        code = *rest ? read_names(t, &rest) : complain("%s is empty", path);
+    }
+    if (code == 0) code = read_rows(t, rest);
+    if (code == 0) return 0;
+    table_free(t);
+    return -1;
+}
+
+void table_free(table *t)
+{
+    free(t->path);
+    free(t->names);
+    free(t->cells);
+    free(t->text);
+    *t = (table){ 0 };
+}
+
+int table_column(const table *t, const char *name)
+{
+    for (int k = 0; k < t->columns; k++)
+        if (strcmp(t->names[k], name) == 0) return k;
+    return -1;
+}
+
+double table_number(const table *t, size_t row, int column)
+{
+    const char *cell = t->cells[row * (size_t)t->columns + (size_t)column];
+    char *end;
+    double value = strtod(cell, &end);
+    return end == cell || *end != '\0' || !isfinite(value) ? NAN : value;
+}
+
+void table_list_columns(const table *t, char *list, size_t size)
+{
+    size_t used = 0;
+    list[0] = '\0';
+    for (int k = 0; k < t->columns && used < size; k++)
+        used += (size_t)snprintf(list + used, size - used, "%s%s", k ? ", " : "", t->names[k]);
+}

@@ -1,0 +1,25 @@
+/* A CSV table in memory: history.csv, bodies.csv, and reference data that a scene names.
+
+   Lines that begin with # and empty lines are skipped; the next line names the columns; fields may
+   be quoted as RFC 4180 says. */
+#pragma once
+#include <stddef.h>
+
+typedef struct table {
+    char *path;              /* for messages                                            */
+    int columns;
+    size_t rows;
+    char **names;            /* one per column                                          */
+    char **cells;            /* [row*columns + column]; "" where a row is too short     */
+    char *text;              /* what names and cells point into                         */
+} table;
+
+/* Reads the file. 0; or -1 after a message on stderr, and then t is empty. */
+int table_read(table *t, const char *path);
+void table_free(table *t);
+/* -1 if there is no such column. */
+int table_column(const table *t, const char *name);
+/* NaN for what is not a number. */
+double table_number(const table *t, size_t row, int column);
+/* "a, b, c", cut to size; for messages. */
+void table_list_columns(const table *t, char *list, size_t size);

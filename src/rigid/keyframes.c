@@ -1,0 +1,367 @@
+/* Reading the rows, slopes at the rows, and the curve between two of them. Quaternions are w x y z. */
+#define _POSIX_C_SOURCE 200809L
+#include "rigid/keyframes.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/types.h>
+
+#define DEGREE (3.14159265358979323846/180)
+enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64 };
+
+typedef enum column {
+    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, COLUMNS
+} column;
+
+static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
+                                                  "ax",   "ay", "az", "angle", "roll", "pitch", "yaw"};
+
+typedef struct keyframe {
+    double time, shift[3], turn[4];     /* s, m, unit quaternion                       */
+    double velocity[3], spin[3];        /* m/s; rad/s about the body's own axes        */
+} keyframe;
+
+struct tobi_keyframes {
+    keyframe *rows;
+    int64_t count;
+};
+
+typedef struct reader {
+    const char *path;
+    int64_t line;
+    int meaning[MOST_COLUMNS];          /* column of each field of a line              */
+    int fields;
+    int given[COLUMNS];
+} reader;
+
+/* --- quaternions -------------------------------------------------------------------------- */
+
+static void multiply(const double a[4], const double b[4], double out[4])
+{
+    double q[4] = {a[0]*b[0] - a[1]*b[1] - a[2]*b[2] - a[3]*b[3],
+                   a[0]*b[1] + a[1]*b[0] + a[2]*b[3] - a[3]*b[2],
+                   a[0]*b[2] - a[1]*b[3] + a[2]*b[0] + a[3]*b[1],
+                   a[0]*b[3] + a[1]*b[2] - a[2]*b[1] + a[3]*b[0]};
+    memcpy(out, q, sizeof q);
+}
+
+/* The turn by |v| radians about v. */
+static void from_vector(const double v[3], double scale, double q[4])
+{
+    double angle = scale*sqrt(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    double s = fabs(angle) > 1e-9 ? scale*sin(0.5*angle)/angle : 0.5*scale;
+    q[0] = cos(0.5*angle);
+    for (int k = 0; k < 3; k++) q[k + 1] = s*v[k];
+}
+
+/* The inverse, the short way. */
+static void to_vector(const double q[4], double v[3])
+{
+    double s = sqrt(q[1]*q[1] + q[2]*q[2] + q[3]*q[3]), sign = q[0] < 0 ? -1 : 1;
+    double scale = s > 1e-12 ? sign*2*atan2(s, fabs(q[0]))/s : 2*sign;
+    for (int k = 0; k < 3; k++) v[k] = scale*q[k + 1];
+}
+
+/* What turns a into b, seen from a. */
+static void between(const double a[4], const double b[4], double v[3])
+{
+    double q[4];
+    multiply((double[4]){a[0], -a[1], -a[2], -a[3]}, b, q);
+    to_vector(q, v);
+}
+
+/* --- reading ------------------------------------------------------------------------------ */
+
+static tobi_status fail_here(const reader *r, tobi_error *err, const char *what, const char *word)
+{
+    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: %s%s", r->path, (long long)r->line, what, word);
+}
+
+/* The next field of a line, without blanks and quotes around it; NULL at the end. */
+static char *next_field(char **rest)
+{
+    char *field = *rest;
+    if (!field) return NULL;
+    char *end = strpbrk(field, ",;\t");
+    *rest = end ? end + 1 : NULL;
+    if (end) *end = 0;
+    field += strspn(field, " \"\r\n");
+    for (size_t n = strlen(field); n && strchr(" \"\r\n", field[n - 1]);) field[--n] = 0;
+    return field;
+}
+
+static tobi_status check_columns(const reader *r, tobi_error *err)
+{
+    const int *g = r->given;
+    int quaternion = g[QW] + g[QX] + g[QY] + g[QZ], axis = g[AX] + g[AY] + g[AZ] + g[ANGLE];
+    int angles = g[ROLL] + g[PITCH] + g[YAW];
+    if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
+    if ((quaternion && quaternion < 4) || (axis && axis < 4))
+        return fail_here(r, err, "a turn needs all of ", quaternion ? "qw, qx, qy, qz" : "ax, ay, az, angle");
+    if (!!quaternion + !!axis + !!angles > 1)
+        return fail_here(r, err, "a turn is given twice: allowed is one of qw qx qy qz, ax ay az angle and "
+                         "roll pitch yaw", "");
+    if (g[X] + g[Y] + g[Z] + quaternion + axis + angles == 0)
+        return fail_here(r, err, "no column says where the body is: x, y, z or a turn is needed", "");
+    return TOBI_OK;
+}
+
+static tobi_status read_header(reader *r, char *line, tobi_error *err)
+{
+    char *rest = line;
+    for (char *field; (field = next_field(&rest)) != NULL;) {
+        int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
+        for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
+            if (strcasecmp(field, column_names[c]) == 0) found = c;
+        if (found == COLUMNS)
+            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: there is no column \"%.40s\"; allowed "
+                             "are time (s), x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, "
+                             "pitch, yaw (degrees)", r->path, (long long)r->line, field);
+        if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
+        r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
+    }
+    return check_columns(r, err);
+}
+
+static tobi_status read_numbers(const reader *r, char *line, double value[COLUMNS], tobi_error *err)
+{
+    char *rest = line, *field;
+    int n = 0;
+    for (; (field = next_field(&rest)) != NULL; n++) {
+        char *end;
+        if (n == r->fields) break;
+        double x = strtod(field, &end);
+        if (end == field || *end || !isfinite(x))
+            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: \"%.40s\" in column %s is no finite "
+                             "number", r->path, (long long)r->line, field, column_names[r->meaning[n]]);
+        value[r->meaning[n]] = x;
+    }
+    if (n == r->fields && !field) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: the row has %s columns than the header, %d",
+                     r->path, (long long)r->line, field ? "more" : "fewer", r->fields);
+}
+
+static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[4], tobi_error *err)
+{
+    memcpy(q, (double[4]){1, 0, 0, 0}, 4*sizeof *q);
+    if (r->given[QW]) {
+        double length = sqrt(v[QW]*v[QW] + v[QX]*v[QX] + v[QY]*v[QY] + v[QZ]*v[QZ]);
+        if (!(length > 1e-100) || !isfinite(length))
+            return fail_here(r, err, "the quaternion has no length", "");
+        for (int k = 0; k < 4; k++) q[k] = v[QW + k]/length;
+    } else if (r->given[AX]) {
+        double axis[3] = {v[AX], v[AY], v[AZ]};
+        double length = sqrt(axis[0]*axis[0] + axis[1]*axis[1] + axis[2]*axis[2]);
+        if (!isfinite(length) || (!(length > 1e-100) && v[ANGLE] != 0))
+            return fail_here(r, err, "the axis ax, ay, az has no length", "");
+        from_vector(axis, length > 1e-100 ? fmod(v[ANGLE], 360)*DEGREE/length : 0, q);
+    } else {
+        for (int a = 0; a < 3; a++) {      /* roll first, so it stands rightmost */
+            double one[4], axis[3] = {a == 0, a == 1, a == 2};
+            from_vector(axis, fmod(v[ROLL + a], 360)*DEGREE, one);
+            multiply(one, q, q);
+        }
+    }
+    return TOBI_OK;
+}
+
+static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, char *line, tobi_error *err)
+{
+    double value[COLUMNS] = {0};
+    keyframe row = {0};
+    TOBI_TRY(read_numbers(r, line, value, err));
+    row.time = value[TIME];
+    memcpy(row.shift, value + X, sizeof row.shift);
+    TOBI_TRY(read_turn(r, value, row.turn, err));
+    if (f->count && !(row.time > f->rows[f->count - 1].time))
+        return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: time %.10g s does not come after %.10g s of "
+                         "the row before", r->path, (long long)r->line, row.time,
+                         f->rows[f->count - 1].time);
+    if (f->count == MOST_ROWS) return fail_here(r, err, "more rows than are allowed, 20 million", "");
+    if (f->count == *room) {
+        keyframe *more = realloc(f->rows, (size_t)(2**room + 64)*sizeof *more);
+        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "keyframes %s: out of memory", r->path);
+        f->rows = more;
+        *room = 2**room + 64;
+    }
+    f->rows[f->count++] = row;
+    return TOBI_OK;
+}
+
+static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_error *err)
+{
+    char *line = NULL;
+    size_t size = 0;
+    int64_t room = 0;
+    tobi_status status = TOBI_OK;
+    for (ssize_t n; status == TOBI_OK && (n = getline(&line, &size, file)) > 0;) {
+        char *text = line;
+        r->line++;
+        if (r->line == 1 && n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3;   /* byte order mark */
+        text += strspn(text, " \r\n");
+        if (strlen(line) != (size_t)n) status = fail_here(r, err, "holds a zero byte: not a text file", "");
+        else if (!*text || *text == '#') continue;
+        else if (!r->fields) status = read_header(r, text, err);
+        else status = add_row(f, &room, r, text, err);
+    }
+    free(line);
+    if (status == TOBI_OK && ferror(file))
+        status = tobi_fail(err, TOBI_IO, "keyframes %s: %s", r->path, strerror(errno));
+    if (status == TOBI_OK && !f->count)
+        status = tobi_fail(err, TOBI_INVALID, "keyframes %s: no rows; a header with the columns' names and a "
+                           "row per time are needed", r->path);
+    return status;
+}
+
+/* --- slopes and curves -------------------------------------------------------------------- */
+
+static int is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+/* Mean rates of the piece from row i to the next. */
+static void mean_rates(const keyframe *k, double velocity[3], double spin[3])
+{
+    double h = k[1].time - k[0].time;
+    between(k[0].turn, k[1].turn, spin);
+    for (int a = 0; a < 3; a++) {
+        velocity[a] = (k[1].shift[a] - k[0].shift[a])/h;
+        spin[a] /= h;
+    }
+}
+
+/* Slope of the parabola through three rows at the middle one, from the mean rates beside it; 0 next to a
+   piece that stands still. */
+static void blend_rates(const double before[3], const double after[3], double h0, double h1, double out[3])
+{
+    int still = is_zero(before) || is_zero(after);
+    for (int a = 0; a < 3; a++) out[a] = still ? 0 : (h1*before[a] + h0*after[a])/(h0 + h1);
+}
+
+/* At the end of the rows: the same parabola, from its slope one row further in. */
+static void end_rates(const double mean[3], const double inner[3], double out[3])
+{
+    for (int a = 0; a < 3; a++) out[a] = is_zero(mean) ? 0 : 2*mean[a] - inner[a];
+}
+
+static void find_slopes(tobi_keyframes *f)
+{
+    keyframe *k = f->rows;
+    int64_t n = f->count;
+    double v[2][3], w[2][3];                   /* of the pieces before and after a row */
+    if (n < 2) return;
+    mean_rates(k, v[0], w[0]);
+    memcpy(k[0].velocity, v[0], sizeof v[0]);
+    memcpy(k[0].spin, w[0], sizeof w[0]);
+    for (int64_t i = 1; i + 1 < n; i++) {
+        double h0 = k[i].time - k[i - 1].time, h1 = k[i + 1].time - k[i].time;
+        mean_rates(k + i, v[1], w[1]);
+        blend_rates(v[0], v[1], h0, h1, k[i].velocity);
+        blend_rates(w[0], w[1], h0, h1, k[i].spin);
+        if (i == 1) {
+            end_rates(v[0], k[1].velocity, k[0].velocity);
+            end_rates(w[0], k[1].spin, k[0].spin);
+        }
+        memcpy(v[0], v[1], sizeof v[0]);
+        memcpy(w[0], w[1], sizeof w[0]);
+    }
+    memcpy(k[n - 1].velocity, v[0], sizeof v[0]);
+    memcpy(k[n - 1].spin, w[0], sizeof w[0]);
+    if (n == 2) return;
+    end_rates(v[0], k[n - 2].velocity, k[n - 1].velocity);
+    end_rates(w[0], k[n - 2].spin, k[n - 1].spin);
+}
+
+/* q(s) = q0 exp(b1 w1) exp(b2 w2) exp(b3 w3) with the cumulative Bernstein basis b. */
+static void curve_turn(const keyframe *k, double h, double s, double q[4])
+{
+    double first[4], last[4], inner[4], middle[3];
+    double b[3] = {1 - (1 - s)*(1 - s)*(1 - s), s*s*(3 - 2*s), s*s*s};
+    from_vector(k[0].spin, -h/3, first);
+    from_vector(k[1].spin, -h/3, last);
+    multiply((double[4]){k[0].turn[0], -k[0].turn[1], -k[0].turn[2], -k[0].turn[3]}, k[1].turn, inner);
+    if (inner[0] < 0)
+        for (int a = 0; a < 4; a++) inner[a] = -inner[a];
+    multiply(first, inner, inner);
+    multiply(inner, last, inner);
+    to_vector(inner, middle);
+    memcpy(q, k[0].turn, sizeof k[0].turn);
+    from_vector(k[0].spin, b[0]*h/3, first);
+    multiply(q, first, q);
+    from_vector(middle, b[1], inner);
+    multiply(q, inner, q);
+    from_vector(k[1].spin, b[2]*h/3, last);
+    multiply(q, last, q);
+}
+
+static void curve_shift(const keyframe *k, double h, double s, double shift[3])
+{
+    double rise = s*s*(3 - 2*s), early = s*(1 - s)*(1 - s)*h, late = -s*s*(1 - s)*h;
+    for (int a = 0; a < 3; a++)
+        shift[a] = k[0].shift[a] + rise*(k[1].shift[a] - k[0].shift[a]) + early*k[0].velocity[a] +
+                   late*k[1].velocity[a];
+}
+
+static void fill_matrix(const double quaternion[4], double m[3][3])
+{
+    double length = sqrt(quaternion[0]*quaternion[0] + quaternion[1]*quaternion[1] +
+                         quaternion[2]*quaternion[2] + quaternion[3]*quaternion[3]);
+    double w = quaternion[0]/length, x = quaternion[1]/length, y = quaternion[2]/length,
+           z = quaternion[3]/length;
+    double r[3][3] = {{1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y)},
+                      {2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)},
+                      {2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)}};
+    memcpy(m, r, sizeof r);
+}
+
+tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)
+{
+    *out = NULL;
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "keyframes %s: %s", path,
+                         strerror(errno));
+    reader r = {.path = path};
+    tobi_keyframes *f = calloc(1, sizeof *f);
+    tobi_status status = f ? read_rows(file, &r, f, err)
+                           : tobi_fail(err, TOBI_NO_MEMORY, "keyframes %s: out of memory", path);
+    fclose(file);
+    if (status != TOBI_OK) {
+        tobi_keyframes_free(f);
+        return status;
+    }
+    find_slopes(f);
+    *out = f;
+    return TOBI_OK;
+}
+
+void tobi_keyframes_free(tobi_keyframes *f)
+{
+    if (!f) return;
+    free(f->rows);
+    free(f);
+}
+
+void tobi_keyframes_pose(const tobi_keyframes *f, double t, double shift[3], double turn[3][3])
+{
+    int64_t low = 0, high = f->count - 1;
+    double q[4];
+    if (!(t > f->rows[0].time)) high = 0;
+    else if (t >= f->rows[high].time) low = high;
+    while (high - low > 1) {
+        int64_t middle = (low + high)/2;
+        if (f->rows[middle].time <= t) low = middle;
+        else high = middle;
+    }
+    const keyframe *k = &f->rows[low];
+    if (low == high) {
+        memcpy(shift, k->shift, sizeof k->shift);
+        fill_matrix(k->turn, turn);
+        return;
+    }
+    double h = k[1].time - k[0].time, s = (t - k[0].time)/h;
+    curve_shift(k, h, s, shift);
+    curve_turn(k, h, s, q);
+    fill_matrix(q, turn);
+}

@@ -1,0 +1,29 @@
+/* A rigid motion by rows of a CSV file: time and where the body is then, against its rest pose.
+
+   The first line that is no comment (#) and not empty names the columns, in any order, upper or lower case:
+
+     time (or t)                       s, rising from row to row
+     x, y, z                           m, shift from the rest pose; a missing one is 0
+     and for the turn, one of
+     qw, qx, qy, qz                    a quaternion of any length but 0
+     ax, ay, az, angle                 an axis and degrees about it
+     roll, pitch, yaw                  degrees: about x, then y, then z (fixed axes); a missing one is 0
+
+   Columns are parted by comma, semicolon or tab. Position = pivot + shift + R (rest - pivot).
+
+   Between rows shift and turn are cubic, with continuous rates: Hermite curves whose slope at a row is
+   that of the parabola through it and its neighbours (for turns Kim, Kim & Shin, SIGGRAPH 1995). So rows of
+   constant acceleration, or of a constant turn about one axis, are met exactly. Two rows alike stand for
+   standing still between them. From row to row a turn goes the short way, below 180 degrees. Before the
+   first and after the last row the body stays; it stops at once there if the rows end in motion. */
+#pragma once
+#include "base/error.h"
+
+typedef struct tobi_keyframes tobi_keyframes;
+
+/* Errors name file and line: TOBI_NOT_FOUND, TOBI_IO, TOBI_INVALID, TOBI_NO_MEMORY. */
+tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err);
+void tobi_keyframes_free(tobi_keyframes *frames);
+
+/* Shift (m) and rotation matrix at time t (s). */
+void tobi_keyframes_pose(const tobi_keyframes *frames, double t, double shift[3], double turn[3][3]);

@@ -1,0 +1,91 @@
+/* Data that a scene names for comparison. The engine never opens it; `tobiuo plot` does. */
+#define _GNU_SOURCE 1
+#include "scene/scene.h"
+#include "scene/suggest.h"
+#include "world/record.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* "; did you mean "a"?", or nothing. */
+static void suggest(const char *word, const char *const *names, int count, char text[200])
+{
+    const char *near = tobi_suggest(word, names, (size_t)count);
+    text[0] = '\0';
+    if (near) snprintf(text, 200, "; did you mean \"%s\"?", near);
+}
+
+static void check_column(tobi_source *source, const tobi_place *entry, tobi_table table,
+                         const char *column)
+{
+    static const char *const where[] = {
+        [TOBI_TABLE_HISTORY] = "history.csv (one of bodies.csv or probes.csv needs body or probe)",
+        [TOBI_TABLE_BODIES] = "bodies.csv", [TOBI_TABLE_POINT] = "a point of probes.csv",
+        [TOBI_TABLE_LEVEL] = "a level of probes.csv" };
+    enum { COLUMNS = 64 };
+    const char *names[COLUMNS];
+    char near[200];
+    int count = 0;
+    tobi_place place = { entry, "column", 0 };
+    for (; count < COLUMNS && (names[count] = tobi_tables_column(table, count)); count++)
+        if (strcmp(names[count], column) == 0) return;
+    suggest(column, names, count, near);
+    tobi_source_mistake(source, &place, "there is no column \"%s\" in %s%s", column, where[table],
+                        near);
+}
+
+/* Finds `name` among the names of bodies or probes; -1 after reporting that it is not there. */
+static int find_owner(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
+                      const char *key, const char *name)
+{
+    enum { NAMES = 64 };
+    const char *names[NAMES], *own;
+    char near[200];
+    tobi_place place = { entry, key, 0 };
+    int bodies = strcmp(key, "body") == 0, count = bodies ? scene->body_count : scene->probe_count;
+    for (int i = 0; i < count; i++) {
+        own = bodies ? scene->bodies[i].def.name : scene->probes[i].name;
+        if (strcmp(own, name) == 0) return i;
+        if (i < NAMES) names[i] = own;
+    }
+    suggest(name, names, count < NAMES ? count : NAMES, near);
+    tobi_source_mistake(source, &place, "there is no %s \"%s\"%s", key, name, near);
+    return -1;
+}
+
+static void check_owner(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
+                        const tobi_reference_def *def)
+{
+    tobi_table table = def->body ? TOBI_TABLE_BODIES : TOBI_TABLE_HISTORY;
+    if (def->body && def->probe)
+        tobi_source_mistake(source, entry, "has a body and a probe, must have at most one of them");
+    if (def->body) find_owner(scene, source, entry, "body", def->body);
+    if (def->probe) {
+        int probe = find_owner(scene, source, entry, "probe", def->probe);
+        if (probe < 0) return;
+        table = scene->probes[probe].kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
+    }
+    if (def->column) check_column(source, entry, table, def->column);
+}
+
+void tobi_references_check(const tobi_scene *scene, tobi_source *source)
+{
+    tobi_place root = { 0 }, list = { &root, "references", 0 };
+    for (int i = 0; i < scene->reference_count; i++) {
+        const tobi_reference_def *def = &scene->references[i];
+        tobi_place entry = { &list, NULL, (size_t)i }, file = { &entry, "file", 0 };
+        struct stat info;
+        check_owner(scene, source, &entry, def);
+        if (def->file && stat(def->file, &info) != 0)
+            tobi_source_mistake(source, &file, "cannot find %s: %s", def->file, strerror(errno));
+        else if (def->file && !S_ISREG(info.st_mode))
+            tobi_source_mistake(source, &file, "%s is not a file", def->file);
+    }
+}
+
+const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene, int index)
+{
+    return index >= 0 && index < scene->reference_count ? &scene->references[index] : NULL;
+}

@@ -1,0 +1,218 @@
+#include "sph/stages.h"
+#include <math.h>
+#include <string.h>
+
+static void launch(tobi_simulation *s, sph_view *v, tobi_kernel k, double *totals)
+{
+    tobi_launch(&s->exec, k, v, 0, s->particles.count, totals);
+}
+
+static void bind_planes(const tobi_simulation *s, sph_view *v)
+{
+    v->plane_count = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (s->box.periodic[a]) continue;
+        const double *lower = s->def.wall_velocity_min[a], *upper = s->def.wall_velocity_max[a];
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP,
+                                                  {(float)lower[0], (float)lower[1], (float)lower[2]}};
+        v->plane[v->plane_count++] =
+            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP,
+                         {(float)upper[0], (float)upper[1], (float)upper[2]}};
+    }
+}
+
+/* Mean depth of the band at a flat surface: layers at (k + 1/2) d, weighted as sph_normal weighs them. */
+static double band_depth(const tobi_smoothing_constants *c)
+{
+    double d = c->spacing, weight = 0, sum = 0, first = 0;
+    for (double s = 0.5*d; s < c->h; s += d) {
+        double g = c->plane.sigma[(int)(s/c->h*TOBI_PLANE_SAMPLES)];
+        if (!(first > 0)) first = g;
+        weight += fmax(g/first - 0.2, 0);
+        sum += s*fmax(g/first - 0.2, 0);
+    }
+    return sum/weight;
+}
+
+void sph_bind_view(const tobi_simulation *s, sph_view *v)
+{
+    const tobi_particles *p = &s->particles;
+    const tobi_smoothing_constants *c = &s->smoothing;
+    v->count = p->count;
+    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
+    v->wall = p->wall; v->normal = p->normal; v->capillary = p->capillary;
+    v->density = p->density;
+    v->diagonal = p->diagonal;
+    v->precondition = p->precondition;
+    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
+    v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
+    v->list = s->cells.list;
+    memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
+    v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
+    v->weight = (float)c->weight; v->slope = (float)c->slope;
+    v->spacing = (float)c->spacing; v->volume = (float)c->volume;
+    v->dimension = c->dimension;
+    v->surface_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->sheet_limit = 0.6f*(float)c->dimension;
+    v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
+    v->table = &c->plane;
+    bind_planes(s, v);
+    for (int f = 0; f < s->fluid_count; f++) {
+        v->inverse_density[f] = (float)(1/s->fluid[f].density);
+        v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
+        v->tension[f] = (float)s->fluid[f].tension;
+    }
+    v->band_depth = (float)band_depth(c);
+    v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
+}
+
+double sph_viscous_dt(const tobi_simulation *s)
+{
+    double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*s->smoothing.spacing);
+    double dt = INFINITY;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].viscosity > 0)
+            dt = fmin(dt, 0.8*s->fluid[f].density/(s->fluid[f].viscosity*rate));
+    return dt;
+}
+
+double sph_tension_dt(const tobi_simulation *s)
+{
+    double d = s->smoothing.spacing, dt = INFINITY;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0)
+            dt = fmin(dt, 0.4*sqrt(s->fluid[f].density*d*d*d/(2*acos(-1)*s->fluid[f].tension)));
+    return dt;
+}
+
+void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt)
+{
+    int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
+    s->dt = max_dt <= 0 || dt < 0.5*max_dt ? dt : fits ? max_dt : 0.5*max_dt;
+    v->dt = (float)s->dt;
+    v->inverse_dt = (float)(1/s->dt);
+}
+
+tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
+                          tobi_error *err)
+{
+    launch(s, v, k->sph_walls, NULL);
+    if (s->body_count > 0) {
+        TOBI_TRY(tobi_near_find(s, err));
+        tobi_near_cut_pairs(s);
+        tobi_near_add_gradients(s);
+    }
+    tobi_stage_end(&s->stages, "walls and bodies", clock);
+    return TOBI_OK;
+}
+
+tobi_status sph_find_full(tobi_simulation *s, sph_view *v, const sph_kernels *k, int *full,
+                          double *clock, tobi_error *err)
+{
+    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    TOBI_TRY(sph_see_walls(s, v, k, clock, err));
+    v->pressure = s->particles.pressure;
+    v->smooth = 0;
+    launch(s, v, k->sph_density, t);
+    *full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    return TOBI_OK;
+}
+
+tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    s->body_speed = s->wall_speed;
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+    tobi_stage_end(&s->stages, "motion", clock);
+    return TOBI_OK;
+}
+
+static void apply_tension(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+{
+    double most = 0;
+    for (int f = 0; f < s->fluid_count; f++) most = fmax(most, s->fluid[f].tension);
+    if (!(most > 0)) return;
+    launch(s, v, k->sph_normal, NULL);
+    launch(s, v, k->sph_smooth_normal, NULL);
+    if (s->body_count > 0) tobi_near_contact(s);
+    launch(s, v, k->sph_curvature, NULL);
+    launch(s, v, k->sph_tension, NULL);
+}
+
+void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+{
+    launch(s, v, k->sph_laplacian, NULL);
+    launch(s, v, k->sph_kick, NULL);
+    if (s->body_count > 0) tobi_near_add_forces(s);
+    apply_tension(s, v, k);
+    tobi_stage_end(&s->stages, "forces", clock);
+}
+
+void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+{
+    double t[TOBI_TOTALS];
+    v->pressure = s->particles.pressure;
+    launch(s, v, k->sph_wall_force, t);
+    memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
+    if (s->body_count > 0) tobi_near_body_forces(s);
+    tobi_stage_end(&s->stages, "walls and bodies", clock);
+}
+
+double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+{
+    double t[TOBI_TOTALS];
+    v->speed_cap = (float)(1.5*tobi_simulation_speed_scale(s));
+    launch(s, v, k->sph_advance, t);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
+    s->info.contacts = (int64_t)t[0];
+    s->info.speed_max = sqrt(t[7]);
+    s->info.capped = (int64_t)t[4];
+    tobi_stage_end(&s->stages, "advance", clock);
+    return sqrt(t[6]);
+}
+
+tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
+    if (s->body_count > 0) tobi_near_push_out(s);
+    s->info.contacts += s->near.contacts;
+    tobi_stage_end(&s->stages, "motion", clock);
+    return TOBI_OK;
+}
+
+/* The kick over one second, then taken back, and the pressure. Scratch of the solves keeps the velocity
+   meanwhile. */
+static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+{
+    tobi_particles *p = &s->particles;
+    float *kept[3] = {p->residual, p->delta, p->correction}, dt = v->dt;
+    double step = s->dt;
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) kept[a][i] = (&p->velocity[i].x)[a];
+    s->dt = v->dt = 1;
+    v->filter = 0;
+    launch(s, v, k->sph_laplacian, NULL);
+    launch(s, v, k->sph_kick, NULL);
+    if (s->body_count > 0) tobi_near_add_forces(s);
+    apply_tension(s, v, k);
+    s->dt = step;
+    v->dt = dt;
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) {
+            float kick = (&p->velocity[i].x)[a] - kept[a][i];
+            (&p->velocity[i].x)[a] = kept[a][i];
+            kept[a][i] = kick;
+            p->record[i].w = p->pressure[i];
+        }
+    launch(s, v, k->sph_pressure_accel, NULL);
+    for (int64_t i = 0; i < p->count; i++)
+        for (int a = 0; a < 3; a++) (&p->accel[i].x)[a] += kept[a][i];
+}
+
+void sph_derive(tobi_simulation *s, sph_view *v, const sph_kernels *k, const char *field)
+{
+    if (strcmp(field, "vorticity") == 0) launch(s, v, k->sph_vorticity, NULL);
+    else derive_acceleration(s, v, k);
+}

@@ -1,0 +1,34 @@
+/* Stages that the steps of all SPH methods share. v is the method's view, k its kernels. */
+#pragma once
+#include "core/simulation.h"
+#include "sph/kernels.h"
+
+/* Everything of a view that does not belong to one method; after each sort. */
+void sph_bind_view(const tobi_simulation *s, sph_view *v);
+/* 0.8/(nu rate): the longest step of explicit viscosity at a no-slip wall, s; without it INFINITY. */
+double sph_viscous_dt(const tobi_simulation *s);
+/* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
+double sph_tension_dt(const tobi_simulation *s);
+/* dt, or less, so that what is left up to max_dt (0 = no end) is no sliver of a step; into s and v. */
+void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt);
+
+/* Planes and bodies: wall gradients, shares, pairs that a body separates. */
+tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
+                          tobi_error *err);
+/* *full = 1: fewer particles see a free surface than a tenth of a cube's face has. */
+tobi_status sph_find_full(tobi_simulation *s, sph_view *v, const sph_kernels *k, int *full,
+                          double *clock, tobi_error *err);
+/* The bodies' velocities over the coming step. */
+tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err);
+/* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
+void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
+/* Forces on walls and bodies by particles.pressure and the friction of this step. */
+void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
+/* New positions, accel holding the shift; returns the largest speed, m/s. */
+double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
+/* The bodies' new pose; particles that it caught are put outside. */
+tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err);
+
+/* A derived field into accel after a refresh: "vorticity", or "acceleration" by all forces but the
+   filter. */
+void sph_derive(tobi_simulation *s, sph_view *v, const sph_kernels *k, const char *field);

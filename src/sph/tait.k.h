@@ -1,0 +1,37 @@
+/* The weakly compressible pressure, with the operators of pressure.k.h: C u, eq. (7), and a(p), eq. (8).
+   Equation numbers above 20: docs/theory/wcsph.md. */
+#pragma once
+#include "sph/pressure.k.h"
+
+/* dp/dt = exponent (p + B) C v, eq. (21), which is the Tait equation carried along with the particle.
+   The payload of the pressure force adds the damping of sound, eq. (22). A free surface does not pull.
+   totals: |C v|, |p|; maximum: |C v|. */
+#define sph_tait_acc sph_compression_acc
+#define sph_tait_start sph_source_start
+#define sph_tait_pair sph_source_pair
+TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
+{
+    float rate = sph_compression_value(v, i, a, v->velocity, 1), size = fabsf(rate);
+    float p = v->pressure[i] + v->dt*v->exponent*(v->pressure[i] + v->stiffness)*rate;
+    float push = p + v->damping*rate;
+    if (v->diagonal[i] <= v->isolated) p = push = 0;
+    float least = sph_floor(v, i);
+    if (v->surface[i] && p < least) p = least;
+    if (v->surface[i] && push < least) push = least;
+    v->pressure[i] = p;
+    v->delta[i] = push;
+    v->record[i].w = push;
+    totals[0] += size;
+    totals[1] += fabsf(p);
+    totals[6] = size > totals[6] ? size : totals[6];
+}
+
+/* One Jacobi step of the position equation, eq. (23): payload = the potential of the shift. */
+TOBI_FN void sph_relax(const sph_view *v, int64_t i, double *totals)
+{
+    float e = v->density[i] - 1;
+    (void)totals;
+    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
+    v->record[i].w = v->diagonal[i] > v->isolated
+                         ? v->relaxation*v->inverse_dt*v->inverse_dt*e/v->diagonal[i] : 0;
+}

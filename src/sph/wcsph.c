@@ -1,0 +1,207 @@
+/* Weakly compressible SPH (Monaghan 1994): pressure by the Tait equation, steps short enough for sound.
+   The density of that equation is carried along by the continuity equation, so that the fewer neighbours
+   at a surface and the kernel's share of walls are no compression; a position shift keeps the particles'
+   own density from drifting away from it (docs/theory/wcsph.md). Operators, walls and bodies are those
+   of DFSPH. Drawback: the step is that of sound, and pressure waves of the start ring on for a while. */
+#include "sph/wcsph.h"
+#include "sph/kernels.h"
+#include "sph/stages.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Share of the kernel average in the pressure, per time that sound takes over a spacing. */
+static const double PRESSURE_SMOOTHING = 0.25;
+/* Share of the density error that positions give way to, in the same time. */
+static const double RELAXATION = 0.05;
+/* Pairs nearer than CORE spacings are pushed apart, each side by PUSH of the overlap, as in dfsph. */
+static const double CORE = 0.9;
+static const float PUSH = 0.25f;
+/* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
+static const double ISOLATED = 0.01;
+
+/* A vessel that is full at the start stays full, as in dfsph. */
+enum { VESSEL_UNKNOWN, VESSEL_OPEN, VESSEL_FULL };
+
+typedef struct wcsph {
+    tobi_wcsph_def def;
+    sph_view view;
+    const sph_kernels *kernel;
+    struct { double speed, vessel; } memory;      /* survives a restart                               */
+    double sound;                                 /* m/s                                              */
+} wcsph;
+
+static void launch(tobi_simulation *s, wcsph *m, tobi_kernel k, double *totals)
+{
+    tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
+}
+
+static void choose_smoothing(const void *def, int *shape, double *support)
+{
+    const tobi_wcsph_def *d = def;
+    *shape = d->kernel;
+    *support = d->support;
+}
+
+static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+{
+    wcsph *m = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the wcsph state");
+    m->def = *(const tobi_wcsph_def *)def;
+    m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
+    m->sound = sqrt(m->def.exponent*m->def.stiffness/s->fluid[0].density);
+    *state = m;
+    return TOBI_OK;
+}
+
+static int list_memory(void *state, double **values)
+{
+    wcsph *m = state;
+    *values = &m->memory.speed;
+    return 2;
+}
+
+static void bind_view(const tobi_simulation *s, wcsph *m)
+{
+    sph_view *v = &m->view;
+    double d = s->smoothing.spacing;
+    sph_bind_view(s, v);
+    if (m->memory.vessel == VESSEL_FULL) v->surface_limit = -1e30f;
+    v->pressure = s->particles.pressure;
+    v->core = (float)(CORE*d);
+    v->push = PUSH;
+    v->stiffness = (float)m->def.stiffness;
+    v->exponent = (float)m->def.exponent;
+    v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
+}
+
+/* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit). */
+static double choose_dt(const tobi_simulation *s, const wcsph *m)
+{
+    double d = s->smoothing.spacing, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
+    if (s->def.time_step > 0) return s->def.time_step;
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    double dt = fmin(s->def.cfl*d/(m->sound + speed), 0.25*sqrt(d/fmax(sqrt(g2), 1e-12)));
+    dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
+}
+
+static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, tobi_error *err)
+{
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
+    tobi_stage_end(&s->stages, "sort", clock);
+    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
+    bind_view(s, m);
+    tobi_stage_end(&s->stages, "neighbours", clock);
+    if (m->memory.vessel != VESSEL_UNKNOWN) return TOBI_OK;
+    int full;
+    TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
+    m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
+    bind_view(s, m);
+    return TOBI_OK;
+}
+
+/* A share of a time step: `share` of each spacing that sound travels in it. */
+static double share_of_step(const tobi_simulation *s, const wcsph *m, double share)
+{
+    return fmin(share*m->sound*s->dt/s->smoothing.spacing, 0.5);
+}
+
+static void measure_density(tobi_simulation *s, wcsph *m, double smoothing, double *clock)
+{
+    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    m->view.smooth = (float)smoothing;
+    launch(s, m, m->kernel->sph_density, t);
+    s->info.density_error_mean = t[0]/count;
+    s->info.density_error_max = t[6];
+    m->view.isolated = (float)(ISOLATED*t[2]/count);
+    tobi_stage_end(&s->stages, "density", clock);
+}
+
+static void apply_forces(tobi_simulation *s, wcsph *m, double *clock)
+{
+    double scale = 2*s->smoothing.rate, motion = 10*s->def.cfl*s->smoothing.spacing/m->sound;
+    m->view.filter = (float)(m->def.filter/(fmax(s->dt, motion)*scale*scale));
+    sph_apply_forces(s, &m->view, m->kernel, clock);
+}
+
+/* The equation of state, and its force. */
+static void apply_pressure(tobi_simulation *s, wcsph *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    launch(s, m, m->kernel->sph_tait, t);
+    s->info.divergence_mean = t[0]/(double)s->particles.count;
+    s->info.divergence_max = t[6];
+    s->info.density_converged = s->info.divergence_converged = 1;      /* there is no solver */
+    launch(s, m, m->kernel->sph_pressure_kick, t);
+    s->info.force_sum = t[0]*s->smoothing.volume;
+    tobi_stage_end(&s->stages, "pressure", clock);
+}
+
+/* Walls feel the pressure with its damping, which stands in delta. */
+static void measure_forces(tobi_simulation *s, wcsph *m, double *clock)
+{
+    float *state = s->particles.pressure;
+    s->particles.pressure = s->particles.delta;
+    sph_measure_forces(s, &m->view, m->kernel, clock);
+    m->view.pressure = s->particles.pressure = state;
+}
+
+static void shift_positions(tobi_simulation *s, wcsph *m, double *clock)
+{
+    m->view.background = 0;
+    m->view.relaxation = (float)share_of_step(s, m, RELAXATION);
+    launch(s, m, m->kernel->sph_relax, NULL);
+    launch(s, m, m->kernel->sph_shift, NULL);
+    tobi_stage_end(&s->stages, "position shift", clock);
+}
+
+static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+{
+    wcsph *m = state;
+    double clock = tobi_clock();
+    sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
+    TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    measure_density(s, m, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
+    apply_forces(s, m, &clock);
+    apply_pressure(s, m, &clock);
+    measure_forces(s, m, &clock);
+    shift_positions(s, m, &clock);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+    TOBI_TRY(sph_move_bodies(s, &clock, err));
+    s->time += s->dt;
+    s->step++;
+    return TOBI_OK;
+}
+
+static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
+{
+    wcsph *m = state;
+    double clock = tobi_clock();
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    measure_density(s, m, 0, &clock);
+    return TOBI_OK;
+}
+
+static void derive(tobi_simulation *s, void *state, const char *field)
+{
+    wcsph *m = state;
+    sph_derive(s, &m->view, m->kernel, field);
+}
+
+static void free_state(void *state) { free(state); }
+
+const tobi_method tobi_wcsph = {
+    .name = "wcsph",
+    .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
+    .def_size = sizeof(tobi_wcsph_def),
+    .smoothing = choose_smoothing,
+    .create = create,
+    .step = step,
+    .refresh = refresh,
+    .derive = derive,
+    .memory = list_memory,
+    .free = free_state,
+};

@@ -1,0 +1,168 @@
+#!/bin/bash
+# tobiuo plot: pictures of a real run and of made-up tables, reference data, hostile names, messages.
+# usage: plot.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+# Answers 77 (skipped) without gnuplot, after the tests that do without it.
+set -uo pipefail
+program=$(realpath "$1")
+python=/usr/bin/python3
+[ -x $python ] || python=python3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export OMP_WAIT_POLICY=passive
+passed=0 failed=0
+
+ok() { passed=$((passed + 1)); }
+bad() { failed=$((failed + 1)); echo "FAILED: $1"; [ -s err.txt ] && sed 's/^/    /' err.txt | head -n 8; }
+check() { local what=$1; shift; if "$@" > /dev/null 2>&1; then ok; else bad "$what"; fi; }
+# expect CODE TEXT ARGUMENTS...: exit code, and a text in stderr ("" = stderr must be empty)
+expect() {
+    local code=$1 text=$2 got=0
+    shift 2
+    "$program" "$@" > out.txt 2> err.txt || got=$?
+    if [ $got -ne "$code" ]; then bad "tobiuo $*: exit code $got, not $code"
+    elif [ -n "$text" ] && ! grep -qF -- "$text" err.txt; then bad "tobiuo $*: no '$text' on stderr"
+    elif [ -z "$text" ] && [ -s err.txt ]; then bad "tobiuo $*: unexpected text on stderr"
+    else ok; fi
+}
+# has FILE TEXT: a whole SVG file whose visible texts contain TEXT
+has() {
+    $python - "$1" "$2" <<'END'
+import sys, xml.etree.ElementTree as tree
+texts = ["".join(e.itertext()) for e in tree.parse(sys.argv[1]).iter() if e.tag.endswith("}text")]
+sys.exit(not any(sys.argv[2] in t for t in texts))
+END
+}
+# points FILE: number of reference marks (gnuplot draws them as <use> of its symbols)
+points() { grep -c "<use xlink:href='#gpPt[0-9]*' transform=" "$1"; }
+
+# --- without gnuplot --------------------------------------------------------------------------------
+expect 2 "which DIR?" plot
+expect 2 "neither svg nor png" plot nowhere --format gif
+expect 1 "no history.csv" plot nowhere
+mkdir made && : > made/history.csv
+expect 1 "is empty" plot made
+echo "when,what" > made/history.csv
+expect 1 'no column "time"' plot made
+echo "time,step,kinetic_energy" > made/history.csv
+expect 1 "no rows yet" plot made
+check "nothing was drawn so far" test ! -e made/plots
+printf '0,0,0\n0.1,1,2\n0.2,2,nan\n' >> made/history.csv
+got=0; PATH=/nonexistent "$program" plot made > out.txt 2> err.txt || got=$?
+check "gnuplot missing: exit code 1 (was $got)" test $got = 1
+check "gnuplot missing: the package is named" grep -q "gnuplot-nox" err.txt
+
+# --- references in a scene --------------------------------------------------------------------------
+cat > box.obj <<'END'
+v -0.02 -0.02 -0.02
+v 0.02 -0.02 -0.02
+v -0.02 0.02 -0.02
+v 0.02 0.02 -0.02
+v -0.02 -0.02 0.02
+v 0.02 -0.02 0.02
+v -0.02 0.02 0.02
+v 0.02 0.02 0.02
+f 1 3 4 2
+f 5 6 8 7
+f 1 2 6 5
+f 3 7 8 4
+f 1 5 7 3
+f 2 4 8 6
+END
+printf '# an experiment\nt [ms],"F, N",other\n10,-35,1\n20,-40,2\n30,-39,3\n900,-39,4\n' > measured.csv
+cat > tank.json <<'END'
+{ "domain": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.2]}, "spacing": 0.01, "end_time": 0.04,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [-0.1, -0.1, 0], "max": [0.1, 0.1, 0.1]}}]}],
+  "bodies": [{"name": "the 'box' $(touch pwned)", "mesh": "box.obj", "translation": [0, 0, 0.05]}],
+  "probes": [{"name": "P 1", "position": [0.1, 0, 0.02]}, {"name": "H", "kind": "level", "position": [0.05, 0, 0]}],
+  "references": [
+    {"file": "measured.csv", "probe": "P 1", "column": "pressure", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
+     "y_scale": -20},
+    {"file": "measured.csv", "column": "wall_force_z", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
+     "label": "Müller & <Co> 'it''s' `touch pwned` 10 %"},
+    {"file": "measured.csv", "column": "wall_force_z", "x": "t [ms]", "x_scale": 1e-3, "y": "F, N",
+     "y_scale": 1.1},
+    {"file": "measured.csv", "column": "pressure_force_z", "body": "the 'box' $(touch pwned)",
+     "x": "t [ms]", "x_scale": 1e-3, "y": "other"} ] }
+END
+expect 0 "" check tank.json
+expect 1 'did you mean "wall_force_z"?' check tank.json --set 'references[1].column=wal_force_z'
+expect 1 "one of bodies.csv or probes.csv needs body" check tank.json --set 'references[1].column=position_x'
+expect 1 'there is no body "fish"' check tank.json --set 'references[3].body=fish'
+expect 1 'there is no probe "P2"' check tank.json --set 'references[0].probe=P2'
+expect 1 'no column "level" in a point' check tank.json --set 'references[0].column=level'
+expect 1 'no column "pressure" in a level' check tank.json --set 'references[0].probe=H'
+expect 1 "at most one of them" check tank.json --set 'references[3].probe=H'
+expect 1 "cannot find" check tank.json --set 'references[1].file=no_such.csv'
+expect 1 "greater than 0" check tank.json --set 'references[2].x_scale=-1'
+expect 1 "file: is missing" check tank.json --set 'references=[{"column": "dt"}]'
+expect 1 "must be a list" check tank.json --set 'references={}'
+expect 1 "one line" check tank.json --set 'references[0].label="a\nb"'
+expect 0 "" describe reference
+expect 0 "" run tank.json --quiet --out tank
+check "resolved.json carries the references" grep -q '"x_scale": 0.001' tank/resolved.json
+expect 0 "" run tank/resolved.json --quiet --out again --until 0.01
+check "and reads them back" grep -q '"x_scale": 0.001' again/resolved.json
+
+if ! command -v gnuplot > /dev/null; then
+    echo "$passed passed, $failed failed; no gnuplot (Debian package gnuplot-nox)"
+    [ $failed -eq 0 ] && exit 77
+    exit 1
+fi
+
+# --- a real run -------------------------------------------------------------------------------------
+expect 0 "" plot tank
+box="the _box_ \$(touch pwned)"
+for file in energies walls incompressibility solver "${box}_motion" "${box}_force" "${box}_torque" \
+            probes_pressure probes_level "compare_P 1_pressure" compare_wall_force_z "compare_${box}_pressure_force_z"; do
+    check "a picture of $file" has "tank/plots/$file.svg" "time, s"
+    check "$file is listed" grep -qxF "tank/plots/$file.svg" out.txt
+done
+check "12 pictures" test "$(wc -l < out.txt)" = 12
+check "axes have units" has tank/plots/energies.svg "kinetic energy, J"
+check "the body is named as it is" has "tank/plots/${box}_force.svg" "the 'box' \$(touch pwned)"
+check "the label as well" has tank/plots/compare_wall_force_z.svg "Müller & <Co> 'it''s' \`touch pwned\` 10 %"
+check "a reference without label shows its file" has tank/plots/compare_wall_force_z.svg "measured.csv"
+check "the marks within the run's time: twice 3, and 2 in the legend" \
+    test "$(points tank/plots/compare_wall_force_z.svg)" = 8
+check "no name was run as a command" test ! -e pwned -a ! -e tank/plots/pwned
+sed 's/"y_scale": -20}/"y_scale": -20, "label": "later"}/' tank.json > later.json
+expect 0 "" plot tank --scene later.json
+check "references may come later" has "tank/plots/compare_P 1_pressure.svg" "later"
+expect 1 "nowhere.json" plot tank --scene nowhere.json
+sed 's/measured/forgotten/' later.json > wrong.json
+expect 1 "wrong.json:" plot tank --scene wrong.json
+expect 0 "" plot tank --format png
+check "png" cmp -n 8 tank/plots/energies.png <(printf '\211PNG\r\n\032\n')
+
+# --- what may be wrong with files -------------------------------------------------------------------
+sed -i 's/t \[ms\]/seconds/' measured.csv
+expect 0 'has no column "t [ms]"; its columns are seconds, F, N, other' plot tank
+check "drawn all the same" has tank/plots/compare_wall_force_z.svg "this run"
+printf 't [ms],"F, N",other\n900,1,1\n' > measured.csv
+expect 0 "no value between 0 and 0.04 s" plot tank
+rm measured.csv
+expect 0 "drawn without reference data" plot tank
+check "only the run's own 9" test "$(wc -l < out.txt)" = 9
+
+# Older or foreign tables: what is there is drawn.
+expect 0 "no values for the picture" plot made
+check "a gap for nan" grep -qx "? ?" made/plots/plots.gnuplot
+check "one picture" test "$(cat out.txt)" = "made/plots/energies.svg"
+printf '\xef\xbb\xbf# made by hand\r\n"time" , step,"kinetic_energy"\r\n0.5,3,1e-3\r\n' > made/history.csv
+cat > made/bodies.csv <<'END'
+time,name,position_x,"position_y"
+0.5,"../a, ""b"" `touch pwned` '; system('touch pwned'); '",1,2
+END
+expect 0 "no values for the picture" plot made
+check "one row is enough" has made/plots/energies.svg "kinetic energy, J"
+check "a name is no path" test -e "made/plots/.._a_ _b_ \`touch pwned\` _; system(_touch pwned_); __motion.svg"
+check "nothing above the folder" test -z "$(find . -maxdepth 1 -name '*motion*')"
+check "no name was run as a command either" test ! -e pwned -a ! -e made/plots/pwned
+echo "step,name" > made/bodies.csv
+expect 1 'no column "time"' plot made
+mkdir -p blocked && cp made/history.csv blocked && : > blocked/plots
+expect 1 "plots" plot blocked
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]

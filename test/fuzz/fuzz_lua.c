@@ -1,0 +1,36 @@
+/* Motion scripts: whatever a user's Lua does, loading and calling it end in a result or a text. */
+#include "target.h"
+#include "rigid/script.h"
+#include <math.h>
+
+static int call(tobi_script *script, double t)
+{
+    static const double rest[3][3] = { { 0, 0, 0 }, { 0.1, -0.2, 0.3 }, { 1e9, 1e-9, -1 } };
+    double position[3][3] = { { 0 } };
+    tobi_error err = { 0 };
+    tobi_pose pose;
+    if (tobi_script_is_rigid(script)) {
+        if (!passed(tobi_script_place(script, t, &pose, &err), &err)) return 0;
+        for (int a = 0; a < 3; a++) PROMISE(isfinite(pose.shift[a] + pose.pivot[a] + pose.axis[a]));
+        PROMISE(isfinite(pose.degrees));
+    } else {
+        if (!passed(tobi_script_deform(script, t, 3, rest, position, &err), &err)) return 0;
+        for (int i = 0; i < 9; i++) PROMISE(isfinite(position[i/3][i%3]));
+    }
+    return 1;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[64];
+    int fd = make_file(data, size, path);
+    tobi_script *script = NULL;
+    tobi_error err = { 0 };
+    tobi_status status = tobi_script_load(path, "{\"a\": 1.5, \"list\": [1, 2, 3], \"s\": \"x\"}",
+                                          &script, &err);
+    PROMISE(!script == !passed(status, &err));
+    if (script && call(script, 0) && call(script, 0.25)) call(script, 1e300);
+    tobi_script_free(script);
+    close(fd);
+    return 0;
+}
