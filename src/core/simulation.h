@@ -71,7 +71,7 @@ double tobi_simulation_speed_scale(const tobi_simulation *s);
    is taken from what the particles feel (s->gravity), which pressures that pull would have to hold, and
    added exactly where pressures and forces leave: the two functions below. Fluids have one density. */
 void tobi_simulation_fill_up(tobi_simulation *s);
-/* That pressure at x (m, from the domain's lower corner), 0 at the middle of the box, Pa. 0 in other vessels. */
+/* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
 double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3]);
 /* Adds its forces to those on the walls and the bodies of this step. */
 void tobi_simulation_add_hydrostatic(tobi_simulation *s);
