@@ -154,7 +154,7 @@ static int add_behind(look *l, int32_t k, const double r[3])
         int p = (a + 1)%3, q = (a + 2)%3;
         e->gradient[a] -= aw*n[a];
         e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
-        e->ghost_lift[a] -= aw*dot(r, l->s->def.gravity)*n[a];
+        e->ghost_lift[a] -= aw*dot(r, l->s->gravity)*n[a];
     }
     e->wall_flux -= aw*dot(n, b->point_velocity[k]);
     return 0;
@@ -169,7 +169,7 @@ static int add_point(void *user, int32_t k)
     double r[3], s = faces(l, k, r);
     if (!(s > 0)) return add_behind(l, k, r);
     if (hidden(l, k)) return 0;
-    const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->def.gravity;
+    const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
     double reach = sigma > 0 ? plane_value(l->s, c->plane.lambda, s)/sigma : 0;
@@ -197,7 +197,7 @@ static int add_point(void *user, int32_t k)
 static void blend_lift(const look *l, int32_t i)
 {
     const tobi_simulation *s = l->s;
-    const double *g = s->def.gravity;
+    const double *g = s->gravity;
     tobi_near_entry *e = l->entry;
     double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*sqrt(dot(g, g));
     double p = s->particles.pressure[i], wet = p >= full ? 1 : p > 0 ? p/full : 0;

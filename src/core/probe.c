@@ -133,7 +133,7 @@ static void press(void *user, int64_t i, const double r[3])
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
-        along += m->s->def.gravity[a]*m->normal[a];
+        along += m->s->gravity[a]*m->normal[a];
     }
     if (!(r2 < c->h*c->h) || !(depth > 0)) return;
     int k = (int)(depth/c->h*TOBI_PLANE_SAMPLES);
@@ -239,6 +239,7 @@ int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressu
     memcpy(velocity, value + 1, 3*sizeof *velocity);
     membrane wall;
     if (f.count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
+    if (f.count > 0) *pressure += tobi_simulation_hydrostatic(s, local);
     return f.count;
 }
 

@@ -43,6 +43,34 @@ void tobi_simulation_measure(tobi_simulation *s)
     s->info.weight = t[5]*sqrt(g2);
 }
 
+void tobi_simulation_fill_up(tobi_simulation *s)
+{
+    for (int a = 0; a < 3; a++)
+        if (!s->box.periodic[a]) s->gravity[a] = 0;
+}
+
+double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3])
+{
+    double sum = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        sum += (s->def.gravity[a] - s->gravity[a])*(x[a] - 0.5*s->box.size[a]);
+    return sum == 0 ? 0 : s->fluid[0].density*sum;
+}
+
+void tobi_simulation_add_hydrostatic(tobi_simulation *s)
+{
+    double held = s->smoothing.volume*(double)s->particles.count;
+    for (int a = 0; a < s->box.dimension; a++) {
+        double push = s->fluid[0].density*(s->def.gravity[a] - s->gravity[a]);
+        if (push == 0) continue;
+        for (int k = 0; k < s->body_count; k++) {
+            s->bodies[k].info.pressure_force[a] -= push*s->bodies[k].info.volume;
+            s->info.wall_force[a] += push*s->bodies[k].info.volume;
+        }
+        s->info.wall_force[a] += push*held;
+    }
+}
+
 double tobi_simulation_speed_scale(const tobi_simulation *s)
 {
     double fall = 0, capillary = 0;

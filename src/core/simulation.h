@@ -37,6 +37,7 @@ typedef struct tobi_simulation {
     tobi_near_bodies near;          /* fluid particles that see a body                       */
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
+    double gravity[3];              /* m/s2, what particles feel: see tobi_simulation_fill_up  */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
     double start_speed;             /* m/s, fastest particle at the start                    */
@@ -66,6 +67,14 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_simulation_speed_scale(const tobi_simulation *s);
+/* A vessel without a free surface: gravity along axes with walls only makes a hydrostatic pressure there. It
+   is taken from what the particles feel (s->gravity), which pressures that pull would have to hold, and
+   added exactly where pressures and forces leave: the two functions below. Fluids have one density. */
+void tobi_simulation_fill_up(tobi_simulation *s);
+/* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
+double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3]);
+/* Adds its forces to those on the walls and the bodies of this step. */
+void tobi_simulation_add_hydrostatic(tobi_simulation *s);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_simulation_measure(tobi_simulation *s);
 

@@ -200,13 +200,16 @@ static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, doubl
     tobi_stage_end(&s->stages, "density", clock);
 }
 
-/* Once, at the start. */
+/* Found out once, at the start. */
 static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
     int full;
-    if (m->memory.vessel != VESSEL_UNKNOWN) return TOBI_OK;
-    TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
-    m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
+    if (m->memory.vessel == VESSEL_OPEN) return TOBI_OK;
+    if (m->memory.vessel == VESSEL_UNKNOWN) {
+        TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
+        m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
+    }
+    if (m->memory.vessel == VESSEL_FULL) tobi_simulation_fill_up(s);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -290,6 +293,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     remove_divergence(s, m, &clock);
     correct_density(s, m, &clock);
     sph_measure_forces(s, &m->view, m->kernel, &clock);
+    tobi_simulation_add_hydrostatic(s);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
     TOBI_TRY(sph_move_bodies(s, &clock, err));
     s->time += s->dt;

@@ -64,7 +64,7 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v)
     }
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
-    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->def.gravity[a] : 0;
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
 }
 
 double sph_viscous_dt(const tobi_simulation *s)

@@ -56,7 +56,8 @@ static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, d
         const tobi_float4 *v = field[0] == 'v' && field[1] == 'e' ? &p->velocity[i] : &p->accel[i];
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(field, "pressure")) {
-        out[0] = p->product[i];
+        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+        out[0] = p->product[i] + tobi_simulation_hydrostatic(s, x);
     } else if (!strcmp(field, "density")) {
         out[0] = p->density[i]*s->fluid[p->fluid[i]].density;
     } else if (!strcmp(field, "particle_id")) {

@@ -60,6 +60,7 @@ static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, t
     double support;
     s->def = *def;
     if (def->dimension == 2) s->def.gravity[2] = 0;
+    memcpy(s->gravity, s->def.gravity, sizeof s->gravity);
     TOBI_TRY(tobi_exec_init(&s->exec, def->threads, err));
     w->method->smoothing(w->method_def, &shape, &support);
     tobi_smoothing_init(&s->smoothing, shape, def->dimension, def->spacing, support);
