@@ -136,30 +136,6 @@ static int hidden(const look *l, int32_t point)
     return dot(from_foot, e->foot_normal) < -0.25*d && tobi_bvh_segment_hits(l->b->bvh, l->x, to);
 }
 
-/* Around an edge: the faces that turn away. Without them a particle above one face does not feel that the
-   body ends, and the pressure at edges was a tenth too high. The far side of a thin body, whose normal is
-   opposite to the nearest point's, stays out: there is other water. */
-static int add_behind(look *l, int32_t k, const double r[3])
-{
-    const tobi_body *b = l->b;
-    const tobi_smoothing_constants *c = &l->s->smoothing;
-    tobi_near_entry *e = l->entry;
-    const double *n = b->normal[k];
-    double along = fmin(1 + 2*dot(n, e->foot_normal), 1), arm[3];
-    if (!(along > 0) || dot(r, r) >= c->h*c->h || b->area[k] <= 0) return 0;
-    double aw = along*b->area[k]*c->plane_scale*
-                tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
-    for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
-    for (int a = 0; a < 3; a++) {
-        int p = (a + 1)%3, q = (a + 2)%3;
-        e->gradient[a] -= aw*n[a];
-        e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
-        e->ghost_lift[a] -= aw*dot(r, l->s->gravity)*n[a];
-    }
-    e->wall_flux -= aw*dot(n, b->point_velocity[k]);
-    return 0;
-}
-
 static int add_point(void *user, int32_t k)
 {
     look *l = user;
@@ -167,8 +143,7 @@ static int add_point(void *user, int32_t k)
     const tobi_smoothing_constants *c = &l->s->smoothing;
     tobi_near_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
-    if (!(s > 0)) return add_behind(l, k, r);
-    if (hidden(l, k)) return 0;
+    if (!(s > 0) || hidden(l, k)) return 0;
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
