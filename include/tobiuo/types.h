@@ -144,7 +144,35 @@ typedef struct tobi_fill_def {
 typedef tobi_status (*tobi_motion_fn)(void *user, double t, int64_t n, const double (*rest)[3],
                                       double (*position)[3], tobi_error *err);
 
-/* A body: the inside of a closed mesh or of a box, at rest or moved by a motion. */
+/* Prescribed: at rest or moved by a motion, whatever pushes. Free: moved by the forces on it. Controlled:
+   free, and a program adds a force and a torque each step. */
+typedef enum tobi_dynamics { TOBI_PRESCRIBED, TOBI_FREE, TOBI_CONTROLLED } tobi_dynamics;
+
+/* What a control program sees of its body, in world axes, and what it answers. */
+typedef struct tobi_control_input {
+    double time;                /* s                                                                 */
+    double position[3];         /* m, centre of mass                                                 */
+    double orientation[4];      /* unit quaternion w x y z against the rest pose                     */
+    double velocity[3];         /* m/s                                                               */
+    double angular_velocity[3]; /* rad/s                                                             */
+    double contact_force[3];    /* N, of particles, bodies and sides, mean over the last step        */
+    double contact_torque[3];   /* N m about the centre of mass                                      */
+    double mass;                /* kg                                                                */
+    int    phase;               /* 1 at the start, then what the program said last                   */
+    double phase_time;          /* s since this phase began                                          */
+} tobi_control_input;
+typedef struct tobi_control_output {
+    double force[3];            /* N on the centre of mass                                           */
+    double torque[3];           /* N m                                                               */
+    int    phase;               /* of the next step on                                               */
+    const char *hold;           /* axes held still in this step, like tobi_body_def.locked, or NULL  */
+} tobi_control_output;
+/* Must be a pure function of its input, or restarts would not repeat a run. out holds zeros and the input's
+   phase when it is called. hold must stay valid until the next call. */
+typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
+                                       tobi_control_output *out, tobi_error *err);
+
+/* A body: the inside of a closed mesh or of a box, prescribed or moved by forces. */
 typedef struct tobi_body_def {
     const char *name;
     const char *mesh;           /* path: OBJ, STL or PLY; NULL = the box                              */
@@ -162,6 +190,20 @@ typedef struct tobi_body_def {
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
     void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */
     int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
+    int    dynamics;            /* tobi_dynamics; what follows is for free and controlled bodies, but
+                                   restitution and friction_coefficient for what touches any body    */
+    double mass;                /* kg (per metre of depth in 2-D); 0 = density times volume          */
+    double inertia[3];          /* kg m2, xx, yy, zz at the start, about the centre; 0 = by the mesh */
+    double inertia_products[3]; /* kg m2, entries xy, xz, yz of the inertia matrix                   */
+    double velocity[3];         /* m/s at the start                                                  */
+    double angular_velocity[3]; /* rad/s at the start                                                */
+    double force[3], torque[3]; /* N, N m, constant, in world axes                                   */
+    double air_resistance;      /* 1/s, c: velocities decay like exp(-c t)                           */
+    double restitution;         /* 1, of collisions; of two bodies the larger one counts             */
+    double friction_coefficient;/* 1, Coulomb; of two bodies the square root of the product counts   */
+    const char *locked;         /* "x,y,z,turn_x,turn_y,turn_z,shift,turn", any of them, or NULL     */
+    tobi_control_fn control;    /* of a controlled body                                              */
+    void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */
 } tobi_body_def;
 
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the

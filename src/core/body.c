@@ -1,5 +1,6 @@
 #include "core/body.h"
 #include "base/error.h"
+#include "geom/vec3.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,9 +109,26 @@ static void divide_by_weight(const tobi_body *b, double (*out)[3])
         for (int a = 0; a < 3; a++) out[k][a] = b->weight[k] > 0 ? out[k][a]/b->weight[k] : 0;
 }
 
+/* Points of a body that moves by forces, in a pose. */
+static void pose_points(const tobi_body *b, const double position[3], const double orientation[4], int64_t n,
+                        const double (*rest)[3], double (*out)[3])
+{
+    double m[3][3];
+    tobi_quaternion_matrix(orientation, m);
+    for (int64_t i = 0; i < n; i++) {
+        double arm[3];
+        vec3_sub(arm, rest[i], b->rest.centre);
+        for (int a = 0; a < 3; a++) out[i][a] = b->lower[a] + (position[a] + vec3_dot(m[a], arm));
+    }
+}
+
 static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                             double (*out)[3], tobi_error *err)
 {
+    if (b->rigid.kind != TOBI_PRESCRIBED) {
+        pose_points(b, b->rigid.position, b->rigid.orientation, n, rest, out);
+        return TOBI_OK;
+    }
     if (!b->motion) {
         memcpy(out, rest, (size_t)n*sizeof *out);
         return TOBI_OK;
@@ -201,13 +219,50 @@ static void update_surface(tobi_body *b)
     }
 }
 
+/* Contact reads every body's pose and velocities from `rigid`, whatever moves it. */
+static void mirror_motion(tobi_body *b)
+{
+    vec3_sub(b->rigid.position, b->centre, b->lower);
+    memcpy(b->rigid.orientation, b->info.orientation, sizeof b->rigid.orientation);
+    memcpy(b->rigid.velocity, b->info.velocity, sizeof b->rigid.velocity);
+    memcpy(b->rigid.angular_velocity, b->info.angular_velocity, sizeof b->rigid.angular_velocity);
+}
+
+void tobi_body_report(tobi_body *b)
+{
+    const tobi_rigid *r = &b->rigid;
+    vec3_add_scaled(b->centre, b->lower, 1, r->position);
+    memcpy(b->info.position, b->centre, sizeof b->centre);
+    memcpy(b->info.orientation, r->orientation, sizeof b->info.orientation);
+    memcpy(b->info.velocity, r->velocity, sizeof b->info.velocity);
+    memcpy(b->info.angular_velocity, r->angular_velocity, sizeof b->info.angular_velocity);
+}
+
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
 {
     TOBI_TRY(move_vertices(b, t, b->vertex, err));
     update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
+    if (b->rigid.kind != TOBI_PRESCRIBED) {
+        tobi_body_report(b);
+        return TOBI_OK;
+    }
     memcpy(b->info.position, b->centre, sizeof b->centre);
     to_quaternion((const double (*)[3])b->frame, b->info.orientation);
+    mirror_motion(b);
+    return TOBI_OK;
+}
+
+tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err)
+{
+    if (b->rest_bvh) return TOBI_OK;
+    if (!b->rest_vertex) b->rest_vertex = malloc((size_t)(b->mesh.vertex_count + 1)*sizeof *b->rest_vertex);
+    if (!b->rest_vertex) return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for its rest pose", b->name);
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        vec3_sub(b->rest_vertex[i], b->mesh.vertices[i], b->rest.centre);
+    TOBI_TRY(tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->rest_vertex, b->mesh.triangle_count,
+                            (const int32_t (*)[3])b->mesh.triangles, &b->rest_bvh, err));
+    if (b->mesh.overlapping) tobi_bvh_use_winding(b->rest_bvh);
     return TOBI_OK;
 }
 
@@ -289,8 +344,14 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     b->spacing = def->spacing > 0 ? def->spacing : 2*point_spacing;
     b->motion = def->motion;
     b->motion_user = def->motion_user;
+    b->deforms = def->motion && !def->motion_rigid;
     memcpy(b->lower, box->lower, sizeof b->lower);
     tobi_status status = load_mesh(b, def, box, point_spacing, err);
+    if (status == TOBI_OK) {
+        double centre[3];
+        vec3_sub(centre, b->rest.centre, b->lower);
+        status = tobi_rigid_init(&b->rigid, def, &b->rest, centre, dimension, err);
+    }
     if (status == TOBI_OK)
         status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
     if (status == TOBI_OK)
@@ -310,8 +371,8 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         return status;
     }
     b->info.volume = b->rest.volume;
-    b->info.mass = b->density*b->rest.volume;
-    for (int k = 0; k < 9; k++) b->info.inertia[k] = b->density*b->rest.inertia[k];
+    b->info.mass = b->rigid.mass;
+    memcpy(b->info.inertia, b->rigid.inertia, sizeof b->info.inertia);
     b->info.particles = b->particle_count;
     b->info.sampled_volume = (double)b->particle_count*pow(b->spacing, dimension);
     return TOBI_OK;
@@ -326,24 +387,41 @@ void tobi_body_free(tobi_body *b)
     free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
     free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight);
     free(b->particle_rest); free(b->particle);
+    free(b->rest_vertex);
+    tobi_bvh_free(b->rest_bvh);
     memset(b, 0, sizeof *b);
+}
+
+/* What the points have of their velocities while no force acts. */
+static void predict_free(tobi_body *b, double dt)
+{
+    tobi_rigid *r = &b->rigid;
+    tobi_rigid_drift(r, dt);
+    pose_points(b, r->next_position, r->next_orientation, b->mesh.vertex_count,
+                (const double (*)[3])b->mesh.vertices, b->next);
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+        double arm[3], turning[3];
+        vec3_sub(b->next[i], b->next[i], b->lower);
+        vec3_sub(arm, b->vertex[i], r->position);
+        vec3_cross(turning, r->angular_velocity, arm);
+        vec3_add_scaled(b->vertex_velocity[i], r->velocity, 1, turning);
+    }
 }
 
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err)
 {
-    if (!b->motion) {
+    if (!b->motion && b->rigid.kind == TOBI_PRESCRIBED) {
         memcpy(b->next, b->vertex, (size_t)b->mesh.vertex_count*sizeof *b->next);
         return TOBI_OK;
     }
-    TOBI_TRY(move_vertices(b, t + dt, b->next, err));
+    int prescribed = b->rigid.kind == TOBI_PRESCRIBED;
+    if (prescribed) TOBI_TRY(move_vertices(b, t + dt, b->next, err));
+    else predict_free(b, dt);
     double fastest = 0;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
-        double v2 = 0;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3 && prescribed; a++)
             b->vertex_velocity[i][a] = (b->next[i][a] - b->vertex[i][a])/dt;
-            v2 += b->vertex_velocity[i][a]*b->vertex_velocity[i][a];
-        }
-        fastest = fmax(fastest, v2);
+        fastest = fmax(fastest, vec3_dot(b->vertex_velocity[i], b->vertex_velocity[i]));
     }
     *speed = fmax(*speed, sqrt(fastest));
     tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
@@ -353,20 +431,47 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
     return TOBI_OK;
 }
 
+static void swap_vertices(tobi_body *b)
+{
+    double (*swap)[3] = b->vertex;
+    b->vertex = b->next;
+    b->next = swap;
+}
+
+static void advance_free(tobi_body *b)
+{
+    tobi_rigid *r = &b->rigid;
+    double m[3][3];
+    memcpy(r->position, r->next_position, sizeof r->position);
+    memcpy(r->orientation, r->next_orientation, sizeof r->orientation);
+    memset(r->push, 0, sizeof r->push);
+    memset(r->turn, 0, sizeof r->turn);
+    tobi_rigid_settle(r);
+    tobi_quaternion_matrix(r->orientation, m);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];
+    swap_vertices(b);
+    update_surface(b);
+    tobi_body_report(b);
+}
+
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err)
 {
+    if (b->rigid.kind != TOBI_PRESCRIBED) {
+        advance_free(b);
+        return TOBI_OK;
+    }
     if (!b->motion) return TOBI_OK;
     double old_centre[3], old_frame[3][3];
     memcpy(old_centre, b->centre, sizeof old_centre);
     memcpy(old_frame, b->frame, sizeof old_frame);
-    double (*swap)[3] = b->vertex;
-    b->vertex = b->next;
-    b->next = swap;
+    swap_vertices(b);
     update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
     for (int a = 0; a < 3; a++) b->info.velocity[a] = (b->centre[a] - old_centre[a])/dt;
     memcpy(b->info.position, b->centre, sizeof b->centre);
     to_quaternion((const double (*)[3])b->frame, b->info.orientation);
     turn_rate((const double (*)[3])old_frame, (const double (*)[3])b->frame, dt, b->info.angular_velocity);
+    mirror_motion(b);
     return TOBI_OK;
 }

@@ -2,6 +2,7 @@
    body's own particles, which serve output only. */
 #pragma once
 #include "core/cells.h"
+#include "core/rigid.h"
 #include "geom/bvh.h"
 #include "geom/massprops.h"
 #include "geom/mesh.h"
@@ -42,6 +43,10 @@ typedef struct tobi_body {
 
     double centre[3];                /* centre of mass now, world coordinates                  */
     double frame[3][3];              /* rows: where the rest axes point now, at the centre     */
+    tobi_rigid rigid;                /* pose and velocities, of bodies of every kind           */
+    int deforms;                     /* its motion is not rigid: `rigid` is an approximation   */
+    double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
+    tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_need_rest        */
     tobi_body_info info;
 } tobi_body;
 
@@ -50,12 +55,17 @@ typedef struct tobi_body {
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err);
 void tobi_body_free(tobi_body *b);
-/* Puts the body where its motion has it at time t. */
+/* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
+tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err);
+/* Puts the body where its motion has it at time t; a free one where its state has it. */
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in
-   double: the central difference at its middle. *speed is raised to the fastest point. */
+   double: the central difference at its middle. A free body drifts by its present velocities instead.
+   *speed is raised to the fastest point. */
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
+/* Copies pose and velocities of a free body from `rigid` into `info`. */
+void tobi_body_report(tobi_body *b);

@@ -1,0 +1,265 @@
+#include "core/rigid.h"
+#include "geom/vec3.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { ALL_SHIFTS = 7, ALL_TURNS = 56 };
+
+static int bits_of(const tobi_rigid *r) { return r->locked | (int)r->hold; }
+
+void tobi_quaternion_matrix(const double q[4], double m[3][3])
+{
+    double w = q[0], x = q[1], y = q[2], z = q[3];
+    m[0][0] = 1 - 2*(y*y + z*z); m[0][1] = 2*(x*y - w*z);     m[0][2] = 2*(x*z + w*y);
+    m[1][0] = 2*(x*y + w*z);     m[1][1] = 1 - 2*(x*x + z*z); m[1][2] = 2*(y*z - w*x);
+    m[2][0] = 2*(x*z - w*y);     m[2][1] = 2*(y*z + w*x);     m[2][2] = 1 - 2*(x*x + y*y);
+}
+
+void tobi_quaternion_product(const double p[4], const double q[4], double out[4])
+{
+    double r[4] = { p[0]*q[0] - p[1]*q[1] - p[2]*q[2] - p[3]*q[3],
+                    p[0]*q[1] + p[1]*q[0] + p[2]*q[3] - p[3]*q[2],
+                    p[0]*q[2] - p[1]*q[3] + p[2]*q[0] + p[3]*q[1],
+                    p[0]*q[3] + p[1]*q[2] - p[2]*q[1] + p[3]*q[0] };
+    memcpy(out, r, sizeof r);
+}
+
+static void normalize(double q[4])
+{
+    double size = sqrt(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (int k = 0; k < 4; k++) q[k] /= size;
+}
+
+void tobi_quaternion_turn(double q[4], const double w[3])
+{
+    double turn[4] = { 1, 0.5*w[0], 0.5*w[1], 0.5*w[2] };
+    tobi_quaternion_product(turn, q, q);
+    normalize(q);
+}
+
+static void multiply(const double m[9], const double v[3], double out[3])
+{
+    for (int a = 0; a < 3; a++) out[a] = m[3*a]*v[0] + m[3*a + 1]*v[1] + m[3*a + 2]*v[2];
+}
+
+/* The cofactors of a matrix over its determinant; 0 if that is not positive. */
+static int invert(const double m[9], double out[9])
+{
+    double c[9];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1)%3, i2 = (i + 2)%3, j1 = (j + 1)%3, j2 = (j + 2)%3;
+            c[3*j + i] = m[3*i1 + j1]*m[3*i2 + j2] - m[3*i1 + j2]*m[3*i2 + j1];
+        }
+    double det = m[0]*c[0] + m[1]*c[3] + m[2]*c[6];
+    for (int k = 0; k < 9; k++) out[k] = c[k]/det;
+    return det > 0;
+}
+
+int tobi_rigid_axes(const char *words, char unknown[32])
+{
+    static const char *const names[] = { "x", "y", "z", "turn_x", "turn_y", "turn_z", "shift", "turn" };
+    static const int bits[] = { 1, 2, 4, 8, 16, 32, ALL_SHIFTS, ALL_TURNS };
+    int sum = 0;
+    for (const char *word = words; word && *word;) {
+        size_t n = strcspn(word, ", "), k = 0;
+        while (k < 8 && (strlen(names[k]) != n || strncmp(names[k], word, n) != 0)) k++;
+        if (n > 0 && k == 8) {
+            snprintf(unknown, 32, "%.*s", (int)(n < 31 ? n : 31), word);
+            return -1;
+        }
+        if (n > 0) sum |= bits[k];
+        word += n + (word[n] != '\0');
+    }
+    return sum;
+}
+
+/* A body's own moments obey the triangle inequality; a scene's numbers must be positive definite. */
+static tobi_status set_inertia(tobi_rigid *r, const tobi_body_def *def, const tobi_massprops *rest,
+                               int dimension, tobi_error *err)
+{
+    const double *d = def->inertia, *o = def->inertia_products;
+    double density = r->mass/rest->volume;
+    for (int k = 0; k < 9; k++) r->inertia[k] = density*rest->inertia[k];
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0 && (o[0] != 0 || o[1] != 0 || o[2] != 0))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': products of inertia need the inertia, too",
+                         def->name ? def->name : "");
+    if (d[0] != 0 || d[1] != 0 || d[2] != 0) {
+        double given[9] = { d[0], o[0], o[1], o[0], d[1], o[2], o[1], o[2], d[2] };
+        memcpy(r->inertia, given, sizeof given);
+    }
+    if (r->kind == TOBI_PRESCRIBED) return TOBI_OK;
+    const double *m = r->inertia;
+    double minor = m[0]*m[4] - m[1]*m[3];
+    if (dimension == 2 ? m[8] > 0 : m[0] > 0 && minor > 0 && invert(m, r->inverse)) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID,
+                     "body '%s': the inertia (%g, %g, %g) kg m2 with products (%g, %g, %g) is not positive "
+                     "definite", def->name ? def->name : "", m[0], m[4], m[8], m[1], m[2], m[5]);
+}
+
+static tobi_status set_locks(tobi_rigid *r, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    char unknown[32];
+    r->locked = tobi_rigid_axes(def->locked, unknown);
+    if (r->locked < 0)
+        return tobi_fail(err, TOBI_INVALID,
+                         "body '%s': locked has '%s'; allowed are x, y, z, turn_x, turn_y, turn_z, shift (all "
+                         "three) and turn (all three)", def->name ? def->name : "", unknown);
+    if (dimension == 2) r->locked |= 4 | 8 | 16;
+    int turns = r->locked & ALL_TURNS;
+    if (turns == 8 || turns == 16 || turns == 32)
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s': the turn about one axis is locked; allowed are none, two and three",
+                         def->name ? def->name : "");
+    return TOBI_OK;
+}
+
+static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
+{
+    const char *name = def->name ? def->name : "";
+    if (def->dynamics == TOBI_PRESCRIBED) {
+        if (!def->control) return TOBI_OK;
+        return tobi_fail(err, TOBI_INVALID, "body '%s' has a control program but is not controlled", name);
+    }
+    if (def->motion)
+        return tobi_fail(err, TOBI_INVALID,
+                         "body '%s' is %s and has a motion; a motion is for prescribed bodies", name,
+                         def->dynamics == TOBI_FREE ? "free" : "controlled");
+    if (def->dynamics == TOBI_CONTROLLED && !def->control)
+        return tobi_fail(err, TOBI_INVALID, "body '%s' is controlled but has no control program", name);
+    if (def->dynamics == TOBI_FREE && def->control)
+        return tobi_fail(err, TOBI_INVALID, "body '%s' has a control program but is not controlled", name);
+    return TOBI_OK;
+}
+
+tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_massprops *rest,
+                            const double centre[3], int dimension, tobi_error *err)
+{
+    memset(r, 0, sizeof *r);
+    TOBI_TRY(check_moving(def, err));
+    r->kind = def->dynamics;
+    r->restitution = def->restitution;
+    r->friction = def->friction_coefficient;
+    r->mass = def->mass > 0 ? def->mass : def->density*rest->volume;
+    r->orientation[0] = r->next_orientation[0] = 1;
+    memcpy(r->position, centre, sizeof r->position);
+    memcpy(r->next_position, centre, sizeof r->position);
+    TOBI_TRY(set_inertia(r, def, rest, dimension, err));
+    TOBI_TRY(set_locks(r, def, dimension, err));
+    if (r->kind == TOBI_PRESCRIBED) return TOBI_OK;
+    r->air_resistance = def->air_resistance;
+    r->control = def->control;
+    r->control_user = def->control_user;
+    r->phase = 1;
+    memcpy(r->force, def->force, sizeof r->force);
+    memcpy(r->torque, def->torque, sizeof r->torque);
+    memcpy(r->velocity, def->velocity, sizeof r->velocity);
+    multiply(r->inertia, def->angular_velocity, r->momentum);
+    tobi_rigid_settle(r);
+    return TOBI_OK;
+}
+
+/* --- drift ---------------------------------------------------------------------------------- */
+
+/* Solves m = L + dt/2 m x (J m), the middle of the step's angular momenta in the body frame (R.3), by
+   Newton's method. 0 if it does not settle, which takes a turn of radians in one step. */
+static int find_middle(const double inverse[9], const double L[3], double dt, double m[3])
+{
+    double size = vec3_length(L);
+    memcpy(m, L, 3*sizeof *m);
+    for (int k = 0; k < 20; k++) {
+        double w[3], t[3], f[3], j[9], ji[9], step[3];
+        multiply(inverse, m, w);
+        vec3_cross(t, m, w);
+        for (int a = 0; a < 3; a++) f[a] = m[a] - L[a] - 0.5*dt*t[a];
+        for (int c = 0; c < 3; c++) {
+            double e[3] = { c == 0, c == 1, c == 2 }, u[3], v[3], je[3];
+            multiply(inverse, e, je);
+            vec3_cross(u, e, w);
+            vec3_cross(v, m, je);
+            for (int a = 0; a < 3; a++) j[3*a + c] = e[a] - 0.5*dt*(u[a] + v[a]);
+        }
+        if (!invert(j, ji)) return 0;
+        multiply(ji, f, step);
+        for (int a = 0; a < 3; a++) m[a] -= step[a];
+        if (vec3_length(step) <= 4e-16*size) return 1;
+        if (k > 4 && vec3_length(step) <= 1e-14*size) return 1;     /* as good as rounding lets it be */
+    }
+    return 0;
+}
+
+/* Turns q by implicit midpoint: R1 = R0 cay(dt w) with w = J m, so that R1 L1 = R0 L0 (R.4). */
+static void turn_free(const tobi_rigid *r, double q[4], double dt, int depth)
+{
+    double m[3][3], L[3], middle[3], w[3];
+    tobi_quaternion_matrix(q, m);
+    for (int a = 0; a < 3; a++)
+        L[a] = m[0][a]*r->momentum[0] + m[1][a]*r->momentum[1] + m[2][a]*r->momentum[2];
+    if (!find_middle(r->inverse, L, dt, middle) && depth < 10) {
+        turn_free(r, q, 0.5*dt, depth + 1);
+        turn_free(r, q, 0.5*dt, depth + 1);
+        return;
+    }
+    multiply(r->inverse, middle, w);
+    double turn[4] = { 1, 0.5*dt*w[0], 0.5*dt*w[1], 0.5*dt*w[2] };
+    tobi_quaternion_product(q, turn, q);
+    normalize(q);
+}
+
+void tobi_rigid_drift(tobi_rigid *r, double dt)
+{
+    double *q = r->next_orientation, w[3];
+    int turns = bits_of(r) & ALL_TURNS;
+    vec3_add_scaled(r->next_position, r->position, dt, r->velocity);
+    vec3_add_scaled(r->next_position, r->next_position, 1, r->push);
+    memcpy(q, r->orientation, sizeof r->orientation);
+    if (turns == 0 && vec3_dot(r->momentum, r->momentum) > 0) turn_free(r, q, dt, 0);
+    if (turns != 0 && turns != ALL_TURNS)
+        for (int a = 0; a < 3; a++)
+            if (r->angular_velocity[a] != 0) {
+                double half = 0.5*dt*r->angular_velocity[a], turn[4] = { cos(half), 0, 0, 0 };
+                turn[1 + a] = sin(half);
+                tobi_quaternion_product(turn, q, q);
+                normalize(q);
+            }
+    memcpy(w, r->turn, sizeof w);
+    if (vec3_dot(w, w) > 0) tobi_quaternion_turn(q, w);
+}
+
+/* --- velocities ----------------------------------------------------------------------------- */
+
+void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
+{
+    int bits = bits_of(r), turns = bits & ALL_TURNS;
+    double m[3][3];
+    memset(turn, 0, 9*sizeof(double));
+    for (int a = 0; a < 3; a++)
+        shift[a] = r->kind == TOBI_PRESCRIBED || (bits >> a & 1) ? 0 : 1/r->mass;
+    if (r->kind == TOBI_PRESCRIBED || turns == ALL_TURNS) return;
+    tobi_quaternion_matrix(r->orientation, m);
+    const double *body = turns ? r->inertia : r->inverse;
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++) turn[a][b] += m[a][i]*body[3*i + j]*m[b][j];
+    for (int a = 0; a < 3 && turns; a++)
+        for (int b = 0; b < 3; b++)
+            turn[a][b] = a == b && !(turns >> (3 + a) & 1) ? 1/turn[a][b] : 0;
+}
+
+void tobi_rigid_settle(tobi_rigid *r)
+{
+    int bits = bits_of(r);
+    double shift[3], turn[3][3];
+    for (int a = 0; a < 3; a++) {
+        if (bits >> a & 1) r->velocity[a] = 0;
+        if (bits >> (3 + a) & 1) r->momentum[a] = 0;
+    }
+    tobi_rigid_inverse(r, shift, turn);
+    for (int a = 0; a < 3; a++) r->angular_velocity[a] = vec3_dot(turn[a], r->momentum);
+}
+
+double tobi_rigid_kinetic_energy(const tobi_rigid *r)
+{
+    return 0.5*r->mass*vec3_dot(r->velocity, r->velocity) + 0.5*vec3_dot(r->momentum, r->angular_velocity);
+}

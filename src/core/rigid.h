@@ -1,0 +1,67 @@
+/* The state of a rigid body and how it drifts without forces. Doubles throughout.
+
+   The orientation is a unit quaternion w x y z that takes the rest pose's axes to the world's. The angular
+   momentum is kept in world axes: without torque it is a constant, so that a spinning body keeps it to the
+   last bit, and implicit midpoint in the body frame keeps the energy (docs/theory/rigid.md). */
+#pragma once
+#include "base/error.h"
+#include "geom/massprops.h"
+#include "tobiuo/types.h"
+
+typedef struct tobi_rigid {
+    int kind;                        /* tobi_dynamics                                                   */
+    int locked;                      /* bits 0-2: shifts along x, y, z; bits 3-5: turns about them      */
+    double mass;                     /* kg                                                              */
+    double inertia[9], inverse[9];   /* kg m2 about the centre in rest axes, and its inverse            */
+    double restitution, friction;    /* 1, against other bodies and sides                               */
+    double air_resistance;           /* 1/s                                                             */
+    double force[3], torque[3];      /* N, N m: constant, in world axes                                 */
+    tobi_control_fn control;         /* of a controlled body                                            */
+    void *control_user;
+
+    /* The state: TOBI_RIGID_DOUBLES doubles from here on, all that a restart needs. */
+    double position[3];              /* m, centre of mass from the domain's lower corner                */
+    double orientation[4];
+    double velocity[3];              /* m/s; of a prescribed body the mean of the last step             */
+    double angular_velocity[3];      /* rad/s                                                           */
+    double momentum[3];              /* kg m2/s, angular, about the centre                              */
+    double push[3], turn[3];         /* m, rad: takes out overlaps with the next drift, no momentum     */
+    double impulse[3], twist[3];     /* N s, N m s about the centre: of particles in this step          */
+    double contact_force[3], contact_torque[3];   /* N, N m: mean over the last step                    */
+    double phase, phase_start;       /* of the control program; s                                       */
+    double hold;                     /* bits like `locked`, asked for by the control program            */
+
+    double next_position[3];         /* at the end of the step that is being made                       */
+    double next_orientation[4];
+} tobi_rigid;
+
+#define TOBI_RIGID_STATE(r) ((r)->position)
+enum {
+    TOBI_RIGID_DOUBLES = (int)((offsetof(tobi_rigid, next_position) - offsetof(tobi_rigid, position)) /
+                               sizeof(double))
+};
+
+/* Mass, inertia, starting velocities from the definition and the mesh's integrals. Centre: the position at
+   rest, from the domain's lower corner. TOBI_INVALID in words if the numbers make no body. */
+tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_massprops *rest,
+                            const double centre[3], int dimension, tobi_error *err);
+
+/* Bits of a text of axes separated by commas: x, y, z, turn_x, turn_y, turn_z, shift, turn; -1 if a word
+   is none of them, which is copied to unknown. */
+int tobi_rigid_axes(const char *words, char unknown[32]);
+
+/* The pose after dt without forces, into next_position and next_orientation. */
+void tobi_rigid_drift(tobi_rigid *r, double dt);
+
+/* Inverse of mass times the unit matrix, as a diagonal, and of inertia in world axes at the present
+   orientation; locked degrees of freedom give 0. */
+void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3]);
+/* Drops what locked degrees of freedom do not allow; brings angular_velocity up to date. */
+void tobi_rigid_settle(tobi_rigid *r);
+/* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */
+double tobi_rigid_kinetic_energy(const tobi_rigid *r);
+
+void tobi_quaternion_matrix(const double q[4], double m[3][3]);
+void tobi_quaternion_product(const double p[4], const double q[4], double out[4]);
+/* Turns q by the rotation vector w (rad, world axes), for small w; unit length again after. */
+void tobi_quaternion_turn(double q[4], const double w[3]);
