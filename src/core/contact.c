@@ -301,8 +301,9 @@ static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec 
         for (int k = 0; k < 3; k++) inverse[3 + i][3 + k] = turn[i][k];
     }
     sum_contacts(c, SUMS, dt, total, x);
+    memcpy(b, c->velocity, sizeof c->velocity);
+    memcpy(b + 3, c->spin, sizeof c->spin);
     for (int i = 0; i < 6; i++) {
-        b[i] = i < 3 ? c->velocity[i] : c->spin[i - 3];
         for (int k = 0; k < 6; k++) a[i][k] = i == k;
         for (int j = 0; j < 6; j++) {
             for (int k = 0; k < 6; k++) a[i][k] += inverse[i][j]*total[6*j + k];
