@@ -21,7 +21,9 @@ TOBI_API const char *tobi_status_text(tobi_status status);
 TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
 TOBI_API tobi_wcsph_def  tobi_default_wcsph_def(void);
+TOBI_API tobi_mlsmpm_def tobi_default_mlsmpm_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
+TOBI_API tobi_solid_def  tobi_default_solid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
@@ -37,6 +39,10 @@ TOBI_API void tobi_world_destroy(tobi_world *world);
 /* Adds a fluid with the regions it fills. Particles sit on the lattice (i + 1/2) d from the region's
    lower corner (from the domain's lower corner for meshes); those inside a body are cut out at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
+                                          const tobi_fill_def *fills, int fill_count, tobi_error *err);
+/* Adds a solid of the material point method with the regions it fills. TOBI_UNSUPPORTED for other
+   methods; they take fluids, and this one takes no fluids. */
+TOBI_API tobi_status tobi_world_add_solid(tobi_world *world, const tobi_solid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
 /* Adds a body. Its mesh is closed and oriented outwards if the file leaves no doubt how; what was
    repaired is in the notes. */

@@ -11,7 +11,14 @@
 extern "C" {
 #endif
 
-typedef enum tobi_wall   { TOBI_WALL_SLIP, TOBI_WALL_NO_SLIP, TOBI_WALL_PERIODIC } tobi_wall;
+/* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
+   the SPH methods slip along both. Sticky and no-slip are the same. */
+typedef enum tobi_wall {
+    TOBI_WALL_SLIP,
+    TOBI_WALL_NO_SLIP,
+    TOBI_WALL_PERIODIC,
+    TOBI_WALL_SEPARATE
+} tobi_wall;
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
 typedef enum tobi_compression {
@@ -21,9 +28,22 @@ typedef enum tobi_compression {
     TOBI_ASCII
 } tobi_compression;
 
+/* What a solid's stress depends on; docs/theory/mlsmpm.md. */
+typedef enum tobi_model {
+    TOBI_NEO_HOOKEAN,
+    TOBI_COROTATED,
+    TOBI_LIQUID,
+    TOBI_VON_MISES,
+    TOBI_SNOW,
+    TOBI_SAND,
+    TOBI_STATIONARY
+} tobi_model;
+typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
+typedef enum tobi_seeding { TOBI_SEED_REGULAR, TOBI_SEED_BLUE_NOISE } tobi_seeding;
+
 /* The box, the fluid resolution and the clock. */
 typedef struct tobi_world_def {
-    const char *method;          /* name in the method list: "dfsph", "wcsph"                        */
+    const char *method;          /* name in the method list: "dfsph", "wcsph", "mlsmpm"              */
     int         dimension;       /* 2 or 3; 2-D lives in x-y, masses and forces are per metre depth   */
     double      domain_min[3];   /* m, any sign                                                      */
     double      domain_max[3];   /* m                                                                */
@@ -38,6 +58,7 @@ typedef struct tobi_world_def {
     double      time_step_max;   /* s, cap of the adaptive step; 0 = none                            */
     double      cfl;             /* 1, dt <= cfl d / |v|max                                          */
     double      contact_angle;   /* degrees, in the liquid, at the sides of the box                  */
+    double      friction;        /* 1, Coulomb coefficient of "separate" sides and solids            */
     double      speed_limit;     /* m/s, a faster particle stops the run as diverged; 0 = automatic  */
     int         threads;         /* 0 = all cores                                                    */
 } tobi_world_def;
@@ -65,6 +86,36 @@ typedef struct tobi_wcsph_def {
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */
 } tobi_wcsph_def;
 
+/* Parameters of the MLS-MPM method. */
+typedef struct tobi_mlsmpm_def {
+    double cell;                      /* grid cell in particle spacings: 2 = 8 particles per cell in 3-D */
+    int    transfer;                  /* tobi_transfer                                                */
+    double flip;                      /* 1, share of FLIP in the blend with PIC                       */
+    int    xpic_order;                /* order m of XPIC(m)                                           */
+    double cfl;                       /* 1, dt <= cfl cell/(speed of sound + |v|)                     */
+} tobi_mlsmpm_def;
+
+/* A solid (or liquid, snow, sand) of the material point method: one material. */
+typedef struct tobi_solid_def {
+    const char *name;
+    int    model;                     /* tobi_model                                                   */
+    double density;                   /* kg/m3, unless mass is given                                  */
+    double mass;                      /* kg (per metre in 2-D) of all its regions; 0 = by density     */
+    double youngs_modulus;            /* Pa; liquids: see bulk_modulus                                */
+    double poissons_ratio;            /* 1                                                            */
+    double bulk_modulus;              /* Pa, of liquids                                               */
+    double viscosity;                 /* Pa s, of liquids                                             */
+    double yield_stress;              /* Pa, von Mises                                                */
+    double hardening;                 /* Pa for von Mises (d yield/d strain), 1 for snow (exponent)   */
+    double critical_compression;      /* 1, snow                                                      */
+    double critical_stretch;          /* 1, snow                                                      */
+    double friction_angle;            /* degrees, sand                                                */
+    double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
+    int    seeding;                   /* tobi_seeding                                                 */
+    double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
+    int    visible;                   /* 0: left out of pictures                                      */
+} tobi_solid_def;
+
 /* A fluid: one material. */
 typedef struct tobi_fluid_def {
     const char *name;
@@ -75,12 +126,16 @@ typedef struct tobi_fluid_def {
     int    visible;       /* 0: left out of pictures */
 } tobi_fluid_def;
 
-/* One region filled with a fluid at the start: a box, or the inside of a closed mesh. */
+/* One region filled with a fluid or solid at the start: a box, a sphere (in 2-D a disc), or the inside
+   of a mesh. */
 typedef struct tobi_fill_def {
-    double      box_min[3], box_max[3];  /* m; used when mesh is NULL */
+    double      box_min[3], box_max[3];  /* m; used when mesh is NULL and radius is 0 */
+    double      centre[3], radius;       /* m; the sphere, when radius > 0            */
     const char *mesh;                    /* path of a closed mesh, or NULL */
     double      scale[3], translation[3];
+    double      rotation_axis[3], rotation_angle;  /* degrees; after the scale, before the translation */
     double      velocity[3];             /* m/s */
+    double      spin[3];                 /* rad/s, about the middle of the region */
 } tobi_fill_def;
 
 /* Maps rest positions to positions at time t. Points are mesh vertices, in metres, already placed

@@ -4,14 +4,14 @@
 
 enum { PAD_ROWS = 16 };
 
-tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int kinds, tobi_error *err)
+tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err)
 {
     memset(p, 0, sizeof *p);
     p->capacity = capacity;
     size_t rows = (size_t)capacity + PAD_ROWS;
     int failed = 0;
-#define X(type, name, kind, unit, doc)                                          \
-    if ((kind) & kinds) {                                                       \
+#define X(type, name, life, owner, unit, doc)                                          \
+    if ((owner) & owners) {                                                       \
         p->name = aligned_alloc(64, (rows*sizeof(type) + 63)/64*64);            \
         if (p->name) memset(p->name, 0, (rows*sizeof(type) + 63)/64*64);        \
         else failed = 1;                                                        \
@@ -21,27 +21,30 @@ tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int kinds
     if (!failed) return TOBI_OK;
     tobi_particles_free(p);
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)",
-                     (long long)capacity, (long long)tobi_particles_row_bytes(kinds));
+                     (long long)capacity, (long long)tobi_particles_row_bytes(owners));
 }
 
 void tobi_particles_free(tobi_particles *p)
 {
-#define X(type, name, kind, unit, doc) free(p->name);
+#define X(type, name, life, owner, unit, doc) free(p->name);
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     memset(p, 0, sizeof *p);
 }
 
-int64_t tobi_particles_row_bytes(int kinds)
+int64_t tobi_particles_row_bytes(int owners)
 {
     int64_t bytes = 0;
-#define X(type, name, kind, unit, doc) bytes += (kind) & kinds ? (int64_t)sizeof(type) : 0;
+#define X(type, name, life, owner, unit, doc) bytes += (owner) & owners ? (int64_t)sizeof(type) : 0;
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     return bytes;
 }
 
-int64_t tobi_particles_widest(void) { return (int64_t)sizeof(tobi_double3); }
+int64_t tobi_particles_widest(int owners)
+{
+    return owners & TOBI_MPM ? (int64_t)sizeof(tobi_columns) : (int64_t)sizeof(tobi_double3);
+}
 
 #define DEFINE_PERMUTE(type)                                                                   \
     static void permute_##type(type *data, const int32_t *order, int64_t n, type *to, int threads) \
@@ -56,18 +59,19 @@ int64_t tobi_particles_widest(void) { return (int64_t)sizeof(tobi_double3); }
     }
 DEFINE_PERMUTE(tobi_double3)
 DEFINE_PERMUTE(tobi_float4)
+DEFINE_PERMUTE(tobi_columns)
 DEFINE_PERMUTE(float)
 DEFINE_PERMUTE(int64_t)
 DEFINE_PERMUTE(uint8_t)
 
 #define PERMUTE(field) \
     _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4, \
-    float *: permute_float, int64_t *: permute_int64_t, uint8_t *: permute_uint8_t, default: permute_uint8_t)
+    tobi_columns *: permute_tobi_columns, float *: permute_float, int64_t *: permute_int64_t, uint8_t *: permute_uint8_t, default: permute_uint8_t)
 
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
 {
-#define X(type, name, kind, unit, doc) \
-    if ((kind) == TOBI_STATE) PERMUTE(p->name)((void *)p->name, order, p->count, scratch, threads);
+#define X(type, name, life, owner, unit, doc) \
+    if ((life) == TOBI_STATE && p->name) PERMUTE(p->name)((void *)p->name, order, p->count, scratch, threads);
     TOBI_PARTICLE_FIELDS(X)
 #undef X
 }
@@ -75,8 +79,8 @@ void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scrat
 tobi_field_ref tobi_particles_state(tobi_particles *p, int index)
 {
     int k = 0;
-#define X(type, name, kind, unit, doc) \
-    if ((kind) == TOBI_STATE && k++ == index) return (tobi_field_ref){#name, p->name, sizeof(type)};
+#define X(type, name, life, owner, unit, doc) \
+    if ((life) == TOBI_STATE && p->name && k++ == index) return (tobi_field_ref){#name, p->name, sizeof(type)};
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     return (tobi_field_ref){NULL, NULL, 0};

@@ -5,52 +5,60 @@
 #include "base/error.h"
 #include "exec/portable.h"
 
-/* STATE fields survive a step: they are sorted with the particles and stored in checkpoints.
-   SCRATCH fields are recomputed every step; those of TENSION exist only where a fluid has surface
-   tension and are NULL elsewhere. */
-enum { TOBI_STATE = 1, TOBI_SCRATCH = 2, TOBI_TENSION = 4 };
+/* STATE fields survive a step: they are sorted with the particles and stored in checkpoints. SCRATCH
+   fields are recomputed every step. */
+enum { TOBI_STATE, TOBI_SCRATCH };
+/* Who needs a field: every method, the SPH methods, those with surface tension, the material point
+   method. The fields of the others are NULL. */
+enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8 };
 
-/*   type          name                 kind          unit     meaning */
-#define TOBI_PARTICLE_FIELDS(X)                                                                              \
-    X(tobi_double3, position,            TOBI_STATE,   "m",     "position from the domain's lower corner")   \
-    X(tobi_float4,  velocity,            TOBI_STATE,   "m/s",   "velocity; w: eq. (6b), 0 to 1")             \
-    X(float,        pressure,            TOBI_STATE,   "Pa",    "pressure")                                  \
-    X(int64_t,      id,                  TOBI_STATE,   "1",     "stable particle id")                        \
-    X(uint8_t,      fluid,               TOBI_STATE,   "1",     "fluid index")                               \
-    X(tobi_record,  record,              TOBI_SCRATCH, "1",     "fixed-point position, payload of the pass") \
-    X(tobi_float4,  accel,               TOBI_SCRATCH, "m/s2",  "acceleration of the pass")                  \
-    X(tobi_float4,  wall,                TOBI_SCRATCH, "1/m",   "wall gradient G; w = G . wall velocity")    \
-    X(float,        density,             TOBI_SCRATCH, "1",     "density over rest density")                 \
-    X(float,        diagonal,            TOBI_SCRATCH, "m/kg",  "diagonal of the pressure operator")         \
-    X(float,        precondition,        TOBI_SCRATCH, "kg/m",  "1/diagonal, 0 where pressure is held")      \
-    X(float,        residual,            TOBI_SCRATCH, "1/s2",  "residual of the pressure equation")         \
-    X(float,        product,             TOBI_SCRATCH, "1/s2",  "A q in a solve; else the mean pressure") \
-    X(float,        delta,               TOBI_SCRATCH, "Pa",    "pressure change of this solve")             \
-    X(float,        correction,          TOBI_SCRATCH, "Pa",    "potential of the position correction")      \
-    X(tobi_float4,  normal,              TOBI_TENSION, "1",     "unit normal of the surface; w = weight") \
-    X(float,        capillary,           TOBI_TENSION, "Pa",    "surface tension times curvature")         \
-    X(uint8_t,      surface,             TOBI_SCRATCH, "1",     "1 at a free surface")                       \
-    X(int32_t,      near,                TOBI_SCRATCH, "1",     "last near-body entry, -1 = none")          \
-    X(uint32_t,     list_start,          TOBI_SCRATCH, "8",     "first neighbour, in groups of 8")           \
-    X(uint16_t,     list_groups,         TOBI_SCRATCH, "8",     "neighbour groups of 8")
+/* Three columns of a 3x3 matrix; the w of each column is free for a number that goes with it. */
+typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
+
+/*   type          name                 life, owner                unit     meaning */
+#define TOBI_PARTICLE_FIELDS(X) \
+    X(tobi_double3, position,     TOBI_STATE, TOBI_ALL,       "m",     "position from the domain's lower corner") \
+    X(tobi_float4,  velocity,     TOBI_STATE, TOBI_ALL,       "m/s",   "velocity; w: eq. (6b), 0 to 1") \
+    X(float,        pressure,     TOBI_STATE, TOBI_SPH,       "Pa",    "pressure") \
+    X(int64_t,      id,           TOBI_STATE, TOBI_ALL,       "1",     "stable particle id") \
+    X(uint8_t,      fluid,        TOBI_STATE, TOBI_ALL,       "1",     "number of the fluid or solid") \
+    X(tobi_columns, strain,       TOBI_STATE, TOBI_MPM,       "1",     "deformation gradient less identity; w: see mpm/view.h") \
+    X(tobi_columns, affine,       TOBI_STATE, TOBI_MPM,       "1/s",   "velocity gradient") \
+    X(tobi_float4,  rest,         TOBI_STATE, TOBI_MPM,       "m",     "position at the start, from the lower corner") \
+    X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",     "fixed-point position, payload of the pass") \
+    X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2",  "acceleration of the pass") \
+    X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",   "wall gradient G; w = G . wall velocity") \
+    X(float,        density,      TOBI_SCRATCH, TOBI_SPH,     "1",     "density over rest density") \
+    X(float,        diagonal,     TOBI_SCRATCH, TOBI_SPH,     "m/kg",  "diagonal of the pressure operator") \
+    X(float,        precondition, TOBI_SCRATCH, TOBI_SPH,     "kg/m",  "1/diagonal, 0 where pressure is held") \
+    X(float,        residual,     TOBI_SCRATCH, TOBI_SPH,     "1/s2",  "residual of the pressure equation") \
+    X(float,        product,      TOBI_SCRATCH, TOBI_SPH,     "1/s2",  "A q in a solve; else the mean pressure") \
+    X(float,        delta,        TOBI_SCRATCH, TOBI_SPH,     "Pa",    "pressure change of this solve") \
+    X(float,        correction,   TOBI_SCRATCH, TOBI_SPH,     "Pa",    "potential of the position correction") \
+    X(tobi_float4,  normal,       TOBI_SCRATCH, TOBI_TENSION, "1",     "unit normal of the surface; w = weight") \
+    X(float,        capillary,    TOBI_SCRATCH, TOBI_TENSION, "Pa",    "surface tension times curvature") \
+    X(uint8_t,      surface,      TOBI_SCRATCH, TOBI_SPH,     "1",     "1 at a free surface") \
+    X(int32_t,      near,         TOBI_SCRATCH, TOBI_SPH,     "1",     "last near-body entry, -1 = none") \
+    X(uint32_t,     list_start,   TOBI_SCRATCH, TOBI_SPH,     "8",     "first neighbour, in groups of 8") \
+    X(uint16_t,     list_groups,  TOBI_SCRATCH, TOBI_SPH,     "8",     "neighbour groups of 8")
 
 typedef struct tobi_particles {
     int64_t count, capacity;
-#define X(type, name, kind, unit, doc) type *name;
+#define X(type, name, life, owner, unit, doc) type *name;
     TOBI_PARTICLE_FIELDS(X)
 #undef X
 } tobi_particles;
 
-/* Allocates the fields of `kinds` (a sum of the kinds above) for `capacity` particles; count becomes 0. */
-tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int kinds, tobi_error *err);
+/* Allocates the fields of `owners` (a sum) for `capacity` particles; count becomes 0. */
+tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err);
 void tobi_particles_free(tobi_particles *p);
-/* Bytes per particle of the fields of `kinds`, without neighbour lists. */
-int64_t tobi_particles_row_bytes(int kinds);
+/* Bytes per particle of the fields of `owners`, without neighbour lists. */
+int64_t tobi_particles_row_bytes(int owners);
 
 /* Reorders every STATE field: row k takes the old row order[k]. scratch holds count rows of the widest
-   state field (tobi_particles_widest bytes each). */
+   state field (tobi_particles_widest bytes each, of the fields of `owners`). */
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads);
-int64_t tobi_particles_widest(void);
+int64_t tobi_particles_widest(int owners);
 
 /* Walks the state fields, for checkpoints: name and pointer by index, NULL past the end. */
 typedef struct tobi_field_ref { const char *name; void *data; size_t bytes; } tobi_field_ref;

@@ -22,7 +22,8 @@ static void measure_range(const void *view, int64_t begin, int64_t end, double *
 {
     const tobi_simulation *s = view;
     for (int64_t i = begin; i < end; i++) {
-        double m = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+        double m = s->particles.strain ? s->particles.strain[i].c[2].w
+                                       : s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
         tobi_float4 v = s->particles.velocity[i];
         const double *x = &s->particles.position[i].x;
         t[0] += 0.5*m*((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
@@ -41,6 +42,12 @@ void tobi_simulation_measure(tobi_simulation *s)
     s->info.potential_energy = t[1];
     for (int a = 0; a < 3; a++) s->info.momentum[a] = t[2 + a];
     s->info.weight = t[5]*sqrt(g2);
+}
+
+double tobi_simulation_fit_dt(double dt, double max_dt)
+{
+    int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
+    return max_dt <= 0 || dt < 0.5*max_dt ? dt : fits ? max_dt : 0.5*max_dt;
 }
 
 void tobi_simulation_fill_up(tobi_simulation *s)

@@ -7,7 +7,7 @@
 #include "core/smoothing.h"
 #include "tobiuo/types.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_STAGE_LIMIT = 16 };
+enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16 };
 
 typedef struct tobi_fluid {
     char name[64];
@@ -15,6 +15,11 @@ typedef struct tobi_fluid {
     double color[3];                /* RGB, 0 to 255, or -1; for pictures                    */
     int visible;
 } tobi_fluid;
+
+typedef struct tobi_solid {
+    char name[64];
+    tobi_solid_def def;             /* its density is the one used: from the mass, if that was given */
+} tobi_solid;
 
 /* Stage timers of a step, in the order of first use. */
 typedef struct tobi_stages {
@@ -32,6 +37,8 @@ typedef struct tobi_simulation {
     tobi_particles particles;
     tobi_fluid fluid[TOBI_FLUID_LIMIT];
     int fluid_count;
+    tobi_solid *solids;             /* of the material point method; then there are no fluids */
+    int solid_count;
     tobi_body *bodies;
     int body_count;
     tobi_near_bodies near;          /* fluid particles that see a body                       */
@@ -51,6 +58,7 @@ typedef struct tobi_method {
     const char *name;
     const char *doc;
     size_t def_size;                                             /* of the parameter struct        */
+    int fields;                                                  /* particle fields besides TOBI_ALL */
     /* Smoothing kernel and support radius the parameters ask for. */
     void (*smoothing)(const void *def, int *shape, double *support);
     tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);
@@ -77,6 +85,10 @@ double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3]);
 void tobi_simulation_add_hydrostatic(tobi_simulation *s);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_simulation_measure(tobi_simulation *s);
+
+/* The step to take where `dt` is stable and `max_dt` (0 = any) is left: not longer than both, and no crumb
+   remains. */
+double tobi_simulation_fit_dt(double dt, double max_dt);
 
 /* Adds the seconds since *since to a stage and moves *since to now. */
 void tobi_stage_end(tobi_stages *st, const char *name, double *since);

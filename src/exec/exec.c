@@ -62,21 +62,33 @@ static void combine(double *p, int64_t blocks, double *totals)
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
 }
 
-void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
-                 double *totals)
+/* Cuts [begin, end) into blocks of `grain`. */
+static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
+                       int64_t grain, double *totals)
 {
-    int64_t blocks = (end - begin + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    int64_t blocks = (end - begin + grain - 1)/grain;
     if (totals) memset(totals, 0, TOBI_TOTALS*sizeof *totals);
     if (blocks <= 0) return;
     double *partial = x->partial;
     #pragma omp parallel for schedule(dynamic, 4) num_threads(x->threads) if (blocks > 1)
     for (int64_t b = 0; b < blocks; b++) {
         double sums[TOBI_TOTALS] = {0};
-        int64_t first = begin + b*TOBI_BLOCK, last = first + TOBI_BLOCK;
+        int64_t first = begin + b*grain, last = first + grain;
         kernel(view, first, last < end ? last : end, sums);
         if (totals) memcpy(partial + b*TOBI_TOTALS, sums, sizeof sums);
     }
     if (totals) combine(partial, blocks, totals);
+}
+
+void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
+                 double *totals)
+{
+    run_blocks(x, kernel, view, begin, end, TOBI_BLOCK, totals);
+}
+
+void tobi_launch_each(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t count, double *totals)
+{
+    run_blocks(x, kernel, view, 0, count, 1, totals);
 }
 
 int64_t tobi_sort_histogram_size(const tobi_exec *x) { return (int64_t)x->threads*RADIX; }

@@ -34,7 +34,29 @@ TOBI_FN lane lane_sqrt(lane a) { return sqrtf(a); }
 TOBI_FN lane lane_from_int(lane_int a) { return (float)a; }
 TOBI_FN lane lane_positive(lane a) { return a > 0 ? a : 0; }
 TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f) { return a == b ? t : f; }
+TOBI_FN lane_int lane_to_int(lane a) { return (int32_t)a; }
+TOBI_FN lane lane_where_less(lane a, lane b, lane t, lane f) { return a < b ? t : f; }
+TOBI_FN lane lane_from_bits(lane_int a)
+{
+    lane x;
+    __builtin_memcpy(&x, &a, sizeof x);
+    return x;
+}
+TOBI_FN lane_int lane_bits(lane a)
+{
+    lane_int x;
+    __builtin_memcpy(&x, &a, sizeof x);
+    return x;
+}
+TOBI_FN float lane_at(lane a, int k) { (void)k; return a; }
+TOBI_FN int32_t lane_int_at(lane_int a, int k) { (void)k; return a; }
+TOBI_FN lane lane_load(const float *p) { return *p; }
 TOBI_FN float lane_sum(lane a) { return a; }
+TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, lane y, lane z, lane w)
+{
+    (void)stride; (void)count;
+    to->x = x; to->y = y; to->z = z; to->w = w;
+}
 TOBI_FN lane_int lane_sub_wrap(int32_t a, lane_int b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x, lane *y, lane *z, lane *w)
 {
@@ -90,6 +112,22 @@ TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f)
     lane_int m = a == b;
     return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
 }
+TOBI_FN lane_int lane_to_int(lane a) { return __builtin_convertvector(a, lane_int); }   /* towards 0 */
+TOBI_FN lane lane_where_less(lane a, lane b, lane t, lane f)
+{
+    lane_int m = a < b;
+    return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
+}
+TOBI_FN lane lane_from_bits(lane_int a) { return (lane)a; }
+TOBI_FN lane_int lane_bits(lane a) { return (lane_int)a; }
+TOBI_FN float lane_at(lane a, int k) { return a[k]; }
+TOBI_FN int32_t lane_int_at(lane_int a, int k) { return a[k]; }
+TOBI_FN lane lane_load(const float *p)
+{
+    lane v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
 /* One tree on every machine: (0+4)+(2+6) + (1+5)+(3+7). */
 TOBI_FN float lane_sum(lane a)
 {
@@ -119,6 +157,20 @@ TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x
     *y = __builtin_shufflevector(t0, t1, 2, 3, 10, 11, 6, 7, 14, 15);
     *z = __builtin_shufflevector(t2, t3, 0, 1, 8, 9, 4, 5, 12, 13);
     *w = __builtin_shufflevector(t2, t3, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+/* Transposes four lanes into rows to[0], to[stride], ..., the first `count` of eight. */
+TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, lane y, lane z, lane w)
+{
+    lane a = __builtin_shufflevector(x, y, 0, 8, 1, 9, 4, 12, 5, 13);
+    lane b = __builtin_shufflevector(x, y, 2, 10, 3, 11, 6, 14, 7, 15);
+    lane c = __builtin_shufflevector(z, w, 0, 8, 1, 9, 4, 12, 5, 13);
+    lane d = __builtin_shufflevector(z, w, 2, 10, 3, 11, 6, 14, 7, 15);
+    lane r[4] = {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
+                 __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
+                 __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+                 __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+    for (int k = 0; k < 8 && k < count; k++)
+        __builtin_memcpy(to + (int64_t)k*stride, (const float *)&r[k & 3] + 4*(k >> 2), 16);
 }
 TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y,
                               lane_int *z, lane *w)

@@ -329,6 +329,7 @@ const tobi_method tobi_dfsph = {
     .name = "dfsph",
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .def_size = sizeof(tobi_dfsph_def),
+    .fields = TOBI_SPH,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

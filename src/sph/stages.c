@@ -88,8 +88,7 @@ double sph_tension_dt(const tobi_simulation *s)
 
 void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt)
 {
-    int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
-    s->dt = max_dt <= 0 || dt < 0.5*max_dt ? dt : fits ? max_dt : 0.5*max_dt;
+    s->dt = tobi_simulation_fit_dt(dt, max_dt);
     v->dt = (float)s->dt;
     v->inverse_dt = (float)(1/s->dt);
 }

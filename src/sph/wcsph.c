@@ -197,6 +197,7 @@ const tobi_method tobi_wcsph = {
     .name = "wcsph",
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .def_size = sizeof(tobi_wcsph_def),
+    .fields = TOBI_SPH,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

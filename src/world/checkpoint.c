@@ -8,9 +8,12 @@
 /* A state field as columns of a basic type. */
 static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
 {
-    *components = f->bytes == sizeof(tobi_double3) ? 3 : f->bytes == sizeof(tobi_float4) ? 4 : 1;
-    *type = f->bytes == sizeof(tobi_double3)  ? TOBI_F64
-            : f->bytes == 16 || f->bytes == 4 ? TOBI_F32
+    *components = f->bytes == sizeof(tobi_double3)   ? 3
+                  : f->bytes == sizeof(tobi_columns) ? 12
+                  : f->bytes == sizeof(tobi_float4)  ? 4
+                                                     : 1;
+    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64
+            : f->bytes % 16 == 0 || f->bytes == 4 ? TOBI_F32
             : f->bytes == 8                   ? TOBI_I64
                                               : TOBI_U8;
 }

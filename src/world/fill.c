@@ -47,16 +47,48 @@ static void add_particle(tobi_simulation *s, const tobi_region *r, const double 
 {
     tobi_particles *p = &s->particles;
     int64_t i = p->count++;
+    double arm[3], v[3];
+    for (int a = 0; a < 3; a++) arm[a] = x[a] + s->box.lower[a] - 0.5*(r->lower[a] + r->upper[a]);
+    for (int a = 0; a < 3; a++) {
+        int b = (a + 1)%3, c = (a + 2)%3;
+        v[a] = r->velocity[a] + r->spin[b]*arm[c] - r->spin[c]*arm[b];
+    }
     p->position[i] = (tobi_double3){x[0], x[1], x[2]};
-    p->velocity[i] = (tobi_float4){(float)r->velocity[0], (float)r->velocity[1], (float)r->velocity[2], 0};
-    p->pressure[i] = 0;
-    p->fluid[i] = (uint8_t)r->fluid;
+    p->velocity[i] = (tobi_float4){(float)v[0], (float)v[1], s->box.dimension == 3 ? (float)v[2] : 0, 0};
+    p->fluid[i] = (uint8_t)r->owner;
     p->id[i] = i;
+    if (p->pressure) p->pressure[i] = 0;
+    if (p->rest) p->rest[i] = (tobi_float4){(float)x[0], (float)x[1], (float)x[2], 0};
+}
+
+/* Solids: the particles of a region share its exact volume, those that were cut off included. */
+static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first, int64_t whole)
+{
+    tobi_particles *p = &s->particles;
+    if (!p->strain) return;
+    double volume = r->volume/(double)whole, density = s->solids[r->owner].def.density;
+    for (int64_t i = first; i < p->count; i++) {
+        p->strain[i] = (tobi_columns){0};
+        p->affine[i] = (tobi_columns){0};
+        p->strain[i].c[0].w = (float)volume;
+        p->strain[i].c[2].w = (float)(density*volume);
+    }
+}
+
+static int inside_region(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension)
+{
+    double d2 = 0;
+    if (tree) return tobi_bvh_inside(tree, x);
+    for (int a = 0; a < dimension; a++) {
+        double d = x[a] - 0.5*(r->lower[a] + r->upper[a]);
+        d2 += d*d;
+    }
+    return !(r->radius > 0) || d2 < r->radius*r->radius;
 }
 
 tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
 {
-    int64_t n[3];
+    int64_t n[3], first = s->particles.count, whole = 0;
     double step[3];
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
@@ -78,9 +110,11 @@ tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_erro
                     x[a] = w[a] - s->box.lower[a];
                     if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
                 }
-                if (out || (tree && !tobi_bvh_inside(tree, w)) || inside_body(s, x)) continue;
-                add_particle(s, r, x);
+                if (!inside_region(r, tree, w, s->box.dimension)) continue;
+                whole++;
+                if (!out && !inside_body(s, x)) add_particle(s, r, x);
             }
+    set_volumes(s, r, first, whole);
     tobi_bvh_free(tree);
     return TOBI_OK;
 }

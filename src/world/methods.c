@@ -1,4 +1,5 @@
 #include "world/methods.h"
+#include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
 #include "sph/wcsph.h"
 #include <string.h>
@@ -6,6 +7,7 @@
 static const tobi_method *const methods[] = {
     &tobi_dfsph,
     &tobi_wcsph,
+    &tobi_mlsmpm,
 };
 
 const tobi_method *tobi_method_at(int index)

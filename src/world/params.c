@@ -21,7 +21,7 @@
     .type = TOBI_PARAM_CHOICE, .min = 0, .max = (count) - 1, .choices = words, .unit = "word"
 
 #define WALL(key_, member_, axis_, doc_)                                              \
-    { .key = key_, CHOICE("slip|no-slip|periodic", 3),                                \
+    { .key = key_, CHOICE("slip|no-slip|periodic|separate", 4),                                \
       .offset = offsetof(tobi_world_def, member_) + (axis_)*sizeof(int), .doc = doc_ }
 
 #define WALL_VELOCITY(key_, member_, axis_, doc_)                                     \
@@ -48,6 +48,8 @@ static const tobi_param world_rows[] = {
     { .key = "domain.contact_angle", REAL, AT(tobi_world_def, contact_angle), .def = { 90 },
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the sides." },
+    { .key = "domain.friction", REAL, AT(tobi_world_def, friction), FROM(0), .unit = "1",
+      .text = "none", .doc = "Coulomb friction between solids and the \"separate\" sides." },
     WALL_VELOCITY("domain.wall_velocity.x[0]", wall_velocity_min, 0, "The side at the lower x."),
     WALL_VELOCITY("domain.wall_velocity.x[1]", wall_velocity_max, 0, "The side at the upper x."),
     WALL_VELOCITY("domain.wall_velocity.y[0]", wall_velocity_min, 1, "The side at the lower y."),
@@ -137,6 +139,64 @@ static const tobi_param wcsph_rows[] = {
     { 0 }
 };
 
+static const tobi_param mlsmpm_rows[] = {
+    { .key = "cell", REAL, AT(tobi_mlsmpm_def, cell), .def = { 2 }, RANGE(1, 8), .unit = "spacings",
+      .doc = "Side of a grid cell: 2 puts 8 particles in a cell of a 3-D scene." },
+    { .key = "transfer", CHOICE("apic|flip|xpic", 3), AT(tobi_mlsmpm_def, transfer),
+      .doc = "How velocities go between particles and grid: apic keeps angular momentum, flip keeps "
+             "the most energy, xpic filters noise." },
+    { .key = "flip", REAL, AT(tobi_mlsmpm_def, flip), .def = { 0.99 }, RANGE(0, 1), .unit = "1",
+      .doc = "Share of FLIP in its blend with PIC, if transfer is flip." },
+    { .key = "xpic_order", INT, AT(tobi_mlsmpm_def, xpic_order), .def = { 2 }, RANGE(1, 5),
+      .unit = "1", .doc = "Order of the filter, if transfer is xpic; 1 is PIC." },
+    { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
+      .positive = true, .unit = "1",
+      .doc = "Largest part of a cell that sound and particles together cross in a step." },
+    { 0 }
+};
+
+static const tobi_param solid_rows[] = {
+    { .key = "name", TEXT, AT(tobi_solid_def, name), .unit = "name", .text = "solid", .required = true,
+      .doc = "Name of the solid, used once in a scene." },
+    { .key = "model", CHOICE("neo-hookean|corotated|liquid|von-mises|snow|sand|stationary", 7),
+      AT(tobi_solid_def, model), .doc = "What its stress depends on." },
+    { .key = "density", REAL, AT(tobi_solid_def, density), .def = { 1000 }, POSITIVE, .unit = "kg/m3",
+      .doc = "Density at the start." },
+    { .key = "mass", REAL, AT(tobi_solid_def, mass), FROM(0), .unit = "kg", .text = "by density",
+      .doc = "Mass of all regions together, instead of a density; per metre of depth in 2-D." },
+    { .key = "youngs_modulus", REAL, AT(tobi_solid_def, youngs_modulus), .def = { 1e6 }, POSITIVE,
+      .unit = "Pa", .doc = "Young's modulus of small strains; liquids have a bulk modulus instead." },
+    { .key = "poissons_ratio", REAL, AT(tobi_solid_def, poissons_ratio), .def = { 0.3 },
+      RANGE(-0.99, 0.495), .unit = "1", .doc = "Poisson's ratio of small strains." },
+    { .key = "bulk_modulus", REAL, AT(tobi_solid_def, bulk_modulus), .def = { 1e5 }, POSITIVE,
+      .unit = "Pa",
+      .doc = "Stiffness of a liquid: density times the square of the speed of sound; ten times the "
+             "fastest flow keeps the density within 1 %." },
+    { .key = "viscosity", REAL, AT(tobi_solid_def, viscosity), FROM(0), .unit = "Pa s",
+      .text = "none", .doc = "Dynamic viscosity of a liquid." },
+    { .key = "yield_stress", REAL, AT(tobi_solid_def, yield_stress), .def = { 1e4 }, POSITIVE,
+      .unit = "Pa", .doc = "Von Mises stress at which a von-mises solid begins to flow." },
+    { .key = "hardening", REAL, AT(tobi_solid_def, hardening), FROM(0), .unit = "Pa or 1",
+      .text = "none",
+      .doc = "Of von-mises: rise of the yield stress per plastic strain, Pa; of snow: exponent by which "
+             "compaction stiffens it." },
+    { .key = "critical_compression", REAL, AT(tobi_solid_def, critical_compression), .def = { 0.025 },
+      RANGE(0, 0.5), .unit = "1", .doc = "Compression at which snow yields." },
+    { .key = "critical_stretch", REAL, AT(tobi_solid_def, critical_stretch), .def = { 0.0075 },
+      RANGE(0, 0.5), .unit = "1", .doc = "Stretch at which snow breaks." },
+    { .key = "friction_angle", REAL, AT(tobi_solid_def, friction_angle), .def = { 30 }, RANGE(0, 60),
+      .unit = "degrees", .doc = "Angle of internal friction of sand." },
+    { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
+      .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
+    { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),
+      .doc = "Whether its particles start on a lattice, or scattered at even distances." },
+    { .key = "color", COLOR, AT(tobi_solid_def, color), .text = "speed",
+      .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is." },
+    { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },
+      .doc = "Whether pictures show the solid." },
+    { 0 }
+};
+
 static const tobi_param fluid_rows[] = {
     { .key = "name", TEXT, AT(tobi_fluid_def, name), .unit = "name", .text = "fluid",
       .required = true, .doc = "Name of the fluid, used once in a scene." },
@@ -160,14 +220,24 @@ static const tobi_param fill_rows[] = {
       .doc = "Lower corner of the filled box; a box has both corners." },
     { .key = "box.max", VEC3, AT(tobi_fill_def, box_max), ANY, .unit = "m",
       .doc = "Upper corner of the filled box." },
+    { .key = "sphere.centre", VEC3, AT(tobi_fill_def, centre), ANY, .unit = "m",
+      .doc = "Centre of a sphere, in 2-D a disc, instead of a box." },
+    { .key = "sphere.radius", REAL, AT(tobi_fill_def, radius), FROM(0), .unit = "m",
+      .doc = "Its radius." },
     { .key = "mesh", TEXT, AT(tobi_fill_def, mesh), .unit = "path",
       .doc = "A closed mesh (OBJ, STL or PLY) whose inside is filled, instead of a box." },
     { .key = "scale", VEC3, AT(tobi_fill_def, scale), .def = { 1, 1, 1 }, POSITIVE, .unit = "1",
       .doc = "Size factor of the mesh, one number or one per axis, applied first." },
     { .key = "translation", VEC3, AT(tobi_fill_def, translation), ANY, .unit = "m",
       .doc = "Where the origin of the mesh is put." },
+    { .key = "rotation.axis", VEC3, AT(tobi_fill_def, rotation_axis), .def = { 0, 0, 1 }, ANY,
+      .unit = "1", .doc = "Direction that the mesh is turned about, after the scale." },
+    { .key = "rotation.angle", REAL, AT(tobi_fill_def, rotation_angle), ANY, .unit = "degrees",
+      .doc = "Angle of that turn, by the right-hand rule." },
     { .key = "velocity", VEC3, AT(tobi_fill_def, velocity), ANY, .unit = "m/s",
-      .doc = "Velocity of the fluid at the start." },
+      .doc = "Velocity at the start." },
+    { .key = "spin", VEC3, AT(tobi_fill_def, spin), ANY, .unit = "rad/s",
+      .doc = "Angular velocity at the start, about the middle of the region." },
     { 0 }
 };
 
@@ -311,10 +381,16 @@ const tobi_param_table tobi_dfsph_table = {
 const tobi_param_table tobi_wcsph_table = {
     "wcsph", "Weakly compressible SPH: pressure from density by the Tait equation, no solver.",
     sizeof(tobi_wcsph_def), wcsph_rows };
+const tobi_param_table tobi_mlsmpm_table = {
+    "mlsmpm", "The material point method (MLS-MPM, Hu et al. 2018) for solids that deform, sand, snow.",
+    sizeof(tobi_mlsmpm_def), mlsmpm_rows };
+const tobi_param_table tobi_solid_table = {
+    "solid", "An entry of solids: one material of the method mlsmpm.", sizeof(tobi_solid_def),
+    solid_rows };
 const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 const tobi_param_table tobi_fill_table = {
-    "fill", "An entry of a fluid's fill: one region that it fills at the start, a box or a mesh.",
+    "fill", "An entry of fill: one region that a fluid or solid fills at the start, a box, a sphere or a mesh.",
     sizeof(tobi_fill_def), fill_rows };
 const tobi_param_table tobi_body_table = {
     "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
@@ -327,15 +403,16 @@ const tobi_param_table tobi_reference_table = {
     "reference", "An entry of references: data that `tobiuo plot` draws beside the run's.",
     sizeof(tobi_reference_def), reference_rows };
 
-static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table };
+static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table,
+                                                 &tobi_mlsmpm_table };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
 const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
-        &tobi_world_table, &tobi_dfsph_table, &tobi_wcsph_table, &tobi_fluid_table,
-        &tobi_fill_table,  &tobi_body_table,  &tobi_probe_table, &tobi_output_table,
-        &tobi_reference_table
+        &tobi_world_table, &tobi_dfsph_table,  &tobi_wcsph_table, &tobi_mlsmpm_table,
+        &tobi_fluid_table, &tobi_solid_table,  &tobi_fill_table,  &tobi_body_table,
+        &tobi_probe_table, &tobi_output_table, &tobi_reference_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
 }
@@ -380,7 +457,9 @@ int tobi_choice_count(const char *choices)
 DEFAULT(world)
 DEFAULT(dfsph)
 DEFAULT(wcsph)
+DEFAULT(mlsmpm)
 DEFAULT(fluid)
+DEFAULT(solid)
 DEFAULT(fill)
 DEFAULT(body)
 DEFAULT(probe)

@@ -191,7 +191,8 @@ uint64_t tobi_world_hash(tobi_world *w)
         int64_t i = w->row_of[r];
         h = mix(h, &p->position[i], sizeof p->position[i]);
         h = mix(h, &p->velocity[i], 3*sizeof(float));
-        h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
+        if (p->pressure) h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
+        if (p->strain) h = mix(h, &p->strain[i], sizeof p->strain[i]);
     }
     return h;
 }

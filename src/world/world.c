@@ -110,6 +110,7 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
     free(w->sim.bodies);
+    free(w->sim.solids);
     free(w->regions);
     free(w->probes);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
@@ -123,9 +124,8 @@ void tobi_world_destroy(tobi_world *w)
     free(w);
 }
 
-/* Keeps each line of notes as a text of its own. */
-static tobi_status add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
-                             tobi_error *err)
+tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
+                                 tobi_error *err)
 {
     for (const char *end; (end = strchr(notes, '\n')) != NULL; notes = end + 1) {
         char **more = realloc(w->notes, (size_t)(w->note_count + 1)*sizeof *more);
@@ -142,90 +142,9 @@ static tobi_status add_notes(tobi_world *w, const char *kind, const char *name, 
     return TOBI_OK;
 }
 
-/* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
-static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
-{
-    double support = w->sim.smoothing.h/w->sim.smoothing.spacing;
-    char text[100];
-    if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
-    snprintf(text, sizeof text, "surface tension needs a support of 2.5 or more (3 is better); it is %g\n",
-             support);
-    return add_notes(w, "fluid", def->name, text, err);
-}
-
 const char *tobi_world_note(const tobi_world *w, int note)
 {
     return note >= 0 && note < w->note_count ? w->notes[note] : NULL;
-}
-
-static tobi_status measure_region(tobi_world *w, const tobi_fill_def *f, tobi_region *r, tobi_error *err)
-{
-    const tobi_simulation *s = &w->sim;
-    memcpy(r->lower, f->box_min, sizeof r->lower);
-    memcpy(r->upper, f->box_max, sizeof r->upper);
-    memcpy(r->velocity, f->velocity, sizeof r->velocity);
-    if (f->mesh) {
-        const double axis[3] = {0, 0, 1};
-        TOBI_TRY(tobi_mesh_read(f->mesh, &r->shape, err));
-        TOBI_TRY(tobi_mesh_transform(&r->shape, f->scale, axis, 0, f->translation, err));
-        TOBI_TRY(tobi_mesh_orient(&r->shape, f->mesh, err));
-        tobi_mesh_box(&r->shape, r->lower, r->upper);
-    }
-    for (int a = 0; a < s->box.dimension; a++) {
-        if (!(r->upper[a] > r->lower[a]))
-            return tobi_fail(err, TOBI_INVALID, "fluid box: max %g is not above min %g along %c",
-                             r->upper[a], r->lower[a], "xyz"[a]);
-        if (r->upper[a] <= s->box.lower[a] || r->lower[a] >= s->box.lower[a] + s->box.size[a])
-            return tobi_fail(
-                err, TOBI_INVALID,
-                "a fluid region (%g to %g m along %c) lies outside the domain (%g to %g m)",
-                r->lower[a], r->upper[a], "xyz"[a], s -> box.lower[a],
-                s->box.lower[a] + s->box.size[a]);
-    }
-    return TOBI_OK;
-}
-
-tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
-                                 const tobi_fill_def *fills, int fill_count, tobi_error *err)
-{
-    tobi_simulation *s = &w->sim;
-    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
-    TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
-    if (s->fluid_count > 0 &&
-        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity ||
-         def->surface_tension != s->fluid[0].tension))
-        return tobi_fail(
-            err, TOBI_UNSUPPORTED,
-            "fluid '%s' differs from '%s' in density or viscosity or surface tension; "
-            "%s carries one material, "
-            "allowed are several fluids with the same values",
-            def->name ? def->name : "", s->fluid[0].name, w->method->name);
-    if (s->fluid_count == TOBI_FLUID_LIMIT)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
-    TOBI_TRY(note_support(w, def, err));
-    tobi_region *more = realloc(w->regions, (size_t)(w->region_count + fill_count + 1)*sizeof *more);
-    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for fluid regions");
-    w->regions = more;
-    int first = w->region_count;
-    for (int k = 0; k < fill_count; k++) {
-        tobi_region *r = &w->regions[w->region_count];
-        memset(r, 0, sizeof *r);
-        r->fluid = s->fluid_count;
-        tobi_status status = measure_region(w, &fills[k], r, err);
-        w->region_count++;
-        if (status == TOBI_OK) status = add_notes(w, "fluid", def->name, r->shape.notes, err);
-        if (status == TOBI_OK) continue;
-        while (w->region_count > first) tobi_mesh_free(&w->regions[--w->region_count].shape);
-        return status;
-    }
-    tobi_fluid *f = &s->fluid[s->fluid_count++];
-    snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
-    f->density = def->density;
-    f->viscosity = def->viscosity;
-    f->tension = def->surface_tension;
-    memcpy(f->color, def->color, sizeof f->color);
-    f->visible = def->visible;
-    return TOBI_OK;
 }
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
@@ -255,19 +174,19 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_body *b = &s->bodies[s->body_count];
     TOBI_TRY(tobi_body_create(b, def, &s->box, 0.5*s->smoothing.spacing, err));
     tobi_status status = check_body(w, b, err);
-    if (status == TOBI_OK) status = add_notes(w, "body", b->name, b->mesh.notes, err);
+    if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
     else s->body_count++;
     return status;
 }
 
-/* The kinds of particle fields that this world needs. */
-static int needed_fields(const tobi_simulation *s)
+/* The owners of the particle fields that this world needs. */
+static int needed_fields(const tobi_world *w)
 {
-    int kinds = TOBI_STATE | TOBI_SCRATCH;
-    for (int f = 0; f < s->fluid_count; f++)
-        if (s->fluid[f].tension > 0) kinds |= TOBI_TENSION;
-    return kinds;
+    int owners = TOBI_ALL | w->method->fields;
+    for (int f = 0; f < w->sim.fluid_count; f++)
+        if (w->sim.fluid[f].tension > 0) owners |= TOBI_TENSION;
+    return owners;
 }
 
 static int64_t list_bytes(const tobi_simulation *s)
@@ -286,7 +205,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
     if (w->started) fluid = w->sim.particles.count;
     *fluid_particles = fluid;
     *body_particles = body;
-    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(&w->sim)) + list_bytes(&w->sim)) + body*48;
+    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(w)) + list_bytes(&w->sim)) + body*48;
     return TOBI_OK;
 }
 
@@ -340,14 +259,15 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a fluid region or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(s), err));
+    TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     int64_t n = s->particles.count;
     if (n + body == 0)
         return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
     TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));
     tobi_cells_free(&s->cells);
-    TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->exec, err));
+    if (w->method->fields & TOBI_SPH)
+        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->exec, err));
     free(w->row_of);
     w->row_of = malloc((size_t)(n + 1)*sizeof *w->row_of);
     if (!w->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
@@ -457,7 +377,7 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 int64_t tobi_world_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
-    return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(s)) + 4) +
+    return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
            s->near.capacity * (int64_t)sizeof(tobi_near_entry);
 }

@@ -23,6 +23,10 @@ struct tobi_world {
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
+/* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line". */
+tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
+                                 tobi_error *err);
+
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 

@@ -152,7 +152,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, count, TOBI_STATE | TOBI_SCRATCH | TOBI_TENSION, err)) return 1;
+    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);

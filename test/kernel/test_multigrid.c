@@ -34,7 +34,7 @@ static void fill(pool *p, int dimension, int n, int threads)
     tobi_smoothing_init(&s->smoothing, TOBI_SHAPE_WENDLAND, dimension, p->d, 2);
     tobi_box_init(&s->box, dimension, lower, upper, periodic, s->smoothing.h);
     int64_t count = dimension == 3 ? (int64_t)n*n*n : (int64_t)n*n;
-    assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_STATE | TOBI_SCRATCH, &err), TOBI_OK);
+    assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
     assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &s->exec, &err), TOBI_OK);
     assert_int_equal(tobi_exec_reserve(&s->exec, count, &err), TOBI_OK);
     seed = 11;

@@ -31,7 +31,7 @@ static void place(grid *g, const cloud *c, int threads)
         upper[a] = c->origin + c->size[a];
     }
     tobi_box_init(&g->box, c->dimension, lower, upper, c->periodic, c->h);
-    assert_int_equal(tobi_particles_create(&g->p, c->count, TOBI_STATE | TOBI_SCRATCH, &err), TOBI_OK);
+    assert_int_equal(tobi_particles_create(&g->p, c->count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
     assert_int_equal(tobi_cells_create(&g->cells, &g->box, c->h, c->count, &g->exec, &err), TOBI_OK);
     state_ = 5;
     for (int i = 0; i < c->count; i++) {

@@ -1,0 +1,302 @@
+#include "mpm/grid.h"
+#include "base/error.h"
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 4, KEY_BITS = 6, MOST_BLOCKS = 1 << 26 };
+
+static int tile_nodes(const mpm_grid *g) { return (g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8; }
+static int block_nodes(const mpm_grid *g) { return g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D; }
+
+tobi_status mpm_grid_create(mpm_grid *g, int dimension, int keep_old, const tobi_exec *x, tobi_error *err)
+{
+    memset(g, 0, sizeof *g);
+    g->dimension = dimension;
+    g->keep_old = keep_old;
+    g->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *g->histogram);
+    return g->histogram ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the grid");
+}
+
+void mpm_grid_free(mpm_grid *g)
+{
+    free(g->block); free(g->patch); free(g->block_key); free(g->patch_key);
+    free(g->node); free(g->old); free(g->scratch); free(g->histogram);
+    memset(g, 0, sizeof *g);
+}
+
+int64_t mpm_grid_bytes(const mpm_grid *g)
+{
+    int64_t node = (int64_t)sizeof(tobi_float4)*block_nodes(g)*(g->keep_old ? 2 : 1);
+    return g->scratch_bytes + g->block_room*(int64_t)(sizeof(mpm_block) + sizeof(uint32_t)) +
+           g->patch_room*(node + (int64_t)(sizeof(mpm_patch) + sizeof(uint32_t)));
+}
+
+/* Makes *array hold `count` items; its content is lost. */
+static int grow(void **array, int64_t count, size_t size)
+{
+    free(*array);
+    *array = aligned_alloc(64, ((size_t)count*size + 127)/64*64);
+    return *array != NULL;
+}
+
+static tobi_status reserve_scratch(mpm_grid *g, int64_t bytes, tobi_error *err)
+{
+    if (bytes <= g->scratch_bytes) return TOBI_OK;
+    if (!grow((void **)&g->scratch, bytes, 1)) {
+        g->scratch_bytes = 0;
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for sorting: %lld bytes", (long long)bytes);
+    }
+    g->scratch_bytes = bytes;
+    return TOBI_OK;
+}
+
+static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
+{
+    if (count > g->block_room) {
+        g->block_room = count + count/8 + 8;
+        if (!grow((void **)&g->block, g->block_room, sizeof *g->block) ||
+            !grow((void **)&g->block_key, g->block_room, sizeof *g->block_key)) {
+            g->block_room = 0;
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
+        }
+    }
+    g->block_count = count;
+    return TOBI_OK;
+}
+
+static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
+{
+    if (count > g->patch_room) {
+        g->patch_room = count + count/8 + 8;
+        int64_t nodes = g->patch_room*block_nodes(g);
+        if (!grow((void **)&g->patch, g->patch_room, sizeof *g->patch) ||
+            !grow((void **)&g->patch_key, g->patch_room, sizeof *g->patch_key) ||
+            !grow((void **)&g->node, nodes, sizeof *g->node) ||
+            (g->keep_old && !grow((void **)&g->old, nodes, sizeof *g->old))) {
+            g->patch_room = 0;
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
+        }
+    }
+    g->patch_count = count;
+    return TOBI_OK;
+}
+
+/* The base node of a particle along an axis, and its block; cells begin at -4, so that both stay positive. */
+static int base_node(double x, double inverse_cell) { return (int)floor(x*inverse_cell - 0.5) + BLOCK; }
+
+/* The corner of the particle's block, in blocks: of its base node now, or where it is at home. */
+static void find_block(const tobi_particles *p, int64_t i, double inverse_cell, int home, int dimension, int b[3])
+{
+    const double *x = &p->position[i].x;
+    for (int a = 0; a < 3; a++) {
+        if (a >= dimension) b[a] = 0;
+        else if (home) b[a] = (int)p->affine[i].c[a].w/BLOCK + 1;
+        else b[a] = base_node(x[a], inverse_cell)/BLOCK;
+    }
+}
+
+/* The box of blocks around all particles, with a layer more. */
+static tobi_status find_box(mpm_grid *g, const tobi_particles *p, double inverse_cell, int home, tobi_exec *x,
+                            tobi_error *err)
+{
+    int lo0 = 1 << 30, lo1 = 1 << 30, lo2 = 1 << 30, hi0 = 0, hi1 = 0, hi2 = 0;
+    #pragma omp parallel for num_threads(x->threads) reduction(min: lo0, lo1, lo2) reduction(max: hi0, hi1, hi2)
+    for (int64_t i = 0; i < p->count; i++) {
+        int b[3];
+        find_block(p, i, inverse_cell, home, g->dimension, b);
+        if (b[0] < lo0) lo0 = b[0];
+        if (b[1] < lo1) lo1 = b[1];
+        if (b[2] < lo2) lo2 = b[2];
+        if (b[0] > hi0) hi0 = b[0];
+        if (b[1] > hi1) hi1 = b[1];
+        if (b[2] > hi2) hi2 = b[2];
+    }
+    const int lo[3] = {lo0, lo1, lo2}, hi[3] = {hi0, hi1, hi2};
+    double total = 1;
+    for (int a = 0; a < 3; a++) {
+        g->low[a] = lo[a] - 1;
+        g->count[a] = hi[a] - lo[a] + 3;
+        total *= g->count[a];
+    }
+    if (total < MOST_BLOCKS) return TOBI_OK;
+    return tobi_fail(err, TOBI_UNSUPPORTED,
+                     "the solids reach over %d x %d x %d blocks of cells; allowed are %d together. Fewer particles "
+                     "astray or a larger spacing help",
+                     g->count[0], g->count[1], g->count[2], MOST_BLOCKS);
+}
+
+static uint32_t block_key(const mpm_grid *g, const int b[3])
+{
+    return ((uint32_t)(b[0] - g->low[0])*(uint32_t)g->count[1] + (uint32_t)(b[1] - g->low[1]))*
+           (uint32_t)g->count[2] + (uint32_t)(b[2] - g->low[2]);
+}
+
+static void corner_of(const mpm_grid *g, uint32_t key, int32_t corner[3])
+{
+    const int b[3] = {(int)(key/(uint32_t)g->count[2]/(uint32_t)g->count[1]) + g->low[0],
+                      (int)(key/(uint32_t)g->count[2]%(uint32_t)g->count[1]) + g->low[1],
+                      (int)(key%(uint32_t)g->count[2]) + g->low[2]};
+    for (int a = 0; a < 3; a++) corner[a] = a < g->dimension ? BLOCK*(b[a] - 1) : 0;
+}
+
+static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse_cell, int home, tobi_exec *x,
+                      uint32_t *keys)
+{
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t i = 0; i < p->count; i++) {
+        int b[3];
+        uint32_t cell = 0;
+        find_block(p, i, inverse_cell, home, g->dimension, b);
+        for (int a = 0; a < g->dimension && !home; a++)
+            cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], inverse_cell)%BLOCK;
+        keys[i] = block_key(g, b) << KEY_BITS | cell;
+    }
+}
+
+/* Where runs of equal keys (their low bits aside) begin, in order; returns how many. begin NULL only counts. */
+static int64_t find_runs(const uint32_t *keys, int64_t n, int bits, int64_t *begin, tobi_exec *x)
+{
+    int64_t counts[256] = {0}, total = 0;
+    int parts = x->threads < 256 ? x->threads : 256;
+    for (int pass = 0; pass < (begin ? 2 : 1); pass++) {
+        #pragma omp parallel for num_threads(parts) schedule(static, 1)
+        for (int t = 0; t < parts; t++) {
+            int64_t found = pass ? counts[t] : 0;
+            for (int64_t i = n*t/parts; i < n*(t + 1)/parts; i++)
+                if (i == 0 || keys[i] >> bits != keys[i - 1] >> bits) {
+                    if (pass) begin[found] = i;
+                    found++;
+                }
+            if (!pass) counts[t] = found;
+        }
+        if (pass) break;
+        for (int t = 0; t < parts; t++) {
+            int64_t c = counts[t];
+            counts[t] = total;
+            total += c;
+        }
+    }
+    return total;
+}
+
+/* Blocks of particles from their sorted keys. `begin` is scratch for the starts of the runs. */
+static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tobi_exec *x, tobi_error *err)
+{
+    int64_t count = find_runs(keys, n, KEY_BITS, NULL, x);
+    TOBI_TRY(reserve_blocks(g, count, err));
+    int64_t *begin = malloc((size_t)(count + 1)*sizeof *begin);
+    if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
+    find_runs(keys, n, KEY_BITS, begin, x);
+    begin[count] = n;
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < count; k++) {
+        g->block_key[k] = keys[begin[k]] >> KEY_BITS;
+        g->block[k].begin = begin[k];
+        g->block[k].end = begin[k + 1];
+        corner_of(g, g->block_key[k], g->block[k].corner);
+    }
+    free(begin);
+    return TOBI_OK;
+}
+
+static int32_t find_key(const uint32_t *keys, int64_t n, uint32_t key)
+{
+    int64_t low = 0, high = n;
+    while (low < high) {
+        int64_t middle = (low + high)/2;
+        if (keys[middle] < key) low = middle + 1;
+        else high = middle;
+    }
+    return low < n && keys[low] == key ? (int32_t)low : -1;
+}
+
+/* Key of the block at offset o = (x + 1)*9 + (y + 1)*3 + z + 1. */
+static uint32_t beside(const mpm_grid *g, uint32_t key, int o)
+{
+    int64_t step = ((int64_t)(o/9 - 1)*g->count[1] + (o/3%3 - 1))*g->count[2] + (o%3 - 1);
+    return (uint32_t)((int64_t)key + step);
+}
+
+static int is_offset(const mpm_grid *g, int o) { return g->dimension == 3 || o%3 == 1; }
+
+/* Blocks of nodes: those around any block of particles. */
+static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
+{
+    int64_t around = g->dimension == 3 ? 27 : 9, n = g->block_count*around;
+    TOBI_TRY(reserve_scratch(g, 4*n*(int64_t)sizeof(uint32_t), err));
+    uint32_t *keys = (uint32_t *)(void *)g->scratch, *key_scratch = keys + n;
+    int32_t *order = (int32_t *)(void *)(keys + 2*n), *order_scratch = order + n;
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < g->block_count; k++)
+        for (int o = 0, at = 0; o < 27; o++)
+            if (is_offset(g, o)) keys[k*around + at++] = beside(g, g->block_key[k], o);
+    uint32_t limit = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
+    tobi_sort_by_key(x, n, limit, keys, order, key_scratch, order_scratch, g->histogram);
+    int64_t count = find_runs(keys, n, 0, NULL, x), *begin = malloc((size_t)(count + 1)*sizeof *begin);
+    if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
+    find_runs(keys, n, 0, begin, x);
+    tobi_status status = reserve_patches(g, count, err);
+    for (int64_t k = 0; k < count && status == TOBI_OK; k++) g->patch_key[k] = keys[begin[k]];
+    free(begin);
+    TOBI_TRY(status);
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < count; k++) {
+        mpm_patch *p = &g->patch[k];
+        corner_of(g, g->patch_key[k], p->corner);
+        for (int o = 0; o < 27; o++)
+            p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count, beside(g, g->patch_key[k], o)) : -1;
+    }
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < g->block_count; k++)
+        for (int o = 0; o < 27; o++)
+            g->block[k].around[o] =
+                is_offset(g, o) ? find_key(g->patch_key, count, beside(g, g->block_key[k], o)) : -1;
+    return TOBI_OK;
+}
+
+static tobi_status reserve_rest(mpm_grid *g, tobi_exec *x, tobi_error *err)
+{
+    int64_t most = g->patch_count > g->block_count ? g->patch_count : g->block_count;
+    TOBI_TRY(tobi_exec_reserve(x, most*TOBI_BLOCK, err));
+    return reserve_scratch(g, g->block_count*tile_nodes(g)*(int64_t)sizeof(tobi_float4), err);
+}
+
+tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err)
+{
+    int64_t n = p->count;
+    TOBI_TRY(find_box(g, p, inverse_cell, 0, x, err));
+    TOBI_TRY(reserve_scratch(g, n*(int64_t)(sizeof(int32_t) + sizeof(tobi_columns)) + 64, err));
+    /* The order first; the other three arrays of the sort share their place with the fields' copies. */
+    int32_t *order = (int32_t *)(void *)g->scratch, *order_scratch = order + n;
+    uint32_t *keys = (uint32_t *)(void *)(order + 2*n), *key_scratch = keys + n;
+    find_keys(g, p, inverse_cell, 0, x, keys);
+    uint32_t blocks = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
+    tobi_sort_by_key(x, n, blocks << KEY_BITS, keys, order, key_scratch, order_scratch, g->histogram);
+    TOBI_TRY(make_blocks(g, keys, n, x, err));
+    size_t room = ((size_t)n*sizeof *order + 63)/64*64;
+    tobi_particles_permute(p, order, g->scratch + room, x->threads);
+    TOBI_TRY(make_patches(g, x, err));
+    return reserve_rest(g, x, err);
+}
+
+tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_error *err)
+{
+    TOBI_TRY(find_box(g, p, 0, 1, x, err));
+    TOBI_TRY(reserve_scratch(g, p->count*(int64_t)sizeof(uint32_t), err));
+    uint32_t *keys = (uint32_t *)(void *)g->scratch;
+    find_keys(g, p, 0, 1, x, keys);
+    TOBI_TRY(make_blocks(g, keys, p->count, x, err));
+    TOBI_TRY(make_patches(g, x, err));
+    return reserve_rest(g, x, err);
+}
+
+void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
+{
+    v->block = g->block;
+    v->patch = g->patch;
+    v->node = g->node;
+    v->old = g->keep_old ? g->old : NULL;
+    v->tile = (tobi_float4 *)(void *)g->scratch;
+}

@@ -1,0 +1,30 @@
+/* The sparse grid: blocks of particles in memory order, and the blocks of nodes around them. Its memory
+   follows the material, not the domain. */
+#pragma once
+#include "exec/exec.h"
+#include "mpm/view.h"
+
+typedef struct mpm_grid {
+    int dimension;
+    mpm_block *block;
+    mpm_patch *patch;
+    uint32_t *block_key, *patch_key;   /* in rising order, for finding neighbours                */
+    int64_t block_count, patch_count, block_room, patch_room;
+    tobi_float4 *node, *old;           /* [patch_room][nodes]; old: NULL unless asked for         */
+    char *scratch;                     /* of the sort; the tiles in between                       */
+    int64_t scratch_bytes;
+    int64_t *histogram;
+    int low[3], count[3];              /* box of blocks that holds all, with one more around      */
+    int keep_old;
+} mpm_grid;
+
+tobi_status mpm_grid_create(mpm_grid *g, int dimension, int keep_old, const tobi_exec *x, tobi_error *err);
+void mpm_grid_free(mpm_grid *g);
+int64_t mpm_grid_bytes(const mpm_grid *g);
+
+/* Sorts the particles by the block and the cell of their base node and builds the blocks. */
+tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err);
+/* Builds the blocks of particles that are sorted: affine[i].c[a].w holds the corner of the block of each. */
+tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_error *err);
+/* Points the view at the blocks, nodes and tiles. */
+void mpm_grid_bind(const mpm_grid *g, mpm_view *v);

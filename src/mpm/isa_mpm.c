@@ -1,0 +1,18 @@
+/* Turns the transfers into loops, compiled once per instruction set. */
+#include "mpm/kernels.h"
+#include "mpm/transfer.k.h"
+
+#define JOIN_(a, b) a##_##b
+#define JOIN(a, b) JOIN_(a, b)
+
+MPM_KERNEL(scatter_2d, mpm_scatter, 2)
+MPM_KERNEL(collect_2d, mpm_collect, 2)
+MPM_KERNEL(gather_2d, mpm_gather, 2)
+MPM_KERNEL(scatter_3d, mpm_scatter, 3)
+MPM_KERNEL(collect_3d, mpm_collect, 3)
+MPM_KERNEL(gather_3d, mpm_gather, 3)
+
+const mpm_kernels JOIN(mpm_kernels, TOBI_ISA)[2] = {
+    {scatter_2d, collect_2d, gather_2d},
+    {scatter_3d, collect_3d, gather_3d},
+};

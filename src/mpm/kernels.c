@@ -1,0 +1,11 @@
+#include "mpm/kernels.h"
+
+const mpm_kernels *mpm_kernels_for(int isa, int dimension)
+{
+#if defined(__x86_64__)
+    if (isa >= 4) return &mpm_kernels_v4[dimension == 3];
+    if (isa == 3) return &mpm_kernels_v3[dimension == 3];
+#endif
+    (void)isa;
+    return &mpm_kernels_v2[dimension == 3];
+}

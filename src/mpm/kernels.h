@@ -1,0 +1,15 @@
+/* The kernels of the material point method for one instruction set and dimension. */
+#pragma once
+#include "exec/exec.h"
+#include "mpm/view.h"
+
+typedef struct mpm_kernels {
+    tobi_kernel scatter;               /* over particle blocks                                    */
+    tobi_kernel collect;               /* over node blocks                                        */
+    tobi_kernel gather;                /* over particle blocks                                    */
+} mpm_kernels;
+
+/* isa: exec's level. Static data, never NULL. */
+const mpm_kernels *mpm_kernels_for(int isa, int dimension);
+
+extern const mpm_kernels mpm_kernels_v2[2], mpm_kernels_v3[2], mpm_kernels_v4[2];

@@ -1,0 +1,287 @@
+/* The material point method in the form of Hu et al. 2018 (MLS-MPM): one explicit step. Particles carry the
+   state; velocities go to a grid, feel stress, gravity and walls there, and come back. Theory, with equation
+   numbers: docs/theory/mlsmpm.md. */
+#include "mpm/mlsmpm.h"
+#include "base/error.h"
+#include "mpm/grid.h"
+#include "mpm/kernels.h"
+#include "tobiuo/types.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a restart needs besides the particles. */
+enum { SPEED, STRAIN_DT, DRIFT, AGE, GRID_ENERGY, DISSIPATION, MEMORY };
+
+enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
+
+typedef struct mlsmpm {
+    tobi_mlsmpm_def def;
+    mpm_view view;
+    mpm_grid grid;
+    const mpm_kernels *kernels;
+    mpm_material material[TOBI_SOLID_LIMIT + 1];
+    double damping[TOBI_SOLID_LIMIT + 1];
+    double sound;                      /* m/s, the fastest of the materials                        */
+    double viscous_dt;                 /* s                                                        */
+    double cell;                       /* m                                                        */
+    double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
+    int built;                         /* blocks fit the particles                                 */
+} mlsmpm;
+
+static void choose_smoothing(const void *def, int *shape, double *support)
+{
+    (void)def;
+    *shape = TOBI_KERNEL_WENDLAND_C2;
+    *support = 2;
+}
+
+/* Constants of a material, and how fast sound is in it; hardened snow is up to e^2 times as stiff. */
+static mpm_material describe_material(const tobi_solid_def *d, double *sound)
+{
+    double mu = d->youngs_modulus/(2*(1 + d->poissons_ratio));
+    double lambda = d->youngs_modulus*d->poissons_ratio/((1 + d->poissons_ratio)*(1 - 2*d->poissons_ratio));
+    double sine = sin(d->friction_angle*acos(-1)/180);
+    double stiffness = d->model == TOBI_LIQUID ? d->bulk_modulus : lambda + 2*mu;
+    if (d->model == TOBI_SNOW && d->hardening > 0) stiffness *= exp(2);
+    *sound = d->model == TOBI_STATIONARY ? 0 : sqrt(stiffness/d->density);
+    return (mpm_material){
+        .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
+        .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
+        .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
+        .friction = (float)(sqrt(2.0/3)*2*sine/(3 - sine)), .keep = 1 };
+}
+
+static void add_planes(const tobi_simulation *s, mpm_view *v)
+{
+    v->plane_count = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        for (int side = 0; side < 2; side++) {
+            mpm_plane *p = &v->plane[v->plane_count++];
+            const double *velocity = side ? s->def.wall_velocity_max[a] : s->def.wall_velocity_min[a];
+            memset(p, 0, sizeof *p);
+            p->normal[a] = side ? -1 : 1;
+            p->offset = side ? -s->box.size[a] : 0;
+            p->kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            p->friction = (float)s->def.friction;
+            for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
+        }
+}
+
+static void bind_particles(const tobi_simulation *s, mlsmpm *m)
+{
+    const tobi_particles *p = &s->particles;
+    mpm_view *v = &m->view;
+    v->position = p->position;
+    v->velocity = p->velocity;
+    v->strain = p->strain;
+    v->affine = p->affine;
+    v->solid = p->fluid;
+    v->material = m->material;
+    v->cell = (float)m->cell;
+    v->inverse_cell = 1/m->cell;
+    v->affine_momentum = m->def.transfer == TOBI_APIC;
+    v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 0;
+    for (int a = 0; a < 3; a++) {
+        v->size[a] = s->box.size[a];
+        v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
+    }
+    add_planes(s, v);
+}
+
+static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
+{
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (s->box.periodic[a])
+            return tobi_fail(err, TOBI_UNSUPPORTED,
+                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip and separate");
+        if (s->box.size[a] > 1e8*m->cell)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "the domain has %g cells along %c, allowed are 1e8",
+                             s->box.size[a]/m->cell, "xyz"[a]);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+{
+    mlsmpm *m = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the method");
+    *state = m;
+    m->def = *(const tobi_mlsmpm_def *)def;
+    m->cell = m->def.cell*s->smoothing.spacing;
+    m->kernels = mpm_kernels_for(s->exec.isa, s->box.dimension);
+    m->memory[AGE] = -1;
+    m->viscous_dt = INFINITY;
+    tobi_status status = check_sides(s, m, err);
+    if (status == TOBI_OK)
+        status = mpm_grid_create(&m->grid, s->box.dimension, m->def.transfer == TOBI_FLIP, &s->exec, err);
+    if (status != TOBI_OK) {
+        free(m);
+        *state = NULL;
+        return status;
+    }
+    for (int k = 0; k < s->solid_count; k++) {
+        const tobi_solid_def *d = &s->solids[k].def;
+        double sound;
+        m->material[k] = describe_material(d, &sound);
+        m->damping[k] = d->damping;
+        m->sound = fmax(m->sound, sound);
+        if (d->model == TOBI_LIQUID && d->viscosity > 0)
+            m->viscous_dt = fmin(m->viscous_dt, 0.1*m->cell*m->cell*d->density/d->viscosity);
+    }
+    bind_particles(s, m);
+    return TOBI_OK;
+}
+
+/* Eq. (15): sound and particles cross less than a cell; a body at rest does not fall further in one step. */
+static double choose_dt(const tobi_simulation *s, const mlsmpm *m)
+{
+    double g = 0, speed = fmax(m->memory[SPEED], s->body_speed);
+    for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
+    double dt = fmin(m->def.cfl*m->cell/(m->sound + speed + 1e-30), m->viscous_dt);
+    dt = fmin(dt, 0.5*sqrt(m->cell/(sqrt(g) + 1e-30)));
+    dt = fmin(dt, 0.1);
+    if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
+    if (s->def.time_step > 0) dt = s->def.time_step/ceil(s->def.time_step/dt*(1 - 1e-9));
+    return dt;
+}
+
+/* Blocks are good as long as no particle can leave its tile, one cell around its block. */
+static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
+{
+    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.45*m->cell;
+    if (stale) {
+        TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
+        m->memory[AGE] = m->memory[DRIFT] = 0;
+    } else if (!m->built) {
+        TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->exec, err));
+    }
+    if (stale || !m->built)
+        for (int64_t k = 0; k < m->grid.patch_count; k++) {
+            mpm_patch *p = &m->grid.patch[k];
+            p->planes = 0;
+            for (int a = 0; a < s->box.dimension; a++)
+                p->planes |= p->corner[a] <= 0 || (p->corner[a] + 3)*m->cell >= s->box.size[a]*(1 - 1e-12);
+        }
+    m->built = 1;
+    mpm_grid_bind(&m->grid, &m->view);
+    tobi_stage_end(&s->stages, "sort", clock);
+    return TOBI_OK;
+}
+
+static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    s->body_speed = s->wall_speed;
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+    tobi_stage_end(&s->stages, "bodies", clock);
+    return TOBI_OK;
+}
+
+static void use_dt(const tobi_simulation *s, mlsmpm *m)
+{
+    m->view.dt = (float)s->dt;
+    m->view.strain_dt = (float)m->memory[STRAIN_DT];
+    for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);
+}
+
+static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
+    /* What the last step's grid had and its particles have not, and what this grid will lack. */
+    if (m->memory[AGE] > 0 || s->step > 0) m->memory[DISSIPATION] += m->memory[GRID_ENERGY] - t[0];
+    m->memory[GRID_ENERGY] = t[0];
+    tobi_stage_end(&s->stages, "to grid", clock);
+}
+
+static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, m->grid.patch_count, t);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
+    m->memory[DISSIPATION] += m->memory[GRID_ENERGY] - t[3];
+    m->memory[GRID_ENERGY] = t[4];
+    tobi_stage_end(&s->stages, "grid", clock);
+}
+
+static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
+{
+    double t[TOBI_TOTALS];
+    tobi_launch_each(&s->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
+    s->info.contacts = (int64_t)t[0];
+    s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
+    m->memory[DRIFT] += t[7];
+    m->memory[STRAIN_DT] = s->dt;
+    tobi_stage_end(&s->stages, "to particles", clock);
+}
+
+static tobi_status move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
+    tobi_stage_end(&s->stages, "bodies", clock);
+    return TOBI_OK;
+}
+
+static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+{
+    mlsmpm *m = state;
+    double clock = tobi_clock();
+    s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
+    use_dt(s, m);
+    TOBI_TRY(predict_bodies(s, &clock, err));
+    if (s->particles.count > 0) {
+        TOBI_TRY(sort_particles(s, m, &clock, err));
+        particles_to_grid(s, m, &clock);
+        solve_grid(s, m, &clock);
+        grid_to_particles(s, m, &clock);
+        m->memory[AGE]++;
+    }
+    TOBI_TRY(move_bodies(s, &clock, err));
+    s->time += s->dt;
+    s->step++;
+    s->info.density_converged = s->info.divergence_converged = 1;
+    return TOBI_OK;
+}
+
+static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
+{
+    (void)s; (void)state; (void)err;
+    return TOBI_OK;
+}
+
+static void derive(tobi_simulation *s, void *state, const char *field)
+{
+    (void)s; (void)state; (void)field;
+}
+
+/* After a load the blocks are built anew. */
+static int list_memory(void *state, double **values)
+{
+    mlsmpm *m = state;
+    m->built = 0;
+    *values = m->memory;
+    return MEMORY;
+}
+
+static void free_state(void *state)
+{
+    mlsmpm *m = state;
+    if (m) mpm_grid_free(&m->grid);
+    free(m);
+}
+
+const tobi_method tobi_mlsmpm = {
+    .name = "mlsmpm",
+    .doc = "The material point method (MLS-MPM) for elastic and plastic solids, liquids, snow and sand.",
+    .def_size = sizeof(tobi_mlsmpm_def),
+    .fields = TOBI_MPM,
+    .smoothing = choose_smoothing,
+    .create = create,
+    .step = step,
+    .refresh = refresh,
+    .derive = derive,
+    .memory = list_memory,
+    .free = free_state,
+};

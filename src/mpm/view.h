@@ -1,0 +1,67 @@
+/* What the kernels of the material point method see. The grid exists only around the particles: blocks of
+   4x4x4 nodes (2-D: 4x4). Particles are sorted by the block of their base node, the lowest of the 3 nodes per
+   axis that feel them, and may stray one cell before they are sorted again. So a block's particles reach the
+   nodes -1 .. 6 of its own counting: its tile of 8x8x8 nodes.
+
+   Fields of a particle beside those of every method (core/particles.h):
+     strain   columns of F - I;  w: volume at the start (m3), plastic state (materials.k.h), mass (kg)
+     affine   columns of the velocity gradient, 1/s
+   F lags behind: the gradient of the last step is put into it by the next one (docs/theory/mlsmpm.md). */
+#pragma once
+#include "core/particles.h"
+
+enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32 };
+
+typedef struct mpm_material {
+    int   model;                       /* tobi_model                                              */
+    float mu, lambda;                  /* Pa, Lame's                                              */
+    float bulk, viscosity;             /* Pa, Pa s; of liquids                                    */
+    float yield, hardening;            /* Pa, and Pa or 1                                         */
+    float compression, stretch;        /* 1, limits of snow                                       */
+    float friction;                    /* 1, alpha of Drucker and Prager                          */
+    float keep;                        /* share of the velocity kept in this step, by damping     */
+} mpm_material;
+
+/* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. */
+typedef struct mpm_block {
+    int32_t corner[3];                 /* cells from the domain's lower corner                    */
+    int64_t begin, end;                /* particles                                               */
+    int32_t around[27];                /* index of the node block at offset (x + 1)*9 + (y + 1)*3 + z + 1 */
+} mpm_block;
+
+/* Nodes of one block, and the particle blocks whose tiles reach it, -1 = none. */
+typedef struct mpm_patch {
+    int32_t corner[3];
+    int32_t planes;                    /* 1: a plane may reach it                                 */
+    int32_t cover[27];
+} mpm_patch;
+
+/* A half space that material may not enter: n . x < offset. x from the domain's lower corner. */
+typedef struct mpm_plane {
+    double normal[3], offset;          /* 1, m                                                    */
+    int    kind;                       /* tobi_wall                                               */
+    float  friction;                   /* 1, Coulomb                                              */
+    float  velocity[3];                /* m/s                                                     */
+} mpm_plane;
+
+typedef struct mpm_view {
+    tobi_double3 *TOBI_RESTRICT position;
+    tobi_float4 *TOBI_RESTRICT velocity;
+    tobi_columns *TOBI_RESTRICT strain, *TOBI_RESTRICT affine;
+    const uint8_t *TOBI_RESTRICT solid;
+    const mpm_material *TOBI_RESTRICT material;
+    const mpm_block *TOBI_RESTRICT block;
+    const mpm_patch *TOBI_RESTRICT patch;
+    tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
+    tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
+    tobi_float4 *TOBI_RESTRICT old;    /* the same before the forces; NULL unless transfer is flip  */
+    double inverse_cell;               /* 1/m                                                      */
+    float  cell;                       /* m                                                        */
+    float  dt, strain_dt;              /* s, of this step and of the gradients that strain lacks    */
+    int    affine_momentum;            /* 1: APIC                                                  */
+    float  flip;                       /* share of FLIP, 0 = none                                  */
+    float  gravity[3];
+    int    plane_count;
+    mpm_plane plane[MPM_PLANES];
+    double size[3];                    /* m, of the domain                                         */
+} mpm_view;

@@ -1,0 +1,148 @@
+/* What fills the world at the start: fluids and solids with their regions. */
+#include "base/error.h"
+#include "world/params.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
+static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
+{
+    double support = w->sim.smoothing.h/w->sim.smoothing.spacing;
+    char text[100];
+    if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
+    snprintf(text, sizeof text, "surface tension needs a support of 2.5 or more (3 is better); it is %g\n",
+             support);
+    return tobi_world_add_notes(w, "fluid", def->name, text, err);
+}
+
+/* Reads and places the mesh of a region; its volume as the integrals have it. */
+static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region *r, tobi_error *err)
+{
+    tobi_massprops props;
+    TOBI_TRY(tobi_mesh_read(f->mesh, &r->shape, err));
+    TOBI_TRY(tobi_mesh_transform(&r->shape, f->scale, f->rotation_axis, f->rotation_angle, f->translation,
+                                 err));
+    TOBI_TRY(tobi_mesh_orient(&r->shape, f->mesh, err));
+    tobi_mesh_box(&r->shape, r->lower, r->upper);
+    TOBI_TRY(dimension == 3 ? tobi_massprops_volume(&r->shape, &props, err)
+                            : tobi_massprops_section(&r->shape, &props, err));
+    r->volume = props.volume;
+    return TOBI_OK;
+}
+
+static tobi_status measure_region(const tobi_world *w, const tobi_fill_def *f, tobi_region *r, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    int flat = s->box.dimension == 2;
+    memcpy(r->lower, f->box_min, sizeof r->lower);
+    memcpy(r->upper, f->box_max, sizeof r->upper);
+    memcpy(r->velocity, f->velocity, sizeof r->velocity);
+    memcpy(r->spin, f->spin, sizeof r->spin);
+    r->radius = f->radius;
+    if (f->mesh) TOBI_TRY(load_shape(f, s->box.dimension, r, err));
+    for (int a = 0; a < 3; a++) {
+        if (f->mesh || !(f->radius > 0)) continue;
+        r->lower[a] = f->centre[a] - f->radius;
+        r->upper[a] = f->centre[a] + f->radius;
+    }
+    for (int a = 0; a < s->box.dimension; a++) {
+        if (!(r->upper[a] > r->lower[a]))
+            return tobi_fail(err, TOBI_INVALID, "box of a region: max %g is not above min %g along %c",
+                             r->upper[a], r->lower[a], "xyz"[a]);
+        if (r->upper[a] <= s->box.lower[a] || r->lower[a] >= s->box.lower[a] + s->box.size[a])
+            return tobi_fail(err, TOBI_INVALID,
+                             "a region (%g to %g m along %c) lies outside the domain (%g to %g m)",
+                             r->lower[a], r->upper[a], "xyz"[a], s->box.lower[a],
+                             s->box.lower[a] + s->box.size[a]);
+    }
+    if (f->mesh) return TOBI_OK;
+    double pi = acos(-1), side[3];
+    for (int a = 0; a < 3; a++) side[a] = flat && a == 2 ? 1 : r->upper[a] - r->lower[a];
+    r->volume = !(f->radius > 0) ? side[0]*side[1]*side[2]
+                : flat           ? pi*f->radius*f->radius
+                                 : 4*pi/3*f->radius*f->radius*f->radius;
+    return TOBI_OK;
+}
+
+/* Appends the regions of fluid or solid number `owner`; *volume is their sum, m3 (2-D: m2). */
+static tobi_status add_regions(tobi_world *w, const char *kind, const char *name, int owner,
+                               const tobi_fill_def *fills, int count, double *volume, tobi_error *err)
+{
+    tobi_region *more = realloc(w->regions, (size_t)(w->region_count + count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for regions");
+    w->regions = more;
+    int first = w->region_count;
+    *volume = 0;
+    for (int k = 0; k < count; k++) {
+        tobi_region *r = &w->regions[w->region_count];
+        memset(r, 0, sizeof *r);
+        r->owner = owner;
+        tobi_status status = measure_region(w, &fills[k], r, err);
+        w->region_count++;
+        *volume += r->volume;
+        if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
+        if (status == TOBI_OK) continue;
+        while (w->region_count > first) tobi_mesh_free(&w->regions[--w->region_count].shape);
+        return status;
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
+                                 const tobi_fill_def *fills, int fill_count, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
+    TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
+    if (!(w->method->fields & TOBI_SPH))
+        return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes solids, not fluids; a solid of model liquid is one",
+                         w->method->name);
+    if (s->fluid_count > 0 &&
+        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity ||
+         def->surface_tension != s->fluid[0].tension))
+        return tobi_fail(
+            err, TOBI_UNSUPPORTED,
+            "fluid '%s' differs from '%s' in density or viscosity or surface tension; "
+            "%s carries one material, "
+            "allowed are several fluids with the same values",
+            def->name ? def->name : "", s->fluid[0].name, w->method->name);
+    if (s->fluid_count == TOBI_FLUID_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
+    TOBI_TRY(note_support(w, def, err));
+    double volume;
+    TOBI_TRY(add_regions(w, "fluid", def->name, s->fluid_count, fills, fill_count, &volume, err));
+    tobi_fluid *f = &s->fluid[s->fluid_count++];
+    snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
+    f->density = def->density;
+    f->viscosity = def->viscosity;
+    f->tension = def->surface_tension;
+    memcpy(f->color, def->color, sizeof f->color);
+    f->visible = def->visible;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
+                                 int fill_count, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    double volume;
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
+    TOBI_TRY(tobi_param_check(&tobi_solid_table, def, err));
+    if (!(w->method->fields & TOBI_MPM))
+        return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes fluids, not solids; the method of solids is mlsmpm",
+                         w->method->name);
+    if (s->solid_count == TOBI_SOLID_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d solids", TOBI_SOLID_LIMIT);
+    tobi_solid *more = realloc(s->solids, (size_t)(s->solid_count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
+    s->solids = more;
+    TOBI_TRY(add_regions(w, "solid", def->name, s->solid_count, fills, fill_count, &volume, err));
+    tobi_solid *solid = &s->solids[s->solid_count++];
+    solid->def = *def;
+    snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
+    if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
+    return TOBI_OK;
+}
