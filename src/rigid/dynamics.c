@@ -1,6 +1,7 @@
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
 #include "rigid/broad.h"
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@ struct tobi_dynamics_state {
     tobi_shape *shapes;
     tobi_broad broad;
     tobi_contact_list contacts, before;
+    tobi_contact_list *part;     /* [threads] */
     tobi_solver solver;
 };
 
@@ -121,7 +123,8 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
     *out = NULL;
     notes[0] = '\0';
     if (d) d->shapes = calloc((size_t)count + 1, sizeof *d->shapes);
-    if (!d || !d->shapes) {
+    if (d) d->part = calloc((size_t)world->threads + 1, sizeof *d->part);
+    if (!d || !d->shapes || !d->part) {
         tobi_rigid_free(d);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", count);
     }
@@ -141,6 +144,8 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
 void tobi_rigid_free(tobi_dynamics_state *d)
 {
     if (!d) return;
+    for (int k = 0; d->part && k < d->world.threads; k++) free(d->part[k].at);
+    free(d->part);
     for (int k = 0; k < d->count; k++) tobi_facets_free(&d->shapes[k].facets);
     free(d->shapes);
     tobi_broad_free(&d->broad);
@@ -211,19 +216,46 @@ static int compare_contacts(const void *p, const void *q)
     return x->key < y->key ? -1 : x->key > y->key;
 }
 
-static void touch_sides(tobi_dynamics_state *d, int k)
+static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *out)
 {
     double margin = tobi_broad_margin(&d->broad, k);
+    if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
     for (int side = 0; side < 2*d->world.dimension; side++) {
-        int64_t first = d->contacts.count;
+        int64_t first = out->count;
         if (!d->world.wall[side/2]) continue;
-        tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin,
-                        &d->contacts);
-        for (int64_t i = first; i < d->contacts.count; i++) {
-            d->contacts.at[i].a = k;
-            d->contacts.at[i].b = -1 - side;
+        tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin, out);
+        for (int64_t i = first; i < out->count; i++) {
+            out->at[i].a = k;
+            out->at[i].b = -1 - side;
         }
     }
+}
+
+static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_contact_list *out)
+{
+    int64_t first = out->count;
+    double margin = tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b);
+    tobi_touch_bodies(&d->bodies[p.a], &d->shapes[p.a], &d->bodies[p.b], &d->shapes[p.b], margin, out);
+    for (int64_t i = first; i < out->count; i++) {
+        out->at[i].a = p.a;
+        out->at[i].b = p.b;
+    }
+}
+
+/* The threads' contacts in one list, sorted, so that nothing depends on who found which. */
+static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
+{
+    int failed = 0;
+    for (int i = 0; i < d->world.threads; i++) {
+        for (int64_t k = 0; k < d->part[i].count; k++) {
+            tobi_contact *c = tobi_contact_add(&d->contacts);
+            if (c) *c = d->part[i].at[k];
+        }
+        failed |= d->part[i].failed;
+    }
+    if (failed || d->contacts.failed) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
+    qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
+    return TOBI_OK;
 }
 
 static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
@@ -233,21 +265,16 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
-    for (int k = 0; k < d->count; k++)
-        if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED) touch_sides(d, k);
-    for (int64_t p = 0; p < d->broad.pair_count; p++) {
-        int a = d->broad.pairs[p].a, b = d->broad.pairs[p].b;
-        int64_t first = d->contacts.count;
-        tobi_touch_bodies(&d->bodies[a], &d->shapes[a], &d->bodies[b], &d->shapes[b],
-                          tobi_broad_margin(&d->broad, a) + tobi_broad_margin(&d->broad, b), &d->contacts);
-        for (int64_t i = first; i < d->contacts.count; i++) {
-            d->contacts.at[i].a = a;
-            d->contacts.at[i].b = b;
-        }
+#pragma omp parallel num_threads(d->world.threads)
+    {
+        tobi_contact_list *out = &d->part[omp_get_thread_num()];
+        out->count = 0;
+#pragma omp for schedule(dynamic, 4) nowait
+        for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
+#pragma omp for schedule(dynamic, 4)
+        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], out);
     }
-    if (d->contacts.failed) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
-    qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
-    return TOBI_OK;
+    return gather_contacts(d, err);
 }
 
 /* Contacts of the step before that are still there start from their impulses. */

@@ -10,6 +10,7 @@ typedef struct tobi_rigid_world {
     double size[3];              /* m, of the domain; its sides are at 0 and size               */
     int dimension;
     int wall[3];                 /* 0: no sides along this axis                                 */
+    int threads;                 /* that look for contacts; they do not change the result       */
 } tobi_rigid_world;
 
 typedef struct tobi_dynamics_state tobi_dynamics_state;

@@ -8,24 +8,24 @@ enum { MOST_SWEEPS = 50, LEAST_SWEEPS = 4, PUSH_SWEEPS = 10 };
 #define PUSH_SHARE 0.2     /* of an overlap beyond the slop, taken out per step                          */
 #define PUSH_MOST 2        /* slops, at most, per step                                                   */
 
-/* A body during the solve. */
+/* A body during the solve; the first stands for the sides. */
 struct tobi_solve_body {
-    double shift[3], turn[3][3];     /* inverse mass and inertia, 0 where locked               */
+    double speed[6];                 /* m/s, rad/s                                             */
     double push[6];                  /* m, rad: displacement so far                            */
+    double shift[3], turn[3][3];     /* inverse mass and inertia, 0 where locked               */
 };
 
 struct tobi_solve_row {
     tobi_contact *contact;
-    tobi_rigid *a, *b;               /* b NULL: a side                                         */
-    tobi_solve_body *ma, *mb;
-    double arm_a[3], arm_b[3];
+    tobi_solve_body *a, *b;
     double axis[3][3];               /* the normal and two tangents                            */
-    double turn_a[3][3], turn_b[3][3];         /* change of angular velocity per N s along them */
+    double lever_a[3][3], lever_b[3][3];       /* arm x axis                                   */
+    double spin_a[3][3], spin_b[3][3];         /* change of angular velocity per N s           */
     double mass[3];                  /* kg, effective along the axes; 0 = nothing can move     */
+    double sum[3];                   /* N s so far                                             */
+    double was[3], way[3];           /* N s: before this sweep, and the direction of search    */
     double target;                   /* m/s, the least speed apart                             */
     double friction;
-    double along[2];                 /* N s of friction along the tangents                     */
-    double was[3], way[3];           /* N s: before this sweep, and the direction of search    */
     double pushed;                   /* of the displacements                                   */
 };
 
@@ -41,7 +41,7 @@ static tobi_status reserve(tobi_solver *s, int64_t rows, int64_t bodies, tobi_er
 {
     void *r = grow(s->rows, &s->row_capacity, rows + 1, sizeof *s->rows);
     if (r) s->rows = r;
-    void *b = grow(s->bodies, &s->body_capacity, bodies + 1, sizeof *s->bodies);
+    void *b = grow(s->bodies, &s->body_capacity, bodies + 2, sizeof *s->bodies);
     if (b) s->bodies = b;
     if (r && b) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)rows);
@@ -59,99 +59,97 @@ static void make_tangents(double axis[3][3])
 }
 
 /* The response of one side to an impulse of 1 N s along an axis, m/s along that axis. */
-static double respond(const tobi_solve_body *m, const double arm[3], const double axis[3], double spin[3])
+static double respond(const tobi_solve_body *m, const double axis[3], const double lever[3], double spin[3])
 {
-    double lever[3], at[3], sum = 0;
-    vec3_cross(lever, arm, axis);
-    for (int i = 0; i < 3; i++) spin[i] = vec3_dot(m->turn[i], lever);
-    vec3_cross(at, spin, arm);
-    for (int i = 0; i < 3; i++) sum += axis[i]*axis[i]*m->shift[i] + axis[i]*at[i];
-    return sum;
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        spin[i] = vec3_dot(m->turn[i], lever);
+        sum += axis[i]*axis[i]*m->shift[i];
+    }
+    return sum + vec3_dot(spin, lever);
 }
 
-static double speed_along(const tobi_solve_row *r, int k)
+/* Of a six-vector, velocities or displacements: how fast the surfaces part along an axis. */
+static inline double part(const tobi_solve_row *r, int k, const double *a, const double *b)
 {
-    double at[3], v;
-    vec3_cross(at, r->a->angular_velocity, r->arm_a);
-    v = vec3_dot(r->axis[k], r->a->velocity) + vec3_dot(r->axis[k], at);
-    if (!r->b) return v;
-    vec3_cross(at, r->b->angular_velocity, r->arm_b);
-    return v - vec3_dot(r->axis[k], r->b->velocity) - vec3_dot(r->axis[k], at);
+    double d[3];
+    vec3_sub(d, a, b);
+    return vec3_dot(r->axis[k], d) + vec3_dot(r->lever_a[k], a + 3) - vec3_dot(r->lever_b[k], b + 3);
 }
 
-static void push(tobi_solve_row *r, int k, double impulse)
+static inline double speed_along(const tobi_solve_row *r, int k) { return part(r, k, r->a->speed, r->b->speed); }
+
+static inline void drive(const tobi_solve_row *r, int k, double impulse, double *a, double *b)
 {
     for (int i = 0; i < 3; i++) {
         double p = impulse*r->axis[k][i];
-        r->a->velocity[i] += p*r->ma->shift[i];
-        r->a->angular_velocity[i] += impulse*r->turn_a[k][i];
-        if (!r->b) continue;
-        r->b->velocity[i] -= p*r->mb->shift[i];
-        r->b->angular_velocity[i] -= impulse*r->turn_b[k][i];
+        a[i] += p*r->a->shift[i];
+        a[3 + i] += impulse*r->spin_a[k][i];
+        b[i] -= p*r->b->shift[i];
+        b[3 + i] -= impulse*r->spin_b[k][i];
     }
+}
+
+static inline void push(tobi_solve_row *r, int k, double impulse)
+{
+    r->sum[k] += impulse;
+    drive(r, k, impulse, r->a->speed, r->b->speed);
 }
 
 /* Speed apart that a contact must reach (R.7): to bounce if it arrives in this step, or to close its gap
    and no more. */
-static void set_target(tobi_solve_row *r, double dt, double bounce)
+static void set_target(tobi_solve_row *r, double restitution, double dt, double bounce)
 {
     double speed = speed_along(r, 0), open = fmax(r->contact->gap, 0);
-    double e = r->b ? fmax(r->a->restitution, r->b->restitution) : r->a->restitution;
     r->target = -open/dt;
-    if (speed < -bounce && -speed*dt > open) r->target = fmax(r->target, -e*speed);
+    if (speed < -bounce && -speed*dt > open) r->target = fmax(r->target, -restitution*speed);
 }
 
-static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_contact *c, tobi_body *bodies)
+static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_contact *c, const tobi_body *bodies)
 {
+    const tobi_rigid *a = &bodies[c->a].rigid, *b = c->b >= 0 ? &bodies[c->b].rigid : NULL;
+    double arm_a[3], arm_b[3] = { 0, 0, 0 };
     memset(r, 0, sizeof *r);
     r->contact = c;
-    r->a = &bodies[c->a].rigid;
-    r->ma = &s->bodies[c->a];
-    vec3_sub(r->arm_a, c->point, r->a->position);
-    r->friction = r->a->friction;
-    if (c->b >= 0) {
-        r->b = &bodies[c->b].rigid;
-        r->mb = &s->bodies[c->b];
-        vec3_sub(r->arm_b, c->point, r->b->position);
-        r->friction = sqrt(r->a->friction*r->b->friction);
-    }
+    r->a = &s->bodies[1 + c->a];
+    r->b = b ? &s->bodies[1 + c->b] : &s->bodies[0];
+    r->friction = b ? sqrt(a->friction*b->friction) : a->friction;
+    vec3_sub(arm_a, c->point, a->position);
+    if (b) vec3_sub(arm_b, c->point, b->position);
     memcpy(r->axis[0], c->normal, sizeof r->axis[0]);
     make_tangents(r->axis);
     for (int k = 0; k < 3; k++) {
-        double sum = respond(r->ma, r->arm_a, r->axis[k], r->turn_a[k]);
-        if (r->b) sum += respond(r->mb, r->arm_b, r->axis[k], r->turn_b[k]);
+        vec3_cross(r->lever_a[k], arm_a, r->axis[k]);
+        vec3_cross(r->lever_b[k], arm_b, r->axis[k]);
+        double sum = respond(r->a, r->axis[k], r->lever_a[k], r->spin_a[k]) +
+                     respond(r->b, r->axis[k], r->lever_b[k], r->spin_b[k]);
         r->mass[k] = sum > 0 ? 1/sum : 0;
     }
 }
 
 static void warm_start(tobi_solve_row *r)
 {
-    for (int k = 0; k < 2; k++) r->along[k] = vec3_dot(r->axis[1 + k], r->contact->slide);
-    if (r->mass[0] == 0) r->contact->impulse = 0;
-    for (int k = 0; k < 2; k++) {
-        if (r->mass[1 + k] == 0) r->along[k] = 0;
-        push(r, 1 + k, r->along[k]);
-    }
-    push(r, 0, r->contact->impulse);
+    double before[3] = { r->contact->impulse, vec3_dot(r->axis[1], r->contact->slide),
+                         vec3_dot(r->axis[2], r->contact->slide) };
+    for (int k = 0; k < 3; k++)
+        if (r->mass[k] > 0) push(r, k, before[k]);
 }
 
 /* One contact: friction within Coulomb's cone, then the normal. Returns the largest change, m/s. */
 static double solve_row(tobi_solve_row *r)
 {
-    double want[2], limit = r->friction*fmax(0, r->contact->impulse), change = 0;
-    for (int k = 0; k < 2; k++) want[k] = r->along[k] - r->mass[1 + k]*speed_along(r, 1 + k);
-    double size = sqrt(want[0]*want[0] + want[1]*want[1]), keep = size > limit ? limit/size : 1;
-    for (int k = 0; k < 2; k++) {
-        double more = keep*want[k] - r->along[k];
-        if (r->mass[1 + k] == 0) continue;
-        r->along[k] += more;
-        push(r, 1 + k, more);
-        change = fmax(change, fabs(more)/r->mass[1 + k]);
+    double want[3], limit = r->friction*fmax(0, r->sum[0]), change = 0;
+    for (int k = 1; k < 3; k++) want[k] = r->sum[k] - r->mass[k]*speed_along(r, k);
+    double size2 = want[1]*want[1] + want[2]*want[2];
+    double keep = size2 > limit*limit ? limit/sqrt(size2) : 1;
+    for (int k = 1; k < 3; k++) {
+        double more = keep*want[k] - r->sum[k];
+        if (r->mass[k] == 0) continue;
+        push(r, k, more);
+        change = fmax(change, fabs(more)/r->mass[k]);
     }
     if (r->mass[0] == 0) return change;
-    double sum = fmax(0, r->contact->impulse + r->mass[0]*(r->target - speed_along(r, 0)));
-    double more = sum - r->contact->impulse;
-    r->contact->impulse = sum;
+    double more = fmax(-r->sum[0], r->mass[0]*(r->target - speed_along(r, 0)));
     push(r, 0, more);
     return fmax(change, fabs(more)/r->mass[0]);
 }
@@ -166,8 +164,6 @@ static double sweep(tobi_solver *s, int64_t count)
     return change;
 }
 
-static double *impulse_of(tobi_solve_row *r, int k) { return k ? &r->along[k - 1] : &r->contact->impulse; }
-
 /* What the last sweep changed, squared, in units of energy. */
 static double measure_change(tobi_solver *s, int64_t count)
 {
@@ -175,7 +171,7 @@ static double measure_change(tobi_solver *s, int64_t count)
     for (int64_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
             tobi_solve_row *r = &s->rows[i];
-            double d = *impulse_of(r, k) - r->was[k];
+            double d = r->sum[k] - r->was[k];
             if (r->mass[k] > 0) sum += d*d/r->mass[k];
         }
     return sum;
@@ -188,10 +184,8 @@ static void go_on(tobi_solver *s, int64_t count, double beta)
         for (int k = 0; k < 3; k++) {
             tobi_solve_row *r = &s->rows[i];
             double step = beta*r->way[k];
-            r->way[k] = step + *impulse_of(r, k) - r->was[k];
-            if (step == 0 || r->mass[k] == 0) continue;
-            *impulse_of(r, k) += step;
-            push(r, k, step);
+            r->way[k] = step + r->sum[k] - r->was[k];
+            if (step != 0 && r->mass[k] > 0) push(r, k, step);
         }
 }
 
@@ -201,10 +195,8 @@ static void sweep_all(tobi_solver *s, int64_t count, double scale)
 {
     double before = 0;
     s->sweeps = 0;
-    for (int64_t i = 0; i < count; i++) memset(s->rows[i].way, 0, sizeof s->rows[i].way);
     for (;;) {
-        for (int64_t i = 0; i < count; i++)
-            for (int k = 0; k < 3; k++) s->rows[i].was[k] = *impulse_of(&s->rows[i], k);
+        for (int64_t i = 0; i < count; i++) memcpy(s->rows[i].was, s->rows[i].sum, sizeof s->rows[i].was);
         double change = sweep(s, count);
         if (s->sweeps >= MOST_SWEEPS || (s->sweeps >= LEAST_SWEEPS && change <= SETTLED*scale)) return;
         double now = measure_change(s, count), beta = before > 0 ? now/before : 0;
@@ -219,43 +211,63 @@ static void push_out(tobi_solver *s, int64_t count)
     for (int sweep = 0; sweep < PUSH_SWEEPS; sweep++)
         for (int64_t k = 0; k < count; k++) {
             tobi_solve_row *r = &s->rows[k];
-            double over = -r->contact->gap - r->contact->slop, at[3];
+            double over = -r->contact->gap - r->contact->slop;
             double target = over > 0 ? fmin(PUSH_SHARE*over, PUSH_MOST*r->contact->slop) : over;
-            vec3_cross(at, r->ma->push + 3, r->arm_a);
-            double now = vec3_dot(r->axis[0], r->ma->push) + vec3_dot(r->axis[0], at);
-            if (r->b) {
-                vec3_cross(at, r->mb->push + 3, r->arm_b);
-                now -= vec3_dot(r->axis[0], r->mb->push) + vec3_dot(r->axis[0], at);
-            }
-            double sum = fmax(0, r->pushed + r->mass[0]*(target - now)), more = sum - r->pushed;
-            r->pushed = sum;
-            for (int i = 0; i < 3; i++) {
-                r->ma->push[i] += more*r->axis[0][i]*r->ma->shift[i];
-                r->ma->push[3 + i] += more*r->turn_a[0][i];
-                if (!r->b) continue;
-                r->mb->push[i] -= more*r->axis[0][i]*r->mb->shift[i];
-                r->mb->push[3 + i] -= more*r->turn_b[0][i];
-            }
+            double more = r->mass[0]*(target - part(r, 0, r->a->push, r->b->push));
+            more = fmax(-r->pushed, more);
+            r->pushed += more;
+            if (more != 0) drive(r, 0, more, r->a->push, r->b->push);
         }
 }
 
 /* Leaves impulses with the contact, and momentum and force with the bodies. */
-static void finish(tobi_solve_row *r, double dt)
+static void finish(tobi_solve_row *r, tobi_body *bodies, double dt)
 {
     tobi_contact *c = r->contact;
-    double p[3], spin[3];
-    for (int i = 0; i < 3; i++) {
-        c->slide[i] = r->along[0]*r->axis[1][i] + r->along[1]*r->axis[2][i];
-        p[i] = c->impulse*c->normal[i] + c->slide[i];
-    }
+    c->impulse = r->sum[0];
+    for (int i = 0; i < 3; i++) c->slide[i] = r->sum[1]*r->axis[1][i] + r->sum[2]*r->axis[2][i];
     for (int side = 0; side < 2; side++) {
-        tobi_rigid *body = side ? r->b : r->a;
-        if (!body) continue;
-        vec3_cross(spin, side ? r->arm_b : r->arm_a, p);
-        vec3_add_scaled(body->momentum, body->momentum, side ? -1 : 1, spin);
-        vec3_add_scaled(body->contact_force, body->contact_force, (side ? -1 : 1)/dt, p);
-        vec3_add_scaled(body->contact_torque, body->contact_torque, (side ? -1 : 1)/dt, spin);
+        int body = side ? c->b : c->a;
+        if (body < 0) continue;
+        tobi_rigid *b = &bodies[body].rigid;
+        for (int k = 0; k < 3; k++) {
+            double p = side ? -r->sum[k] : r->sum[k];
+            const double *lever = side ? r->lever_b[k] : r->lever_a[k];
+            vec3_add_scaled(b->momentum, b->momentum, p, lever);
+            vec3_add_scaled(b->contact_force, b->contact_force, p/dt, r->axis[k]);
+            vec3_add_scaled(b->contact_torque, b->contact_torque, p/dt, lever);
+        }
     }
+}
+
+static void take_bodies(tobi_solver *s, const tobi_body *bodies, int count)
+{
+    memset(s->bodies, 0, (size_t)(count + 1)*sizeof *s->bodies);
+    for (int k = 0; k < count; k++) {
+        tobi_solve_body *b = &s->bodies[1 + k];
+        memcpy(b->speed, bodies[k].rigid.velocity, 3*sizeof(double));
+        memcpy(b->speed + 3, bodies[k].rigid.angular_velocity, 3*sizeof(double));
+        tobi_rigid_inverse(&bodies[k].rigid, b->shift, b->turn);
+    }
+}
+
+static void give_bodies(const tobi_solver *s, tobi_body *bodies, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const tobi_solve_body *b = &s->bodies[1 + k];
+        tobi_rigid *r = &bodies[k].rigid;
+        if (r->kind == TOBI_PRESCRIBED) continue;
+        memcpy(r->velocity, b->speed, sizeof r->velocity);
+        memcpy(r->push, b->push, sizeof r->push);
+        memcpy(r->turn, b->push + 3, sizeof r->turn);
+        tobi_rigid_settle(r);
+    }
+}
+
+static double restitution_of(const tobi_contact *c, const tobi_body *bodies)
+{
+    double e = bodies[c->a].rigid.restitution;
+    return c->b >= 0 ? fmax(e, bodies[c->b].rigid.restitution) : e;
 }
 
 tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_contact_list *contacts,
@@ -264,26 +276,18 @@ tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_c
     int64_t count = contacts->count;
     double fastest = 0;
     TOBI_TRY(reserve(s, count, body_count, err));
-    for (int k = 0; k < body_count; k++) {
-        memset(&s->bodies[k], 0, sizeof s->bodies[k]);
-        tobi_rigid_inverse(&bodies[k].rigid, s->bodies[k].shift, s->bodies[k].turn);
-    }
+    take_bodies(s, bodies, body_count);
     for (int64_t k = 0; k < count; k++) {
-        prepare(s, &s->rows[k], &contacts->at[k], bodies);
-        set_target(&s->rows[k], dt, bounce);
-        fastest = fmax(fastest, fmax(0, s->rows[k].target - speed_along(&s->rows[k], 0)));
+        tobi_solve_row *r = &s->rows[k];
+        prepare(s, r, &contacts->at[k], bodies);
+        set_target(r, restitution_of(r->contact, bodies), dt, bounce);
+        fastest = fmax(fastest, fmax(0, r->target - speed_along(r, 0)));
     }
     for (int64_t k = 0; k < count; k++) warm_start(&s->rows[k]);
     sweep_all(s, count, fastest);
     push_out(s, count);
-    for (int64_t k = 0; k < count; k++) finish(&s->rows[k], dt);
-    for (int k = 0; k < body_count; k++) {
-        tobi_rigid *r = &bodies[k].rigid;
-        if (r->kind == TOBI_PRESCRIBED) continue;
-        memcpy(r->push, s->bodies[k].push, sizeof r->push);
-        memcpy(r->turn, s->bodies[k].push + 3, sizeof r->turn);
-        tobi_rigid_settle(r);
-    }
+    for (int64_t k = 0; k < count; k++) finish(&s->rows[k], bodies, dt);
+    give_bodies(s, bodies, body_count);
     return TOBI_OK;
 }
 

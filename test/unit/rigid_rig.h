@@ -28,6 +28,7 @@ static inline void rig_open(rig *g, double size, const double gravity[3])
     memset(g, 0, sizeof *g);
     tobi_box_init(&g->box, 3, lower, upper, periodic, 0.1*size);
     g->world.dimension = 3;
+    g->world.threads = 1;
     for (int a = 0; a < 3; a++) {
         g->world.gravity[a] = gravity[a];
         g->world.size[a] = size;
