@@ -391,7 +391,7 @@ void tobi_body_free(tobi_body *b)
     memset(b, 0, sizeof *b);
 }
 
-/* What the points have of their velocities while no force acts. */
+/* The drift of a free body, and the velocities its points have now. */
 static void predict_free(tobi_body *b, double dt)
 {
     tobi_rigid *r = &b->rigid;
@@ -423,6 +423,7 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
         fastest = fmax(fastest, vec3_dot(b->vertex_velocity[i], b->vertex_velocity[i]));
     }
     *speed = fmax(*speed, sqrt(fastest));
+    if (!prescribed) return TOBI_OK;
     tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
                              (const double (*)[3])b->vertex_velocity, b->piece_velocity);
     gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity);
@@ -450,7 +451,6 @@ static void advance_free(tobi_body *b)
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];
     swap_vertices(b);
-    update_surface(b);
     tobi_body_report(b);
 }
 

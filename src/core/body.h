@@ -27,7 +27,8 @@ typedef struct tobi_body {
     double (*vertex)[3];             /* now                                                    */
     double (*next)[3];               /* at the end of the step                                 */
     double (*vertex_velocity)[3];    /* mean over the step                                     */
-    tobi_bvh *bvh;                   /* of `vertex`                                            */
+    tobi_bvh *bvh;                   /* of `vertex`; of a free body, as the quadrature points, only
+                                        where tobi_body_place last put it: contact uses rest_bvh */
 
     tobi_surface surface;            /* pieces of the triangles                                */
     double (*piece)[3], (*piece_normal)[3], (*piece_velocity)[3];

@@ -55,3 +55,9 @@ void tobi_bvh_look_up(const tobi_bvh *bvh, const double p[3], tobi_bvh_crossing_
    of a triangle, is no hit. Neighbouring triangles decide about their common edge with the same
    arithmetic, so nothing slips through an edge. */
 int tobi_bvh_segment_hits(const tobi_bvh *bvh, const double a[3], const double b[3]);
+
+/* Calls visit for every triangle that may touch the box from lower to upper (m), in tree order; some that
+   only come near it, too. */
+typedef void tobi_bvh_visit_fn(void *user, int32_t triangle);
+void tobi_bvh_touching(const tobi_bvh *bvh, const double lower[3], const double upper[3],
+                       tobi_bvh_visit_fn *visit, void *user);

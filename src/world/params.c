@@ -273,6 +273,36 @@ static const tobi_param body_rows[] = {
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
       .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body." },
+    { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
+      .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
+             "program." },
+    { .key = "mass", REAL, AT(tobi_body_def, mass), FROM(0), .unit = "kg", .text = "by density",
+      .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
+    { .key = "inertia", VEC3, AT(tobi_body_def, inertia), FROM(0), .unit = "kg m2", .text = "mesh",
+      .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain as "
+             "the body starts; mesh takes that of the mesh, for the mass it has." },
+    { .key = "inertia_products", VEC3, AT(tobi_body_def, inertia_products), ANY, .unit = "kg m2",
+      .doc = "Entries xy, xz, yz of a given inertia matrix." },
+    { .key = "velocity", VEC3, AT(tobi_body_def, velocity), ANY, .unit = "m/s",
+      .doc = "Velocity of the centre of mass of a free or controlled body at the start." },
+    { .key = "angular_velocity", VEC3, AT(tobi_body_def, angular_velocity), ANY, .unit = "rad/s",
+      .doc = "Its angular velocity at the start." },
+    { .key = "force", VEC3, AT(tobi_body_def, force), ANY, .unit = "N",
+      .doc = "Constant force on its centre of mass, besides gravity." },
+    { .key = "torque", VEC3, AT(tobi_body_def, torque), ANY, .unit = "N m",
+      .doc = "Constant torque on it." },
+    { .key = "air_resistance", REAL, AT(tobi_body_def, air_resistance), FROM(0), .unit = "1/s",
+      .text = "none", .doc = "Its velocity and its angular momentum decay like exp(-air_resistance t)." },
+    { .key = "restitution", REAL, AT(tobi_body_def, restitution), RANGE(0, 1), .unit = "1",
+      .doc = "Speed after over speed before a collision; of two bodies the larger value counts, at a side of "
+             "the domain the body's." },
+    { .key = "friction_coefficient", REAL, AT(tobi_body_def, friction_coefficient), .def = { 0.5 }, FROM(0),
+      .unit = "1",
+      .doc = "Coulomb friction; of two bodies the square root of the product counts, at a side of the domain "
+             "the body's." },
+    { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
+      .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a free "
+             "or controlled body does not move, with commas between: \"x,y,turn\"." },
     { 0 }
 };
 

@@ -1,0 +1,360 @@
+#include "rigid/dynamics.h"
+#include "geom/vec3.h"
+#include "rigid/broad.h"
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PLASTIC 3.0          /* times gravity and step: slower approaches do not bounce                 */
+#define PLASTIC_LEAST 1e-3   /* m/s, the same without gravity                                           */
+
+struct tobi_dynamics_state {
+    tobi_body *bodies;
+    int count;
+    tobi_rigid_world world;
+    tobi_shape *shapes;
+    tobi_broad broad;
+    tobi_contact_list contacts, before;
+    tobi_contact_list *part;     /* [threads] */
+    tobi_solver solver;
+};
+
+int tobi_rigid_any(const tobi_body *bodies, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
+    return 0;
+}
+
+/* --- start ------------------------------------------------------------------------------------- */
+
+static tobi_status make_shape(tobi_body *b, tobi_shape *s, int dimension, tobi_error *err)
+{
+    memset(s, 0, sizeof *s);
+    s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
+    s->solid = !b->deforms;
+    if (!s->solid) return TOBI_OK;
+    TOBI_TRY(tobi_body_need_rest(b, err));
+    return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
+                             err);
+}
+
+/* Adds a line to the notes; lines that do not fit are left out. */
+static void note(char *notes, size_t room, const char *line)
+{
+    size_t used = strlen(notes);
+    if (used + strlen(line) + 2 < room) snprintf(notes + used, room - used, "%s\n", line);
+}
+
+/* How deep two bodies are in each other, m; INFINITY if one has corners far inside the other. */
+static double find_overlap(tobi_dynamics_state *d, int a, int b)
+{
+    double deepest = 0;
+    d->contacts.count = 0;
+    tobi_touch_bodies(&d->bodies[a], &d->shapes[a], &d->bodies[b], &d->shapes[b], 0, &d->contacts);
+    for (int64_t k = 0; k < d->contacts.count; k++)
+        if (-d->contacts.at[k].gap > 2*d->contacts.at[k].slop)
+            deepest = fmax(deepest, -d->contacts.at[k].gap);
+    for (int side = 0; side < 2 && deepest == 0; side++) {
+        int i = side ? b : a, j = side ? a : b;
+        const tobi_facets *f = &d->shapes[i].facets;
+        const tobi_body *other = &d->bodies[j];
+        double least = 0.02*fmin(d->shapes[a].thickness, d->shapes[b].thickness);
+        for (int64_t k = 0; k < f->corner_count && deepest == 0; k++) {
+            double x[3];
+            tobi_bvh_hit hit;
+            memcpy(x, d->bodies[i].vertex[f->corner[k]], sizeof x);
+            vec3_sub(x, x, other->rigid.position);
+            tobi_broad_turn_back(&other->rigid, x);
+            if (tobi_bvh_inside(d->shapes[j].facets.bvh, x) &&
+                tobi_bvh_closest(d->shapes[j].facets.bvh, x, INFINITY, &hit) && hit.distance > least)
+                deepest = hit.distance;
+        }
+    }
+    return deepest;
+}
+
+static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t room, tobi_error *err)
+{
+    enum { NAMED = 5 };
+    int found = 0;
+    char line[300];
+    TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, 0, err));
+    for (int64_t k = 0; k < d->broad.pair_count; k++) {
+        int a = d->broad.pairs[k].a, b = d->broad.pairs[k].b;
+        double deep = find_overlap(d, a, b);
+        if (deep == 0 || ++found > NAMED) continue;
+        snprintf(line, sizeof line, "overlaps body '%s' by %.3g m at the start; contact pushes them apart",
+                 d->bodies[b].name, deep);
+        char whole[400];
+        snprintf(whole, sizeof whole, "'%s' %s", d->bodies[a].name, line);
+        note(notes, room, whole);
+    }
+    if (found > NAMED) {
+        snprintf(line, sizeof line, "%d more pairs of bodies overlap at the start", found - NAMED);
+        note(notes, room, line);
+    }
+    d->contacts.count = 0;
+    return d->contacts.failed ? tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts") : TOBI_OK;
+}
+
+static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
+{
+    char line[300];
+    for (int k = 0; k < d->count; k++) {
+        const tobi_body *b = &d->bodies[k];
+        const tobi_facets *f = &d->shapes[k].facets;
+        if (!d->shapes[k].solid)
+            snprintf(line, sizeof line, "'%s' deforms: free bodies pass through it", b->name);
+        else if (f->ball > 0)
+            snprintf(line, sizeof line,
+                     "'%s' is taken for a ball of radius %.6g m in contact with bodies and sides; its faces "
+                     "lie up to %.2g m below", b->name, f->ball, f->ball_gap);
+        else continue;
+        note(notes, room, line);
+    }
+}
+
+tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
+                             size_t room, tobi_dynamics_state **out, tobi_error *err)
+{
+    tobi_dynamics_state *d = calloc(1, sizeof *d);
+    *out = NULL;
+    notes[0] = '\0';
+    if (d) d->shapes = calloc((size_t)count + 1, sizeof *d->shapes);
+    if (d) d->part = calloc((size_t)world->threads + 1, sizeof *d->part);
+    if (!d || !d->shapes || !d->part) {
+        tobi_rigid_free(d);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", count);
+    }
+    d->bodies = bodies;
+    d->count = count;
+    d->world = *world;
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < count && status == TOBI_OK; k++)
+        status = make_shape(&bodies[k], &d->shapes[k], world->dimension, err);
+    if (status == TOBI_OK) note_shapes(d, notes, room);
+    if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
+    if (status == TOBI_OK) *out = d;
+    else tobi_rigid_free(d);
+    return status;
+}
+
+void tobi_rigid_free(tobi_dynamics_state *d)
+{
+    if (!d) return;
+    for (int k = 0; d->part && k < d->world.threads; k++) free(d->part[k].at);
+    free(d->part);
+    for (int k = 0; k < d->count; k++) tobi_facets_free(&d->shapes[k].facets);
+    free(d->shapes);
+    tobi_broad_free(&d->broad);
+    free(d->contacts.at);
+    free(d->before.at);
+    tobi_solver_free(&d->solver);
+    free(d);
+}
+
+/* --- the kick ---------------------------------------------------------------------------------- */
+
+static tobi_status run_control(tobi_body *b, double t, double force[3], double torque[3], tobi_error *err)
+{
+    tobi_rigid *r = &b->rigid;
+    tobi_control_input in = { .time = t, .mass = r->mass, .phase = (int)r->phase,
+                              .phase_time = t - r->phase_start };
+    tobi_control_output out = { .phase = in.phase };
+    char unknown[32];
+    vec3_add_scaled(in.position, b->lower, 1, r->position);
+    memcpy(in.orientation, r->orientation, sizeof in.orientation);
+    memcpy(in.velocity, r->velocity, sizeof in.velocity);
+    memcpy(in.angular_velocity, r->angular_velocity, sizeof in.angular_velocity);
+    memcpy(in.contact_force, r->contact_force, sizeof in.contact_force);
+    memcpy(in.contact_torque, r->contact_torque, sizeof in.contact_torque);
+    TOBI_TRY(r->control(r->control_user, &in, &out, err));
+    int hold = tobi_rigid_axes(out.hold, unknown);
+    if (hold < 0)
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', which is no axis; "
+                         "allowed are x, y, z, turn_x, turn_y, turn_z, shift and turn", b->name, unknown);
+    if (!isfinite(vec3_dot(out.force, out.force) + vec3_dot(out.torque, out.torque)))
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force or torque that is "
+                         "not finite at t = %.9g s", b->name, t);
+    if (out.phase != in.phase) r->phase_start = t;
+    r->phase = out.phase;
+    r->hold = hold;
+    vec3_add_scaled(force, force, 1, out.force);
+    vec3_add_scaled(torque, torque, 1, out.torque);
+    return TOBI_OK;
+}
+
+/* Velocities after all forces but contact (R.5). Air resistance acts on what the other forces made. */
+static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double dt, tobi_error *err)
+{
+    tobi_rigid *r = &b->rigid;
+    double force[3], torque[3], keep = exp(-r->air_resistance*dt);
+    memcpy(force, r->force, sizeof force);
+    memcpy(torque, r->torque, sizeof torque);
+    if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
+    for (int a = 0; a < 3; a++) {
+        double dv = dt*(d->world.gravity[a] + force[a]/r->mass) + r->impulse[a]/r->mass;
+        r->velocity[a] = keep*(r->velocity[a] + dv);
+        r->momentum[a] = keep*(r->momentum[a] + dt*torque[a] + r->twist[a]);
+        r->contact_force[a] = r->impulse[a]/dt;
+        r->contact_torque[a] = r->twist[a]/dt;
+        r->impulse[a] = r->twist[a] = 0;
+    }
+    tobi_rigid_settle(r);
+    return TOBI_OK;
+}
+
+/* --- contact ----------------------------------------------------------------------------------- */
+
+static int compare_contacts(const void *p, const void *q)
+{
+    const tobi_contact *x = p, *y = q;
+    if (x->a != y->a) return x->a < y->a ? -1 : 1;
+    if (x->b != y->b) return x->b < y->b ? -1 : 1;
+    return x->key < y->key ? -1 : x->key > y->key;
+}
+
+static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *out)
+{
+    double margin = tobi_broad_margin(&d->broad, k);
+    if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
+    for (int side = 0; side < 2*d->world.dimension; side++) {
+        int64_t first = out->count;
+        if (!d->world.wall[side/2]) continue;
+        tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin, out);
+        for (int64_t i = first; i < out->count; i++) {
+            out->at[i].a = k;
+            out->at[i].b = -1 - side;
+        }
+    }
+}
+
+static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_contact_list *out)
+{
+    int64_t first = out->count;
+    double margin = tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b);
+    tobi_touch_bodies(&d->bodies[p.a], &d->shapes[p.a], &d->bodies[p.b], &d->shapes[p.b], margin, out);
+    for (int64_t i = first; i < out->count; i++) {
+        out->at[i].a = p.a;
+        out->at[i].b = p.b;
+    }
+}
+
+/* The threads' contacts in one list, sorted, so that nothing depends on who found which. */
+static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
+{
+    int failed = 0;
+    for (int i = 0; i < d->world.threads; i++) {
+        for (int64_t k = 0; k < d->part[i].count; k++) {
+            tobi_contact *c = tobi_contact_add(&d->contacts);
+            if (c) *c = d->part[i].at[k];
+        }
+        failed |= d->part[i].failed;
+    }
+    if (failed || d->contacts.failed) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
+    qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
+    return TOBI_OK;
+}
+
+static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
+{
+    tobi_contact_list swap = d->before;
+    d->before = d->contacts;
+    d->contacts = swap;
+    d->contacts.count = 0;
+    TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
+#pragma omp parallel num_threads(d->world.threads)
+    {
+        tobi_contact_list *out = &d->part[omp_get_thread_num()];
+        out->count = 0;
+#pragma omp for schedule(dynamic, 4) nowait
+        for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
+#pragma omp for schedule(dynamic, 4)
+        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], out);
+    }
+    return gather_contacts(d, err);
+}
+
+/* Contacts of the step before that are still there start from their impulses. */
+static void keep_impulses(tobi_dynamics_state *d)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i < d->contacts.count; i++) {
+        tobi_contact *c = &d->contacts.at[i];
+        while (k < d->before.count && compare_contacts(&d->before.at[k], c) < 0) k++;
+        if (k == d->before.count || compare_contacts(&d->before.at[k], c) != 0) continue;
+        c->impulse = d->before.at[k].impulse;
+        memcpy(c->slide, d->before.at[k].slide, sizeof c->slide);
+    }
+}
+
+tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
+{
+    double g = vec3_length(d->world.gravity);
+    for (int k = 0; k < d->count; k++)
+        if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(kick(d, &d->bodies[k], t, dt, err));
+    TOBI_TRY(find_contacts(d, dt, err));
+    keep_impulses(d);
+    TOBI_TRY(tobi_solve(&d->solver, d->bodies, d->count, &d->contacts, dt,
+                        fmax(PLASTIC*g*dt, PLASTIC_LEAST), err));
+    for (int k = 0; k < d->count; k++) {
+        tobi_body *b = &d->bodies[k];
+        const tobi_rigid *r = &b->rigid;
+        if (r->kind == TOBI_PRESCRIBED) continue;
+        if (!isfinite(vec3_dot(r->velocity, r->velocity) + vec3_dot(r->momentum, r->momentum)))
+            return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: body '%s' has a "
+                             "velocity that is no number", t, b->name);
+        tobi_body_report(b);
+    }
+    return TOBI_OK;
+}
+
+void tobi_rigid_count(const tobi_dynamics_state *d, int64_t *touching, int *sweeps)
+{
+    *touching = 0;
+    *sweeps = d->solver.sweeps;
+    for (int64_t k = 0; k < d->contacts.count; k++) *touching += d->contacts.at[k].impulse > 0;
+}
+
+/* --- restart ----------------------------------------------------------------------------------- */
+
+enum { KEY_HALF = 30 };
+
+int64_t tobi_rigid_warm(const tobi_dynamics_state *d, double *rows)
+{
+    int64_t n = 0;
+    for (int64_t k = 0; k < d->contacts.count; k++) {
+        const tobi_contact *c = &d->contacts.at[k];
+        if (c->impulse == 0 && vec3_dot(c->slide, c->slide) == 0) continue;
+        double row[TOBI_WARM] = { c->a, c->b, (double)(c->key >> KEY_HALF),
+                                  (double)(c->key & (((int64_t)1 << KEY_HALF) - 1)), c->impulse,
+                                  c->slide[0], c->slide[1], c->slide[2] };
+        if (rows) memcpy(rows + TOBI_WARM*n, row, sizeof row);
+        n++;
+    }
+    return n;
+}
+
+tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const double *rows, tobi_error *err)
+{
+    d->contacts.count = 0;
+    for (int64_t k = 0; k < count; k++) {
+        const double *row = rows + TOBI_WARM*k;
+        for (int i = 0; i < TOBI_WARM; i++)
+            if (!isfinite(row[i]) || fabs(row[i]) > 1e18)
+                return tobi_fail(err, TOBI_DAMAGED, "the contact %lld of the bodies is no number",
+                                 (long long)k);
+        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES || row[1] >= d->count)
+            return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
+        tobi_contact *c = tobi_contact_add(&d->contacts);
+        if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
+        c->a = (int32_t)row[0];
+        c->b = (int32_t)row[1];
+        c->key = (int64_t)((uint64_t)(int64_t)fmin(row[2], 1e10) << KEY_HALF) | (int64_t)row[3];
+        c->impulse = row[4];
+        memcpy(c->slide, row + 5, sizeof c->slide);
+    }
+    return TOBI_OK;
+}

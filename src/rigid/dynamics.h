@@ -1,0 +1,38 @@
+/* Bodies that move by forces. Each step of the world, the method lets them drift (tobi_body_predict and
+   tobi_body_advance) and gathers what particles do to them; then tobi_rigid_step changes their velocities:
+   gravity, particles, constant forces, control programs, air resistance, contact. */
+#pragma once
+#include "rigid/solve.h"
+
+/* The surroundings of a step. */
+typedef struct tobi_rigid_world {
+    double gravity[3];           /* m/s2                                                        */
+    double size[3];              /* m, of the domain; its sides are at 0 and size               */
+    int dimension;
+    int wall[3];                 /* 0: no sides along this axis                                 */
+    int threads;                 /* that look for contacts; they do not change the result       */
+} tobi_rigid_world;
+
+typedef struct tobi_dynamics_state tobi_dynamics_state;
+
+/* Prepares the bodies' surfaces for contact, once. notes (room bytes) receives a line for what is odd: bodies
+   that overlap, bodies that nothing can touch. Owned by the caller; the bodies must stay where they are. */
+tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
+                             size_t room, tobi_dynamics_state **out, tobi_error *err);
+void tobi_rigid_free(tobi_dynamics_state *state);
+
+/* The kick at time t after a drift over dt. TOBI_SCRIPT when a control program fails, TOBI_DIVERGED when a
+   velocity is no number. */
+tobi_status tobi_rigid_step(tobi_dynamics_state *state, double t, double dt, tobi_error *err);
+
+/* 1 if any body is free or controlled. */
+int tobi_rigid_any(const tobi_body *bodies, int count);
+/* Contacts of the last step that carried a force, and the sweeps of the solver. */
+void tobi_rigid_count(const tobi_dynamics_state *state, int64_t *touching, int *sweeps);
+
+/* The impulses that the next step starts from, for checkpoints: rows of TOBI_WARM doubles, their number is
+   returned. rows may be NULL. */
+enum { TOBI_WARM = 8 };
+int64_t tobi_rigid_warm(const tobi_dynamics_state *state, double *rows);
+/* Takes them back; rows that name no body are TOBI_DAMAGED. */
+tobi_status tobi_rigid_set_warm(tobi_dynamics_state *state, int64_t count, const double *rows, tobi_error *err);
