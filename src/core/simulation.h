@@ -71,6 +71,8 @@ typedef struct tobi_method {
     void (*derive)(tobi_simulation *s, void *state, const char *field);
     /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
     int (*memory)(void *state, double **values);
+    /* Bytes that the state has allocated; NULL = few. */
+    int64_t (*bytes)(const void *state);
     void (*free)(void *state);
 } tobi_method;
 

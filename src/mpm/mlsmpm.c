@@ -283,6 +283,8 @@ static int list_memory(void *state, double **values)
     return MEMORY;
 }
 
+static int64_t count_bytes(const void *state) { return mpm_grid_bytes(&((const mlsmpm *)state)->grid); }
+
 static void free_state(void *state)
 {
     mlsmpm *m = state;
@@ -303,5 +305,6 @@ const tobi_method tobi_mlsmpm = {
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,
+    .bytes = count_bytes,
     .free = free_state,
 };

@@ -262,6 +262,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     if (n + body == 0)
         return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
@@ -380,7 +381,8 @@ int64_t tobi_world_bytes(const tobi_world *w)
     const tobi_simulation *s = &w->sim;
     return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
-           s->near.capacity * (int64_t)sizeof(tobi_near_entry);
+           s->near.capacity * (int64_t)sizeof(tobi_near_entry) +
+           (w->method->bytes && w->method_state ? w->method->bytes(w->method_state) : 0);
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
