@@ -104,6 +104,7 @@ static json_t *make_fields(void)
     json_t *item = json_object(), *names = json_array(), *list = make_type("array");
     const char *name, *unit;
     int components;
+    json_array_append_new(names, json_string("usual"));
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++)
         json_array_append_new(names, json_string(name));
     json_object_set_new(item, "enum", names);
@@ -235,14 +236,20 @@ static json_t *make_part(const tobi_part *part)
     return schema;
 }
 
-/* A region or a body is a box or a mesh: the table cannot say that either is needed. */
+/* A region or a body is a box, a mesh or (regions) a sphere: the table cannot say that one is needed. */
 static void require_region(json_t *schema)
 {
-    json_t *box = json_object_get(json_object_get(schema, "properties"), "box");
+    json_t *properties = json_object_get(schema, "properties"), *box = json_object_get(properties, "box");
+    json_t *sphere = json_object_get(properties, "sphere"), *shapes;
     require(box, "min");
     require(box, "max");
-    json_object_set_new(schema, "oneOf",
-                        json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh"));
+    shapes = json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh");
+    if (sphere) {
+        require(sphere, "centre");
+        require(sphere, "radius");
+        json_array_append_new(shapes, json_pack("{s[s]}", "required", "sphere"));
+    }
+    json_object_set_new(schema, "oneOf", shapes);
 }
 
 static json_t *make_table(const tobi_param_table *table)
