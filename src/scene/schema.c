@@ -6,6 +6,7 @@
 #include "scene/motions.h"
 #include "scene/parts.h"
 #include "scene/write.h"
+#include "world/methods.h"
 #include "world/params.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
@@ -271,6 +272,26 @@ static json_t *make_table(const tobi_param_table *table)
     return schema;
 }
 
+/* Methods that move solids need some, or bodies; the others need fluids. */
+static void require_matter(json_t *schema)
+{
+    json_t *names = json_array();
+    json_t *none = json_pack("{s:i}", "maxItems", 0), *some = json_pack("{s:i}", "minItems", 1);
+    for (int i = 0; tobi_method_name(i); i++)
+        if (tobi_method_at(i)->fields & TOBI_MPM)
+            json_array_append_new(names, json_string(tobi_method_at(i)->name));
+    json_object_set_new(schema, "if", json_pack("{s:[s],s:{s:{s:o}}}", "required", "method", "properties",
+                                                "method", "enum", names));
+    json_object_set_new(schema, "then",
+                        json_pack("{s:{s:O,s:O},s:[{s:[s],s:{s:O}},{s:[s],s:{s:O}}]}", "properties", "fluids",
+                                  none, "probes", none, "anyOf", "required", "solids", "properties", "solids",
+                                  some, "required", "bodies", "properties", "bodies", some));
+    json_object_set_new(schema, "else", json_pack("{s:[s],s:{s:O,s:O}}", "required", "fluids", "properties",
+                                                  "fluids", some, "solids", none));
+    json_decref(none);
+    json_decref(some);
+}
+
 char *tobi_scene_schema(void)
 {
     json_t *schema = json_object(), *root = make_table(&tobi_world_table);
@@ -278,6 +299,7 @@ char *tobi_scene_schema(void)
     put_text(schema, "title", "Tobiuo scene");
     json_object_update(schema, root);
     json_decref(root);
+    require_matter(schema);
     put_text(schema, "description", "A simulation: SI units, angles in degrees.");
     char *text = tobi_write_json(schema);
     json_decref(schema);
