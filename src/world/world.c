@@ -315,6 +315,12 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
                      s->info.speed_max);
 }
 
+static void measure(tobi_world *w)
+{
+    tobi_simulation_measure(&w->sim);
+    if (w->method->measure) w->method->measure(&w->sim, w->method_state);
+}
+
 tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -331,7 +337,7 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     s->info.dt = s->dt;
     TOBI_TRY(check_runaway(w, err));
     if (info) {
-        tobi_simulation_measure(s);
+        measure(w);
         *info = s->info;
     }
     return TOBI_OK;
@@ -344,7 +350,7 @@ tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, to
         if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
     }
     if (info) {
-        tobi_simulation_measure(&w->sim);
+        measure(w);
         *info = w->sim.info;
     }
     return TOBI_OK;
@@ -358,7 +364,7 @@ const tobi_step_info *tobi_world_info(const tobi_world *w)
     s->info.step = s->step;
     s->info.time = s->time;
     s->info.dt = s->dt;
-    if (w->started) tobi_simulation_measure(s);
+    if (w->started) measure((tobi_world *)w);
     return &s->info;
 }
 
