@@ -29,12 +29,31 @@ int tobi_rigid_any(const tobi_body *bodies, int count)
 
 /* --- start ------------------------------------------------------------------------------------- */
 
+/* In 2-D a body stands for its section, which must be the same at every height. */
+static tobi_status check_prism(const tobi_body *b, tobi_error *err)
+{
+    for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
+        double u[3], w[3], n[3];
+        const int32_t *c = b->mesh.triangles[t];
+        vec3_sub(u, b->mesh.vertices[c[1]], b->mesh.vertices[c[0]]);
+        vec3_sub(w, b->mesh.vertices[c[2]], b->mesh.vertices[c[0]]);
+        vec3_cross(n, u, w);
+        vec3_normalize(n);
+        if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism or "
+                         "cylinder along z", b->name);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status make_shape(tobi_body *b, tobi_shape *s, int dimension, tobi_error *err)
 {
     memset(s, 0, sizeof *s);
     s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
     s->solid = !b->deforms;
     if (!s->solid) return TOBI_OK;
+    if (dimension == 2) TOBI_TRY(check_prism(b, err));
     TOBI_TRY(tobi_body_need_rest(b, err));
     return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
                              err);
@@ -139,6 +158,15 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
     if (status == TOBI_OK) *out = d;
     else tobi_rigid_free(d);
     return status;
+}
+
+double tobi_rigid_step_limit(const tobi_dynamics_state *d)
+{
+    double g = vec3_length(d->world.gravity), limit = 1.0/60;
+    for (int k = 0; k < d->count; k++)
+        if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED && g > 0)
+            limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
+    return limit;
 }
 
 void tobi_rigid_free(tobi_dynamics_state *d)

@@ -141,6 +141,7 @@ static void meet_corner(pair *p, int32_t v, const double x[3], const double (*t)
     const tobi_facets *own = side > 0 ? &p->a->facets : &p->b->facets,
                       *other = side > 0 ? &p->b->facets : &p->a->facets;
     double d[3], along[3], point[3], normal[3];
+    if (other->flat && fabs(n[2]) > 0.5) return;
     vec3_sub(d, x, t[0]);
     double gap = vec3_dot(d, n);
     if (gap > p->margin || gap < -p->deepest || !is_over(t, n, x, p->band)) return;
@@ -204,6 +205,20 @@ static void meet_edges(pair *p, int ka, int32_t tb, int kb)
     add(p, key_of(EDGE_EDGE, 3*(int64_t)p->ta + ka, 3*(int64_t)tb + kb), point, n, gap);
 }
 
+/* Is a triangle as a whole too far before or behind another one's plane for any contact? */
+static int is_apart(const pair *p, const double (*t)[3], const double n[3], const double (*other)[3])
+{
+    int before = 0, behind = 0;
+    for (int k = 0; k < 3; k++) {
+        double d[3];
+        vec3_sub(d, other[k], t[0]);
+        double height = vec3_dot(d, n);
+        before += height > p->margin;
+        behind += height < -p->deepest;
+    }
+    return before == 3 || behind == 3;
+}
+
 static void meet_triangle(void *user, int32_t tb)
 {
     pair *p = user;
@@ -212,6 +227,8 @@ static void meet_triangle(void *user, int32_t tb)
     double other[3][3];
     for (int k = 0; k < 3; k++) memcpy(other[k], fb->vertex[ib[k]], sizeof other[k]);
     int mine = fa->owned[p->ta], theirs = fb->owned[tb];
+    if (is_apart(p, (const double (*)[3])p->corner, p->normal, (const double (*)[3])other)) return;
+    if (is_apart(p, (const double (*)[3])other, fb->normal[tb], (const double (*)[3])p->corner)) return;
     for (int k = 0; k < 3; k++) {
         if (mine >> k & 1)
             meet_corner(p, ia[k], p->corner[k], (const double (*)[3])other, fb->normal[tb], tb, 1);
@@ -241,10 +258,28 @@ static void visit_own(void *user, int32_t ta)
     tobi_bvh_touching(p->b->facets.bvh, lower, upper, meet_triangle, p);
 }
 
+/* Is a's box, turned into b's axes, beside b's box? */
+static int are_beside(const pair *p)
+{
+    double min[3], max[3], other_min[3], other_max[3];
+    tobi_bvh_box(p->a->facets.bvh, min, max);
+    tobi_bvh_box(p->b->facets.bvh, other_min, other_max);
+    for (int a = 0; a < 3; a++) {
+        double middle = p->to_b.shift[a], half = p->margin;
+        for (int b = 0; b < 3; b++) {
+            middle += p->to_b.turn[a][b]*0.5*(min[b] + max[b]);
+            half += fabs(p->to_b.turn[a][b])*0.5*(max[b] - min[b]);
+        }
+        if (middle - half > other_max[a] || middle + half < other_min[a]) return 1;
+    }
+    return 0;
+}
+
 /* Where b's box is in a's axes. */
 static void meet_surfaces(pair *p)
 {
     double min[3], max[3], lower[3], upper[3];
+    if (are_beside(p)) return;
     tobi_bvh_box(p->b->facets.bvh, min, max);
     for (int a = 0; a < 3; a++) {
         double middle = 0, half = 0;
@@ -279,6 +314,7 @@ static void meet_ball(void *user, int32_t tb)
     const tobi_facets *f = &p->b->facets;
     const double *centre = p->to_b.shift, *n = f->normal[tb];
     double t[3][3], d[3], point[3];
+    if (f->flat && fabs(n[2]) > 0.5) return;
     for (int k = 0; k < 3; k++) memcpy(t[k], f->vertex[f->triangle[tb][k]], sizeof t[k]);
     vec3_sub(d, centre, t[0]);
     double height = vec3_dot(d, n), gap = height - p->a->facets.ball;
