@@ -32,11 +32,26 @@ typedef struct overrides { char **text; int count; } overrides;
 void overrides_add(overrides *o, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void overrides_free(overrides *o);
 
-/* options.c: parsing of numbers; a usage error ends the program as argp does. */
+/* load.c. The scene file meant by a path: a directory stands for its scene.json. Owned by the caller. */
+char *scene_path(const char *path);
+/* The scene at such a path with the overrides, which are freed; NULL after a complaint. */
+tobi_scene *load_scene(const char *path, overrides *set);
+
+/* options.c: parsing of values; a usage error ends the program as argp does. */
 double parse_positive(struct argp_state *state, const char *option, const char *text);
 int parse_threads(struct argp_state *state, const char *text);
-/* The scene file meant by a path: a directory stands for its scene.json. Owned by the caller. */
-char *scene_path(const char *path);
+/* For all keys that a command does not know itself: takes its one argument, called SCENE or DIR. */
+error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
+                       const char **argument);
+/* The options of run and check that change the scene, and their parser, which takes an argument SCENE too. */
+enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_OWN };
+#define SCENE_OPTIONS \
+    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 }, \
+    { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 }, \
+    { "set", KEY_SET, "PATH=VALUE", 0, \
+      "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 }
+error_t parse_scene_option(struct argp_state *state, int key, const char *value, overrides *set,
+                           const char **scene);
 
 /* drive.c: steps a run to its end with progress and Ctrl-C. */
 typedef struct drive_options {

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEY_THREADS = 256, KEY_STEPS, KEY_SETTLE, KEY_SPACING, KEY_SCENE, KEY_PROJECT };
+enum { KEY_THREADS = KEY_OWN, KEY_STEPS, KEY_SETTLE, KEY_SCENE, KEY_PROJECT };
 enum { MORE_ITERATIONS = 12 };
 
 static const struct argp_option options[] = {
@@ -189,18 +189,11 @@ static int run_fish(tobi_scene *scene, const bench_options *o)
 static int measure_fish(const bench_options *o)
 {
     overrides set = { 0 };
-    tobi_scene *scene = NULL;
-    tobi_report *report = NULL;
-    tobi_error err = { 0 };
-    char *path = scene_path(o->scene ? o->scene : "scenes/flying_fish");
     overrides_add(&set, "threads=%d", o->threads);
     if (o->spacing > 0.0) overrides_add(&set, "spacing=%.17g", o->spacing);
-    tobi_status status =
-        tobi_scene_load(path, (const char *const *)set.text, &scene, &report, &err);
-    int code = status == TOBI_OK ? run_fish(scene, o) : complain_scene(report, &err);
+    tobi_scene *scene = load_scene(o->scene ? o->scene : "scenes/flying_fish", &set);
+    int code = scene ? run_fish(scene, o) : EXIT_ERROR;
     tobi_scene_free(scene);
-    overrides_free(&set);
-    free(path);
     return code;
 }
 

@@ -2,46 +2,16 @@
 #include "app.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 typedef struct check_options { const char *scene; overrides set; } check_options;
 
-enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET };
-
-static const struct argp_option options[] = {
-    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
-    { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 },
-    { "set", KEY_SET, "PATH=VALUE", 0, "change any value of the scene", 0 },
-    { 0 }
-};
+static const struct argp_option options[] = { SCENE_OPTIONS, { 0 } };
 
 static error_t parse(int key, char *value, struct argp_state *state)
 {
     check_options *o = state->input;
-    switch (key) {
-    case KEY_UNTIL:
-        overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value));
-        break;
-    case KEY_SPACING:
-        overrides_add(&o->set, "spacing=%.17g", parse_positive(state, "--spacing", value));
-        break;
-    case KEY_SET:
-        if (!strchr(value, '=') || value[0] == '=')
-            argp_error(state, "--set wants PATH=VALUE, not '%s'", value);
-        overrides_add(&o->set, "%s", value);
-        break;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE only");
-        o->scene = value;
-        break;
-    case ARGP_KEY_END:
-        if (!o->scene) argp_error(state, "which SCENE?");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-    return 0;
+    return parse_scene_option(state, key, value, &o->set, &o->scene);
 }
 
 /* The step the CFL condition allows at the speed of a fall through the domain, the fastest that
@@ -112,15 +82,8 @@ int tobiuo_check(int argc, char **argv)
     };
     check_options o = { 0 };
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    tobi_scene *scene = NULL;
-    tobi_report *report = NULL;
-    tobi_error err = { 0 };
-    char *path = scene_path(o.scene);
-    tobi_status status =
-        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
-    int code = status == TOBI_OK ? check_world(scene) : complain_scene(report, &err);
+    tobi_scene *scene = load_scene(o.scene, &o.set);
+    int code = scene ? check_world(scene) : EXIT_ERROR;
     tobi_scene_free(scene);
-    overrides_free(&o.set);
-    free(path);
     return code;
 }

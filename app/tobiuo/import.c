@@ -5,7 +5,7 @@
 
 typedef struct import_options { const char *scene, *out; int force, quiet; } import_options;
 
-enum { KEY_FORCE = 256 };
+enum { KEY_FORCE = KEY_OWN };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the native scene to write", 0 },
@@ -21,15 +21,10 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case 'o': o->out = value; break;
     case 'q': o->quiet = 1; break;
     case KEY_FORCE: o->force = 1; break;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE only");
-        o->scene = value;
-        break;
-    case ARGP_KEY_END:
-        if (!o->scene) argp_error(state, "which SCENE?");
+    case ARGP_KEY_SUCCESS:
         if (!o->out || !*o->out) argp_error(state, "--out says where the native scene goes");
         break;
-    default: return ARGP_ERR_UNKNOWN;
+    default: return parse_argument(state, key, value, "SCENE", &o->scene);
     }
     return 0;
 }

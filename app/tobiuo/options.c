@@ -1,10 +1,8 @@
 /* Values of options. */
-#define _GNU_SOURCE
 #include "app.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
+#include <string.h>
 
 double parse_positive(struct argp_state *state, const char *option, const char *text)
 {
@@ -24,12 +22,36 @@ int parse_threads(struct argp_state *state, const char *text)
     return (int)value;
 }
 
-char *scene_path(const char *path)
+error_t parse_argument(struct argp_state *state, int key, const char *value, const char *name,
+                       const char **argument)
 {
-    struct stat st;
-    char *file = NULL;
-    int directory = stat(path, &st) == 0 && S_ISDIR(st.st_mode);
-    if (asprintf(&file, "%s%s", path, directory ? "/scene.json" : "") < 0)
-        exit(complain("out of memory"));
-    return file;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        if (*argument) argp_error(state, "one %s only", name);
+        *argument = value;
+        return 0;
+    case ARGP_KEY_END:
+        if (!*argument) argp_error(state, "which %s?", name);
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+error_t parse_scene_option(struct argp_state *state, int key, const char *value, overrides *set,
+                           const char **scene)
+{
+    switch (key) {
+    case KEY_UNTIL:
+        overrides_add(set, "end_time=%.17g", parse_positive(state, "--until", value));
+        return 0;
+    case KEY_SPACING:
+        overrides_add(set, "spacing=%.17g", parse_positive(state, "--spacing", value));
+        return 0;
+    case KEY_SET:
+        if (!strchr(value, '=') || value[0] == '=')
+            argp_error(state, "--set wants PATH=VALUE, not '%s'", value);
+        overrides_add(set, "%s", value);
+        return 0;
+    default: return parse_argument(state, key, value, "SCENE", scene);
+    }
 }

@@ -16,7 +16,7 @@ extern char **environ;
 
 typedef struct plot_options { const char *dir, *format, *scene; } plot_options;
 
-enum { KEY_SCENE = 256 };
+enum { KEY_SCENE = KEY_OWN };
 
 static const struct argp_option options[] = {
     { "format", 'f', "FORMAT", 0, "svg (default) or png", 0 },
@@ -34,14 +34,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->format = value;
         break;
     case KEY_SCENE: o->scene = value; break;
-    case ARGP_KEY_ARG:
-        if (o->dir) argp_error(state, "one DIR only");
-        o->dir = value;
-        break;
-    case ARGP_KEY_END:
-        if (!o->dir) argp_error(state, "which DIR?");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
+    default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
     return 0;
 }

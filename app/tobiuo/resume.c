@@ -12,8 +12,6 @@ typedef struct resume_options {
     int quiet;
 } resume_options;
 
-enum { KEY_UNTIL = 256 };
-
 static const struct argp_option options[] = {
     { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
@@ -28,14 +26,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
     case KEY_UNTIL: o->until = parse_positive(state, "--until", value); break;
-    case ARGP_KEY_ARG:
-        if (o->dir) argp_error(state, "one DIR only");
-        o->dir = value;
-        break;
-    case ARGP_KEY_END:
-        if (!o->dir) argp_error(state, "which DIR?");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
+    default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
     return 0;
 }
@@ -73,14 +64,9 @@ int tobiuo_resume(int argc, char **argv)
         free(path);
         return complain("%s: there is no run to resume (no resolved.json)", o.dir);
     }
-    tobi_scene *scene = NULL;
-    tobi_report *report = NULL;
-    tobi_error err = { 0 };
-    tobi_status status =
-        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
-    int code = status == TOBI_OK ? resume_scene(scene, &o) : complain_scene(report, &err);
+    tobi_scene *scene = load_scene(path, &o.set);
+    int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
-    overrides_free(&o.set);
     free(path);
     return code;
 }

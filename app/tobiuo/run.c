@@ -11,15 +11,12 @@ typedef struct run_options {
     int force, quiet;
 } run_options;
 
-enum { KEY_UNTIL = 256, KEY_SPACING, KEY_SET, KEY_FORCE, KEY_FRAMES };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
-    { "until", KEY_UNTIL, "S", 0, "simulated time to stop at, s", 0 },
+    SCENE_OPTIONS,
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
-    { "spacing", KEY_SPACING, "M", 0, "particle spacing of the fluid, m", 0 },
-    { "set", KEY_SET, "PATH=VALUE", 0,
-      "change any value of the scene, e.g. fluids[0].viscosity=0.1", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
@@ -30,31 +27,15 @@ static error_t parse(int key, char *value, struct argp_state *state)
 {
     run_options *o = state->input;
     switch (key) {
-    case 'o': o->out = value; break;
+    case 'o':
+        if (!*value) argp_error(state, "--out is empty");
+        o->out = value;
+        break;
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
-    case KEY_UNTIL:
-        overrides_add(&o->set, "end_time=%.17g", parse_positive(state, "--until", value));
-        break;
-    case KEY_SPACING:
-        overrides_add(&o->set, "spacing=%.17g", parse_positive(state, "--spacing", value));
-        break;
     case KEY_FRAMES: overrides_add(&o->set, "output.frames=true"); break;
     case KEY_FORCE: o->force = 1; break;
-    case KEY_SET:
-        if (!strchr(value, '=') || value[0] == '=')
-            argp_error(state, "--set wants PATH=VALUE, not '%s'", value);
-        overrides_add(&o->set, "%s", value);
-        break;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE only");
-        o->scene = value;
-        break;
-    case ARGP_KEY_END:
-        if (!o->scene) argp_error(state, "which SCENE?");
-        if (o->out && !*o->out) argp_error(state, "--out is empty");
-        break;
-    default: return ARGP_ERR_UNKNOWN;
+    default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
     return 0;
 }
@@ -99,15 +80,8 @@ int tobiuo_run(int argc, char **argv)
         .doc = "Simulate a scene: a JSON file, or a directory with a scene.json." };
     run_options o = { 0 };
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    tobi_scene *scene = NULL;
-    tobi_report *report = NULL;
-    tobi_error err = { 0 };
-    char *path = scene_path(o.scene);
-    tobi_status status =
-        tobi_scene_load(path, (const char *const *)o.set.text, &scene, &report, &err);
-    int code = status == TOBI_OK ? run_scene(scene, &o) : complain_scene(report, &err);
+    tobi_scene *scene = load_scene(o.scene, &o.set);
+    int code = scene ? run_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);
-    overrides_free(&o.set);
-    free(path);
     return code;
 }

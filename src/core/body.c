@@ -318,8 +318,7 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
     TOBI_TRY(def->mesh ? tobi_mesh_read(def->mesh, &b->mesh, err) : make_box(b, def, dimension, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
-    tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint);
-    if (strstr(hint, "larger"))
+    if (tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint) > 0)
         return tobi_fail(err, TOBI_INVALID, "body '%s' does not fit: %s", b->name, hint);
     if (hint[0]) tobi_mesh_note(&b->mesh, "%s", hint);
     TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh ? def->mesh : b->name, err));

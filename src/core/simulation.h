@@ -2,6 +2,7 @@
 #pragma once
 #include "core/body.h"
 #include "core/cells.h"
+#include "core/contact.h"
 #include "core/near.h"
 #include "core/particles.h"
 #include "core/smoothing.h"
@@ -42,6 +43,7 @@ typedef struct tobi_simulation {
     tobi_body *bodies;
     int body_count;
     tobi_near_bodies near;          /* fluid particles that see a body                       */
+    tobi_contacts contacts;         /* particles of solids that touch bodies                 */
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
     double gravity[3];              /* m/s2, what particles feel: see tobi_simulation_fill_up  */

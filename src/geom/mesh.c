@@ -82,8 +82,8 @@ void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3])
     }
 }
 
-void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
-                          size_t room)
+int tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
+                         size_t room)
 {
     static const struct { const char *name; double factor; } units[] = {
         {"millimetres", 0.001}, {"inches", 0.0254}, {"centimetres", 0.01}, {"micrometres", 1e-6}};
@@ -94,7 +94,7 @@ void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double siz
         mine = fmax(mine, max[k] - min[k]);
         domain = fmax(domain, size[k]);
     }
-    if (!(mine > 0 && domain > 0) || (mine <= 10*domain && mine >= 1e-3*domain)) return;
+    if (!(mine > 0 && domain > 0) || (mine <= 10*domain && mine >= 1e-3*domain)) return 0;
     int used = snprintf(text, room, "the mesh is %.4g m long, %s than the domain of %.4g m: ", mine,
                         mine > domain ? "far larger" : "far smaller", domain);
     for (size_t i = 0; i < sizeof units/sizeof *units && mine > domain; i++) {
@@ -102,9 +102,10 @@ void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double siz
         if (fitted > 1 || fitted < 0.01) continue;
         snprintf(text + used, room - (size_t)used, "are its units %s? Multiply its scale by %g",
                  units[i].name, units[i].factor);
-        return;
+        return 1;
     }
     snprintf(text + used, room - (size_t)used, "is its scale right?");
+    return mine > domain ? 1 : -1;
 }
 
 static uint64_t hash_cell(const weld *w, const int64_t cell[3])

@@ -57,10 +57,10 @@ tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
 /* Adds a line to mesh->notes, as far as there is room. */
 void tobi_mesh_note(tobi_mesh *mesh, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Compares the mesh with a domain of size (m): text receives a question about the units when it is more
-   than 10 times larger ("larger" is in the text) or 1000 times smaller, "" if it is neither. */
-void tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
-                          size_t room);
+/* Compares the mesh with a domain of size (m): 1 if it is more than 10 times larger, -1 if more than 1000
+   times smaller, and then text receives a question about the units; 0 and "" if it is neither. */
+int tobi_mesh_hint_units(const tobi_mesh *mesh, int dimension, const double size[3], char *text,
+                         size_t room);
 
 /* Splits edges longer than max_edge (m) at their middle, longest first, in both neighbours: the
    shape stays, the surface stays closed. Needs a mesh that passed tobi_mesh_orient. Splitting the

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
+#include "mpm/touch.h"
 #include "tobiuo/types.h"
 #include <math.h>
 #include <stdlib.h>
@@ -19,6 +20,7 @@ typedef struct mlsmpm {
     tobi_mlsmpm_def def;
     mpm_view view;
     mpm_grid grid;
+    mpm_touch touch;
     const mpm_kernels *kernels;
     mpm_material material[TOBI_SOLID_LIMIT + 1];
     double damping[TOBI_SOLID_LIMIT + 1];
@@ -209,11 +211,26 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
     tobi_launch_each(&s->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
-    s->info.contacts = (int64_t)t[0];
+    s->info.contacts += (int64_t)t[0];
     s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
     m->memory[DRIFT] += t[7];
     m->memory[STRAIN_DT] = s->dt;
     tobi_stage_end(&s->stages, "to particles", clock);
+}
+
+static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
+{
+    double g = 0, far;
+    for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
+    double way = (m->memory[SPEED] + s->body_speed + sqrt(g)*s->dt)*s->dt;
+    const tobi_contact_step contact = {
+        .dt = s->dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
+        .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
+    TOBI_TRY(mpm_touch_bodies(&m->touch, &s->contacts, &s->particles, s->bodies, s->body_count, &m->grid, &m->view,
+                              &contact, &s->exec, &s->info.contacts, &far, err));
+    m->memory[DRIFT] += far;
+    tobi_stage_end(&s->stages, "contact", clock);
+    return TOBI_OK;
 }
 
 static tobi_status move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
@@ -235,6 +252,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
         solve_grid(s, m, &clock);
+        TOBI_TRY(touch_bodies(s, m, &clock, err));
         grid_to_particles(s, m, &clock);
         m->memory[AGE]++;
     }
@@ -268,7 +286,9 @@ static int list_memory(void *state, double **values)
 static void free_state(void *state)
 {
     mlsmpm *m = state;
-    if (m) mpm_grid_free(&m->grid);
+    if (!m) return;
+    mpm_grid_free(&m->grid);
+    mpm_touch_free(&m->touch);
     free(m);
 }
 

@@ -398,7 +398,9 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
                 own = own*quad_set(v->material[v->solid[i + k]].keep);
                 u = u + quad_set(v->flip)*(own - before);
             }
-            u[3] = 0;
+            /* The force of a contact in this step is kept for the next, and only that long (core/contact.h). */
+            const float force = v->velocity[i + k].w;
+            u[3] = force > 0 ? -force : 0;
             quad_store(&v->velocity[i + k], u);
             for (int c = 0; c < 3; c++) {
                 gradient[c][3] = (float)b->corner[c];   /* where it is at home, for mpm_grid_restore */

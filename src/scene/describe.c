@@ -9,17 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *type_name(const tobi_param *row)
-{
-    switch (row->type) {
-    case TOBI_PARAM_REAL: return "number";
-    case TOBI_PARAM_INT: return "whole number";
-    case TOBI_PARAM_VEC3: return row->positive ? "number or vector" : "vector";
-    case TOBI_PARAM_TEXT: return "text";
-    default: return "word";
-    }
-}
-
 static void describe_row(FILE *out, const tobi_param *row)
 {
     char limits[200], def[200];
@@ -29,7 +18,7 @@ static void describe_row(FILE *out, const tobi_param *row)
     if (row->type == TOBI_PARAM_TEXT) fprintf(out, "%s; ", row->unit);
     else if (row->type == TOBI_PARAM_CHOICE || row->type == TOBI_PARAM_BOOL)
         fprintf(out, "%s; ", limits);
-    else fprintf(out, "%s, unit %s; allowed: %s; ", type_name(row), row->unit, limits);
+    else fprintf(out, "%s, unit %s; allowed: %s; ", tobi_manual_type(row), row->unit, limits);
     fprintf(out, row->required ? "%s\n" : "default: %s\n", def);
 }
 

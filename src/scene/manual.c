@@ -123,7 +123,7 @@ static void write_cell(FILE *out, const char *text)
     fputs(" |", out);
 }
 
-static const char *type_of(const tobi_param *row)
+const char *tobi_manual_type(const tobi_param *row)
 {
     switch (row->type) {
     case TOBI_PARAM_REAL: return "number";
@@ -149,7 +149,7 @@ static void write_row(FILE *out, const tobi_param *row)
     tobi_bind_default(row, usual, sizeof usual);
     fputs("|", out);
     write_cell(out, key);
-    write_cell(out, type_of(row));
+    write_cell(out, tobi_manual_type(row));
     write_cell(out, is_number(row) ? row->unit : "");
     write_cell(out, row->required ? "**required**" : usual);
     write_cell(out, is_number(row) || row->type == TOBI_PARAM_CHOICE ? limits : "");

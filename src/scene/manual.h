@@ -1,6 +1,10 @@
 /* What is written about scenes, made from the tables that read them. Texts are owned by the caller;
    NULL when out of memory. */
 #pragma once
+#include "base/param.h"
+
+/* "number", "vector", ...: what a user may write for a row. */
+const char *tobi_manual_type(const tobi_param *row);
 
 /* docs/scene.md. */
 char *tobi_scene_manual(void);

@@ -15,16 +15,7 @@
 #include <string.h>
 
 /* Share of the kernel average in the pressure a step starts from. */
-static const float PRESSURE_SMOOTHING = 0.02f;
-/* Pairs nearer than CORE spacings are pushed apart, each side by PUSH of the overlap: below the density that
-   packs spheres at random, so that the core never works against the density solve. */
-static const double CORE = 0.9;
-static const float PUSH = 0.25f;
-/* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
-static const double ISOLATED = 0.01;
-
-/* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
-enum { VESSEL_UNKNOWN, VESSEL_OPEN, VESSEL_FULL };
+static const double PRESSURE_SMOOTHING = 0.02;
 
 typedef struct dfsph {
     tobi_dfsph_def def;
@@ -32,7 +23,7 @@ typedef struct dfsph {
     const sph_kernels *kernel;
     sph_multigrid grid;
     /* survives a restart */
-    struct { double speed, head, dt, vessel; } memory;   /* vessel: VESSEL_*                      */
+    struct { double speed, head, dt, vessel; } memory;   /* vessel: SPH_VESSEL_*                  */
     /* of the step at hand */
     double motion_dt;             /* step that motion alone allows, s                            */
     double diagonal;              /* mean diagonal of the operator                               */
@@ -68,10 +59,7 @@ static void choose_smoothing(const void *def, int *shape, double *support)
 static void bind_view(const tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
-    sph_bind_view(s, v);
-    if (m->memory.vessel == VESSEL_FULL) v->surface_limit = -1e30f;
-    v->core = (float)(CORE*s->smoothing.spacing);
-    v->push = PUSH;
+    sph_bind_view(s, v, m->memory.vessel);
     for (int a = 0; a < 3; a++) {
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
@@ -101,12 +89,11 @@ static int list_memory(void *state, double **values)
    Not above a tenth more than the last. */
 static double choose_dt(const tobi_simulation *s, dfsph *m)
 {
-    double d = s->smoothing.spacing, dt, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->body_speed);
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
     double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed +
                                            4*s->fluid[0].tension/(s->fluid[0].density*d));
-    m->motion_dt = fmin(0.25*sqrt(d/fmax(sqrt(g2), 1e-12)),
+    m->motion_dt = fmin(sph_gravity_dt(s),
                         s->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
@@ -122,7 +109,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m)
 /* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
 static void center(tobi_simulation *s, dfsph *m, tobi_kernel kernel, double sum, double *t)
 {
-    if (m->memory.vessel != VESSEL_FULL) return;
+    if (m->memory.vessel != SPH_VESSEL_FULL) return;
     m->view.mean = (float)(sum/(double)s->particles.count);
     launch(s, m, kernel, t);
 }
@@ -179,37 +166,16 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
 static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (!m->grid.memory) TOBI_TRY(sph_multigrid_create(&m->grid, s, err));
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
-    tobi_stage_end(&s->stages, "sort", clock);
-    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
+    TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
-    tobi_stage_end(&s->stages, "neighbours", clock);
     return TOBI_OK;
 }
 
-static void measure_density(tobi_simulation *s, dfsph *m, float smoothing, double *clock)
-{
-    double t[TOBI_TOTALS];
-    m->view.pressure = s->particles.pressure;
-    m->view.smooth = smoothing;
-    launch(s, m, m->kernel->sph_density, t);
-    s->info.density_error_mean = t[0]/(double)s->particles.count;
-    m->diagonal = t[2]/(double)s->particles.count;
-    m->view.isolated = (float)(ISOLATED*m->diagonal);
-    s->info.density_error_max = t[6];
-    tobi_stage_end(&s->stages, "density", clock);
-}
-
-/* Found out once, at the start. */
 static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
-    int full;
-    if (m->memory.vessel == VESSEL_OPEN) return TOBI_OK;
-    if (m->memory.vessel == VESSEL_UNKNOWN) {
-        TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
-        m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
-    }
-    if (m->memory.vessel == VESSEL_FULL) tobi_simulation_fill_up(s);
+    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    if (m->memory.vessel == SPH_VESSEL_OPEN) return TOBI_OK;
+    tobi_simulation_fill_up(s);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -239,7 +205,7 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_product, NULL);
     launch(s, m, k->sph_warm_residual, t);
-    if (q.grid) sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);
+    sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);
     solve_pressure(s, m, t, &q);
     launch(s, m, k->sph_pressure_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
@@ -255,7 +221,7 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
 /* The shift of the position solve, with particle shifting where the vessel is full. */
 static void shift_positions(tobi_simulation *s, dfsph *m)
 {
-    double d = s->smoothing.spacing, strength = m->memory.vessel == VESSEL_FULL ? m->def.shifting : 0;
+    double d = s->smoothing.spacing, strength = m->memory.vessel == SPH_VESSEL_FULL ? m->def.shifting : 0;
     m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
     launch(s, m, m->kernel->sph_shift, NULL);
 }
@@ -288,7 +254,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
-    measure_density(s, m, PRESSURE_SMOOTHING, &clock);
+    m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     apply_forces(s, m, &clock);
     remove_divergence(s, m, &clock);
     correct_density(s, m, &clock);
@@ -308,7 +274,7 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
-    measure_density(s, m, 0, &clock);
+    m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, &clock);
     return TOBI_OK;
 }
 

@@ -2,6 +2,13 @@
 #include <math.h>
 #include <string.h>
 
+/* Pairs nearer than CORE spacings are pushed apart, each side by PUSH of the overlap: below the density that
+   packs spheres at random, so that the core never works against a density solve. */
+static const double CORE = 0.9;
+static const float PUSH = 0.25f;
+/* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
+static const double ISOLATED = 0.01;
+
 static void launch(tobi_simulation *s, sph_view *v, tobi_kernel k, double *totals)
 {
     tobi_launch(&s->exec, k, v, 0, s->particles.count, totals);
@@ -34,7 +41,7 @@ static double band_depth(const tobi_smoothing_constants *c)
     return sum/weight;
 }
 
-void sph_bind_view(const tobi_simulation *s, sph_view *v)
+void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
     const tobi_smoothing_constants *c = &s->smoothing;
@@ -52,10 +59,13 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v)
     v->weight = (float)c->weight; v->slope = (float)c->slope;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;
     v->dimension = c->dimension;
-    v->surface_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f
+                                                 : (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
     v->sheet_limit = 0.6f*(float)c->dimension;
     v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
     v->table = &c->plane;
+    v->core = (float)(CORE*c->spacing);
+    v->push = PUSH;
     bind_planes(s, v);
     for (int f = 0; f < s->fluid_count; f++) {
         v->inverse_density[f] = (float)(1/s->fluid[f].density);
@@ -65,6 +75,13 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v)
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
     for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
+}
+
+double sph_gravity_dt(const tobi_simulation *s)
+{
+    double g2 = 0;
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    return 0.25*sqrt(s->smoothing.spacing/fmax(sqrt(g2), 1e-12));
 }
 
 double sph_viscous_dt(const tobi_simulation *s)
@@ -93,6 +110,15 @@ void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt)
     v->inverse_dt = (float)(1/s->dt);
 }
 
+tobi_status sph_find_neighbors(tobi_simulation *s, double *clock, tobi_error *err)
+{
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
+    tobi_stage_end(&s->stages, "sort", clock);
+    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
+    tobi_stage_end(&s->stages, "neighbours", clock);
+    return TOBI_OK;
+}
+
 tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err)
 {
@@ -106,16 +132,33 @@ tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k,
     return TOBI_OK;
 }
 
-tobi_status sph_find_full(tobi_simulation *s, sph_view *v, const sph_kernels *k, int *full,
-                          double *clock, tobi_error *err)
+tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *vessel,
+                                 double *clock, tobi_error *err)
 {
     double t[TOBI_TOTALS], count = (double)s->particles.count;
+    if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
     TOBI_TRY(sph_see_walls(s, v, k, clock, err));
     v->pressure = s->particles.pressure;
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
-    *full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
+    *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
     return TOBI_OK;
+}
+
+double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k, double smooth,
+                           double *clock)
+{
+    double t[TOBI_TOTALS], count = (double)s->particles.count;
+    v->pressure = s->particles.pressure;
+    v->smooth = (float)smooth;
+    launch(s, v, k->sph_density, t);
+    s->info.density_error_mean = t[0]/count;
+    s->info.density_error_max = t[6];
+    double diagonal = t[2]/count;
+    v->isolated = (float)(ISOLATED*diagonal);
+    tobi_stage_end(&s->stages, "density", clock);
+    return diagonal;
 }
 
 tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)

@@ -3,8 +3,13 @@
 #include "core/simulation.h"
 #include "sph/kernels.h"
 
-/* Everything of a view that does not belong to one method; after each sort. */
-void sph_bind_view(const tobi_simulation *s, sph_view *v);
+/* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
+enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL };
+
+/* Everything of a view that does not belong to one method; after each sort. vessel: SPH_VESSEL_*. */
+void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel);
+/* 0.25 sqrt(d/g): the longest step that gravity allows, s. */
+double sph_gravity_dt(const tobi_simulation *s);
 /* 0.8/(nu rate): the longest step of explicit viscosity at a no-slip wall, s; without it INFINITY. */
 double sph_viscous_dt(const tobi_simulation *s);
 /* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
@@ -12,12 +17,19 @@ double sph_tension_dt(const tobi_simulation *s);
 /* dt, or less, so that what is left up to max_dt (0 = no end) is no sliver of a step; into s and v. */
 void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt);
 
+/* Sorts the particles and lists their neighbours; the view is to be bound again. */
+tobi_status sph_find_neighbors(tobi_simulation *s, double *clock, tobi_error *err);
 /* Planes and bodies: wall gradients, shares, pairs that a body separates. */
 tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err);
-/* *full = 1: fewer particles see a free surface than a tenth of a cube's face has. */
-tobi_status sph_find_full(tobi_simulation *s, sph_view *v, const sph_kernels *k, int *full,
-                          double *clock, tobi_error *err);
+/* Unless *vessel is known: full if fewer particles see a free surface than a tenth of a cube's face has.
+   The view is to be bound again. */
+tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *vessel,
+                                 double *clock, tobi_error *err);
+/* Density, its error, and the share `smooth` of the kernel average in the pressure; returns the mean
+   diagonal of the pressure operator, m/kg. */
+double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k, double smooth,
+                           double *clock);
 /* The bodies' velocities over the coming step. */
 tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err);
 /* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */

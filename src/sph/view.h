@@ -5,8 +5,7 @@
 
 enum { TOBI_MAX_FLUIDS = 8 };
 
-/* A plane wall of the box seen from inside: distance = sign*(x[axis] - at). */
-/* A side of the domain: normal, position, friction, velocity along itself. */
+/* A side of the domain seen from inside: distance = sign*(x[axis] - at); friction; velocity along itself. */
 typedef struct tobi_plane { int axis; float sign; double at; int no_slip; float velocity[3]; } tobi_plane;
 
 typedef struct sph_view {

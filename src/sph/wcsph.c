@@ -13,20 +13,12 @@
 static const double PRESSURE_SMOOTHING = 0.25;
 /* Share of the density error that positions give way to, in the same time. */
 static const double RELAXATION = 0.05;
-/* Pairs nearer than CORE spacings are pushed apart, each side by PUSH of the overlap, as in dfsph. */
-static const double CORE = 0.9;
-static const float PUSH = 0.25f;
-/* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
-static const double ISOLATED = 0.01;
-
-/* A vessel that is full at the start stays full, as in dfsph. */
-enum { VESSEL_UNKNOWN, VESSEL_OPEN, VESSEL_FULL };
 
 typedef struct wcsph {
     tobi_wcsph_def def;
     sph_view view;
     const sph_kernels *kernel;
-    struct { double speed, vessel; } memory;      /* survives a restart                               */
+    struct { double speed, vessel; } memory;      /* survives a restart; vessel: SPH_VESSEL_*         */
     double sound;                                 /* m/s                                              */
 } wcsph;
 
@@ -64,11 +56,7 @@ static void bind_view(const tobi_simulation *s, wcsph *m)
 {
     sph_view *v = &m->view;
     double d = s->smoothing.spacing;
-    sph_bind_view(s, v);
-    if (m->memory.vessel == VESSEL_FULL) v->surface_limit = -1e30f;
-    v->pressure = s->particles.pressure;
-    v->core = (float)(CORE*d);
-    v->push = PUSH;
+    sph_bind_view(s, v, m->memory.vessel);
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
@@ -77,25 +65,18 @@ static void bind_view(const tobi_simulation *s, wcsph *m)
 /* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit). */
 static double choose_dt(const tobi_simulation *s, const wcsph *m)
 {
-    double d = s->smoothing.spacing, g2 = 0, speed = fmax(m->memory.speed, s->body_speed);
+    double speed = fmax(m->memory.speed, s->body_speed);
     if (s->def.time_step > 0) return s->def.time_step;
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
-    double dt = fmin(s->def.cfl*d/(m->sound + speed), 0.25*sqrt(d/fmax(sqrt(g2), 1e-12)));
+    double dt = fmin(s->def.cfl*s->smoothing.spacing/(m->sound + speed), sph_gravity_dt(s));
     dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
 
 static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, tobi_error *err)
 {
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
-    tobi_stage_end(&s->stages, "sort", clock);
-    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
+    TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
-    tobi_stage_end(&s->stages, "neighbours", clock);
-    if (m->memory.vessel != VESSEL_UNKNOWN) return TOBI_OK;
-    int full;
-    TOBI_TRY(sph_find_full(s, &m->view, m->kernel, &full, clock, err));
-    m->memory.vessel = full ? VESSEL_FULL : VESSEL_OPEN;
+    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -104,17 +85,6 @@ static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, t
 static double share_of_step(const tobi_simulation *s, const wcsph *m, double share)
 {
     return fmin(share*m->sound*s->dt/s->smoothing.spacing, 0.5);
-}
-
-static void measure_density(tobi_simulation *s, wcsph *m, double smoothing, double *clock)
-{
-    double t[TOBI_TOTALS], count = (double)s->particles.count;
-    m->view.smooth = (float)smoothing;
-    launch(s, m, m->kernel->sph_density, t);
-    s->info.density_error_mean = t[0]/count;
-    s->info.density_error_max = t[6];
-    m->view.isolated = (float)(ISOLATED*t[2]/count);
-    tobi_stage_end(&s->stages, "density", clock);
 }
 
 static void apply_forces(tobi_simulation *s, wcsph *m, double *clock)
@@ -163,7 +133,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
-    measure_density(s, m, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
+    sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     apply_forces(s, m, &clock);
     apply_pressure(s, m, &clock);
     measure_forces(s, m, &clock);
@@ -181,7 +151,7 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
-    measure_density(s, m, 0, &clock);
+    sph_measure_density(s, &m->view, m->kernel, 0, &clock);
     return TOBI_OK;
 }
 

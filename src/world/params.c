@@ -29,6 +29,13 @@
       .offset = offsetof(tobi_world_def, member_) + (axis_)*3*sizeof(double),         \
       .doc = doc_ " Velocity along itself of a no-slip side: a lid, a belt." }
 
+/* Of every SPH method. */
+#define SMOOTHING(type_)                                                              \
+    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(type_, kernel),      \
+      .doc = "Smoothing kernel." },                                                   \
+    { .key = "support", REAL, AT(type_, support), .def = { 2 }, RANGE(2, 4), .unit = "spacings", \
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." }
+
 static const tobi_param world_rows[] = {
     { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "method", .text = "dfsph",
       .doc = "The method that moves the particles." },
@@ -80,11 +87,7 @@ static const tobi_param world_rows[] = {
 };
 
 static const tobi_param dfsph_rows[] = {
-    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(tobi_dfsph_def, kernel),
-      .doc = "Smoothing kernel." },
-    { .key = "support", REAL, AT(tobi_dfsph_def, support), .def = { 2 }, RANGE(2, 4),
-      .unit = "spacings",
-      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." },
+    SMOOTHING(tobi_dfsph_def),
     { .key = "density_tolerance", REAL, AT(tobi_dfsph_def, density_tolerance), .def = { 5e-4 },
       .min = 0, .max = 0.1, .positive = true, .unit = "1",
       .doc = "Mean relative density error at which the density solve may stop." },
@@ -117,11 +120,7 @@ static const tobi_param dfsph_rows[] = {
 };
 
 static const tobi_param wcsph_rows[] = {
-    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(tobi_wcsph_def, kernel),
-      .doc = "Smoothing kernel." },
-    { .key = "support", REAL, AT(tobi_wcsph_def, support), .def = { 2 }, RANGE(2, 4),
-      .unit = "spacings",
-      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." },
+    SMOOTHING(tobi_wcsph_def),
     { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, POSITIVE,
       .unit = "Pa",
       .doc = "B of the Tait equation p = B ((rho/rho0)^exponent - 1). The speed of sound is "

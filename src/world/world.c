@@ -121,6 +121,7 @@ void tobi_world_destroy(tobi_world *w)
     free(w->row_of);
     free(w->method_def);
     tobi_near_free(&w->sim.near);
+    tobi_contact_free(&w->sim.contacts);
     tobi_cells_free(&w->sim.cells);
     tobi_particles_free(&w->sim.particles);
     tobi_exec_free(&w->sim.exec);

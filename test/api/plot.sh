@@ -3,28 +3,8 @@
 # usage: plot.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
 # Answers 77 (skipped) without gnuplot, after the tests that do without it.
 set -uo pipefail
-program=$(realpath "$1")
-python=/usr/bin/python3
-[ -x $python ] || python=python3
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-export OMP_WAIT_POLICY=passive
-passed=0 failed=0
+. "$(dirname "$0")/checks.sh" "$1"
 
-ok() { passed=$((passed + 1)); }
-bad() { failed=$((failed + 1)); echo "FAILED: $1"; [ -s err.txt ] && sed 's/^/    /' err.txt | head -n 8; }
-check() { local what=$1; shift; if "$@" > /dev/null 2>&1; then ok; else bad "$what"; fi; }
-# expect CODE TEXT ARGUMENTS...: exit code, and a text in stderr ("" = stderr must be empty)
-expect() {
-    local code=$1 text=$2 got=0
-    shift 2
-    "$program" "$@" > out.txt 2> err.txt || got=$?
-    if [ $got -ne "$code" ]; then bad "tobiuo $*: exit code $got, not $code"
-    elif [ -n "$text" ] && ! grep -qF -- "$text" err.txt; then bad "tobiuo $*: no '$text' on stderr"
-    elif [ -z "$text" ] && [ -s err.txt ]; then bad "tobiuo $*: unexpected text on stderr"
-    else ok; fi
-}
 # has FILE TEXT: a whole SVG file whose visible texts contain TEXT
 has() {
     $python - "$1" "$2" <<'END'

@@ -170,6 +170,7 @@ def main():
                 if not only and not wanted: continue
                 code, total, _, wrong = checker.one(command, sweep, 0)
                 if code or wrong: sys.exit(f"counting {command} {sweep}: {code} {wrong}")
+                if not total: sys.exit(f"counting {command} {sweep}: no such call was seen, so none can fail")
                 if command == "resume": wanted = (wanted + 1)//2
                 stride = 1 if options.slow else max(1, total//(wanted or 60))
                 places = [int(at)] if at else list(range(1, total + 1, stride))

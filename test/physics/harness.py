@@ -12,6 +12,7 @@ import html
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -65,7 +66,7 @@ class Case:
         target = self.out / label
         shown = [os.path.relpath(scene, ROOT) if str(scene).startswith(str(ROOT)) else f"{label}.json"]
         command = [str(o) for o in options]
-        self.commands.append("tobiuo run " + " ".join(shown + command))
+        self.commands.append("tobiuo run " + shlex.join(shown + command))
         done = subprocess.run([self.program, "run", str(scene), "--out", str(target), "--force", "--quiet",
                                "--threads", str(self.args.threads)] + command, capture_output=True,
                               text=True, timeout=100 if self.smoke else None)
@@ -79,8 +80,14 @@ class Case:
     def figure(self, text, value, goal, met):
         """A result beside its goal. Decides the exit code at reference size only."""
         shown = f"{value:.4g}" if isinstance(value, float) else str(value)
-        self.rows.append((text, shown, goal, bool(met)))
+        self.rows.append((text, shown, goal, "met" if met else "**missed**"))
         print(f"{self.name}: {text}: {shown}   goal: {goal}   {'met' if met else 'MISS'}", flush=True)
+
+    def state(self, text, value):
+        """A result without a goal."""
+        shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+        self.rows.append((text, shown, "none", "stated"))
+        print(f"{self.name}: {text}: {shown}", flush=True)
 
     def hold(self, text, ok):
         """A statement that must hold at this size."""
@@ -92,8 +99,8 @@ class Case:
         self.plots.append((title, x_label, y_label, curves))
 
     def finish(self):
-        missed = sum(not row[3] for row in self.rows)
-        print(f"{self.name}: {len(self.rows) - missed} of {len(self.rows)} goals met, {self.broken} broken, "
+        met, missed = (sum(row[3] == result for row in self.rows) for result in ("met", "**missed**"))
+        print(f"{self.name}: {met} of {met + missed} goals met, {self.broken} broken, "
               f"{time.monotonic() - self.begin:.1f} s")
         if not self.smoke:
             self.write_page()
@@ -105,7 +112,7 @@ class Case:
     def write_page(self):
         VALIDATION.mkdir(parents=True, exist_ok=True)
         lines = [f"# {self.title}", "", self.text.strip(), "", "| figure | value | goal | result |", "|---|---|---|---|"]
-        lines += ["| %s | %s | %s | %s |" % (t, v, g, "met" if ok else "**missed**") for t, v, g, ok in self.rows]
+        lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:
             (VALIDATION / f"{self.name}.svg").write_text(draw(self.plots))
             lines += ["", f"![plot]({self.name}.svg)"]
@@ -118,14 +125,14 @@ class Case:
 def write_index():
     """docs/validation/README.md: the rows of all case pages in one table."""
     lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE]`, one page per case; do not edit.",
-             "Every figure stands here, met or missed.", "",
+             "Every figure stands here, met or missed; those without a goal are stated.", "",
              "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
     for page in sorted(VALIDATION.glob("*.md")):
         text = page.read_text()
         found = re.search(r"^Commit: (.*?)\. Machine: (.*)\.$", text, re.M)
         if page.name == "README.md" or not found:
             continue
-        for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*)) \|$", text, re.M):
+        for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*|stated)) \|$", text, re.M):
             lines.append(f"| [{page.stem}]({page.name}) | {row} | {found[1]} | {found[2]} |")
     (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
 

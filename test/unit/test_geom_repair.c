@@ -305,16 +305,16 @@ static void odd_sizes_ask_about_units(void **state)
     static const double domain[3] = {0.6, 0.3, 0.6};
     tobi_mesh mesh = make_cube(75);
     char text[200];
-    tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text);
+    assert_int_equal(tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text), 1);
     assert_string_equal(text, "the mesh is 150 m long, far larger than the domain of 0.6 m: are its units "
                               "millimetres? Multiply its scale by 0.001");
     tobi_mesh_free(&mesh);
     mesh = make_cube(1e-4);
-    tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text);
+    assert_int_equal(tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text), -1);
     assert_non_null(strstr(text, "far smaller"));
     tobi_mesh_free(&mesh);
     mesh = make_cube(0.1);
-    tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text);
+    assert_int_equal(tobi_mesh_hint_units(&mesh, 3, domain, text, sizeof text), 0);
     assert_string_equal(text, "");
     tobi_mesh_free(&mesh);
 }

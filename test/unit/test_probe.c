@@ -88,7 +88,6 @@ static void reads_walls_and_corners(void **state)
     set_pressure(world, even);
     for (int k = 0; k < 4; k++) {
         assert_int_equal(tobi_world_probe(world, k, &info, &err), TOBI_OK);
-        print_message("%g Pa\n", info.pressure);
         assert_true(fabs(info.pressure - 1000) < within[k]);
     }
     tobi_world_destroy(world);

@@ -22,7 +22,7 @@ def read_volume(path):
         if words[:1] == ["v"]:
             points.append([float(w) for w in words[1:4]])
         elif words[:1] == ["f"]:
-            a, b, c = ([points[int(w.split("/")[0]) - 1]][0] for w in words[1:4])
+            a, b, c = (points[int(w.split("/")[0]) - 1] for w in words[1:])
             total += (a[0]*(b[1]*c[2] - b[2]*c[1]) - a[1]*(b[0]*c[2] - b[2]*c[0]) + a[2]*(b[0]*c[1] - b[1]*c[0]))/6
     return total
 

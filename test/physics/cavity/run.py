@@ -28,7 +28,7 @@ V = {100: [(0.9688, -0.05906), (0.9609, -0.07391), (0.9531, -0.08864), (0.9453, 
             (0.1563, 0.37095), (0.0938, 0.32627), (0.0781, 0.30353), (0.0703, 0.29012), (0.0625, 0.27485)]}
 
 
-def compute(re, across, end, goal, hold):
+def compute(re, across, end, goal):
     """Runs one Reynolds number and compares both lines."""
     probes = [{"name": f"u{k}", "position": [0.5, y]} for k, (y, _) in enumerate(U[re])]
     probes += [{"name": f"v{k}", "position": [x, 0.5]} for k, (x, _) in enumerate(V[re])]
@@ -44,14 +44,14 @@ def compute(re, across, end, goal, hold):
         ours = [mean([table[f"{name}{k}_velocity_{axis}"][i] for i in late]) for k in range(len(rows))]
         worst = max(abs(a - b) for a, (_, b) in zip(ours, rows))
         case.figure(f"Re {re}, {across} across: largest deviation of {name} over U", worst, f"<= {goal}", worst <= goal)
-        # A full box with disordered particles: what coarse particles lose at the lid.
-        case.hold(f"Re {re}: {name} within {hold}", worst <= hold)
+        # Twice the goal: another flow is off by more, rest by 0.2 at least.
+        case.hold(f"Re {re}: {name} within {2*goal:g}", worst <= 2*goal)
         case.plot(f"{name} on the centre line, Re = {re}", "y / L" if name == "u" else "x / L", f"{name} / U",
                   [(f"tobiuo, {across} across", [r[0] for r in rows], ours, False),
                    ("Ghia et al. 1982", [r[0] for r in rows], [r[1] for r in rows], True)])
 
 
-compute(100, *case.pick((20, 10), (50, 20)), 0.03, 0.15)
+compute(100, *case.pick((20, 10), (50, 20)), 0.03)
 if not case.smoke:
-    compute(1000, 80, 45, 0.05, 0.25)
+    compute(1000, 80, 45, 0.05)
 case.finish()

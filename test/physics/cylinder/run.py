@@ -27,8 +27,9 @@ for re, expected in case.pick(((40, 1.52),), ((40, 1.52), (100, 1.33))):
     value = mean([c for t, c in zip(table["time"], drag) if t > 2/3*end])
     case.figure(f"Re {re}: drag coefficient {value:.3f} against {expected}, deviation", value/expected - 1, "within 0.05",
                 abs(value/expected - 1) <= 0.05)
-    # A narrow box of slip walls and eight particles across: the drag may not be another body's.
-    case.hold(f"Re {re}: within 40 %", abs(value/expected - 1) <= 0.4)
+    # A narrow box of slip walls and eight particles across: 12 % low at Re 40. A wake that is still symmetric at Re
+    # 100 is 20 % low.
+    case.hold(f"Re {re}: within 25 %", abs(value/expected - 1) <= 0.25)
     curves.append((f"Re {re}", table["time"][1:], drag[1:], False))
 case.plot("Drag coefficient", "t, s", "Cd", curves)
 case.finish()

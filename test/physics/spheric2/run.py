@@ -28,8 +28,8 @@ for name, expected in ARRIVAL.items():
     case.figure(f"{name}: arrival at {arrival:.3f} s against {expected:.3f} s, deviation", arrival/expected - 1,
                 "within 0.05", abs(arrival/expected - 1) <= 0.05)
     # 50 mm is one particle at smoke size: what comes around the box to H3 is thinner than that.
-    case.hold(f"{name}: the wave arrives within 30 % of the time",
-              (case.smoke and name == "H3") or abs(arrival/expected - 1) <= 0.3)
+    if name != "H3" or not case.smoke:
+        case.hold(f"{name}: the wave arrives within 30 % of the time", abs(arrival/expected - 1) <= 0.3)
 impact = next((t for t, p in zip(time, table["P1_pressure"]) if p > 2000), 99)
 case.figure(f"impact on P1 at {impact:.3f} s against {IMPACT:.3f} s, deviation", impact/IMPACT - 1, "within 0.05",
             abs(impact/IMPACT - 1) <= 0.05)
@@ -39,11 +39,12 @@ for name, expected in IMPULSE.items():
     value = sum((p[k] + p[k + 1])/2*(time[k + 1] - time[k]) for k in window)
     case.figure(f"{name}: impulse {value:.0f} against {expected:.0f} Pa s, deviation", value/expected - 1, "within 0.15",
                 abs(value/expected - 1) <= 0.15)
-    case.figure(f"{name}: peak, Pa; measured {PEAK[name]}", max(p[k] for k in window), "stated", True)
-    # P3 and P4 see a sheet that runs up the face, thinner than the spacings used here: goals only.
-    case.hold(f"{name}: impulse between a third and three times", name in ("P3", "P4") or 1/3 < value/expected < 3)
+    case.state(f"{name}: peak, Pa; measured {PEAK[name]}", max(p[k] for k in window))
+    # At reference size P4 sees a sheet that runs up the face, thinner than the spacing: a goal only.
+    if name != "P4" or case.smoke:
+        case.hold(f"{name}: impulse between a third and three times", 1/3 < value/expected < 3)
     case.plot(f"Pressure {name}", "t, s", "Pa", [("tobiuo", time, p, False)])
 for name, expected in LEVEL.items():
     h = interpolate(time, table[f"{name}_level"], 1.0)
-    case.figure(f"{name}: level at 1 s; measured {expected} m", h, "stated", True)
+    case.state(f"{name}: level at 1 s; measured {expected} m", h)
 case.finish()

@@ -30,7 +30,7 @@ case.figure("drag, variation in the last half (standard deviation / mean)", vari
 coefficient = level/(RHO*U*U/2*math.pi*D*D/4)
 case.figure("drag coefficient, 1.09 unbounded", coefficient, "within 10 %", abs(coefficient/1.09 - 1) <= 0.10)
 viscous = mean([-v for t, v in zip(times, parts["viscous"]) if t > end/2])/level
-case.figure("viscous share of the drag (0.46 in theory)", viscous, "stated", True)
+case.state("viscous share of the drag (0.46 in theory)", viscous)
 side = max(abs(mean([f for t, f in zip(times, [p + v for p, v in zip(bodies[f"mean_pressure_force_{a}"],
                bodies[f"mean_viscous_force_{a}"])]) if t > end/2])) for a in "yz")/level
 case.figure("mean side force over drag", side, "<= 0.05", abs(side) <= 0.05)

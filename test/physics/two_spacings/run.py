@@ -27,7 +27,7 @@ for spacing in case.pick((0.008, 0.16/24), (0.004, 0.0032)):
     wing.append(value)
     curves.append((f"d = {1000*spacing:.3g} mm", table["time"][1:], table["mean_pressure_force_x"][1:], False))
     cd = -value/(0.5*1000*0.4**2*0.06*0.04)
-    case.figure(f"wing at {1000*spacing:.3g} mm: force, N", value, "stated", True)
+    case.state(f"wing at {1000*spacing:.3g} mm: force, N", value)
     # A steady plate has 1.2; started at once, it has twice that while its first vortex ring grows.
     case.hold(f"wing at {1000*spacing:.3g} mm: a drag, coefficient {cd:.2f} between 0.5 and 3", 0.5 < cd < 3)
 change = wing[1]/wing[0] - 1
@@ -42,7 +42,7 @@ if not case.smoke:
         for axis, what in (("x", "forward"), ("z", "vertical")):
             value, table = force(out, "fish", axis, 0.4)
             fish[spacing, axis] = value
-            case.figure(f"fish at {1000*spacing:.3g} mm: {what} force, N", value, "stated", True)
+            case.state(f"fish at {1000*spacing:.3g} mm: {what} force, N", value)
             total = [p + v for p, v in zip(table[f"mean_pressure_force_{axis}"], table[f"mean_viscous_force_{axis}"])]
             lines[axis].append((f"d = {1000*spacing:.3g} mm", table["time"][1:], total[1:], False))
     for coarse, fine in ((0.010, 0.008), (0.008, 0.006)):

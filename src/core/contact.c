@@ -1,0 +1,383 @@
+#include "core/contact.h"
+#include "base/error.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 14 };
+
+/* Contacts that one chunk of particles has with a body. */
+struct tobi_contact_run { int64_t chunk, first, count; };
+
+void tobi_contact_free(tobi_contacts *c)
+{
+    free(c->list);
+    free(c->found);
+    free(c->run);
+    free(c->chunk_box);
+    free(c->partial);
+    memset(c, 0, sizeof *c);
+}
+
+static int64_t count_chunks(int64_t n) { return (n + TOBI_BLOCK - 1)/TOBI_BLOCK; }
+
+static tobi_status fail_memory(int64_t contacts, tobi_error *err)
+{
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts of %lld particles", (long long)contacts);
+}
+
+tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err)
+{
+    int64_t chunks = count_chunks(p->count);
+    if (chunks > c->chunk_room) {
+        free(c->run);
+        free(c->chunk_box);
+        c->run = malloc((size_t)chunks*sizeof *c->run);
+        c->chunk_box = malloc((size_t)chunks*sizeof *c->chunk_box);
+        c->chunk_room = c->run && c->chunk_box ? chunks : 0;
+        if (!c->chunk_room) return fail_memory(p->count, err);
+    }
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < chunks; k++) {
+        double *box = c->chunk_box[k];
+        for (int a = 0; a < 3; a++) { box[a] = INFINITY; box[3 + a] = -INFINITY; }
+        for (int64_t i = k*TOBI_BLOCK; i < (k + 1)*TOBI_BLOCK && i < p->count; i++)
+            for (int a = 0; a < 3; a++) {
+                double v = (&p->position[i].x)[a];
+                if (v < box[a]) box[a] = v;
+                if (v > box[3 + a]) box[3 + a] = v;
+            }
+    }
+    return TOBI_OK;
+}
+
+/* Where the body is, for one search. */
+typedef struct pose {
+    const tobi_body *body;
+    const tobi_contact_step *step;
+    double matrix[3][3];             /* rest axes to world axes */
+    double low[3], high[3];          /* m, of the body with all who may touch it */
+} pose;
+
+/* What the surface moves at the hit besides the body's rigid motion. */
+static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_contact *c)
+{
+    const int32_t *t = b->mesh.triangles[hit->triangle];
+    double turning[3];
+    vec3_cross(turning, b->rigid.angular_velocity, c->arm);
+    for (int a = 0; a < 3; a++) {
+        c->deforming[a] = b->rigid.kind == TOBI_PRESCRIBED ? -b->rigid.velocity[a] - turning[a] : 0;
+        for (int k = 0; k < 3 && b->rigid.kind == TOBI_PRESCRIBED; k++)
+            c->deforming[a] += hit->barycentric[k]*b->vertex_velocity[t[k]][a];
+    }
+}
+
+/* Nearest point of the body to x (from the domain's corner). */
+static int touch(const pose *at, const double x[3], tobi_contact *out)
+{
+    const tobi_body *b = at->body;
+    tobi_bvh_hit hit;
+    double local[3], far = fmax(at->step->radius + at->step->margin, at->step->reach);
+    vec3_sub(out->arm, x, b->rigid.position);
+    for (int a = 0; a < 3; a++)
+        local[a] = at->matrix[0][a]*out->arm[0] + at->matrix[1][a]*out->arm[1] + at->matrix[2][a]*out->arm[2];
+    if (!(b->deforms ? tobi_bvh_closest(b->bvh, x, far, &hit) : tobi_bvh_closest(b->rest_bvh, local, far, &hit)))
+        return 0;
+    out->gap = hit.signed_distance - at->step->radius;
+    if (!(out->gap < at->step->margin)) return 0;
+    for (int a = 0; a < 3; a++)
+        out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
+    find_deforming(b, &hit, out);
+    return 1;
+}
+
+/* Contacts of one chunk into `found`; returns how many. */
+static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chunk, tobi_contact found[TOBI_BLOCK])
+{
+    int64_t n = 0;
+    for (int64_t i = chunk*TOBI_BLOCK; i < (chunk + 1)*TOBI_BLOCK && i < p->count; i++) {
+        double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+        int out = 0;
+        for (int a = 0; a < at->step->dimension; a++) out |= x[a] < at->low[a] || x[a] > at->high[a];
+        found[n] = (tobi_contact){ .particle = (int32_t)i };
+        if (out || !touch(at, x, &found[n])) continue;
+        double start = fmax(0, -p->velocity[i].w)*at->step->dt;
+        for (int a = 0; a < 3; a++) found[n].change[a] = start*found[n].normal[a];
+        n++;
+    }
+    return n;
+}
+
+static int boxes_meet(const double box[6], const double low[3], const double high[3], int dimension)
+{
+    int apart = 0;
+    for (int a = 0; a < dimension; a++) apart |= box[a] > high[a] || box[3 + a] < low[a];
+    return !apart;
+}
+
+/* Fills `found` and the runs; returns how many contacts there are, more than `room` if that was too short. */
+static int64_t search(tobi_contacts *c, const pose *at, const tobi_particles *p, int64_t *runs, tobi_exec *x)
+{
+    int64_t used = 0;
+    *runs = 0;
+    for (int64_t k = 0; k < count_chunks(p->count); k++)
+        if (boxes_meet(c->chunk_box[k], at->low, at->high, at->step->dimension))
+            c->run[(*runs)++] = (struct tobi_contact_run){k, 0, 0};
+    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (*runs > 1)
+    for (int64_t k = 0; k < *runs; k++) {
+        tobi_contact found[TOBI_BLOCK + 1];
+        struct tobi_contact_run *run = &c->run[k];
+        run->count = search_chunk(at, p, run->chunk, found);
+        #pragma omp atomic capture
+        { run->first = used; used += run->count; }
+        if (run->first + run->count <= c->room)
+            memcpy(c->found + run->first, found, (size_t)run->count*sizeof *found);
+    }
+    return used;
+}
+
+static tobi_status reserve(tobi_contacts *c, int64_t count, tobi_error *err)
+{
+    int64_t room = count + count/4 + 1024, parts = count_chunks(room);
+    free(c->list);
+    free(c->found);
+    free(c->partial);
+    c->list = malloc((size_t)room*sizeof *c->list);
+    c->found = malloc((size_t)room*sizeof *c->found);
+    c->partial = malloc((size_t)parts*SUMS*sizeof *c->partial);
+    c->room = c->list && c->found && c->partial ? room : 0;
+    return c->room ? TOBI_OK : fail_memory(count, err);
+}
+
+tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
+                              const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
+{
+    pose at = { .body = b, .step = step };
+    int64_t runs;
+    if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
+    tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
+    tobi_bvh_box(b->bvh, at.low, at.high);
+    for (int a = 0; a < 3; a++) {
+        at.low[a] -= step->radius + step->margin;
+        at.high[a] += step->radius + step->margin;
+    }
+    while ((c->count = search(c, &at, p, &runs, x)) > c->room) TOBI_TRY(reserve(c, c->count, err));
+    int64_t n = 0;
+    for (int64_t k = 0; k < runs; k++) {       /* in the order of the chunks, whoever was first */
+        memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
+        n += c->run[k].count;
+    }
+    memcpy(c->velocity, b->rigid.velocity, sizeof c->velocity);
+    memcpy(c->spin, b->rigid.angular_velocity, sizeof c->spin);
+    return TOBI_OK;
+}
+
+/* Velocity of the material relative to the surface, for velocities of the body. */
+static void find_relative(const tobi_contact *k, const double velocity[3], const double spin[3], double out[3])
+{
+    double turning[3];
+    vec3_cross(turning, spin, k->arm);
+    for (int a = 0; a < 3; a++) out[a] = k->velocity[a] - velocity[a] - turning[a] - k->deforming[a];
+}
+
+void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x)
+{
+    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
+    for (int64_t n = 0; n < c->count; n++) {
+        tobi_contact *k = &c->list[n];
+        double relative[3];
+        find_relative(k, c->velocity, c->spin, relative);
+        double along = vec3_dot(relative, k->normal);
+        int hits = -along > step->rest_speed && k->gap < -along*step->dt;
+        k->bounce = hits ? -along*b->rigid.restitution : 0;
+    }
+}
+
+/* By how much the velocity must change along the normal, if at all. */
+static double find_lack(const tobi_contact *k, double along, double dt)
+{
+    double allowed = k->bounce > 0 ? k->bounce : -fmax(k->gap, 0)/dt;
+    return allowed - along;
+}
+
+/* The impulse of a contact for given velocities of the body: into change. */
+static void find_change(tobi_contact *k, const tobi_contacts *c, double friction, double dt)
+{
+    double relative[3], wanted[3], normal, slide[3];
+    find_relative(k, c->velocity, c->spin, relative);
+    double along = vec3_dot(relative, k->normal), lack = find_lack(k, along, dt);
+    normal = fmax(0, vec3_dot(k->impulse, k->normal) + lack/k->mobility);
+    for (int a = 0; a < 3; a++) {
+        double sliding = relative[a] - along*k->normal[a];
+        wanted[a] = k->impulse[a] - sliding/k->mobility;
+    }
+    vec3_add_scaled(slide, wanted, -vec3_dot(wanted, k->normal), k->normal);
+    double size = vec3_length(slide), grip = friction*normal;
+    k->sliding = size > grip;
+    for (int a = 0; a < 3; a++)
+        k->change[a] = normal*k->normal[a] + (k->sliding ? slide[a]*grip/size : slide[a]) - k->impulse[a];
+}
+
+/* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact and P
+   keeps what of them its impulse answers: the normal part if it pushes, the rest if it does not slide. */
+static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt, double *sum)
+{
+    double relative[3], p[3][3], g[3][6] = {{0}}, pg[3][6], aim[3];
+    find_relative(k, c->velocity, c->spin, relative);
+    double lack = find_lack(k, vec3_dot(relative, k->normal), dt), stick = !k->sliding;
+    if (vec3_dot(k->impulse, k->normal) + lack/k->mobility <= 0) return;
+    double allowed = k->bounce > 0 ? k->bounce : -fmax(k->gap, 0)/dt;
+    for (int r = 0; r < 3; r++)
+        for (int n = 0; n < 3; n++)
+            p[r][n] = ((1 - stick)*k->normal[r]*k->normal[n] + (r == n ? stick : 0))/k->mobility;
+    for (int a = 0; a < 3; a++) {
+        g[a][a] = 1;
+        aim[a] = k->velocity[a] - k->deforming[a] - allowed*k->normal[a];
+    }
+    g[0][4] = k->arm[2]; g[0][5] = -k->arm[1];
+    g[1][3] = -k->arm[2]; g[1][5] = k->arm[0];
+    g[2][3] = k->arm[1]; g[2][4] = -k->arm[0];
+    for (int r = 0; r < 3; r++)
+        for (int n = 0; n < 6; n++) pg[r][n] = p[r][0]*g[0][n] + p[r][1]*g[1][n] + p[r][2]*g[2][n];
+    for (int i = 0; i < 6; i++) {
+        for (int n = 0; n < 6; n++) sum[6*i + n] += g[0][i]*pg[0][n] + g[1][i]*pg[1][n] + g[2][i]*pg[2][n];
+        sum[MATRIX + i] += pg[0][i]*aim[0] + pg[1][i]*aim[1] + pg[2][i]*aim[2];
+    }
+}
+
+/* Solves the 6x6 system a x = b by Gauss with pivots; leaves x in b. */
+static void eliminate(double a[6][6], double b[6])
+{
+    for (int k = 0; k < 6; k++) {
+        int best = k;
+        for (int i = k + 1; i < 6; i++) if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
+        for (int j = 0; j < 6; j++) { double t = a[k][j]; a[k][j] = a[best][j]; a[best][j] = t; }
+        double t = b[k]; b[k] = b[best]; b[best] = t;
+        for (int i = k + 1; i < 6; i++) {
+            double f = a[i][k]/a[k][k];
+            for (int j = k; j < 6; j++) a[i][j] -= f*a[k][j];
+            b[i] -= f*b[k];
+        }
+    }
+    for (int k = 5; k >= 0; k--) {
+        for (int j = k + 1; j < 6; j++) b[k] -= a[k][j]*b[j];
+        b[k] /= a[k][k];
+    }
+}
+
+/* Sums `width` numbers per contact over the list, in one order for any number of threads. */
+static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, tobi_exec *x)
+{
+    int64_t parts = count_chunks(c->count);
+    memset(total, 0, (size_t)width*sizeof *total);
+    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (parts > 1)
+    for (int64_t q = 0; q < parts; q++) {
+        double *sum = c->partial + q*SUMS;
+        memset(sum, 0, (size_t)width*sizeof *sum);
+        for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
+            const tobi_contact *k = &c->list[n];
+            double twist[3];
+            if (width == SUMS) {
+                add_contact(k, c, dt, sum);
+                continue;
+            }
+            vec3_cross(twist, k->arm, k->change);
+            for (int a = 0; a < 3; a++) { sum[a] += k->change[a]; sum[3 + a] += twist[a]; }
+        }
+    }
+    for (int64_t q = 0; q < parts; q++)
+        for (int n = 0; n < width; n++) total[n] += c->partial[q*SUMS + n];
+}
+
+/* The foreseen velocities after the impulses of this sweep, solved with them: V = V0 + M^-1 (r - K V). */
+static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
+{
+    double shift[3], turn[3][3], inverse[6][6] = {{0}}, total[SUMS], a[6][6], b[6];
+    tobi_rigid_inverse(r, shift, turn);
+    for (int i = 0; i < 3; i++) {
+        inverse[i][i] = shift[i];
+        for (int k = 0; k < 3; k++) inverse[3 + i][3 + k] = turn[i][k];
+    }
+    sum_contacts(c, SUMS, dt, total, x);
+    memcpy(b, c->velocity, sizeof c->velocity);
+    memcpy(b + 3, c->spin, sizeof c->spin);
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < 6; k++) a[i][k] = i == k;
+        for (int j = 0; j < 6; j++) {
+            for (int k = 0; k < 6; k++) a[i][k] += inverse[i][j]*total[6*j + k];
+            b[i] += inverse[i][j]*total[MATRIX + j];
+        }
+    }
+    eliminate(a, b);
+    memcpy(c->velocity, b, sizeof c->velocity);
+    memcpy(c->spin, b + 3, sizeof c->spin);
+}
+
+void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first, tobi_exec *x)
+{
+    const tobi_rigid *r = &b->rigid;
+    int moves = r->kind != TOBI_PRESCRIBED;
+    double velocity[3], spin[3], total[6];
+    memcpy(velocity, c->velocity, sizeof velocity);
+    memcpy(spin, c->spin, sizeof spin);
+    if (moves && !first) foresee(c, r, step->dt, x);
+    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
+    for (int64_t n = 0; n < c->count; n++) {
+        tobi_contact *k = &c->list[n];
+        if (!first) find_change(k, c, r->friction, step->dt);
+        for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
+    }
+    if (!moves) return;
+    /* What the impulses really were. */
+    double shift[3], turn[3][3];
+    tobi_rigid_inverse(r, shift, turn);
+    sum_contacts(c, 6, step->dt, total, x);
+    for (int a = 0; a < 3; a++) {
+        c->velocity[a] = velocity[a] - shift[a]*total[a];
+        c->spin[a] = spin[a] - vec3_dot(turn[a], total + 3);
+    }
+}
+
+int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
+                            double *far, tobi_exec *x)
+{
+    int64_t parts = count_chunks(c->count);
+    double total[IMPULSES] = {0}, dt = step->dt;
+    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (parts > 1)
+    for (int64_t q = 0; q < parts; q++) {
+        double *sum = c->partial + q*SUMS;
+        memset(sum, 0, IMPULSES*sizeof *sum);
+        for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
+            const tobi_contact *k = &c->list[n];
+            double part[2][3], twist[3], normal = vec3_dot(k->impulse, k->normal);
+            for (int a = 0; a < 3; a++) {
+                part[0][a] = -normal*k->normal[a];
+                part[1][a] = -k->impulse[a] - part[0][a];
+            }
+            for (int m = 0; m < 2; m++) {
+                vec3_cross(twist, k->arm, part[m]);
+                for (int a = 0; a < 3; a++) { sum[6*m + a] += part[m][a]; sum[6*m + 3 + a] += twist[a]; }
+            }
+            sum[12] += normal > 0;
+            p->velocity[k->particle].w = (float)(normal/dt);
+            double push = k->gap < 0 ? fmin(-0.2*k->gap, 0.1*step->radius) : 0;
+            for (int a = 0; a < step->dimension; a++) (&p->position[k->particle].x)[a] += push*k->normal[a];
+            sum[13] = fmax(sum[13], push);
+        }
+    }
+    for (int64_t q = 0; q < parts; q++) {
+        for (int n = 0; n < IMPULSES - 1; n++) total[n] += c->partial[q*SUMS + n];
+        *far = fmax(*far, c->partial[q*SUMS + 13]);
+    }
+    for (int a = 0; a < 3; a++) {
+        b->rigid.impulse[a] += total[a] + total[6 + a];
+        b->rigid.twist[a] += total[3 + a] + total[9 + a];
+        b->info.pressure_force[a] = total[a]/dt;
+        b->info.pressure_torque[a] = total[3 + a]/dt;
+        b->info.viscous_force[a] = total[6 + a]/dt;
+        b->info.viscous_torque[a] = total[9 + a]/dt;
+    }
+    return (int64_t)total[12];
+}

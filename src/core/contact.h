@@ -1,0 +1,69 @@
+/* Contact of the particles of solids with bodies, each particle against the mesh. docs/theory/contact.md.
+
+   A particle fills half a spacing around it; nearer than that to a surface it may not come within a step. The
+   velocity of the material at the particle, relative to the surface there (the body's turning and deforming
+   included), loses what would bring it nearer, with restitution, and as much of its sliding as Coulomb friction
+   takes, at most all. The body gets the opposite impulses.
+
+   The velocities are not the particles' own but those of the grid they move with: one who holds particles
+   back while the grid goes on lets the material flow through its own stress, and it creeps. So the solver
+   alternates: the method gives velocities at the contacts, a sweep answers with impulses, the method puts them
+   on its grid. Impulses add up over the sweeps, and only their sums must push and obey friction. */
+#pragma once
+#include "core/body.h"
+#include "core/particles.h"
+#include "exec/exec.h"
+
+/* One particle at one body. */
+typedef struct tobi_contact {
+    int32_t particle;
+    int32_t sliding;                 /* 1: friction was not enough in the last sweep             */
+    double  normal[3];               /* outward from the body                                    */
+    double  arm[3];                  /* m, from the body's centre to the particle                */
+    double  deforming[3];            /* m/s, what the surface moves besides the rigid motion     */
+    double  gap;                     /* m, between the particle's edge and the surface           */
+    double  bounce;                  /* m/s, by which it shall leave                             */
+    double  mobility;                /* 1/kg, velocity by impulses of this size at all contacts  */
+    double  velocity[3];             /* m/s, of the material; the method's to bring up to date   */
+    double  impulse[3];              /* N s, on the particle so far                              */
+    double  change[3];               /* N s, by the last sweep                                   */
+} tobi_contact;
+
+typedef struct tobi_contacts {
+    tobi_contact *list;              /* of the present body                                      */
+    int64_t count, room;
+    tobi_contact *found;             /* the same as the threads found them                       */
+    struct tobi_contact_run *run;
+    double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
+    double *partial;                 /* sums of parts of the list                                */
+    int64_t chunk_room, partial_room;
+    double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
+} tobi_contacts;
+
+typedef struct tobi_contact_step {
+    double dt;                       /* s                                                        */
+    double radius;                   /* m, half a particle spacing                               */
+    double reach;                    /* m, how deep inside a body a particle is still found      */
+    double margin;                   /* m, how far from touching a particle is looked at         */
+    double rest_speed;               /* m/s, slower approaches do not bounce                     */
+    int dimension;
+} tobi_contact_step;
+
+/* Before a step: boxes around the particles' chunks, for finding. */
+tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err);
+/* Lists the particles near a body at its present pose. The particle's impulse of the last step starts it: its
+   normal part is kept in velocity.w, -N, by whoever moves the particles. */
+tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
+                              const tobi_contact_step *step, tobi_exec *x, tobi_error *err);
+/* Whether and how fast contacts shall bounce, from the velocities as they are. */
+void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
+/* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to
+   impulse and to the body's foreseen velocities. first: 1 takes the starting impulses as the change. */
+void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first, tobi_exec *x);
+/* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its forces: normal parts as
+   pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that still
+   overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m. Returns how
+   many contacts push. */
+int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
+                            double *far, tobi_exec *x);
+void tobi_contact_free(tobi_contacts *c);
