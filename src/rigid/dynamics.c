@@ -15,8 +15,8 @@ struct tobi_dynamics_state {
     tobi_rigid_world world;
     tobi_shape *shapes;
     tobi_broad broad;
-    tobi_contact_list contacts, before;
-    tobi_contact_list *part;     /* [threads] */
+    tobi_touch_list contacts, before;
+    tobi_touch_list *part;     /* [threads] */
     tobi_solver solver;
 };
 
@@ -238,13 +238,13 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
 
 static int compare_contacts(const void *p, const void *q)
 {
-    const tobi_contact *x = p, *y = q;
+    const tobi_touch *x = p, *y = q;
     if (x->a != y->a) return x->a < y->a ? -1 : 1;
     if (x->b != y->b) return x->b < y->b ? -1 : 1;
     return x->key < y->key ? -1 : x->key > y->key;
 }
 
-static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *out)
+static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *out)
 {
     double margin = tobi_broad_margin(&d->broad, k);
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
@@ -259,7 +259,7 @@ static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *
     }
 }
 
-static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_contact_list *out)
+static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_touch_list *out)
 {
     int64_t first = out->count;
     double margin = tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b);
@@ -276,7 +276,7 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
     int failed = 0;
     for (int i = 0; i < d->world.threads; i++) {
         for (int64_t k = 0; k < d->part[i].count; k++) {
-            tobi_contact *c = tobi_contact_add(&d->contacts);
+            tobi_touch *c = tobi_touch_add(&d->contacts);
             if (c) *c = d->part[i].at[k];
         }
         failed |= d->part[i].failed;
@@ -288,14 +288,14 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
 
 static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
 {
-    tobi_contact_list swap = d->before;
+    tobi_touch_list swap = d->before;
     d->before = d->contacts;
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
 #pragma omp parallel num_threads(d->world.threads)
     {
-        tobi_contact_list *out = &d->part[omp_get_thread_num()];
+        tobi_touch_list *out = &d->part[omp_get_thread_num()];
         out->count = 0;
 #pragma omp for schedule(dynamic, 4) nowait
         for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
@@ -310,7 +310,7 @@ static void keep_impulses(tobi_dynamics_state *d)
 {
     int64_t k = 0;
     for (int64_t i = 0; i < d->contacts.count; i++) {
-        tobi_contact *c = &d->contacts.at[i];
+        tobi_touch *c = &d->contacts.at[i];
         while (k < d->before.count && compare_contacts(&d->before.at[k], c) < 0) k++;
         if (k == d->before.count || compare_contacts(&d->before.at[k], c) != 0) continue;
         c->impulse = d->before.at[k].impulse;
@@ -354,7 +354,7 @@ int64_t tobi_rigid_warm(const tobi_dynamics_state *d, double *rows)
 {
     int64_t n = 0;
     for (int64_t k = 0; k < d->contacts.count; k++) {
-        const tobi_contact *c = &d->contacts.at[k];
+        const tobi_touch *c = &d->contacts.at[k];
         if (c->impulse == 0 && vec3_dot(c->slide, c->slide) == 0) continue;
         double row[TOBI_WARM] = { c->a, c->b, (double)(c->key >> KEY_HALF),
                                   (double)(c->key & (((int64_t)1 << KEY_HALF) - 1)), c->impulse,
@@ -376,7 +376,7 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
                                  (long long)k);
         if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES || row[1] >= d->count)
             return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
-        tobi_contact *c = tobi_contact_add(&d->contacts);
+        tobi_touch *c = tobi_touch_add(&d->contacts);
         if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
         c->a = (int32_t)row[0];
         c->b = (int32_t)row[1];

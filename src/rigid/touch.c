@@ -2,7 +2,7 @@
    are brought there. A corner meets a face if its neighbours all lie behind it as seen from the face, and
    two edges meet if the normal across both lies between the faces at either (the Gauss map of a Minkowski
    sum); so no closest feature has to be guessed, and a stack of equal boxes has vertical normals only. */
-#include "rigid/contact.h"
+#include "rigid/touch.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ typedef struct frame { double turn[3][3], shift[3]; } frame;
 
 typedef struct pair {
     const tobi_shape *a, *b;
-    tobi_contact_list *out;
+    tobi_touch_list *out;
     frame to_b, to_world;          /* from a's rest axes to b's, from b's to the domain                */
     int64_t first;                 /* contact of this pair                                             */
     double margin, deepest, band, skin;
@@ -58,11 +58,11 @@ static void set_frames(pair *p, const tobi_rigid *a, const tobi_rigid *b)
     memcpy(p->to_world.shift, b->position, sizeof p->to_world.shift);
 }
 
-tobi_contact *tobi_contact_add(tobi_contact_list *out)
+tobi_touch *tobi_touch_add(tobi_touch_list *out)
 {
     if (out->count == out->capacity) {
         int64_t capacity = 2*out->capacity + 64;
-        tobi_contact *more = realloc(out->at, (size_t)capacity*sizeof *more);
+        tobi_touch *more = realloc(out->at, (size_t)capacity*sizeof *more);
         if (!more) {
             out->failed = 1;
             return NULL;
@@ -70,7 +70,7 @@ tobi_contact *tobi_contact_add(tobi_contact_list *out)
         out->at = more;
         out->capacity = capacity;
     }
-    tobi_contact *c = &out->at[out->count++];
+    tobi_touch *c = &out->at[out->count++];
     memset(c, 0, sizeof *c);
     return c;
 }
@@ -83,7 +83,7 @@ static int64_t key_of(int kind, int64_t i, int64_t j)
 /* A contact whose point and normal are in b's axes. */
 static void add(pair *p, int64_t key, const double point[3], const double normal[3], double gap)
 {
-    tobi_contact *c = tobi_contact_add(p->out);
+    tobi_touch *c = tobi_touch_add(p->out);
     if (!c) return;
     c->key = key;
     c->gap = gap;
@@ -97,7 +97,7 @@ static int is_better(pair *p, int64_t corner_key, int convex, const double norma
     double world[3];
     turn(&p->to_world, normal, world);
     for (int64_t k = p->first; k < p->out->count; k++) {
-        tobi_contact *c = &p->out->at[k];
+        tobi_touch *c = &p->out->at[k];
         if (c->key >> HALF != corner_key) continue;
         if (!convex && vec3_dot(c->normal, world) < 0.99) continue;
         if (gap <= c->gap + 1e-3*p->skin) return 0;      /* the first of equals, in every step */
@@ -357,11 +357,11 @@ static void meet_ball_surface(pair *p)
 static double squared(double x) { return x*x; }
 
 /* Of many contacts the deepest, and then always the one that is farthest from those kept. */
-void tobi_contact_thin(tobi_contact_list *out, int64_t first)
+void tobi_touch_thin(tobi_touch_list *out, int64_t first)
 {
     enum { MOST = 12 };
     int64_t n = out->count - first;
-    tobi_contact *c = out->at + first;
+    tobi_touch *c = out->at + first;
     if (n <= MOST) return;
     for (int64_t kept = 0; kept < MOST; kept++) {
         int64_t best = kept;
@@ -377,7 +377,7 @@ void tobi_contact_thin(tobi_contact_list *out, int64_t first)
             most = worth;
             best = i;
         }
-        tobi_contact swap = c[kept];
+        tobi_touch swap = c[kept];
         c[kept] = c[best];
         c[best] = swap;
     }
@@ -395,11 +395,11 @@ static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
     else if (p->a->facets.ball > 0) meet_ball_surface(p);
     else meet_surfaces(p);
     for (int64_t k = p->first; k < p->out->count; k++) p->out->at[k].slop = SLOP*thickness;
-    tobi_contact_thin(p->out, p->first);
+    tobi_touch_thin(p->out, p->first);
 }
 
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                       double margin, tobi_contact_list *out)
+                       double margin, tobi_touch_list *out)
 {
     pair p = { .a = sa, .b = sb, .out = out, .first = out->count, .margin = margin };
     if (!(sb->facets.ball > 0) || sa->facets.ball > 0) {
@@ -414,7 +414,7 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
 }
 
 void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,
-                     tobi_contact_list *out)
+                     tobi_touch_list *out)
 {
     const tobi_rigid *r = &a->rigid;
     const tobi_facets *f = &sa->facets;
@@ -430,7 +430,7 @@ void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double 
             for (int i = 0; i < 3; i++) arm[i] = vec3_dot(m[i], f->vertex[f->corner[k]]);
         double gap = height + sign*arm[axis];
         if (gap > margin) continue;
-        tobi_contact *c = tobi_contact_add(out);
+        tobi_touch *c = tobi_touch_add(out);
         if (!c) return;
         c->key = key_of(SIDE, side, f->ball > 0 ? 0 : f->corner[k]);
         c->gap = gap;
@@ -439,5 +439,5 @@ void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double 
         c->point[axis] = at + 0.5*sign*gap;
         c->normal[axis] = sign;
     }
-    tobi_contact_thin(out, first);
+    tobi_touch_thin(out, first);
 }
