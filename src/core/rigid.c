@@ -118,6 +118,13 @@ static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
 {
     const char *name = def->name ? def->name : "";
     if (def->dynamics == TOBI_PRESCRIBED) {
+        const double *given[] = { def->velocity, def->angular_velocity, def->force, def->torque };
+        double sum = def->air_resistance;
+        for (int k = 0; k < 4; k++) sum += vec3_dot(given[k], given[k]);
+        if (sum > 0 || def->locked)
+            return tobi_fail(err, TOBI_INVALID,
+                             "body '%s' is prescribed: velocities, force, torque, air resistance and locked axes "
+                             "are for free and controlled bodies", name);
         if (!def->control) return TOBI_OK;
         return tobi_fail(err, TOBI_INVALID, "body '%s' has a control program but is not controlled", name);
     }

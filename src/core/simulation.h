@@ -61,6 +61,7 @@ typedef struct tobi_method {
     const char *doc;
     size_t def_size;                                             /* of the parameter struct        */
     int fields;                                                  /* particle fields besides TOBI_ALL */
+    int free_bodies;                                             /* 1: bodies may move by forces   */
     /* Smoothing kernel and support radius the parameters ask for. */
     void (*smoothing)(const void *def, int *shape, double *support);
     tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);

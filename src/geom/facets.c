@@ -118,7 +118,7 @@ tobi_status tobi_facets_build(tobi_facets *f, const tobi_bvh *b, const double (*
     *f = (tobi_facets){ .bvh = b, .vertex = vertex, .triangle = (const int32_t (*)[3])b->triangles,
                         .normal = (const double (*)[3])b->face_normal,
                         .opposite = (const int32_t (*)[3])b->opposite, .vertex_count = b->vertex_count,
-                        .triangle_count = b->triangle_count };
+                        .triangle_count = b->triangle_count, .flat = flat };
     TOBI_TRY(allocate(f, err));
     list_rings(f, b);
     give_owners(f, b);

@@ -20,6 +20,7 @@ typedef struct tobi_facets {
     double ball;                     /* m, radius if the surface stands for a sphere about the origin, or 0 */
     double ball_gap;                 /* m, how far its faces lie below that sphere at most              */
     int convex;
+    int flat;                        /* a prism along z that stands for its section: its ends are nothing */
 } tobi_facets;
 
 /* The tree and the arrays must outlive the facets. flat: 1 if the surface is a prism along z that stands for

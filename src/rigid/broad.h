@@ -1,7 +1,7 @@
 /* Broad phase: which pairs of bodies can meet in a step. Boxes around the bodies, sorted along the axis
    on which they spread most, then swept: n log n and the overlaps on one axis, not n^2. */
 #pragma once
-#include "rigid/contact.h"
+#include "rigid/touch.h"
 
 typedef struct tobi_pair { int32_t a, b; } tobi_pair;
 typedef struct tobi_broad_entry tobi_broad_entry;

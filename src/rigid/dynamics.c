@@ -15,8 +15,8 @@ struct tobi_dynamics_state {
     tobi_rigid_world world;
     tobi_shape *shapes;
     tobi_broad broad;
-    tobi_contact_list contacts, before;
-    tobi_contact_list *part;     /* [threads] */
+    tobi_touch_list contacts, before;
+    tobi_touch_list *part;     /* [threads] */
     tobi_solver solver;
 };
 
@@ -29,12 +29,31 @@ int tobi_rigid_any(const tobi_body *bodies, int count)
 
 /* --- start ------------------------------------------------------------------------------------- */
 
+/* In 2-D a body stands for its section, which must be the same at every height. */
+static tobi_status check_prism(const tobi_body *b, tobi_error *err)
+{
+    for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
+        double u[3], w[3], n[3];
+        const int32_t *c = b->mesh.triangles[t];
+        vec3_sub(u, b->mesh.vertices[c[1]], b->mesh.vertices[c[0]]);
+        vec3_sub(w, b->mesh.vertices[c[2]], b->mesh.vertices[c[0]]);
+        vec3_cross(n, u, w);
+        vec3_normalize(n);
+        if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism or "
+                         "cylinder along z", b->name);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status make_shape(tobi_body *b, tobi_shape *s, int dimension, tobi_error *err)
 {
     memset(s, 0, sizeof *s);
     s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
     s->solid = !b->deforms;
     if (!s->solid) return TOBI_OK;
+    if (dimension == 2) TOBI_TRY(check_prism(b, err));
     TOBI_TRY(tobi_body_need_rest(b, err));
     return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
                              err);
@@ -141,6 +160,15 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
     return status;
 }
 
+double tobi_rigid_step_limit(const tobi_dynamics_state *d)
+{
+    double g = vec3_length(d->world.gravity), limit = 1.0/60;
+    for (int k = 0; k < d->count; k++)
+        if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED && g > 0)
+            limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
+    return limit;
+}
+
 void tobi_rigid_free(tobi_dynamics_state *d)
 {
     if (!d) return;
@@ -210,13 +238,13 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
 
 static int compare_contacts(const void *p, const void *q)
 {
-    const tobi_contact *x = p, *y = q;
+    const tobi_touch *x = p, *y = q;
     if (x->a != y->a) return x->a < y->a ? -1 : 1;
     if (x->b != y->b) return x->b < y->b ? -1 : 1;
     return x->key < y->key ? -1 : x->key > y->key;
 }
 
-static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *out)
+static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *out)
 {
     double margin = tobi_broad_margin(&d->broad, k);
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
@@ -231,7 +259,7 @@ static void touch_sides(const tobi_dynamics_state *d, int k, tobi_contact_list *
     }
 }
 
-static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_contact_list *out)
+static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_touch_list *out)
 {
     int64_t first = out->count;
     double margin = tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b);
@@ -248,7 +276,7 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
     int failed = 0;
     for (int i = 0; i < d->world.threads; i++) {
         for (int64_t k = 0; k < d->part[i].count; k++) {
-            tobi_contact *c = tobi_contact_add(&d->contacts);
+            tobi_touch *c = tobi_touch_add(&d->contacts);
             if (c) *c = d->part[i].at[k];
         }
         failed |= d->part[i].failed;
@@ -260,14 +288,14 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
 
 static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
 {
-    tobi_contact_list swap = d->before;
+    tobi_touch_list swap = d->before;
     d->before = d->contacts;
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
 #pragma omp parallel num_threads(d->world.threads)
     {
-        tobi_contact_list *out = &d->part[omp_get_thread_num()];
+        tobi_touch_list *out = &d->part[omp_get_thread_num()];
         out->count = 0;
 #pragma omp for schedule(dynamic, 4) nowait
         for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
@@ -282,7 +310,7 @@ static void keep_impulses(tobi_dynamics_state *d)
 {
     int64_t k = 0;
     for (int64_t i = 0; i < d->contacts.count; i++) {
-        tobi_contact *c = &d->contacts.at[i];
+        tobi_touch *c = &d->contacts.at[i];
         while (k < d->before.count && compare_contacts(&d->before.at[k], c) < 0) k++;
         if (k == d->before.count || compare_contacts(&d->before.at[k], c) != 0) continue;
         c->impulse = d->before.at[k].impulse;
@@ -326,7 +354,7 @@ int64_t tobi_rigid_warm(const tobi_dynamics_state *d, double *rows)
 {
     int64_t n = 0;
     for (int64_t k = 0; k < d->contacts.count; k++) {
-        const tobi_contact *c = &d->contacts.at[k];
+        const tobi_touch *c = &d->contacts.at[k];
         if (c->impulse == 0 && vec3_dot(c->slide, c->slide) == 0) continue;
         double row[TOBI_WARM] = { c->a, c->b, (double)(c->key >> KEY_HALF),
                                   (double)(c->key & (((int64_t)1 << KEY_HALF) - 1)), c->impulse,
@@ -348,7 +376,7 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
                                  (long long)k);
         if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES || row[1] >= d->count)
             return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
-        tobi_contact *c = tobi_contact_add(&d->contacts);
+        tobi_touch *c = tobi_touch_add(&d->contacts);
         if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
         c->a = (int32_t)row[0];
         c->b = (int32_t)row[1];

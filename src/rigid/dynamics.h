@@ -15,8 +15,8 @@ typedef struct tobi_rigid_world {
 
 typedef struct tobi_dynamics_state tobi_dynamics_state;
 
-/* Prepares the bodies' surfaces for contact, once. notes (room bytes) receives a line for what is odd: bodies
-   that overlap, bodies that nothing can touch. Owned by the caller; the bodies must stay where they are. */
+/* Prepares the bodies' surfaces for contact, once. notes (room bytes) receives a line for what is odd, beginning
+   with a body's name: bodies that overlap, that nothing can touch. Owned by the caller; the bodies must stay where they are. */
 tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
                              size_t room, tobi_dynamics_state **out, tobi_error *err);
 void tobi_rigid_free(tobi_dynamics_state *state);
@@ -24,6 +24,9 @@ void tobi_rigid_free(tobi_dynamics_state *state);
 /* The kick at time t after a drift over dt. TOBI_SCRIPT when a control program fails, TOBI_DIVERGED when a
    velocity is no number. */
 tobi_status tobi_rigid_step(tobi_dynamics_state *state, double t, double dt, tobi_error *err);
+
+/* s: a step in which gravity, or 1/60 s, does little to the smallest body that moves. */
+double tobi_rigid_step_limit(const tobi_dynamics_state *state);
 
 /* 1 if any body is free or controlled. */
 int tobi_rigid_any(const tobi_body *bodies, int count);

@@ -57,7 +57,7 @@ tobi_status tobi_motion_script(const char *path, const char *params_json, tobi_m
 {
     *out = NULL;
     tobi_script *script = NULL;
-    TOBI_TRY(tobi_script_load(path, params_json, &script, err));
+    TOBI_TRY(tobi_script_load(path, params_json, TOBI_MOTION_SCRIPT, &script, err));
     tobi_status status = make(KIND_SCRIPT, out, err);
     if (status == TOBI_OK) (*out)->script = script;
     else tobi_script_free(script);

@@ -1,4 +1,4 @@
-/* Motion scripts on LuaJIT.
+/* Motion and control scripts on LuaJIT.
 
    Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
    user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
@@ -30,10 +30,13 @@
 struct tobi_script {
     lua_State *lua;
     size_t bytes;             /* held by Lua now                             */
-    char *path;
+    char *label;              /* "motion script PATH", for messages              */
+    const char *path;         /* its end                                         */
+    tobi_script_role role;
     bool rigid;
     bool open;                /* Lua's libraries are, and DRIVER has run     */
-    int deform, place;        /* registry references of the walks in DRIVER  */
+    int deform, place, control;   /* registry references of the walks in DRIVER  */
+    char hold[64];            /* the last answer of control                  */
     double pivot[3];          /* m                                           */
 };
 
@@ -80,8 +83,8 @@ static const char DRIVER[] =
     "    end\n"
     "    setmetatable(user, meta)\n"
     "end\n"
-    "local f, g\n"
-    "local function bind(deform, place) f, g = deform, place end\n"
+    "local f, g, h\n"
+    "local function bind(deform, place, control) f, g, h = deform, place, control end\n"
     "local function deform(n, t, rest, position, at)\n"
     "    rest, position = ffi.cast('const double *', rest), ffi.cast('double *', position)\n"
     "    at = ffi.cast('double *', at)\n"
@@ -96,7 +99,46 @@ static const char DRIVER[] =
     "    end\n"
     "end\n"
     "local function place(t) count, look = 0, 256 return g(t) end\n"
-    "return seal, bind, deform, place\n";
+    "local known = { force = true, torque = true, phase = true, hold = true }\n"
+    "local function take(value, name, into, first)\n"
+    "    if value == nil then return end\n"
+    "    if type(value) ~= 'table' or value[4] ~= nil then value = {} end\n"
+    "    for k = 1, 3 do\n"
+    "        if type(value[k]) ~= 'number' then\n"
+    "            error('control must return a ' .. name .. ' of three numbers', 0)\n"
+    "        end\n"
+    "        into[first + k - 1] = value[k]\n"
+    "    end\n"
+    "end\n"
+    "local function control(from, into)\n"
+    "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
+    "    count, look = 0, 256\n"
+    "    local function three(k) return { from[k], from[k + 1], from[k + 2] } end\n"
+    "    local answer = h(from[0], { position = three(1), orientation = { from[4], from[5], from[6], from[7] },\n"
+    "        velocity = three(8), angular_velocity = three(11), contact_force = three(14),\n"
+    "        contact_torque = three(17), mass = from[20], phase = from[21], phase_time = from[22] })\n"
+    "    if answer == nil then return end\n"
+    "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
+    "    for key in pairs(answer) do\n"
+    "        if not known[key] then\n"
+    "            error(\"control returned the unknown key '\" .. tostring(key) ..\n"
+    "                  \"'; allowed are force, torque, phase, hold\", 0)\n"
+    "        end\n"
+    "    end\n"
+    "    take(answer.force, 'force', into, 0)\n"
+    "    take(answer.torque, 'torque', into, 3)\n"
+    "    if answer.phase ~= nil then\n"
+    "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or math.abs(answer.phase) > 1e9 then\n"
+    "            error('control must return a whole number as phase', 0)\n"
+    "        end\n"
+    "        into[6] = answer.phase\n"
+    "    end\n"
+    "    if answer.hold ~= nil and type(answer.hold) ~= 'string' then\n"
+    "        error('control must return a text as hold', 0)\n"
+    "    end\n"
+    "    return answer.hold\n"
+    "end\n"
+    "return seal, bind, deform, place, control\n";
 
 static void *allocate(void *user, void *p, size_t old, size_t size)
 {
@@ -110,12 +152,13 @@ static void *allocate(void *user, void *p, size_t old, size_t size)
     return q;
 }
 
-static tobi_status read_text(const char *path, char **text, size_t *length, tobi_error *err)
+static tobi_status read_text(const tobi_script *script, char **text, size_t *length, tobi_error *err)
 {
-    FILE *file = fopen(path, "rb");
+    const char *label = script->label;
+    FILE *file = fopen(script->path, "rb");
     if (!file)
         return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO,
-                         "motion script %s: %s", path, strerror(errno));
+                         "%s: %s", label, strerror(errno));
     *text = malloc(FILE_LIMIT + 1);
     *length = *text ? fread(*text, 1, FILE_LIMIT + 1, file) : 0;
     bool failed = ferror(file);
@@ -123,9 +166,9 @@ static tobi_status read_text(const char *path, char **text, size_t *length, tobi
     fclose(file);
     if (*text && !failed && *length <= FILE_LIMIT) return TOBI_OK;
     free(*text);
-    if (failed) return tobi_fail(err, TOBI_IO, "motion script %s: %s", path, strerror(reason));
+    if (failed) return tobi_fail(err, TOBI_IO, "%s: %s", label, strerror(reason));
     return tobi_fail(err, *text ? TOBI_INVALID : TOBI_NO_MEMORY,
-                     "motion script %s: larger than 4 MiB", path);
+                     "%s: larger than 4 MiB", label);
 }
 
 /* Leaves the Lua value of a JSON value on the stack; null is nil, arrays count from 1. */
@@ -194,8 +237,9 @@ static int load_protected(lua_State *lua)
     lua_pushvalue(lua, user);
     lua_pushnumber(lua, TICK_LIMIT);
     lua_pushnumber(lua, SECONDS_LIMIT);
-    lua_call(lua, 3, 4);
+    lua_call(lua, 3, 5);
     int seal = user + 1, bind = user + 2;
+    job->script->control = luaL_ref(lua, LUA_REGISTRYINDEX);
     job->script->place = luaL_ref(lua, LUA_REGISTRYINDEX);
     job->script->deform = luaL_ref(lua, LUA_REGISTRYINDEX);
     job->script->open = true;
@@ -209,12 +253,15 @@ static int load_protected(lua_State *lua)
     lua_pushvalue(lua, bind);
     lua_getfield(lua, user, "deform");
     lua_getfield(lua, user, "place");
-    bool deforms = lua_isfunction(lua, -2), places = lua_isfunction(lua, -1);
-    if (deforms == places)
+    lua_getfield(lua, user, "control");
+    bool deforms = lua_isfunction(lua, -3), places = lua_isfunction(lua, -2);
+    if (job->script->role == TOBI_CONTROL_SCRIPT) {
+        if (!lua_isfunction(lua, -1)) return luaL_error(lua, "define function control(t, body)");
+    } else if (deforms == places)
         return luaL_error(lua, "define either function deform(x, y, z, t) or function place(t)%s",
                           deforms ? ", not both" : "");
     job->script->rigid = places;
-    lua_call(lua, 2, 0);
+    lua_call(lua, 3, 0);
     lua_pushvalue(lua, seal);
     lua_call(lua, 0, 0);
     return 0;
@@ -229,10 +276,10 @@ static const char *message(lua_State *lua)
 static tobi_status load(load_job *job, tobi_error *err)
 {
     lua_State *lua = lua_newstate(allocate, job->script);
-    if (!lua) return tobi_fail(err, TOBI_NO_MEMORY, "motion script: no memory for Lua");
+    if (!lua) return tobi_fail(err, TOBI_NO_MEMORY, "%s: no memory for Lua", job->script->label);
     job->script->lua = lua;
     if (lua_cpcall(lua, load_protected, job) == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s", job->script->path, message(lua));
+    return tobi_fail(err, TOBI_SCRIPT, "%s: %s", job->script->label, message(lua));
 }
 
 /* Name of a chunk in messages: the file's own name, as Lua cuts long ones. */
@@ -249,15 +296,15 @@ static tobi_status guard_and_load(tobi_script *script, const json_t *params, tob
 {
     char *text = NULL;
     size_t length = 0;
-    TOBI_TRY(read_text(script->path, &text, &length, err));
+    TOBI_TRY(read_text(script, &text, &length, err));
     tobi_error why = { 0 };
     if (memchr(text, '\0', length) || (length > 0 && text[0] == '\x1b')) {
         free(text);
-        return tobi_fail(err, TOBI_SCRIPT, "motion script %s: not a text file", script->path);
+        return tobi_fail(err, TOBI_SCRIPT, "%s: not a text file", script->label);
     }
     char *guarded = tobi_script_guard(text, length, &why);
     free(text);
-    if (!guarded) return tobi_fail(err, why.status, "motion script %s: %s", script->path, why.text);
+    if (!guarded) return tobi_fail(err, why.status, "%s: %s", script->label, why.text);
     char *name = make_name(script->path);
     load_job job = { script, name, guarded, params };
     tobi_status status = name ? load(&job, err) : tobi_fail(err, TOBI_NO_MEMORY, "out of memory");
@@ -266,21 +313,33 @@ static tobi_status guard_and_load(tobi_script *script, const json_t *params, tob
     return status;
 }
 
-tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script **out,
-                             tobi_error *err)
+static tobi_status set_label(tobi_script *script, const char *path, tobi_script_role role)
+{
+    const char *kind = role == TOBI_CONTROL_SCRIPT ? "control" : "motion";
+    size_t room = strlen(path) + 20;
+    script->role = role;
+    script->label = malloc(room);
+    if (!script->label) return TOBI_NO_MEMORY;
+    script->path = script->label + snprintf(script->label, room, "%s script ", kind);
+    snprintf(script->label + strlen(script->label), room - strlen(script->label), "%s", path);
+    return TOBI_OK;
+}
+
+tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
+                             tobi_script **out, tobi_error *err)
 {
     *out = NULL;
     json_error_t where;
     json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
     if (!json_is_object(params)) {
         json_decref(params);
-        return tobi_fail(err, TOBI_INVALID, "motion params: %s",
+        return tobi_fail(err, TOBI_INVALID, "%s params: %s", role == TOBI_CONTROL_SCRIPT ? "control" : "motion",
                          params ? "must be a JSON object" : where.text);
     }
     tobi_script *script = calloc(1, sizeof *script);
     tobi_status status = TOBI_OK;
-    if (!script || !(script->path = strdup(path)))
-        status = tobi_fail(err, TOBI_NO_MEMORY, "motion script %s: out of memory", path);
+    if (!script || set_label(script, path, role) != TOBI_OK)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "script %s: out of memory", path);
     else
         status = guard_and_load(script, params, err);
     json_decref(params);
@@ -294,7 +353,7 @@ void tobi_script_free(tobi_script *script)
     if (!script) return;
     /* LuaJIT crashes when it closes a state whose libraries memory did not suffice for; it stays. */
     if (script->lua && script->open) lua_close(script->lua);
-    free(script->path);
+    free(script->label);
     free(script);
 }
 
@@ -363,4 +422,38 @@ tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, to
     *pose = (tobi_pose){ .shift = { r[0], r[1], r[2] }, .axis = { 0.0, 0.0, 1.0 } };
     memcpy(pose->pivot, script->pivot, sizeof pose->pivot);
     return count == 7 ? set_turn(script, t, r, pose, err) : TOBI_OK;
+}
+
+tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_control_output *out,
+                                tobi_error *err)
+{
+    tobi_script *script = user;
+    lua_State *lua = script->lua;
+    double from[23] = { in->time }, into[7] = { 0, 0, 0, 0, 0, 0, in->phase };
+    memcpy(from + 1, in->position, 3*sizeof *from);
+    memcpy(from + 4, in->orientation, 4*sizeof *from);
+    memcpy(from + 8, in->velocity, 3*sizeof *from);
+    memcpy(from + 11, in->angular_velocity, 3*sizeof *from);
+    memcpy(from + 14, in->contact_force, 3*sizeof *from);
+    memcpy(from + 17, in->contact_torque, 3*sizeof *from);
+    from[20] = in->mass;
+    from[21] = in->phase;
+    from[22] = in->phase_time;
+    lua_settop(lua, 0);
+    lua_rawgeti(lua, LUA_REGISTRYINDEX, script->control);
+    lua_pushlightuserdata(lua, from);
+    lua_pushlightuserdata(lua, into);
+    if (lua_pcall(lua, 2, 1, 0) != 0)
+        return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", script->label, message(lua), in->time);
+    for (int k = 0; k < 6; k++)
+        if (!isfinite(into[k]))
+            return tobi_fail(err, TOBI_SCRIPT, "%s: control returned a %s that is not finite (t = %.9g s)",
+                             script->label, k < 3 ? "force" : "torque", in->time);
+    snprintf(script->hold, sizeof script->hold, "%s",
+             lua_type(lua, -1) == LUA_TSTRING ? lua_tostring(lua, -1) : "");
+    memcpy(out->force, into, sizeof out->force);
+    memcpy(out->torque, into + 3, sizeof out->torque);
+    out->phase = (int)into[6];
+    out->hold = script->hold;
+    return TOBI_OK;
 }

@@ -1,4 +1,4 @@
-/* A motion script: a text file in Lua that defines exactly one of
+/* A script of the user: a text file in Lua. A motion script defines exactly one of
 
      function deform(x, y, z, t)        -- rest position (m) and time (s)
          return x, y, z                 -- position (m)
@@ -13,7 +13,20 @@
    turn of place() is right-handed, about the global `pivot = {x, y, z}` (rest coordinates, m;
    {0, 0, 0} when the script does not set it): position = pivot + p + R (rest - pivot).
 
-   The script sees `params` (motion.params of the scene: numbers, texts, true/false, arrays from 1,
+   A control script defines
+
+     function control(t, body)          -- time (s) and what the body does, see below
+         return { force = {x, y, z}, torque = {x, y, z}, phase = 2, hold = "z,turn" }
+     end
+
+   Every key of the answer may be left out, and no answer at all is no force. body has position (m),
+   orientation (w, x, y, z), velocity, angular_velocity (rad/s), contact_force (N) and contact_torque (N m) of
+   the last step as lists, and the numbers mass, phase and phase_time (s since the phase began). The
+   force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and then
+   what the script answered last: the only memory a script may have. hold names the axes that stand still in
+   this step, like `locked` of a body.
+
+   The script sees `params` (motion.params or control.params of the scene: numbers, texts, true/false, arrays from 1,
    objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring, type,
    unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no files,
    no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
@@ -21,6 +34,7 @@
    remembers things would break restarts. */
 #pragma once
 #include "base/error.h"
+#include "tobiuo/types.h"
 
 typedef struct tobi_script tobi_script;
 
@@ -32,9 +46,11 @@ typedef struct tobi_pose {
     double pivot[3];      /* m        */
 } tobi_pose;
 
+typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT } tobi_script_role;
+
 /* Loads and runs the file once. Errors as in tobi_motion_script. */
-tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script **out,
-                             tobi_error *err);
+tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
+                             tobi_script **out, tobi_error *err);
 void tobi_script_free(tobi_script *script);
 
 /* 1 when the script defines place(), 0 when it defines deform(). */
@@ -45,3 +61,6 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
                                double (*position)[3], tobi_error *err);
 /* Calls place(). */
 tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, tobi_error *err);
+/* Calls control(): a tobi_control_fn, user is the script. TOBI_SCRIPT when it fails or answers nonsense. */
+tobi_status tobi_script_control(void *script, const tobi_control_input *in, tobi_control_output *out,
+                                tobi_error *err);

@@ -16,7 +16,7 @@ struct tobi_solve_body {
 };
 
 struct tobi_solve_row {
-    tobi_contact *contact;
+    tobi_touch *contact;
     tobi_solve_body *a, *b;
     double axis[3][3];               /* the normal and two tangents                            */
     double lever_a[3][3], lever_b[3][3];       /* arm x axis                                   */
@@ -105,7 +105,7 @@ static void set_target(tobi_solve_row *r, double restitution, double dt, double 
     if (speed < -bounce && -speed*dt > open) r->target = fmax(r->target, -restitution*speed);
 }
 
-static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_contact *c, const tobi_body *bodies)
+static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi_body *bodies)
 {
     const tobi_rigid *a = &bodies[c->a].rigid, *b = c->b >= 0 ? &bodies[c->b].rigid : NULL;
     double arm_a[3], arm_b[3] = { 0, 0, 0 };
@@ -223,7 +223,7 @@ static void push_out(tobi_solver *s, int64_t count)
 /* Leaves impulses with the contact, and momentum and force with the bodies. */
 static void finish(tobi_solve_row *r, tobi_body *bodies, double dt)
 {
-    tobi_contact *c = r->contact;
+    tobi_touch *c = r->contact;
     c->impulse = r->sum[0];
     for (int i = 0; i < 3; i++) c->slide[i] = r->sum[1]*r->axis[1][i] + r->sum[2]*r->axis[2][i];
     for (int side = 0; side < 2; side++) {
@@ -264,13 +264,13 @@ static void give_bodies(const tobi_solver *s, tobi_body *bodies, int count)
     }
 }
 
-static double restitution_of(const tobi_contact *c, const tobi_body *bodies)
+static double restitution_of(const tobi_touch *c, const tobi_body *bodies)
 {
     double e = bodies[c->a].rigid.restitution;
     return c->b >= 0 ? fmax(e, bodies[c->b].rigid.restitution) : e;
 }
 
-tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_contact_list *contacts,
+tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_touch_list *contacts,
                        double dt, double bounce, tobi_error *err)
 {
     int64_t count = contacts->count;

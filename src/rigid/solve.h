@@ -2,7 +2,7 @@
    each pair of them equal and opposite at one point. Overlaps are taken out by small displacements that
    leave no momentum behind. docs/theory/rigid.md, R.6 to R.10. */
 #pragma once
-#include "rigid/contact.h"
+#include "rigid/touch.h"
 
 typedef struct tobi_solve_row tobi_solve_row;
 typedef struct tobi_solve_body tobi_solve_body;
@@ -17,6 +17,6 @@ typedef struct tobi_solver {
 
 /* Changes velocities, momenta, push and turn of the bodies and the impulses of the contacts, which hold
    those of the step before on entry. bounce: m/s, slower approaches are plastic. */
-tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_contact_list *contacts,
+tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_touch_list *contacts,
                        double dt, double bounce, tobi_error *err);
 void tobi_solver_free(tobi_solver *s);

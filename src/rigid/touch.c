@@ -2,7 +2,7 @@
    are brought there. A corner meets a face if its neighbours all lie behind it as seen from the face, and
    two edges meet if the normal across both lies between the faces at either (the Gauss map of a Minkowski
    sum); so no closest feature has to be guessed, and a stack of equal boxes has vertical normals only. */
-#include "rigid/contact.h"
+#include "rigid/touch.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ typedef struct frame { double turn[3][3], shift[3]; } frame;
 
 typedef struct pair {
     const tobi_shape *a, *b;
-    tobi_contact_list *out;
+    tobi_touch_list *out;
     frame to_b, to_world;          /* from a's rest axes to b's, from b's to the domain                */
     int64_t first;                 /* contact of this pair                                             */
     double margin, deepest, band, skin;
@@ -58,11 +58,11 @@ static void set_frames(pair *p, const tobi_rigid *a, const tobi_rigid *b)
     memcpy(p->to_world.shift, b->position, sizeof p->to_world.shift);
 }
 
-tobi_contact *tobi_contact_add(tobi_contact_list *out)
+tobi_touch *tobi_touch_add(tobi_touch_list *out)
 {
     if (out->count == out->capacity) {
         int64_t capacity = 2*out->capacity + 64;
-        tobi_contact *more = realloc(out->at, (size_t)capacity*sizeof *more);
+        tobi_touch *more = realloc(out->at, (size_t)capacity*sizeof *more);
         if (!more) {
             out->failed = 1;
             return NULL;
@@ -70,7 +70,7 @@ tobi_contact *tobi_contact_add(tobi_contact_list *out)
         out->at = more;
         out->capacity = capacity;
     }
-    tobi_contact *c = &out->at[out->count++];
+    tobi_touch *c = &out->at[out->count++];
     memset(c, 0, sizeof *c);
     return c;
 }
@@ -83,7 +83,7 @@ static int64_t key_of(int kind, int64_t i, int64_t j)
 /* A contact whose point and normal are in b's axes. */
 static void add(pair *p, int64_t key, const double point[3], const double normal[3], double gap)
 {
-    tobi_contact *c = tobi_contact_add(p->out);
+    tobi_touch *c = tobi_touch_add(p->out);
     if (!c) return;
     c->key = key;
     c->gap = gap;
@@ -97,7 +97,7 @@ static int is_better(pair *p, int64_t corner_key, int convex, const double norma
     double world[3];
     turn(&p->to_world, normal, world);
     for (int64_t k = p->first; k < p->out->count; k++) {
-        tobi_contact *c = &p->out->at[k];
+        tobi_touch *c = &p->out->at[k];
         if (c->key >> HALF != corner_key) continue;
         if (!convex && vec3_dot(c->normal, world) < 0.99) continue;
         if (gap <= c->gap + 1e-3*p->skin) return 0;      /* the first of equals, in every step */
@@ -141,6 +141,7 @@ static void meet_corner(pair *p, int32_t v, const double x[3], const double (*t)
     const tobi_facets *own = side > 0 ? &p->a->facets : &p->b->facets,
                       *other = side > 0 ? &p->b->facets : &p->a->facets;
     double d[3], along[3], point[3], normal[3];
+    if (other->flat && fabs(n[2]) > 0.5) return;
     vec3_sub(d, x, t[0]);
     double gap = vec3_dot(d, n);
     if (gap > p->margin || gap < -p->deepest || !is_over(t, n, x, p->band)) return;
@@ -204,6 +205,20 @@ static void meet_edges(pair *p, int ka, int32_t tb, int kb)
     add(p, key_of(EDGE_EDGE, 3*(int64_t)p->ta + ka, 3*(int64_t)tb + kb), point, n, gap);
 }
 
+/* Is a triangle as a whole too far before or behind another one's plane for any contact? */
+static int is_apart(const pair *p, const double (*t)[3], const double n[3], const double (*other)[3])
+{
+    int before = 0, behind = 0;
+    for (int k = 0; k < 3; k++) {
+        double d[3];
+        vec3_sub(d, other[k], t[0]);
+        double height = vec3_dot(d, n);
+        before += height > p->margin;
+        behind += height < -p->deepest;
+    }
+    return before == 3 || behind == 3;
+}
+
 static void meet_triangle(void *user, int32_t tb)
 {
     pair *p = user;
@@ -212,6 +227,8 @@ static void meet_triangle(void *user, int32_t tb)
     double other[3][3];
     for (int k = 0; k < 3; k++) memcpy(other[k], fb->vertex[ib[k]], sizeof other[k]);
     int mine = fa->owned[p->ta], theirs = fb->owned[tb];
+    if (is_apart(p, (const double (*)[3])p->corner, p->normal, (const double (*)[3])other)) return;
+    if (is_apart(p, (const double (*)[3])other, fb->normal[tb], (const double (*)[3])p->corner)) return;
     for (int k = 0; k < 3; k++) {
         if (mine >> k & 1)
             meet_corner(p, ia[k], p->corner[k], (const double (*)[3])other, fb->normal[tb], tb, 1);
@@ -241,10 +258,28 @@ static void visit_own(void *user, int32_t ta)
     tobi_bvh_touching(p->b->facets.bvh, lower, upper, meet_triangle, p);
 }
 
+/* Is a's box, turned into b's axes, beside b's box? */
+static int are_beside(const pair *p)
+{
+    double min[3], max[3], other_min[3], other_max[3];
+    tobi_bvh_box(p->a->facets.bvh, min, max);
+    tobi_bvh_box(p->b->facets.bvh, other_min, other_max);
+    for (int a = 0; a < 3; a++) {
+        double middle = p->to_b.shift[a], half = p->margin;
+        for (int b = 0; b < 3; b++) {
+            middle += p->to_b.turn[a][b]*0.5*(min[b] + max[b]);
+            half += fabs(p->to_b.turn[a][b])*0.5*(max[b] - min[b]);
+        }
+        if (middle - half > other_max[a] || middle + half < other_min[a]) return 1;
+    }
+    return 0;
+}
+
 /* Where b's box is in a's axes. */
 static void meet_surfaces(pair *p)
 {
     double min[3], max[3], lower[3], upper[3];
+    if (are_beside(p)) return;
     tobi_bvh_box(p->b->facets.bvh, min, max);
     for (int a = 0; a < 3; a++) {
         double middle = 0, half = 0;
@@ -279,6 +314,7 @@ static void meet_ball(void *user, int32_t tb)
     const tobi_facets *f = &p->b->facets;
     const double *centre = p->to_b.shift, *n = f->normal[tb];
     double t[3][3], d[3], point[3];
+    if (f->flat && fabs(n[2]) > 0.5) return;
     for (int k = 0; k < 3; k++) memcpy(t[k], f->vertex[f->triangle[tb][k]], sizeof t[k]);
     vec3_sub(d, centre, t[0]);
     double height = vec3_dot(d, n), gap = height - p->a->facets.ball;
@@ -321,11 +357,11 @@ static void meet_ball_surface(pair *p)
 static double squared(double x) { return x*x; }
 
 /* Of many contacts the deepest, and then always the one that is farthest from those kept. */
-void tobi_contact_thin(tobi_contact_list *out, int64_t first)
+void tobi_touch_thin(tobi_touch_list *out, int64_t first)
 {
     enum { MOST = 12 };
     int64_t n = out->count - first;
-    tobi_contact *c = out->at + first;
+    tobi_touch *c = out->at + first;
     if (n <= MOST) return;
     for (int64_t kept = 0; kept < MOST; kept++) {
         int64_t best = kept;
@@ -341,7 +377,7 @@ void tobi_contact_thin(tobi_contact_list *out, int64_t first)
             most = worth;
             best = i;
         }
-        tobi_contact swap = c[kept];
+        tobi_touch swap = c[kept];
         c[kept] = c[best];
         c[best] = swap;
     }
@@ -359,11 +395,11 @@ static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
     else if (p->a->facets.ball > 0) meet_ball_surface(p);
     else meet_surfaces(p);
     for (int64_t k = p->first; k < p->out->count; k++) p->out->at[k].slop = SLOP*thickness;
-    tobi_contact_thin(p->out, p->first);
+    tobi_touch_thin(p->out, p->first);
 }
 
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                       double margin, tobi_contact_list *out)
+                       double margin, tobi_touch_list *out)
 {
     pair p = { .a = sa, .b = sb, .out = out, .first = out->count, .margin = margin };
     if (!(sb->facets.ball > 0) || sa->facets.ball > 0) {
@@ -378,7 +414,7 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
 }
 
 void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,
-                     tobi_contact_list *out)
+                     tobi_touch_list *out)
 {
     const tobi_rigid *r = &a->rigid;
     const tobi_facets *f = &sa->facets;
@@ -394,7 +430,7 @@ void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double 
             for (int i = 0; i < 3; i++) arm[i] = vec3_dot(m[i], f->vertex[f->corner[k]]);
         double gap = height + sign*arm[axis];
         if (gap > margin) continue;
-        tobi_contact *c = tobi_contact_add(out);
+        tobi_touch *c = tobi_touch_add(out);
         if (!c) return;
         c->key = key_of(SIDE, side, f->ball > 0 ? 0 : f->corner[k]);
         c->gap = gap;
@@ -403,5 +439,5 @@ void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double 
         c->point[axis] = at + 0.5*sign*gap;
         c->normal[axis] = sign;
     }
-    tobi_contact_thin(out, first);
+    tobi_touch_thin(out, first);
 }

@@ -1,6 +1,7 @@
 /* The complete state in one file: particle state fields in memory order, the clock, the method's memory. */
 #include "base/error.h"
 #include "io/store.h"
+#include "world/bodies.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <string.h>
@@ -18,9 +19,6 @@ static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *componen
                                               : TOBI_U8;
 }
 
-/* Where a body's state stands in the file. */
-static void name_body(int k, char name[32]) { snprintf(name, 32, "body_%04d", k); }
-
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -33,12 +31,7 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     double clock[4] = {s->time, s->dt, s->body_speed, s->start_speed};
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
-    for (int k = 0; k < s->body_count; k++) {
-        char name[32];
-        name_body(k, name);
-        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof s->bodies[k].info, 1,
-                                &s->bodies[k].info, err));
-    }
+    TOBI_TRY(tobi_world_put_bodies(w, f, err));
     return tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err);
 }
 
@@ -86,18 +79,6 @@ static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     return TOBI_OK;
 }
 
-static tobi_status place_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
-{
-    for (int k = 0; k < w->sim.body_count; k++) {
-        tobi_body *b = &w->sim.bodies[k];
-        char name[32];
-        name_body(k, name);
-        TOBI_TRY(tobi_body_place(b, w->sim.time, err));
-        TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
-    }
-    return TOBI_OK;
-}
-
 tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
 {
     TOBI_TRY(tobi_world_start(w, err));
@@ -121,7 +102,7 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     }
     if (status == TOBI_OK) {
         w->sim.particles.count = n;
-        status = place_bodies(w, f, err);
+        status = tobi_world_get_bodies(w, f, err);
     }
     tobi_store_close(f);
     w->fresh = 0;

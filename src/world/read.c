@@ -225,5 +225,9 @@ uint64_t tobi_world_hash(tobi_world *w)
         if (p->pressure) h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
         if (p->strain) h = mix(h, &p->strain[i], sizeof p->strain[i]);
     }
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_rigid *r = &w->sim.bodies[k].rigid;
+        if (r->kind != TOBI_PRESCRIBED) h = mix(h, TOBI_RIGID_STATE(r), TOBI_RIGID_DOUBLES*sizeof(double));
+    }
     return h;
 }

@@ -1,6 +1,8 @@
 /* A world: definitions become a simulation, the method steps it. */
 #include "world/world.h"
 #include "base/error.h"
+#include "rigid/dynamics.h"
+#include "world/bodies.h"
 #include "world/params.h"
 #include <math.h>
 #include <stdio.h>
@@ -107,6 +109,7 @@ void tobi_world_destroy(tobi_world *w)
 {
     if (!w) return;
     if (w->method_state) w->method->free(w->method_state);
+    tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
     free(w->sim.bodies);
@@ -137,7 +140,8 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
             free(text);
             return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a note");
         }
-        snprintf(text, room, "%s '%s': %.*s", kind, name ? name : "", (int)(end - notes), notes);
+        snprintf(text, room, name ? "%s '%s': %.*s" : "%s %s%.*s", kind, name ? name : "", (int)(end - notes),
+                 notes);
         w->notes[w->note_count++] = text;
     }
     return TOBI_OK;
@@ -278,6 +282,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     w->method->memory(w->method_state, &memory);
     memory[0] = s->start_speed = start_speed(w);
     s->start_head = start_head(w);
+    TOBI_TRY(tobi_world_start_bodies(w, err));
     /* How fast the bodies start: their motion around time 0. */
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
@@ -328,6 +333,7 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
     w->fresh = 0;
     tobi_status status = w->method->step(s, w->method_state, max_dt, err);
+    if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
     if (status != TOBI_OK) {
         w->diverged = 1;
         return status;

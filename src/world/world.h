@@ -13,6 +13,7 @@ struct tobi_world {
     const tobi_method *method;
     void *method_def;              /* copy of the method's parameters                        */
     void *method_state;
+    struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
     tobi_region *regions;
     int region_count;
     tobi_probe *probes;
@@ -23,7 +24,8 @@ struct tobi_world {
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
-/* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line". */
+/* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
+   NULL. */
 tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
                                  tobi_error *err);
 

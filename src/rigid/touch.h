@@ -5,7 +5,7 @@
 #include "core/body.h"
 #include "geom/facets.h"
 
-typedef struct tobi_contact {
+typedef struct tobi_touch {
     int32_t a, b;                /* bodies, a < b; a side of the domain is b = -1 - side                */
     int64_t key;                 /* which features meet: the same from step to step                     */
     double point[3];             /* m, from the domain's lower corner                                   */
@@ -14,13 +14,13 @@ typedef struct tobi_contact {
     double slop;                 /* m, an overlap that is left alone                                    */
     double impulse;              /* N s along the normal, in this step                                  */
     double slide[3];             /* N s, of friction                                                    */
-} tobi_contact;
+} tobi_touch;
 
-typedef struct tobi_contact_list {
-    tobi_contact *at;
+typedef struct tobi_touch_list {
+    tobi_touch *at;
     int64_t count, capacity;
     int failed;                  /* memory ran out */
-} tobi_contact_list;
+} tobi_touch_list;
 
 /* What contact knows of a body besides its pose. */
 typedef struct tobi_shape {
@@ -34,13 +34,13 @@ enum { TOBI_SIDES = 6 };
 
 /* Adds the contacts of two bodies, a < b by number, that are nearer than margin (m). */
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                       double margin, tobi_contact_list *out);
+                       double margin, tobi_touch_list *out);
 /* Adds those of a body with a side of the domain: the plane x[axis] = at, whose inside is at larger x if
    sign is 1, at smaller if -1. */
 void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,
-                     tobi_contact_list *out);
+                     tobi_touch_list *out);
 
 /* Room for one more; NULL and out->failed when memory is short. */
-tobi_contact *tobi_contact_add(tobi_contact_list *out);
+tobi_touch *tobi_touch_add(tobi_touch_list *out);
 /* Keeps the deepest and the farthest apart of the contacts from first on. */
-void tobi_contact_thin(tobi_contact_list *out, int64_t first);
+void tobi_touch_thin(tobi_touch_list *out, int64_t first);

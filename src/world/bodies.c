@@ -1,0 +1,130 @@
+#include "world/bodies.h"
+#include "base/error.h"
+#include "rigid/dynamics.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void describe_world(const tobi_simulation *s, tobi_rigid_world *r)
+{
+    *r = (tobi_rigid_world){ .dimension = s->box.dimension, .threads = s->exec.threads };
+    for (int a = 0; a < s->box.dimension; a++) {
+        r->gravity[a] = s->def.gravity[a];
+        r->size[a] = s->box.size[a];
+        r->wall[a] = !s->box.periodic[a];
+    }
+}
+
+static tobi_status check_free(const tobi_world *w, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    for (int k = 0; k < s->body_count; k++) {
+        const tobi_body *b = &s->bodies[k];
+        if (b->rigid.kind == TOBI_PRESCRIBED) continue;
+        if (!w->method->free_bodies)
+            return tobi_fail(err, TOBI_UNSUPPORTED,
+                             "body '%s' is %s, which the method %s does not know yet; mlsmpm does", b->name,
+                             b->rigid.kind == TOBI_FREE ? "free" : "controlled", w->method->name);
+        for (int a = 0; a < s->box.dimension; a++)
+            if (s->box.periodic[a])
+                return tobi_fail(err, TOBI_UNSUPPORTED,
+                                 "body '%s' moves by forces in a domain whose sides along %c are periodic; it "
+                                 "needs walls there", b->name, "xyz"[a]);
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
+{
+    enum { NOTES = 8000 };
+    tobi_simulation *s = &w->sim;
+    tobi_rigid_world world;
+    if (!tobi_rigid_any(s->bodies, s->body_count) || w->dynamics) return TOBI_OK;
+    TOBI_TRY(check_free(w, err));
+    char *notes = malloc(NOTES);
+    if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
+    describe_world(s, &world);
+    tobi_status status = tobi_rigid_start(s->bodies, s->body_count, &world, notes, NOTES, &w->dynamics, err);
+    if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);
+    free(notes);
+    if (status != TOBI_OK) return status;
+    double cap = tobi_rigid_step_limit(w->dynamics);
+    s->def.time_step_max = s->def.time_step_max > 0 ? fmin(cap, s->def.time_step_max) : cap;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_kick_bodies(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    double clock = tobi_clock();
+    if (!w->dynamics) return TOBI_OK;
+    TOBI_TRY(tobi_rigid_step(w->dynamics, s->time, s->dt, err));
+    tobi_stage_end(&s->stages, "bodies", &clock);
+    return TOBI_OK;
+}
+
+static void name_body(int k, const char *what, char name[32]) { snprintf(name, 32, "body_%04d%s", k, what); }
+
+static tobi_status put_contacts(const tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    int64_t n = tobi_rigid_warm(w->dynamics, NULL);
+    double *rows = malloc((size_t)(n + 1)*TOBI_WARM*sizeof *rows);
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)n);
+    tobi_rigid_warm(w->dynamics, rows);
+    tobi_status status = tobi_store_put(f, "body_contacts", TOBI_F64, n*TOBI_WARM, 1, rows, err);
+    free(rows);
+    return status;
+}
+
+tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        tobi_body *b = &w->sim.bodies[k];
+        char name[32];
+        name_body(k, "", name);
+        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
+        if (b->rigid.kind == TOBI_PRESCRIBED) continue;
+        name_body(k, "_state", name);
+        TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, TOBI_RIGID_STATE(&b->rigid), err));
+    }
+    return w->dynamics ? put_contacts(w, f, err) : TOBI_OK;
+}
+
+static tobi_status get_contacts(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    int64_t n = 0;
+    TOBI_TRY(tobi_store_rows(f, "body_contacts", &n, err));
+    double *rows = malloc((size_t)(n + TOBI_WARM)*sizeof *rows);
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)n);
+    tobi_status status = tobi_store_get(f, "body_contacts", TOBI_F64, n, 1, rows, err);
+    if (status == TOBI_OK) status = tobi_rigid_set_warm(w->dynamics, n/TOBI_WARM, rows, err);
+    free(rows);
+    return status;
+}
+
+static tobi_status get_state(tobi_body *b, int k, tobi_store *f, tobi_error *err)
+{
+    double *state = TOBI_RIGID_STATE(&b->rigid);
+    char name[32];
+    name_body(k, "_state", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, state, err));
+    for (int i = 0; i < TOBI_RIGID_DOUBLES; i++)
+        if (!isfinite(state[i]))
+            return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of body '%s' is no number", b->name);
+    b->rigid.phase = fmin(fmax(b->rigid.phase, -1e9), 1e9);
+    b->rigid.hold = (int)fmin(fmax(b->rigid.hold, 0), 63) & 63;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        tobi_body *b = &w->sim.bodies[k];
+        char name[32];
+        name_body(k, "", name);
+        if (b->rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(get_state(b, k, f, err));
+        TOBI_TRY(tobi_body_place(b, w->sim.time, err));
+        TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
+    }
+    return w->dynamics ? get_contacts(w, f, err) : TOBI_OK;
+}
