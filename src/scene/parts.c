@@ -1,11 +1,13 @@
 #include "scene/parts.h"
+#include "scene/controls.h"
 #include "world/params.h"
 #include "world/world.h"
 #include <assert.h>
 #include <string.h>
 
 static const tobi_part parts[] = {
-    { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 1, TOBI_FLUID_LIMIT, "The fluids." },
+    { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 0, TOBI_FLUID_LIMIT,
+      "The fluids; every scene of a liquid has one." },
     { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,
       "The bodies, if any." },
     { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
@@ -19,6 +21,10 @@ static const tobi_part parts[] = {
       "The regions that the fluid fills at the start." },
     { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
       "How the body moves, exactly one kind; without it the body is fixed." },
+    { "body", "control", TOBI_PART_OBJECT, &tobi_control_table, 0, 0,
+      "The program of a controlled body." },
+    { "control", "params", TOBI_PART_FREE, NULL, 0, 0,
+      "Any values, handed to the script as its global table `params`." },
     { "script", "params", TOBI_PART_FREE, NULL, 0, 0,
       "Any values, handed to the script as its global table `params`." }
 };
