@@ -32,6 +32,21 @@ void tobi_particles_free(tobi_particles *p)
     memset(p, 0, sizeof *p);
 }
 
+tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err)
+{
+    tobi_particles fitted;
+    if (p->capacity == p->count) return TOBI_OK;
+    TOBI_TRY(tobi_particles_create(&fitted, p->count, owners, err));
+#define X(type, name, life, owner, unit, doc) \
+    if (p->name) memcpy(fitted.name, p->name, (size_t)p->count*sizeof(type));
+    TOBI_PARTICLE_FIELDS(X)
+#undef X
+    fitted.count = p->count;
+    tobi_particles_free(p);
+    *p = fitted;
+    return TOBI_OK;
+}
+
 int64_t tobi_particles_row_bytes(int owners)
 {
     int64_t bytes = 0;

@@ -52,6 +52,8 @@ typedef struct tobi_particles {
 /* Allocates the fields of `owners` (a sum) for `capacity` particles; count becomes 0. */
 tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err);
 void tobi_particles_free(tobi_particles *p);
+/* Gives back what lies beyond count: capacity becomes count. On failure nothing has changed. */
+tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err);
 /* Bytes per particle of the fields of `owners`, without neighbour lists. */
 int64_t tobi_particles_row_bytes(int owners);
 

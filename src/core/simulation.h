@@ -68,10 +68,17 @@ typedef struct tobi_method {
     tobi_status (*step)(tobi_simulation *s, void *state, double max_dt, tobi_error *err);
     /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. */
     tobi_status (*refresh)(tobi_simulation *s, void *state, tobi_error *err);
+    /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
+       NULL: the fields of the SPH methods, from the particle arrays. */
+    void (*read)(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out);
+    /* Adds elastic_energy and transfer_dissipation to s->info; NULL: there are none. */
+    void (*measure)(tobi_simulation *s, const void *state);
     /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
     void (*derive)(tobi_simulation *s, void *state, const char *field);
     /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
     int (*memory)(void *state, double **values);
+    /* Bytes that the state has allocated; NULL = few. */
+    int64_t (*bytes)(const void *state);
     void (*free)(void *state);
 } tobi_method;
 

@@ -266,6 +266,7 @@ static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double
         TOBI_TRY(make_shadow(c, f, err));
         draw_floor(c, f);
         TOBI_TRY(draw_meshes(c, f, err));
+        if (f->opaque) TOBI_TRY(draw_grains(c, f, low, high, err));
         if (f->particle_count > 0) TOBI_TRY(draw_water(c, f, low, high, err));
     }
     draw_box(c, f);

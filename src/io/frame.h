@@ -1,5 +1,5 @@
-/* A PNG picture of a moment, drawn in software: particles as a water surface, bodies, the domain's
-   box.
+/* A PNG picture of a moment, drawn in software: particles as the surfaces of water or of solids, bodies, the
+   domain's box.
 
    3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen
    space, lit, and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009;
@@ -32,6 +32,7 @@ typedef struct tobi_frame {
     int64_t particle_count;
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
     const float *values;               /* colour of each particle, e.g. speed; NULL = lowest colour     */
+    const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */

@@ -120,12 +120,15 @@ tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err);
 void draw_floor(canvas *c, const tobi_frame *frame);
 void draw_box(canvas *c, const tobi_frame *frame);
 vec  sky_color(const canvas *c, vec direction);
+vec  shade_solid(const canvas *c, vec p, vec n, vec albedo);
 
 /* frame_shadow.c */
 tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err);
 float lit_at(const canvas *c, vec point);
 
-/* frame_water.c */
+/* frame_water.c. Solids first: they become part of what is opaque. */
+tobi_status draw_grains(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+                        tobi_error *err);
 tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, double value_max,
                        tobi_error *err);
 tobi_status draw_discs(canvas *c, const tobi_frame *frame, double value_min, double value_max,

@@ -26,9 +26,26 @@ static camera light_camera(const camera *view, const shadow *s, double radius)
     return c;
 }
 
+/* Squares at the depth of the grains' middles: half a grain deep, so that none shades itself. */
+static void cast_grains(canvas *light, const tobi_frame *frame)
+{
+    int half = (int)clampf(1.2f*(float)frame->radius*light->camera.focal, 1, 40);
+    for (int64_t i = 0; i < frame->particle_count; i++) {
+        if (!frame->opaque[i]) continue;
+        spot at = project(&light->camera, view_point(&light->camera, frame->positions[i]));
+        if (!(at.x > 0 && at.y > 0 && at.x < SIDE && at.y < SIDE)) continue;
+        for (int y = (int)at.y - half; y <= (int)at.y + half; y++)
+            for (int x = (int)at.x - half; x <= (int)at.x + half; x++) {
+                if (x < 0 || y < 0 || x >= SIDE || y >= SIDE) continue;
+                float *depth = &light->depth[(size_t)y*SIDE + (size_t)x];
+                if (at.z < *depth) *depth = at.z;
+            }
+    }
+}
+
 tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
 {
-    if (frame->mesh_count == 0) return TOBI_OK;
+    if (frame->mesh_count == 0 && !frame->opaque) return TOBI_OK;
     double middle[3], size = 0;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5*(frame->box_min[k] + frame->box_max[k]);
@@ -46,6 +63,7 @@ tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
     for (size_t k = 0; k < (size_t)SIDE*SIDE; k++) light.depth[k] = INFINITY;
     s->depth = light.depth;
     s->focal = light.camera.focal;
+    if (frame->opaque) cast_grains(&light, frame);
     return draw_meshes(&light, frame, err);
 }
 

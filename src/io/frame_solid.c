@@ -29,7 +29,7 @@ vec sky_color(const canvas *c, vec direction)
     return vec_mix(horizon, zenith, 2*t - 1);
 }
 
-static vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
+vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
 {
     vec eye = to_eye(&c->camera, p);
     if (vec_dot(n, eye) < 0) n = vec_scale(-1, n);

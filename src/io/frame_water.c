@@ -1,4 +1,4 @@
-/* Particles: splatted into depth, thickness and value; the depth smoothed; the surface lit. */
+/* Particles, of water or of solids: splatted into depth, thickness and value; the depth smoothed; the surface lit. */
 #include "io/frame_draw.h"
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +8,12 @@ typedef struct splat {
     float value;             /* 0 to 1 */
 } splat;
 
+/* How the particles of a pass look. */
+typedef enum look { WATER, GRAINS, DISCS } look;
+
 enum { REACH_MAX = 40 };     /* samples, of the smoothing filter to one side */
-static const float water_radius =
-    1.7f; /* in particle radii: neighbours' spheres overlap into a surface */
+/* In particle radii: neighbours' spheres overlap into a surface. */
+static const float water_radius = 1.7f, grain_radius = 1.55f;
 
 /* From deep blue over light blue to white. */
 vec map_color(float value)
@@ -85,15 +88,17 @@ static void shrink_spray(const tobi_frame *f, splat *splats)
 }
 
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
-static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, double low, double high)
+static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, const double range[2], look what)
 {
+    double low = range[0], high = range[1];
     splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
     if (!splats) return NULL;
     #pragma omp parallel for
     for (int64_t i = 0; i < f->particle_count; i++) {
         vec p = view_point(&c->camera, f->positions[i]);
         splat s = { 0 };
-        bool near = is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
+        bool left_out = f->opaque && what != DISCS && (what == GRAINS) != (f->opaque[i] != 0);
+        bool near = !left_out && is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
         if (near && p.z > c->camera.near + radius) {
             spot at = project(&c->camera, p);
             float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
@@ -109,9 +114,10 @@ static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, do
 /* What a tile's loops need. */
 typedef struct brush {
     canvas *c;
+    look    what;
     float   radius;       /* m */
     float   weight;       /* of a sphere's chord as thickness */
-    float   discs;        /* 0 = water; else discs of this brightness */
+    float   bright;       /* of discs */
 } brush;
 
 /* Clips a splat's row to the tile and the circle: samples [*x0, *x1). */
@@ -157,6 +163,25 @@ static void splat_depth(const brush *b, const splat *s, const int tile[4])
     }
 }
 
+/* Grains have the value of the one in front: a mean of materials would be a third one. */
+static void splat_front(const brush *b, const splat *s, const int tile[4])
+{
+    canvas *c = b->c;
+    int y0, y1, x0, x1;
+    float inverse = 1/(s->radius*s->radius), high = s->radius/scale_at(&c->camera, s->z);
+    clip_rows(s, tile, &y0, &y1);
+    for (int y = y0; y <= y1; y++) {
+        if (!clip_row(s, y, tile, &x0, &x1)) continue;
+        size_t row = (size_t)y*(size_t)c->width;
+        float dy = (float)y + 0.5f - s->y;
+        for (int x = x0; x < x1; x++) {
+            float dx = (float)x - (s->x - 0.5f), q = 1 - (dx*dx + dy*dy)*inverse;
+            float front = s->z - high*sqrtf(q > 0 ? q : 0);
+            if (front <= c->surface[row + (size_t)x]) c->value[row + (size_t)x] = s->value;
+        }
+    }
+}
+
 /* Mean value of the particles near the front; scratch holds the weights. */
 static void splat_value(const brush *b, const splat *s, const int tile[4])
 {
@@ -184,7 +209,7 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
 static void splat_disc(const brush *b, const splat *s, const int tile[4])
 {
     canvas *c = b->c;
-    vec color = vec_scale(b->discs, water_color(c, s->value));
+    vec color = vec_scale(b->bright, water_color(c, s->value));
     int y0, y1, x0, x1;
     clip_rows(s, tile, &y0, &y1);
     for (int y = y0; y <= y1; y++) {
@@ -204,29 +229,30 @@ static void paint(const brush *b, const tiles *t, const splat *splats)
                         y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
             const splat *s = &splats[t->item[i]];
-            if (b->discs > 0) splat_disc(b, s, rect);
+            if (b->what == DISCS) splat_disc(b, s, rect);
             else splat_depth(b, s, rect);
         }
-        for (int64_t i = t->first[k]; i < t->first[k + 1] && b->discs == 0; i++)
-            splat_value(b, &splats[t->item[i]], rect);
+        for (int64_t i = t->first[k]; i < t->first[k + 1] && b->what != DISCS; i++) {
+            if (b->what == GRAINS && c->palette) splat_front(b, &splats[t->item[i]], rect);
+            else splat_value(b, &splats[t->item[i]], rect);
+        }
     }
 }
 
 static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2],
-                                   float discs,
-                                   tobi_error *err)
+                                   look what, float bright, tobi_error *err)
 {
-    splat *splats = make_splats(c, f, radius, range[0], range[1]);
+    splat *splats = make_splats(c, f, radius, range, what);
     if (!splats)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %lld particles",
                          (long long)f->particle_count);
-    if (discs == 0) shrink_spray(f, splats);
+    if (what != DISCS) shrink_spray(f, splats);
     tiles t;
     tobi_status status = tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
     if (status == TOBI_OK) {
         /* Chords of spheres of radius R at one per (2 r)^3 add up to this much per metre of water. */
         float r = (float)f->radius, per_meter = 4.0f/3*(float)3.14159265*radius*radius*radius/(8*r*r*r);
-        brush b = { c, radius, 1/per_meter, discs };
+        brush b = { c, what, radius, 1/per_meter, bright };
         paint(&b, &t, splats);
         tiles_free(&t);
     }
@@ -237,8 +263,9 @@ static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius,
 tobi_status draw_discs(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
 {
     /* A darker ground that closes the gaps, then the particles. */
-    TOBI_TRY(splat_particles(c, f, 1.45f*(float)f->radius, (double[2]){ low, high }, 0.8f, err));
-    return splat_particles(c, f, 0.95f*(float)f->radius, (double[2]){ low, high }, 1, err);
+    TOBI_TRY(splat_particles(c, f, 1.45f*(float)f->radius, (double[2]){ low, high }, DISCS, 0.8f,
+                             err));
+    return splat_particles(c, f, 0.95f*(float)f->radius, (double[2]){ low, high }, DISCS, 1, err);
 }
 
 /* One row of the narrow-range filter. Neighbours in front by more than `narrow` are other water and do not
@@ -374,7 +401,7 @@ static void average_values(canvas *c, filter *f, float *room)
         c->value[k] = c->scratch[k] > 1e-6f ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
 }
 
-static tobi_status smooth_water(canvas *c, float radius, tobi_error *err)
+static tobi_status smooth_water(canvas *c, float radius, look what, tobi_error *err)
 {
     static const int rounds = 3;
     filter *f = calloc(1, sizeof *f);
@@ -393,9 +420,9 @@ static tobi_status smooth_water(canvas *c, float radius, tobi_error *err)
         if (c->surface[k] < INFINITY) sum += c->surface[k], n++;
     float size = n ? radius*scale_at(&c->camera, (float)(sum/(double)n)) : 1;
     f->reach = clampf(0.5f*size, 1, 60);
-    average_values(c, f, room);
+    if (what == WATER || !c->palette) average_values(c, f, room);
     int reach = (int)clampf(0.6f*size, 1, 40);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2 && what == WATER; i++) {
         blur_along(c, c->thickness, room, 1, 0, reach, 4*radius);
         blur_along(c, room, c->thickness, 0, 1, reach, 4*radius);
     }
@@ -493,11 +520,40 @@ static tobi_status light_water(canvas *c, float clarity, tobi_error *err)
     return TOBI_OK;
 }
 
+/* The surface of the grains becomes opaque, and the planes are empty for the water. */
+static void light_grains(canvas *c)
+{
+    #pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++) {
+            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+            if (!(c->surface[k] < INFINITY)) continue;
+            vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
+            vec n = surface_normal(c, x, y, to_eye(&c->camera, p));
+            c->color[k] = shade_solid(c, p, n, water_color(c, c->value[k]));
+        }
+    #pragma omp parallel for
+    for (int64_t k = 0; k < (int64_t)c->width*c->height; k++) {
+        if (c->surface[k] < INFINITY) c->depth[k] = c->surface[k];
+        c->surface[k] = INFINITY;
+        c->thickness[k] = c->value[k] = c->scratch[k] = 0;
+    }
+}
+
+tobi_status draw_grains(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+{
+    float radius = grain_radius*(float)f->radius;
+    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, GRAINS, 1, err));
+    TOBI_TRY(smooth_water(c, radius, GRAINS, err));
+    light_grains(c);
+    return TOBI_OK;
+}
+
 tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
 {
     float radius = water_radius*(float)f->radius;
-    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, 0, err));
-    TOBI_TRY(smooth_water(c, radius, err));
+    TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, WATER, 1, err));
+    TOBI_TRY(smooth_water(c, radius, WATER, err));
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
     return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.18*sqrt(size)), err);

@@ -3,6 +3,7 @@
    numbers: docs/theory/mlsmpm.md. */
 #include "mpm/mlsmpm.h"
 #include "base/error.h"
+#include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
 #include "mpm/touch.h"
@@ -274,6 +275,45 @@ static void derive(tobi_simulation *s, void *state, const char *field)
     (void)s; (void)state; (void)field;
 }
 
+/* The view of reading: strain lags by the last step. */
+static mpm_view look_back(const mlsmpm *m)
+{
+    mpm_view v = m->view;
+    v.strain_dt = (float)m->memory[STRAIN_DT];
+    return v;
+}
+
+static void read_field(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out)
+{
+    const mpm_view v = look_back(state);
+    const tobi_particles *p = &s->particles;
+    if (!strcmp(field, "material")) {
+        out[0] = p->fluid[i];
+        return;
+    }
+    if (!strcmp(field, "rest_position")) {
+        const double rest[3] = {p->rest[i].x, p->rest[i].y, p->rest[i].z};
+        for (int a = 0; a < 3; a++) out[a] = rest[a] + s->box.lower[a];
+        return;
+    }
+    mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
+}
+
+static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    for (int64_t i = begin; i < end; i++) totals[0] += mpm_look(view, i).energy;
+}
+
+static void measure(tobi_simulation *s, const void *state)
+{
+    const mlsmpm *m = state;
+    const mpm_view v = look_back(m);
+    double t[TOBI_TOTALS];
+    tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
+    s->info.elastic_energy = t[0];
+    s->info.transfer_dissipation = m->memory[DISSIPATION];
+}
+
 /* After a load the blocks are built anew. */
 static int list_memory(void *state, double **values)
 {
@@ -282,6 +322,8 @@ static int list_memory(void *state, double **values)
     *values = m->memory;
     return MEMORY;
 }
+
+static int64_t count_bytes(const void *state) { return mpm_grid_bytes(&((const mlsmpm *)state)->grid); }
 
 static void free_state(void *state)
 {
@@ -303,6 +345,9 @@ const tobi_method tobi_mlsmpm = {
     .step = step,
     .refresh = refresh,
     .derive = derive,
+    .read = read_field,
+    .measure = measure,
     .memory = list_memory,
+    .bytes = count_bytes,
     .free = free_state,
 };

@@ -275,6 +275,7 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
                 }
             }
     }
+    float energy[3] = {0, 0, 0}, given[3] = {0, 0, 0};
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3];
         float u[3] = {0, 0, 0}, before[3];
@@ -285,7 +286,7 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
             if (v->old) v->old[number*nodes + n] = (tobi_float4){u[0], u[1], u[2], mass};
             for (int a = 0; a < 3; a++) {
                 before[a] = u[a] + v->gravity[a]*v->dt;
-                totals[5] += (double)mass*(before[a]*before[a] - u[a]*u[a])*0.5;
+                energy[2] += mass*(before[a]*before[a] - u[a]*u[a]);
                 u[a] = before[a];
             }
             if (g->planes) {
@@ -299,14 +300,18 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
                 }
             }
             for (int a = 0; a < 3; a++) {
-                totals[a] += (double)mass*(before[a] - u[a]);
+                given[a] += mass*(before[a] - u[a]);
                 new2 += u[a]*u[a];
             }
-            totals[3] += 0.5*(double)mass*old2;
-            totals[4] += 0.5*(double)mass*new2;
+            energy[0] += mass*old2;
+            energy[1] += mass*new2;
             if (new2 > totals[6]) totals[6] = new2;
         } else if (v->old) v->old[number*nodes + n] = (tobi_float4){0, 0, 0, 0};
         node[n] = (tobi_float4){u[0], u[1], u[2], mass};
+    }
+    for (int a = 0; a < 3; a++) {
+        totals[a] += given[a];
+        totals[3 + a] += 0.5*(double)energy[a];
     }
 }
 
@@ -364,6 +369,19 @@ TOBI_FN void mpm_load_rows(const tobi_float4 *tile, int32_t first, row *g, int d
     for (int r = 0; r < rows; r++) g[r] = row_load(tile + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r));
 }
 
+/* 1 if a particle had to be brought back. */
+TOBI_FN int mpm_keep_inside(tobi_double3 *x, const double size[3], int dim)
+{
+    double *at = &x->x;
+    int out = 0;
+    for (int a = 0; a < dim; a++) {
+        if (at[a] >= 0 && at[a] <= size[a]) continue;
+        at[a] = at[a] > size[a] ? size[a] : 0;
+        out = 1;
+    }
+    return out;
+}
+
 /* Velocities, their gradients and new positions of a block's particles.
    totals: 0 particles that had to be kept inside the domain, 6 largest speed squared, 7 largest way along an
    axis, m. */
@@ -374,16 +392,21 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
     row g[9] = {0}, h[9] = {0};
     int32_t cell = -1;
     const float scale = (float)(4*v->inverse_cell);
+    float far = 0, fast = 0;
+    int edge = 0;
+    for (int a = 0; a < dim; a++) edge |= b->corner[a] < 2 || (b->corner[a] + 8)*(double)v->cell > v->size[a];
     mpm_copy_tile(v->node, b->around, tile, dim);
     if (v->old) mpm_copy_tile(v->old, b->around, old, dim);
-    for (int n = 0; n < 8; n++) tile[(dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + n] = old[(dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + n] = (tobi_float4){0, 0, 0, 0};
+    for (int n = 0; n < 8; n++) {              /* what the last rows read beyond the tile */
+        const int beyond = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + n;
+        tile[beyond] = old[beyond] = (tobi_float4){0, 0, 0, 0};
+    }
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
             quad u, gradient[3];
-            tobi_double3 *x = &v->position[i + k];
             if (s.first[k] != cell) {
                 cell = s.first[k];
                 mpm_load_rows(tile, cell, g, dim);
@@ -391,7 +414,7 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
             }
             if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
             mpm_interpolate(g, &s, k, scale, dim, &u, gradient);
-            double way[3] = {(double)u[0]*v->dt, (double)u[1]*v->dt, (double)u[2]*v->dt};
+            quad way = u;
             if (v->old) {
                 quad before, unused[3], own = quad_load(&v->velocity[i + k]);
                 mpm_interpolate(h, &s, k, scale, dim, &before, unused);
@@ -406,20 +429,21 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
                 gradient[c][3] = (float)b->corner[c];   /* where it is at home, for mpm_grid_restore */
                 quad_store(&v->affine[i + k].c[c], gradient[c]);
             }
-            double *to = &x->x;
-            for (int a = 0; a < dim; a++) {
-                double moved = to[a] + way[a];
-                int out = moved < 0 || moved > v->size[a];
-                moved = moved < 0 ? 0 : moved > v->size[a] ? v->size[a] : moved;
-                to[a] = moved;
-                totals[0] += out;
-                double far = way[a] < 0 ? -way[a] : way[a];
-                if (far > totals[7]) totals[7] = far;
+            tobi_double3 *x = &v->position[i + k];
+            x->x += (double)way[0]*v->dt;
+            x->y += (double)way[1]*v->dt;
+            if (dim == 3) x->z += (double)way[2]*v->dt;
+            if (edge) totals[0] += mpm_keep_inside(x, v->size, dim);
+            for (int n = 0; n < 3; n++) {
+                float w = way[n] < 0 ? -way[n] : way[n];
+                if (w > far) far = w;
             }
-            double speed2 = (double)u[0]*u[0] + (double)u[1]*u[1] + (double)u[2]*u[2];
-            if (!(speed2 <= totals[6])) totals[6] = speed2;
+            float speed2 = u[0]*u[0] + u[1]*u[1] + u[2]*u[2];
+            if (!(speed2 <= fast)) fast = speed2;       /* NaN stays */
         }
     }
+    if (!(fast <= totals[6])) totals[6] = fast;
+    if ((double)far*v->dt > totals[7]) totals[7] = (double)far*v->dt;
 }
 
 /* Kernels over blocks, as tobi_launch wants them. */

@@ -4,6 +4,7 @@
 #include "scene/suggest.h"
 #include "world/methods.h"
 #include "world/params.h"
+#include "world/world.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ static void check_dfsph(const tobi_scene *scene, tobi_source *source)
                             d->divergence_iterations_min, d->divergence_iterations_max);
 }
 
-static int has_domain(const tobi_scene *scene)
+int tobi_check_has_domain(const tobi_scene *scene)
 {
     return tobi_bind_has(&tobi_world_table, scene->world_bound.good, "domain.min") &&
            tobi_bind_has(&tobi_world_table, scene->world_bound.good, "domain.max");
@@ -83,7 +84,10 @@ static void check_domain(const tobi_scene *scene, tobi_source *source)
         if ((w->wall_min[a] == TOBI_WALL_PERIODIC) != (w->wall_max[a] == TOBI_WALL_PERIODIC))
             tobi_source_mistake(source, &wall,
                                 "is periodic on one side only; write \"%s\": \"periodic\"", name);
-        if (!has_domain(scene)) continue;
+        if (w->wall_min[a] == TOBI_WALL_PERIODIC && scene->method == &tobi_mlsmpm_table)
+            tobi_source_mistake(source, &wall, "is periodic, which mlsmpm does not know; allowed are slip, "
+                                               "no-slip and separate");
+        if (!tobi_check_has_domain(scene)) continue;
         tobi_place entry = { &corner, NULL, (size_t)a };
         if (!(length > 0))
             tobi_source_mistake(source, &entry,
@@ -99,37 +103,8 @@ static void check_domain(const tobi_scene *scene, tobi_source *source)
                             w->gravity[2]);
 }
 
-/* A region may touch the domain's sides; rounding of decimal numbers is forgiven. */
-static double slack(const tobi_world_def *w, int axis)
-{
-    return 1e-9*(w->domain_max[axis] - w->domain_min[axis]);
-}
-
-static void check_box(const tobi_scene *scene, tobi_source *source, const tobi_fill_def *fill,
-                      const tobi_place *place)
-{
-    const tobi_world_def *w = &scene->world;
-    tobi_place box = { place, "box", 0 };
-    for (int a = 0; a < w->dimension; a++) {
-        if (!(fill->box_max[a] > fill->box_min[a])) {
-            tobi_source_mistake(source, &box,
-                                "min is %.10g and max is %.10g in %c, max must be greater",
-                                fill->box_min[a], fill->box_max[a], axis_name[a]);
-        } else if (has_domain(scene) && (fill->box_min[a] < w->domain_min[a] - slack(w, a) ||
-                                         fill->box_max[a] > w->domain_max[a] + slack(w, a))) {
-            tobi_source_mistake(source, &box,
-                                "reaches from %.10g to %.10g m in %c, the domain only from %.10g "
-                                "to %.10g m",
-                                fill->box_min[a], fill->box_max[a], axis_name[a], w->domain_min[a],
-                                w->domain_max[a]);
-        }
-    }
-    if (w->dimension == 2 && fill->velocity[2] != 0)
-        tobi_source_mistake(source, place, "moves in z, which a 2-D scene does not have");
-}
-
 /* A file that the scene names: reported here, with all other mistakes, and not at the start. */
-static void check_file(tobi_source *source, const tobi_place *place, const char *path)
+void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path)
 {
     struct stat info;
     if (!path) return;
@@ -139,119 +114,107 @@ static void check_file(tobi_source *source, const tobi_place *place, const char 
         tobi_source_mistake(source, place, "%s is not a file", path);
 }
 
-static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_scene_fill *fill,
-                       const tobi_place *place)
+typedef enum named { FLUIDS, SOLIDS, BODIES } named;
+
+/* Name k of a kind, NULL past its end. */
+static const char *name_of(const tobi_scene *scene, named kind, int k)
 {
-    const tobi_param_table *t = &tobi_fill_table;
-    tobi_place mesh = { place, "mesh", 0 };
-    int lower = tobi_bind_has(t, fill->bound.given, "box.min"),
-        upper = tobi_bind_has(t, fill->bound.given, "box.max");
-    int has_mesh = tobi_bind_has(t, fill->bound.given, "mesh"), has_box = lower || upper;
-    if (has_box == has_mesh) {
-        tobi_source_mistake(source, place, "must have either a box or a mesh, it has %s",
-                            has_box ? "both" : "none");
-    } else if (has_mesh) {
-        check_file(source, &mesh, fill->def.mesh);
-    } else if (!lower || !upper) {
-        tobi_place box = { place, "box", 0 }, corner = { &box, lower ? "max" : "min", 0 };
-        tobi_source_mistake(source, &corner, "is missing: a box has min and max");
-    } else if (tobi_bind_has(t, fill->bound.good, "box.min") &&
-               tobi_bind_has(t, fill->bound.good, "box.max")) {
-        check_box(scene, source, &fill->def, place);
+    switch (kind) {
+    case FLUIDS: return k < scene->fluid_count ? scene->fluids[k].def.name : NULL;
+    case SOLIDS: return k < scene->solid_count ? scene->solids[k].def.name : NULL;
+    default: return k < scene->body_count ? scene->bodies[k].def.name : NULL;
     }
-    if (!has_mesh && (tobi_bind_has(t, fill->bound.given, "scale") ||
-                      tobi_bind_has(t, fill->bound.given, "translation")))
-        tobi_source_mistake(source, place, "scale and translation belong to a mesh, not to a box");
 }
 
-/* A filled box and where it stands in the scene. */
-typedef struct region { const tobi_fill_def *fill; int fluid, index; } region;
-
-static int do_overlap(const tobi_world_def *w, const tobi_fill_def *a, const tobi_fill_def *b)
+/* A name must be the only one among fluids, solids and bodies. */
+static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry, named kind)
 {
-    for (int k = 0; k < w->dimension; k++)
-        if (fmin(a->box_max[k], b->box_max[k]) - fmax(a->box_min[k], b->box_min[k]) <= slack(w, k))
-            return 0;
-    return 1;
-}
-
-static int order_regions(const void *a, const void *b)
-{
-    const region *p = a, *q = b;
-    double x = p->fill->box_min[0], y = q->fill->box_min[0];
-    if (x != y) return x > y ? 1 : -1;
-    return p->fluid != q->fluid ? p->fluid - q->fluid : p->index - q->index;
-}
-
-/* Two boxes in the same place would put particles on top of each other. Sorted along x, so that
-   many boxes side by side cost little. */
-static void check_overlaps(const tobi_scene *scene, tobi_source *source)
-{
-    size_t count = 0;
-    for (int i = 0; i < scene->fluid_count; i++) count += (size_t)scene->fluids[i].fill_count;
-    region *list = calloc(count + 1, sizeof *list);
-    if (!list) return;
-    count = 0;
-    for (int i = 0; i < scene->fluid_count; i++)
-        for (int j = 0; j < scene->fluids[i].fill_count; j++)
-            if (!scene->fluids[i].fills[j].def.mesh)
-                list[count++] = (region){ &scene->fluids[i].fills[j].def, i, j };
-    qsort(list, count, sizeof *list, order_regions);
-    for (size_t i = 0; i < count && !tobi_report_full(source->report); i++) {
-        for (size_t j = i + 1; j < count && list[j].fill->box_min[0] < list[i].fill->box_max[0];
-             j++) {
-            if (!do_overlap(&scene->world, list[i].fill, list[j].fill)) continue;
-            tobi_place fluids = { &root, "fluids", 0 },
-                       fluid = { &fluids, NULL, (size_t)list[j].fluid };
-            tobi_place fill = { &fluid, "fill", 0 }, entry = { &fill, NULL, (size_t)list[j].index };
-            tobi_source_mistake(source, &entry, "overlaps the box fluids[%d].fill[%d]",
-                                list[i].fluid, list[i].index);
-        }
-    }
-    free(list);
-}
-
-/* A name must be the only one of its kind in fluids and bodies. */
-static void check_name(const tobi_scene *scene, tobi_source *source, const tobi_place *entry,
-                       int fluid, int body)
-{
+    static const char *const lists[] = { "fluids", "solids", "bodies" };
     tobi_place place = { entry, "name", 0 };
-    const char *name = fluid >= 0 ? scene->fluids[fluid].def.name : scene->bodies[body].def.name;
-    json_t *list = json_object_get(scene->root, fluid >= 0 ? "fluids" : "bodies");
-    json_t *entry_value = json_array_get(list, (size_t)(fluid >= 0 ? fluid : body));
-    if (!json_is_string(json_object_get(entry_value, "name"))) return; /* missing: already told */
-    for (int i = 0; i < (fluid >= 0 ? fluid : scene->fluid_count); i++)
-        if (strcmp(scene->fluids[i].def.name, name) == 0) {
-            tobi_source_mistake(source, &place, "\"%s\" is already the name of fluids[%d]", name,
-                                i);
-            return;
-        }
-    for (int i = 0; i < body; i++)
-        if (strcmp(scene->bodies[i].def.name, name) == 0) {
-            tobi_source_mistake(source, &place, "\"%s\" is already the name of bodies[%d]", name,
-                                i);
-            return;
-        }
+    int number = (int)entry->index;
+    json_t *value = json_array_get(json_object_get(scene->root, lists[kind]), entry->index);
+    if (!json_is_string(json_object_get(value, "name"))) return;      /* missing: already told */
+    const char *name = name_of(scene, kind, number), *other;
+    for (named k = FLUIDS; k <= kind; k++)
+        for (int i = 0; (k < kind || i < number) && (other = name_of(scene, k, i)); i++)
+            if (strcmp(other, name) == 0) {
+                tobi_source_mistake(source, &place, "\"%s\" is already the name of %s[%d]", name, lists[k],
+                                    i);
+                return;
+            }
+}
+
+static int is_empty(const tobi_scene *scene, const char *key)
+{
+    json_t *list = json_object_get(scene->root, key);
+    return !list || (json_is_array(list) && json_array_size(list) == 0);
+}
+
+/* What the method moves must be there, and what it does not know must not. */
+static void check_matter(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_method *method = tobi_method_find(scene->world.method);
+    tobi_place fluids = { &root, "fluids", 0 }, solids = { &root, "solids", 0 };
+    tobi_place probes = { &root, "probes", 0 };
+    if (!method) return;
+    if (method->fields & TOBI_SPH) {
+        if (!is_empty(scene, "solids"))
+            tobi_source_mistake(source, &solids, "%s takes fluids; solids need \"method\": \"mlsmpm\"",
+                                method->name);
+        else if (is_empty(scene, "fluids"))
+            tobi_source_mistake(source, &fluids, "is missing or empty: a scene needs at least one fluid");
+        return;
+    }
+    if (!is_empty(scene, "fluids"))
+        tobi_source_mistake(source, &fluids, "%s takes no fluids; write a solid of \"model\": \"liquid\" "
+                            "into solids, or \"method\": \"dfsph\"", method->name);
+    else if (is_empty(scene, "solids") && is_empty(scene, "bodies"))
+        tobi_source_mistake(source, &solids, "is missing or empty: a scene of %s needs at least one solid or "
+                            "body", method->name);
+    if (!is_empty(scene, "probes"))
+        tobi_source_mistake(source, &probes, "measure fluids of dfsph and wcsph; %s has no probes",
+                            method->name);
 }
 
 static void check_fluids(const tobi_scene *scene, tobi_source *source)
 {
     tobi_place fluids = { &root, "fluids", 0 };
-    json_t *given = json_object_get(scene->root, "fluids");
-    const tobi_method *method = scene->method ? tobi_method_find(scene->method->name) : NULL;
-    int optional = method && method->free_bodies;
-    if (!optional && (!given || (json_is_array(given) && json_array_size(given) == 0)))
-        tobi_source_mistake(source, &fluids,
-                            "is missing or empty: a scene needs at least one fluid");
     for (int i = 0; i < scene->fluid_count && !tobi_report_full(source->report); i++) {
-        tobi_place entry = { &fluids, NULL, (size_t)i }, fill = { &entry, "fill", 0 };
-        check_name(scene, source, &entry, i, -1);
-        for (int j = 0; j < scene->fluids[i].fill_count; j++) {
-            tobi_place region_place = { &fill, NULL, (size_t)j };
-            check_fill(scene, source, &scene->fluids[i].fills[j], &region_place);
-        }
+        tobi_place entry = { &fluids, NULL, (size_t)i };
+        check_name(scene, source, &entry, FLUIDS);
+        tobi_check_fills(scene, source, &entry, scene->fluids[i].fills, scene->fluids[i].fill_count);
     }
-    check_overlaps(scene, source);
+}
+
+/* What a solid gives must mean something to its model. */
+static void check_solid(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+{
+    const tobi_scene_solid *solid = &scene->solids[entry->index];
+    tobi_place mass = { entry, "mass", 0 };
+    if (tobi_bind_has(&tobi_solid_table, solid->bound.given, "mass") &&
+        tobi_bind_has(&tobi_solid_table, solid->bound.given, "density"))
+        tobi_source_mistake_at_key(source, &mass, "is given beside density; one of them is enough");
+    if (tobi_bind_has(&tobi_solid_table, solid->bound.given, "model") &&
+        !tobi_bind_has(&tobi_solid_table, solid->bound.good, "model")) return;
+    for (const tobi_param *row = tobi_solid_table.rows; row->key; row++) {
+        tobi_place key = { entry, row->key, 0 };
+        char used[200];
+        if (!tobi_bind_has(&tobi_solid_table, solid->bound.given, row->key) ||
+            tobi_solid_uses(solid->def.model, row->key)) continue;
+        tobi_solid_list(solid->def.model, used, sizeof used);
+        tobi_source_mistake_at_key(source, &key, "is nothing that this model knows; it has %s", used);
+    }
+}
+
+static void check_solids(const tobi_scene *scene, tobi_source *source)
+{
+    tobi_place solids = { &root, "solids", 0 };
+    for (int i = 0; i < scene->solid_count && !tobi_report_full(source->report); i++) {
+        tobi_place entry = { &solids, NULL, (size_t)i };
+        check_name(scene, source, &entry, SOLIDS);
+        check_solid(scene, source, &entry);
+        tobi_check_fills(scene, source, &entry, scene->solids[i].fills, scene->solids[i].fill_count);
+    }
 }
 
 static void check_body_box(const tobi_scene *scene, tobi_source *source, int body,
@@ -304,8 +267,8 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         const tobi_scene_body *body = &scene->bodies[i];
         tobi_place entry = { &bodies, NULL, (size_t)i }, mesh = { &entry, "mesh", 0 };
         tobi_place rotation = { &entry, "rotation", 0 }, axis = { &rotation, "axis", 0 };
-        check_name(scene, source, &entry, -1, i);
-        check_file(source, &mesh, body->def.mesh);
+        check_name(scene, source, &entry, BODIES);
+        tobi_check_file(source, &mesh, body->def.mesh);
         check_body_box(scene, source, i, &entry);
         check_dynamics(scene, source, i, &entry);
         if (is_zero(body->def.rotation_axis))
@@ -325,7 +288,7 @@ static void check_probes(const tobi_scene *scene, tobi_source *source)
             if (probe->name && scene->probes[j].name && strcmp(probe->name, scene->probes[j].name) == 0)
                 tobi_source_mistake(source, &name, "\"%s\" is already the name of probes[%d]",
                                     probe->name, j);
-        for (int a = 0; has_domain(scene) && a < w->dimension; a++) {
+        for (int a = 0; tobi_check_has_domain(scene) && a < w->dimension; a++) {
             double at = probe->position[a];
             if (at < w->domain_min[a] || at > w->domain_max[a])
                 tobi_source_mistake(source, &position, "is %.10g m in %c, the domain reaches from %.10g to "
@@ -334,21 +297,19 @@ static void check_probes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-static void check_field(tobi_source *source, const tobi_place *place, const char *field)
+static void check_field(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                        const char *field)
 {
-    enum { FIELDS = 64 };
-    const char *names[FIELDS], *unit;
-    int components;
-    size_t count = 0;
+    const char *names[TOBI_WORLD_FIELDS];
+    int count = tobi_world_list_fields(scene->world.method, names);
     char all[512] = "";
-    for (; count < FIELDS; count++) {
-        names[count] = tobi_world_field_name((int)count, &components, &unit);
-        if (!names[count]) break;
-        if (strcmp(names[count], field) == 0) return;
+    if (strcmp(field, "usual") == 0) return;
+    for (int k = 0; k < count; k++) {
+        if (strcmp(names[k], field) == 0) return;
         size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[count]);
+        snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
     }
-    const char *near = tobi_suggest(field, names, count);
+    const char *near = tobi_suggest(field, names, (size_t)count);
     if (near)
         tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field,
                             near);
@@ -370,7 +331,7 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &target, "is the camera's own position");
     char *copy = strdup(scene->output.fields ? scene->output.fields : ""), *next = copy;
     for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
-        if (*field) check_field(source, &fields, field);
+        if (*field) check_field(scene, source, &fields, field);
     free(copy);
 }
 
@@ -380,7 +341,10 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_dfsph(scene, source);
     check_domain(scene, source);
     check_sides(scene, source);
+    check_matter(scene, source);
     check_fluids(scene, source);
+    check_solids(scene, source);
+    tobi_check_overlaps(scene, source);
     check_bodies(scene, source);
     check_probes(scene, source);
     check_output(scene, source);

@@ -6,6 +6,7 @@
 #include "scene/motions.h"
 #include "scene/parts.h"
 #include "world/params.h"
+#include "world/world.h"
 #include "tobiuo/tobiuo.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static const char head[] =
     "\n"
     "<!-- Written by `tobiuo describe scene` from the tables that read scenes; do not edit. -->\n"
     "\n"
-    "A scene is one text file that says everything about a simulation: the box, the fluids, the\n"
+    "A scene is one text file that says everything about a simulation: the box, the fluids or solids, the\n"
     "bodies, the output. `tobiuo check scene.json` finds every mistake at once, with line and column;\n"
     "`tobiuo run scene.json` runs it.\n"
     "\n"
@@ -79,6 +80,26 @@ static const char head[] =
     "```\n"
     "\n"
     "More scenes are in [scenes/](../scenes).\n"
+    "\n"
+    "Solids that deform, sand, snow and their water need `\"method\": \"mlsmpm\"` and `solids` instead of\n"
+    "`fluids`; a jelly that falls into water:\n"
+    "\n"
+    "```jsonc\n"
+    "{\n"
+    "  \"method\": \"mlsmpm\",\n"
+    "  \"domain\": { \"min\": [0, 0, 0], \"max\": [0.5, 0.5, 0.6],\n"
+    "              \"walls\": { \"x\": \"separate\", \"y\": \"separate\", \"z\": \"separate\" } },\n"
+    "  \"spacing\": 0.02,                        // m: 8 particles per grid cell\n"
+    "  \"end_time\": 0.5,\n"
+    "  \"solids\": [\n"
+    "    { \"name\": \"jelly\", \"density\": 800, \"youngs_modulus\": 5e4,\n"
+    "      \"fill\": [ { \"sphere\": { \"centre\": [0.25, 0.25, 0.4], \"radius\": 0.1 } } ] },\n"
+    "    { \"name\": \"water\", \"model\": \"liquid\", \"bulk_modulus\": 1e5,\n"
+    "      \"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [0.5, 0.5, 0.2] } } ] }\n"
+    "  ],\n"
+    "  \"output\": { \"interval\": 0.02, \"fields\": [\"usual\", \"stress\", \"J\"] }\n"
+    "}\n"
+    "```\n"
     "\n"
     "## Changing a value for one run\n"
     "\n"
@@ -199,9 +220,21 @@ static void write_fields(FILE *out)
 {
     const char *name, *unit;
     int components;
-    fputs("\nFields that `fields` may list:\n\n| field | components | unit |\n|---|---|---|\n", out);
-    for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++)
-        fprintf(out, "| `%s` | %d | %s |\n", name, components, unit);
+    fputs("\nFields that `fields` may list:\n\n| field | components | unit | methods |\n|---|---|---|---|\n", out);
+    for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) {
+        fprintf(out, "| `%s` | %d | %s |", name, components, unit);
+        const char *method, *known[TOBI_WORLD_FIELDS];
+        for (int m = 0; (method = tobi_method_name(m)); m++)
+            for (int k = tobi_world_list_fields(method, known) - 1; k >= 0; k--)
+                if (known[k] == name) fprintf(out, " %s", method);
+        fputs(" |\n", out);
+    }
+    fputs("\nSix components are xx, yy, zz, xy, yz, zx of a symmetric tensor, nine are a matrix by rows. `stress`\n"
+          "is Cauchy's, `pressure` of a solid a third of minus its trace, `J` the volume over that at the start,\n"
+          "`density` the density at the start over J. `deformation_gradient` is the elastic part where a model\n"
+          "flows, and of a liquid only its determinant means something. `plastic` is the plastic strain of\n"
+          "von-mises, the plastic part of J less 1 of snow, the logarithm of the volume that loose sand has gained.\n"
+          "`material` is the number of the solid, from 0.\n", out);
 }
 
 /* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */

@@ -7,7 +7,9 @@
 
 static const tobi_part parts[] = {
     { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 0, TOBI_FLUID_LIMIT,
-      "The fluids; every scene of a liquid has one." },
+      "The fluids of the methods dfsph and wcsph, which need at least one." },
+    { "world", "solids", TOBI_PART_LIST, &tobi_solid_table, 0, TOBI_SOLID_LIMIT,
+      "The solids, sands, snows and liquids of the method mlsmpm." },
     { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,
       "The bodies, if any." },
     { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
@@ -19,6 +21,8 @@ static const tobi_part parts[] = {
       "Where an editor finds the JSON Schema of scenes; Tobiuo passes over it." },
     { "fluid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, TOBI_REGION_LIMIT/TOBI_FLUID_LIMIT,
       "The regions that the fluid fills at the start." },
+    { "solid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, TOBI_REGION_LIMIT/TOBI_FLUID_LIMIT,
+      "The regions that the solid fills at the start." },
     { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
       "How the body moves, exactly one kind; without it the body is fixed." },
     { "body", "control", TOBI_PART_OBJECT, &tobi_control_table, 0, 0,

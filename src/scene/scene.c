@@ -29,6 +29,31 @@ static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_p
     return NULL;
 }
 
+/* The regions of an entry of fluids or solids, `owner` is "fluid" or "solid". */
+static tobi_status read_fills(const tobi_binder *binder, json_t *value, const tobi_place *place,
+                              const char *owner, tobi_scene_fill **fills, int *count)
+{
+    tobi_place fill = { place, "fill", 0 };
+    json_t *list = open_list(binder, value, &fill, owner);
+    if (json_array_size(list) == 0) {
+        if (json_is_object(value) && (list || !json_object_get(value, "fill")))
+            tobi_source_mistake(binder->source, &fill,
+                                "is missing or empty: a list of the regions this %s "
+                                "fills, [ { \"box\": { \"min\": [..], \"max\": [..] } } ]", owner);
+        return TOBI_OK;
+    }
+    *fills = calloc(json_array_size(list), sizeof **fills);
+    if (!*fills) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &fill, NULL, i };
+        tobi_scene_fill *f = &(*fills)[(*count)++];
+        f->def = tobi_default_fill_def();
+        f->bound =
+            tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               tobi_scene_fluid *fluid)
 {
@@ -36,25 +61,7 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
     tobi_part_keys("fluid", also);
     fluid->def = tobi_default_fluid_def();
     tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
-    tobi_place fill = { place, "fill", 0 };
-    json_t *list = open_list(binder, value, &fill, "fluid");
-    if (json_array_size(list) == 0) {
-        if (json_is_object(value) && (list || !json_object_get(value, "fill")))
-            tobi_source_mistake(binder->source, &fill,
-                                "is missing or empty: a list of the regions this fluid "
-                                "fills, [ { \"box\": { \"min\": [..], \"max\": [..] } } ]");
-        return TOBI_OK;
-    }
-    fluid->fills = calloc(json_array_size(list), sizeof *fluid->fills);
-    if (!fluid->fills) return TOBI_NO_MEMORY;
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        tobi_place entry = { &fill, NULL, i };
-        tobi_scene_fill *f = &fluid->fills[fluid->fill_count++];
-        f->def = tobi_default_fill_def();
-        f->bound =
-            tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
-    }
-    return TOBI_OK;
+    return read_fills(binder, value, place, "fluid", &fluid->fills, &fluid->fill_count);
 }
 
 static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
@@ -68,6 +75,26 @@ static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, con
         tobi_place entry = { &place, NULL, i };
         TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry,
                             &scene->fluids[scene->fluid_count++]));
+    }
+    return TOBI_OK;
+}
+
+static tobi_status read_solids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("solid", also);
+    tobi_place place = { root, "solids", 0 };
+    json_t *list = open_list(binder, scene->root, &place, "world");
+    if (!list) return TOBI_OK;
+    scene->solids = calloc(json_array_size(list) + 1, sizeof *scene->solids);
+    if (!scene->solids) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        json_t *value = json_array_get(list, i);
+        tobi_scene_solid *solid = &scene->solids[scene->solid_count++];
+        solid->def = tobi_default_solid_def();
+        solid->bound = tobi_bind(binder, &tobi_solid_table, value, &entry, also, &solid->def);
+        TOBI_TRY(read_fills(binder, value, &entry, "solid", &solid->fills, &solid->fill_count));
     }
     return TOBI_OK;
 }
@@ -181,6 +208,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     flatten_world(scene);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
+    TOBI_TRY(read_solids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
     scene->output = tobi_default_output_def();
@@ -273,11 +301,13 @@ void tobi_scene_free(tobi_scene *scene)
 {
     if (!scene) return;
     for (int i = 0; i < scene->fluid_count; i++) free(scene->fluids[i].fills);
+    for (int i = 0; i < scene->solid_count; i++) free(scene->solids[i].fills);
     for (int i = 0; i < scene->body_count; i++) {
         tobi_motion_free(scene->bodies[i].motion);
         tobi_script_free(scene->bodies[i].control);
     }
     free(scene->fluids);
+    free(scene->solids);
     free(scene->bodies);
     free(scene->probes);
     free(scene->references);
@@ -290,12 +320,28 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene);
 }
 
+/* The plain definitions of regions; owned by the caller, NULL without memory. */
+static tobi_fill_def *copy_fills(const tobi_scene_fill *fills, int count)
+{
+    tobi_fill_def *copy = malloc((size_t)count*sizeof *copy + 1);
+    for (int i = 0; copy && i < count; i++) copy[i] = fills[i].def;
+    return copy;
+}
+
 static tobi_status add_fluid(tobi_world *world, const tobi_scene_fluid *fluid, tobi_error *err)
 {
-    tobi_fill_def *fills = malloc((size_t)fluid->fill_count*sizeof *fills);
+    tobi_fill_def *fills = copy_fills(fluid->fills, fluid->fill_count);
     if (!fills) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
-    for (int i = 0; i < fluid->fill_count; i++) fills[i] = fluid->fills[i].def;
     tobi_status status = tobi_world_add_fluid(world, &fluid->def, fills, fluid->fill_count, err);
+    free(fills);
+    return status;
+}
+
+static tobi_status add_solid(tobi_world *world, const tobi_scene_solid *solid, tobi_error *err)
+{
+    tobi_fill_def *fills = copy_fills(solid->fills, solid->fill_count);
+    if (!fills) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    tobi_status status = tobi_world_add_solid(world, &solid->def, fills, solid->fill_count, err);
     free(fills);
     return status;
 }
@@ -310,6 +356,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = tobi_world_add_body(world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
         status = add_fluid(world, &scene->fluids[i], err);
+    for (int i = 0; i < scene->solid_count && status == TOBI_OK; i++)
+        status = add_solid(world, &scene->solids[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) *out = world;
@@ -330,18 +378,37 @@ static json_t *whole(json_t *value, int failed)
     return NULL;
 }
 
+/* The regions of an object, each with the keys of its own shape alone. */
+static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int count)
+{
+    json_t *list = json_array();
+    int failed = 0;
+    for (int i = 0; i < count; i++) {
+        const tobi_fill_def *def = &fills[i].def;
+        json_t *fill = tobi_write_def(&tobi_fill_table, def);
+        if (def->mesh || def->radius > 0) json_object_del(fill, "box");
+        if (def->mesh || !(def->radius > 0)) json_object_del(fill, "sphere");
+        for (int k = 0; !def->mesh && k < 3; k++)
+            json_object_del(fill, (const char *[]){ "scale", "translation", "rotation" }[k]);
+        failed |= json_array_append_new(list, fill);
+    }
+    failed |= json_object_set_new(object, "fill", list);
+    return whole(object, failed);
+}
+
 static json_t *write_fluid(const tobi_scene_fluid *fluid)
 {
-    json_t *object = tobi_write_def(&tobi_fluid_table, &fluid->def), *fills = json_array();
-    int failed = 0;
-    for (int i = 0; i < fluid->fill_count; i++) {
-        json_t *fill = tobi_write_def(&tobi_fill_table, &fluid->fills[i].def);
-        json_object_del(fill, fluid->fills[i].def.mesh ? "box" : "scale");
-        if (!fluid->fills[i].def.mesh) json_object_del(fill, "translation");
-        failed |= json_array_append_new(fills, fill);
-    }
-    failed |= json_object_set_new(object, "fill", fills);
-    return whole(object, failed);
+    return write_fills(tobi_write_def(&tobi_fluid_table, &fluid->def), fluid->fills, fluid->fill_count);
+}
+
+/* What counts: density or mass, and the constants of its model. */
+static json_t *write_solid(const tobi_scene_solid *solid)
+{
+    json_t *object = tobi_write_def(&tobi_solid_table, &solid->def);
+    json_object_del(object, solid->def.mass > 0 ? "density" : "mass");
+    for (const tobi_param *row = tobi_solid_table.rows; row->key; row++)
+        if (!tobi_solid_uses(solid->def.model, row->key)) json_object_del(object, row->key);
+    return write_fills(object, solid->fills, solid->fill_count);
 }
 
 static json_t *write_body(const tobi_scene_body *body)
@@ -359,12 +426,14 @@ static json_t *write_body(const tobi_scene_body *body)
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
-    json_t *fluids = json_array(), *bodies = json_array(), *probes = json_array(),
+    json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *probes = json_array(),
            *references = json_array();
     int failed = json_object_set_new(root, scene->method->name,
                                      tobi_write_def(scene->method, scene->method_def));
     for (int i = 0; i < scene->fluid_count; i++)
         failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
+    for (int i = 0; i < scene->solid_count; i++)
+        failed |= json_array_append_new(solids, write_solid(&scene->solids[i]));
     for (int i = 0; i < scene->body_count; i++)
         failed |= json_array_append_new(bodies, write_body(&scene->bodies[i]));
     for (int i = 0; i < scene->probe_count; i++)
@@ -372,11 +441,14 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     for (int i = 0; i < scene->reference_count; i++)
         failed |= json_array_append_new(
             references, tobi_write_def(&tobi_reference_table, &scene->references[i]));
-    failed |= json_object_set_new(root, "fluids", fluids);
+    if (scene->fluid_count) failed |= json_object_set(root, "fluids", fluids);
+    if (scene->solid_count) failed |= json_object_set(root, "solids", solids);
     failed |= json_object_set_new(root, "bodies", bodies);
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
     failed |= json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);
+    json_decref(fluids);
+    json_decref(solids);
     json_decref(probes);
     json_decref(references);
     root = whole(root, failed);

@@ -15,6 +15,13 @@ typedef struct tobi_scene_fluid {
     int fill_count;
 } tobi_scene_fluid;
 
+typedef struct tobi_scene_solid {
+    tobi_solid_def def;
+    tobi_bound bound;              /* rows of the solid table that the file gives */
+    tobi_scene_fill *fills;
+    int fill_count;
+} tobi_scene_solid;
+
 typedef struct tobi_scene_body {
     tobi_body_def def;
     tobi_motion_def motion_def;
@@ -34,6 +41,8 @@ struct tobi_scene {
     void *method_def;              /* method->size bytes                          */
     tobi_scene_fluid *fluids;
     int fluid_count;
+    tobi_scene_solid *solids;
+    int solid_count;
     tobi_scene_body *bodies;
     int body_count;
     tobi_probe_def *probes;
@@ -55,6 +64,15 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
 
 /* references.c: reports columns, bodies, probes and files that are not there. */
 void tobi_references_check(const tobi_scene *scene, tobi_source *source);
+
+/* check_regions.c: the regions of one fluid or solid; boxes and spheres that would put particles on top of
+   each other. */
+void tobi_check_fills(const tobi_scene *scene, tobi_source *source, const tobi_place *owner,
+                      const tobi_scene_fill *fills, int count);
+void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source);
+/* check.c: whether both corners are right; a file that the scene names. */
+int  tobi_check_has_domain(const tobi_scene *scene);
+void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
 
 /* Reports what no table can see: corners, pairs of walls, regions, names, files. */
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source);

@@ -6,6 +6,7 @@
 #include "scene/motions.h"
 #include "scene/parts.h"
 #include "scene/write.h"
+#include "world/methods.h"
 #include "world/params.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
@@ -104,6 +105,7 @@ static json_t *make_fields(void)
     json_t *item = json_object(), *names = json_array(), *list = make_type("array");
     const char *name, *unit;
     int components;
+    json_array_append_new(names, json_string("usual"));
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++)
         json_array_append_new(names, json_string(name));
     json_object_set_new(item, "enum", names);
@@ -235,14 +237,20 @@ static json_t *make_part(const tobi_part *part)
     return schema;
 }
 
-/* A region or a body is a box or a mesh: the table cannot say that either is needed. */
+/* A region or a body is a box, a mesh or (regions) a sphere: the table cannot say that one is needed. */
 static void require_region(json_t *schema)
 {
-    json_t *box = json_object_get(json_object_get(schema, "properties"), "box");
+    json_t *properties = json_object_get(schema, "properties"), *box = json_object_get(properties, "box");
+    json_t *sphere = json_object_get(properties, "sphere"), *shapes;
     require(box, "min");
     require(box, "max");
-    json_object_set_new(schema, "oneOf",
-                        json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh"));
+    shapes = json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh");
+    if (sphere) {
+        require(sphere, "centre");
+        require(sphere, "radius");
+        json_array_append_new(shapes, json_pack("{s[s]}", "required", "sphere"));
+    }
+    json_object_set_new(schema, "oneOf", shapes);
 }
 
 static json_t *make_table(const tobi_param_table *table)
@@ -264,6 +272,26 @@ static json_t *make_table(const tobi_param_table *table)
     return schema;
 }
 
+/* Methods that move solids need some, or bodies; the others need fluids. */
+static void require_matter(json_t *schema)
+{
+    json_t *names = json_array();
+    json_t *none = json_pack("{s:i}", "maxItems", 0), *some = json_pack("{s:i}", "minItems", 1);
+    for (int i = 0; tobi_method_name(i); i++)
+        if (tobi_method_at(i)->fields & TOBI_MPM)
+            json_array_append_new(names, json_string(tobi_method_at(i)->name));
+    json_object_set_new(schema, "if", json_pack("{s:[s],s:{s:{s:o}}}", "required", "method", "properties",
+                                                "method", "enum", names));
+    json_object_set_new(schema, "then",
+                        json_pack("{s:{s:O,s:O},s:[{s:[s],s:{s:O}},{s:[s],s:{s:O}}]}", "properties", "fluids",
+                                  none, "probes", none, "anyOf", "required", "solids", "properties", "solids",
+                                  some, "required", "bodies", "properties", "bodies", some));
+    json_object_set_new(schema, "else", json_pack("{s:[s],s:{s:O,s:O}}", "required", "fluids", "properties",
+                                                  "fluids", some, "solids", none));
+    json_decref(none);
+    json_decref(some);
+}
+
 char *tobi_scene_schema(void)
 {
     json_t *schema = json_object(), *root = make_table(&tobi_world_table);
@@ -271,6 +299,7 @@ char *tobi_scene_schema(void)
     put_text(schema, "title", "Tobiuo scene");
     json_object_update(schema, root);
     json_decref(root);
+    require_matter(schema);
     put_text(schema, "description", "A simulation: SI units, angles in degrees.");
     char *text = tobi_write_json(schema);
     json_decref(schema);

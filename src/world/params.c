@@ -3,6 +3,7 @@
 #include "world/params.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define AT(type, member_name) .offset = offsetof(type, member_name)
@@ -327,8 +328,9 @@ static const tobi_param output_rows[] = {
     { .key = "compression", CHOICE("none|zlib|lz4|ascii", 4), AT(tobi_output_def, compression),
       .def = { TOBI_COMPRESS_ZLIB }, .doc = "Form of the VTU and VTP files." },
     { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
-      .text = "velocity,pressure,density,object_id,particle_id",
-      .doc = "Fields to write for every particle." },
+      .text = "usual",
+      .doc = "Fields to write for every particle. usual, alone or among others, stands for velocity, "
+             "pressure, density, object_id and particle_id, and for mlsmpm von_mises and material too." },
     { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
       .doc = "Write the moving surface of each body as VTP and STL." },
     { .key = "frames", BOOL, AT(tobi_output_def, frames),
@@ -389,7 +391,7 @@ const tobi_param_table tobi_solid_table = {
 const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 const tobi_param_table tobi_fill_table = {
-    "fill", "An entry of fill: one region that a fluid or solid fills at the start, a box, a sphere or a mesh.",
+    "fill", "An entry of fill: one region that a fluid or solid fills at the start: box, sphere or mesh.",
     sizeof(tobi_fill_def), fill_rows };
 const tobi_param_table tobi_body_table = {
     "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
@@ -438,6 +440,35 @@ const char *tobi_choice_word(const char *choices, int i, int *length)
     }
     return NULL;
 }
+
+/* Material constants and who reads them; rows of the solid table that are not here belong to all. */
+static const struct { const char *key; uint32_t models; } constants[] = {
+#define OF(model) (UINT32_C(1) << (model))
+#define ELASTIC ~(OF(TOBI_LIQUID) | OF(TOBI_STATIONARY))
+    { "youngs_modulus", ELASTIC },          { "poissons_ratio", ELASTIC },
+    { "bulk_modulus", OF(TOBI_LIQUID) },    { "viscosity", OF(TOBI_LIQUID) },
+    { "yield_stress", OF(TOBI_VON_MISES) }, { "hardening", OF(TOBI_VON_MISES) | OF(TOBI_SNOW) },
+    { "critical_compression", OF(TOBI_SNOW) }, { "critical_stretch", OF(TOBI_SNOW) },
+    { "friction_angle", OF(TOBI_SAND) },    { "damping", ~OF(TOBI_STATIONARY) },
+#undef ELASTIC
+};
+enum { CONSTANT_COUNT = sizeof constants/sizeof constants[0] };
+
+int tobi_solid_uses(int model, const char *key)
+{
+    for (int k = 0; k < CONSTANT_COUNT; k++)
+        if (strcmp(constants[k].key, key) == 0) return (constants[k].models & OF(model)) != 0;
+    return 1;
+}
+
+void tobi_solid_list(int model, char *text, size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "density or mass");
+    for (int k = 0; k < CONSTANT_COUNT && used < size; k++)
+        if (constants[k].models & OF(model))
+            used += (size_t)snprintf(text + used, size - used, ", %s", constants[k].key);
+}
+#undef OF
 
 int tobi_choice_count(const char *choices)
 {

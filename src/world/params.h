@@ -33,6 +33,10 @@ const tobi_param_table *tobi_method_table(const char *method);
 /* Method names by index, NULL past the end. */
 const char *tobi_method_name(int index);
 
+/* Whether a tobi_model reads a row of the solid table; the material constants that it reads, "a, b". */
+int  tobi_solid_uses(int model, const char *key);
+void tobi_solid_list(int model, char *text, size_t size);
+
 /* The number of words in "a|b|c", and word i of it (not terminated), its length in *length;
    NULL past the end. */
 int tobi_choice_count(const char *choices);

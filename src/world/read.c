@@ -5,12 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct { const char *name; int components; const char *unit; } fields[] = {
-    {"position", 3, "m"},       {"velocity", 3, "m/s"},      {"pressure", 1, "Pa"},
-    {"density", 1, "kg/m3"},    {"object_id", 1, "1"},       {"particle_id", 1, "1"},
-    {"acceleration", 3, "m/s2"}, {"vorticity", 3, "1/s"},    {"surface", 1, "1"},
+/* owner: which methods have it. Of 6: xx, yy, zz, xy, yz, zx, as ParaView names them; of 9: by rows. */
+static const struct { const char *name; int components; const char *unit; int owner; } fields[] = {
+    {"position", 3, "m", TOBI_ALL},           {"velocity", 3, "m/s", TOBI_ALL},
+    {"pressure", 1, "Pa", TOBI_ALL},          {"density", 1, "kg/m3", TOBI_ALL},
+    {"object_id", 1, "1", TOBI_ALL},          {"particle_id", 1, "1", TOBI_ALL},
+    {"acceleration", 3, "m/s2", TOBI_SPH},    {"vorticity", 3, "1/s", TOBI_SPH},
+    {"surface", 1, "1", TOBI_SPH},            {"material", 1, "1", TOBI_MPM},
+    {"von_mises", 1, "Pa", TOBI_MPM},         {"stress", 6, "Pa", TOBI_MPM},
+    {"J", 1, "1", TOBI_MPM},                  {"deformation_gradient", 9, "1", TOBI_MPM},
+    {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
+
+int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS])
+{
+    const tobi_method *m = tobi_method_find(method);
+    int owners = m ? TOBI_ALL | m->fields : ~0, count = 0;
+    for (int k = 0; k < FIELD_COUNT; k++)
+        if (fields[k].owner & owners) names[count++] = fields[k].name;
+    return count;
+}
 
 const char *tobi_world_field_name(int field, int *components, const char **unit)
 {
@@ -44,28 +59,38 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, double *out)
+/* A field that every method has; 0 if it is none of them. */
+static int read_plain(const tobi_simulation *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "position")) {
         out[0] = p->position[i].x + s->box.lower[0];
         out[1] = p->position[i].y + s->box.lower[1];
         out[2] = p->position[i].z + s->box.lower[2];
-    } else if (!strcmp(field, "velocity") || !strcmp(field, "acceleration") ||
-               !strcmp(field, "vorticity")) {
-        const tobi_float4 *v = field[0] == 'v' && field[1] == 'e' ? &p->velocity[i] : &p->accel[i];
+    } else if (!strcmp(field, "velocity")) {
+        const tobi_float4 *v = &p->velocity[i];
+        out[0] = v->x; out[1] = v->y; out[2] = v->z;
+    } else if (!strcmp(field, "particle_id")) {
+        out[0] = (double)p->id[i];
+    } else if (!strcmp(field, "object_id")) {
+        out[0] = 0;      /* of every fluid and solid; bodies count from 1 */
+    } else return 0;
+    return 1;
+}
+
+static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, double *out)
+{
+    const tobi_particles *p = &s->particles;
+    if (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")) {
+        const tobi_float4 *v = &p->accel[i];
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(field, "pressure")) {
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
         out[0] = p->product[i] + tobi_simulation_hydrostatic(s, x);
     } else if (!strcmp(field, "density")) {
         out[0] = p->density[i]*s->fluid[p->fluid[i]].density;
-    } else if (!strcmp(field, "particle_id")) {
-        out[0] = (double)p->id[i];
-    } else if (!strcmp(field, "surface")) {
-        out[0] = p->surface[i];
     } else {
-        out[0] = 0;      /* object id of every fluid */
+        out[0] = p->surface[i];
     }
 }
 
@@ -113,6 +138,8 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     int k = 0, components = 0;
     while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
+    if (!(fields[k].owner & (TOBI_ALL | w->method->fields)))
+        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
     components = fields[k].components;
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))
@@ -123,8 +150,12 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     if (!w->diverged && (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")))
         w->method->derive(&w->sim, w->method_state, field);
     #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t r = 0; r < w->sim.particles.count; r++)
-        read_fluid(&w->sim, field, w->row_of[r], buffer + r*components);
+    for (int64_t r = 0; r < w->sim.particles.count; r++) {
+        double *out = buffer + r*components;
+        if (read_plain(&w->sim, field, w->row_of[r], out)) continue;
+        if (w->method->read) w->method->read(&w->sim, w->method_state, field, w->row_of[r], out);
+        else read_fluid(&w->sim, field, w->row_of[r], out);
+    }
     return TOBI_OK;
 }
 

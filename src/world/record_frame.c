@@ -14,10 +14,12 @@ enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
 typedef struct drawing {
     double *positions, *velocities;    /* n x 3        */
-    float *values;                     /* n, speeds; with a palette the fluid's number  */
+    float *values;                     /* n, speeds; with a palette the material's number */
     int64_t count;                     /* particles that are shown                      */
-    float palette[TOBI_FLUID_LIMIT][3];
+    float palette[TOBI_SOLID_LIMIT][3];
+    int materials;                     /* fluids or solids                              */
     int has_palette;
+    uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
     int mesh_count;
     tobi_frame_mesh *meshes;
 } drawing;
@@ -27,6 +29,7 @@ static void free_drawing(drawing *d)
     free(d->positions);
     free(d->velocities);
     free(d->values);
+    free(d->opaque);
     free(d->meshes);
 }
 
@@ -47,29 +50,46 @@ static tobi_status read_fluid(tobi_run *run, int64_t n, drawing *d, tobi_error *
     return TOBI_OK;
 }
 
-/* Fluids with colours: the value becomes the fluid's number, the palette their colours; hidden fluids are
-   left out. */
-static void color_fluids(const tobi_run *run, drawing *d)
+/* A fluid or solid as pictures see it. */
+typedef struct material { const double *color; int visible, liquid; } material;
+
+static material material_at(const tobi_simulation *s, int k)
+{
+    if (!s->solid_count) return (material){ s->fluid[k].color, s->fluid[k].visible, 1 };
+    const tobi_solid_def *def = &s->solids[k].def;
+    return (material){ def->color, def->visible, def->model == TOBI_LIQUID };
+}
+
+/* Materials with colours: the value becomes the material's number, the palette their colours; hidden ones
+   are left out. */
+static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *err)
 {
     static const float plain[3] = { 0.04f, 0.36f, 0.70f };
     const tobi_simulation *s = &run->world->sim;
-    int hidden = 0;
-    for (int f = 0; f < s->fluid_count; f++) {
-        const double *color = s->fluid[f].color;
+    int hidden = 0, solids = 0;
+    d->materials = s->solid_count ? s->solid_count : s->fluid_count;
+    for (int m = 0; m < d->materials; m++) {
+        const material look = material_at(s, m);
         for (int k = 0; k < 3; k++)
-            d->palette[f][k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
-        d->has_palette |= color[0] >= 0;
-        hidden |= !s->fluid[f].visible;
+            d->palette[m][k] = look.color[0] < 0 ? plain[k] : (float)(look.color[k] / 255.0);
+        d->has_palette |= look.color[0] >= 0;
+        hidden |= !look.visible;
+        solids |= !look.liquid;
     }
-    if (!hidden && !d->has_palette) return;
+    if (!hidden && !d->has_palette && !solids) return TOBI_OK;
+    if (solids) d->opaque = malloc((size_t)d->count + 1);
+    if (solids && !d->opaque) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     int64_t n = d->count, kept = 0;
     for (int64_t i = 0; i < n; i++) {
-        int f = s->particles.fluid[run->world->row_of[i]];      /* rows are fresh: just read */
-        if (!s->fluid[f].visible) continue;
+        int m = s->particles.fluid[run->world->row_of[i]];      /* rows are fresh: just read */
+        const material look = material_at(s, m);
+        if (!look.visible) continue;
         memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
-        d->values[kept++] = d->has_palette ? (float)f : d->values[i];
+        if (d->opaque) d->opaque[kept] = !look.liquid;
+        d->values[kept++] = d->has_palette ? (float)m : d->values[i];
     }
     d->count = kept;
+    return TOBI_OK;
 }
 
 static tobi_status read_meshes(tobi_run *run, int count, drawing *d, tobi_error *err)
@@ -110,17 +130,18 @@ static tobi_status draw(tobi_run *run, const char *path, drawing *d, tobi_error 
         frame.up[a] = -def->gravity[a];
     }
     TOBI_TRY(read_fluid(run, tobi_world_count(run->world, TOBI_FLUID), d, err));
-    color_fluids(run, d);
+    TOBI_TRY(color_materials(run, d, err));
     TOBI_TRY(read_meshes(run, tobi_world_body_count(run->world), d, err));
     frame.particle_count = d->count;
     frame.mesh_count = d->mesh_count;
     frame.positions = (const double (*)[3])d->positions;
     frame.values = d->values;
     frame.radius = 0.5 * def->spacing;
-    frame.value_max = d->has_palette ? run->world->sim.fluid_count - 1 : color_speed(def);
+    frame.opaque = d->opaque;
+    frame.value_max = d->has_palette ? d->materials - 1 : color_speed(def);
     if (d->has_palette) {
         frame.palette = (const float (*)[3])d->palette;
-        frame.palette_count = run->world->sim.fluid_count;
+        frame.palette_count = d->materials;
     }
     frame.has_camera = run->output.camera_angle > 0 && def->dimension == 3;
     memcpy(frame.eye, run->output.camera_position, sizeof frame.eye);

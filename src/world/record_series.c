@@ -2,6 +2,7 @@
 #include "io/exchange.h"
 #include "io/vtk.h"
 #include "world/record.h"
+#include "world/world.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,13 +16,41 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
         if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
         field->name = known;
         field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64
-                    : strcmp(known, "object_id") == 0 ? TOBI_I32 : TOBI_F32;
+                    : strcmp(known, "object_id") == 0 || strcmp(known, "material") == 0 ? TOBI_I32 : TOBI_F32;
         return TOBI_OK;
     }
     return TOBI_NOT_FOUND;
 }
 
 /* A name twice counts once. */
+static tobi_status add_field(tobi_run *run, const char *name, size_t length, tobi_error *err)
+{
+    const char *known[TOBI_WORLD_FIELDS];
+    tobi_record_field field = { 0 };
+    int has = 0, count = tobi_world_list_fields(run->world->method->name, known);
+    if (find_field(name, length, &field) == TOBI_OK)
+        for (int k = 0; k < count; k++) has |= known[k] == field.name;
+    if (!has)
+        return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s' of %s",
+                         (int)length, name, run->world->method->name);
+    bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
+    for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
+    if (again) return TOBI_OK;
+    if (run->field_count == TOBI_RECORD_FIELD_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "output.fields: more than %d", TOBI_RECORD_FIELD_LIMIT);
+    run->field[run->field_count++] = field;
+    return TOBI_OK;
+}
+
+static tobi_status add_usual(tobi_run *run, tobi_error *err)
+{
+    static const char *const usual[] = { "velocity", "pressure", "density", "object_id", "particle_id",
+                                         "von_mises", "material" };
+    int count = run->world->method->fields & TOBI_MPM ? 7 : 5;
+    for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
+    return TOBI_OK;
+}
+
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 {
     run->field_count = 0;
@@ -29,18 +58,9 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
         p += strspn(p, ", ");
         size_t length = strcspn(p, ", ");
         if (length == 0) break;
-        tobi_record_field field;
-        if (find_field(p, length, &field) != TOBI_OK)
-            return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s'",
-                             (int)length, p);
+        bool usual = length == 5 && memcmp(p, "usual", 5) == 0;
+        TOBI_TRY(usual ? add_usual(run, err) : add_field(run, p, length, err));
         p += length;
-        bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
-        for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
-        if (again) continue;
-        if (run->field_count == TOBI_RECORD_FIELD_LIMIT)
-            return tobi_fail(err, TOBI_INVALID, "output.fields: more than %d",
-                             TOBI_RECORD_FIELD_LIMIT);
-        run->field[run->field_count++] = field;
     }
     return TOBI_OK;
 }
@@ -105,7 +125,7 @@ static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int6
 {
     for (int k = 0; k < run->field_count; k++) {
         const tobi_record_field *f = &run->field[k];
-        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, 3 * n, err));
+        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
         arrays[k] = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
                                       convert(buffer, n * f->components, f->type) };
         if (!arrays[k].data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
@@ -120,7 +140,7 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
     char *path =
         tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
     double *points = malloc((size_t)n * 3 * sizeof *points + 1);
-    double *buffer = malloc((size_t)n * 3 * sizeof *buffer + 1);
+    double *buffer = malloc((size_t)n * 9 * sizeof *buffer + 1);
     tobi_status status = TOBI_OK;
     if (!path || !points || !buffer)
         status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");

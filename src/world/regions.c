@@ -33,7 +33,8 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
     return TOBI_OK;
 }
 
-static tobi_status measure_region(const tobi_world *w, const tobi_fill_def *f, tobi_region *r, tobi_error *err)
+static tobi_status measure_region(const tobi_world *w, const tobi_fill_def *f, tobi_region *r,
+                                  tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
     int flat = s->box.dimension == 2;

@@ -266,6 +266,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     if (n + body == 0)
         return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
@@ -319,6 +320,12 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
                      s->info.speed_max);
 }
 
+static void measure(tobi_world *w)
+{
+    tobi_simulation_measure(&w->sim);
+    if (w->method->measure) w->method->measure(&w->sim, w->method_state);
+}
+
 tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -336,7 +343,7 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     s->info.dt = s->dt;
     TOBI_TRY(check_runaway(w, err));
     if (info) {
-        tobi_simulation_measure(s);
+        measure(w);
         *info = s->info;
     }
     return TOBI_OK;
@@ -349,7 +356,7 @@ tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, to
         if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
     }
     if (info) {
-        tobi_simulation_measure(&w->sim);
+        measure(w);
         *info = w->sim.info;
     }
     return TOBI_OK;
@@ -363,7 +370,7 @@ const tobi_step_info *tobi_world_info(const tobi_world *w)
     s->info.step = s->step;
     s->info.time = s->time;
     s->info.dt = s->dt;
-    if (w->started) tobi_simulation_measure(s);
+    if (w->started) measure((tobi_world *)w);
     return &s->info;
 }
 
@@ -386,7 +393,8 @@ int64_t tobi_world_bytes(const tobi_world *w)
     const tobi_simulation *s = &w->sim;
     return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
-           s->near.capacity * (int64_t)sizeof(tobi_near_entry);
+           s->near.capacity * (int64_t)sizeof(tobi_near_entry) +
+           (w->method->bytes && w->method_state ? w->method->bytes(w->method_state) : 0);
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)

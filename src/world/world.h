@@ -32,5 +32,9 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 
+/* The names of the fields that a method has, all if it is unknown; returns how many. */
+enum { TOBI_WORLD_FIELDS = 32 };
+int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
+
 /* Reads a probe of a world that has just stepped. */
 void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *info);

@@ -83,7 +83,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 9);
+    assert_int_equal(tables, 11);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }
@@ -119,6 +119,10 @@ static void words_follow_the_enums(void **state)
     assert_true(word_is(forms, TOBI_COMPRESS_NONE, "none") &&
                 word_is(forms, TOBI_COMPRESS_ZLIB, "zlib"));
     assert_true(word_is(forms, TOBI_COMPRESS_LZ4, "lz4") && word_is(forms, TOBI_ASCII, "ascii"));
+    const char *models = find_row(&tobi_solid_table, "model")->choices;
+    assert_true(word_is(models, TOBI_NEO_HOOKEAN, "neo-hookean") && word_is(models, TOBI_SAND, "sand") &&
+                word_is(models, TOBI_LIQUID, "liquid") && word_is(models, TOBI_STATIONARY, "stationary"));
+    assert_true(word_is(walls, TOBI_WALL_SEPARATE, "separate"));
     int length;
     assert_null(tobi_choice_word(forms, 4, &length));
 }
@@ -145,7 +149,12 @@ static void defaults_are_water_on_earth(void **state)
     tobi_output_def o = tobi_default_output_def();
     assert_true(o.interval == 0.01 && o.compression == TOBI_COMPRESS_ZLIB && o.surfaces == 1 &&
                 o.frames == 0);
-    assert_string_equal(o.fields, "velocity,pressure,density,object_id,particle_id");
+    assert_string_equal(o.fields, "usual");
+    tobi_mlsmpm_def m = tobi_default_mlsmpm_def();
+    assert_true(m.cell == 2 && m.transfer == TOBI_APIC && m.cfl == 0.4);
+    tobi_solid_def s = tobi_default_solid_def();
+    assert_true(s.model == TOBI_NEO_HOOKEAN && s.density == 1000 && s.youngs_modulus == 1e6 &&
+                s.poissons_ratio == 0.3 && s.mass == 0 && s.damping == 0 && s.visible);
 }
 
 static void ranges_are_enforced(void **state)
@@ -170,8 +179,23 @@ static void ranges_are_enforced(void **state)
                      TOBI_INVALID); /* spacing is 0 */
     w.spacing = 0.01;
     assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_OK);
-    w.wall_max[1] = 3;
+    w.wall_max[1] = 4;
     assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_INVALID);
+}
+
+/* Elastic constants belong to what is elastic, those of liquids to liquids; the rest to all. */
+static void models_know_their_constants(void **state)
+{
+    (void)state;
+    char text[200];
+    for (int model = TOBI_NEO_HOOKEAN; model <= TOBI_STATIONARY; model++) {
+        int elastic = model != TOBI_LIQUID && model != TOBI_STATIONARY;
+        assert_int_equal(tobi_solid_uses(model, "youngs_modulus"), elastic);
+        assert_int_equal(tobi_solid_uses(model, "bulk_modulus"), model == TOBI_LIQUID);
+        assert_true(tobi_solid_uses(model, "density") && tobi_solid_uses(model, "color"));
+    }
+    tobi_solid_list(TOBI_SAND, text, sizeof text);
+    assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, damping");
 }
 
 static void methods_are_found_by_name(void **state)
@@ -183,7 +207,8 @@ static void methods_are_found_by_name(void **state)
     assert_ptr_equal(tobi_method_table("wcsph"), &tobi_wcsph_table);
     assert_string_equal(tobi_method_name(0), "dfsph");
     assert_string_equal(tobi_method_name(1), "wcsph");
-    assert_null(tobi_method_name(2));
+    assert_string_equal(tobi_method_name(2), "mlsmpm");
+    assert_null(tobi_method_name(3));
 }
 
 int main(void)
@@ -194,6 +219,7 @@ int main(void)
         cmocka_unit_test(words_follow_the_enums),
         cmocka_unit_test(defaults_are_water_on_earth),
         cmocka_unit_test(ranges_are_enforced),
+        cmocka_unit_test(models_know_their_constants),
         cmocka_unit_test(methods_are_found_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

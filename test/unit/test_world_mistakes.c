@@ -99,10 +99,10 @@ static void fluids(void **state)
             "no particles at all: the scene needs a fluid region or a body");
     tobi_fill_def fill = make_fill(0.5, 0.5);
     REFUSED(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_INVALID,
-            "fluid box: max 0.5 is not above min 0.5 along x");
+            "box of a region: max 0.5 is not above min 0.5 along x");
     fill = make_fill(2, 3);
     REFUSED(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_INVALID,
-            "a fluid region (2 to 3 m along x) lies outside the domain (0 to 1 m)");
+            "a region (2 to 3 m along x) lies outside the domain (0 to 1 m)");
     fill.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";      /* smaller than a particle */
     for (int a = 0; a < 3; a++) {
         fill.scale[a] = 0.01;

@@ -1,0 +1,99 @@
+/* The kernels' own stresses, one particle at a time: what is written is what was computed with. Energies are
+   summed in double, since small strains make small differences. Equation numbers: docs/theory/mlsmpm.md. */
+#define TOBI_SCALAR_LANES
+#include "mpm/fields.h"
+#include "mpm/transfer.k.h"
+#include <string.h>
+
+static double square_sum(const double x[3]) { return x[0]*x[0] + x[1]*x[1] + x[2]*x[2]; }
+
+/* Energy of principal stretches 1 + s, eqs. (8) to (11). */
+static double stretched_energy(const mpm_material *m, const float e[9], double dilation, double plastic)
+{
+    float a[6], v[3][3];
+    double s[3], h[3];
+    mpm_finger(e, a);
+    mpm_eigen(a, v);
+    for (int k = 0; k < 3; k++) {
+        double b = fmax(a[k], -0.999);
+        s[k] = b/(1 + sqrt(1 + b));
+        h[k] = 0.5*log1p(b);
+    }
+    if (m->model == TOBI_VON_MISES || m->model == TOBI_SAND) {
+        double trace = h[0] + h[1] + h[2];
+        return m->mu*square_sum(h) + 0.5*m->lambda*trace*trace;
+    }
+    double harder = m->model == TOBI_SNOW ? exp(fmin(-m->hardening*plastic, 2)) : 1;
+    return harder*(m->mu*square_sum(s) + 0.5*m->lambda*dilation*dilation);
+}
+
+/* Elastic energy per volume at the start, J/m3, of which the stress is the derivative. */
+static double energy_density(const mpm_material *m, const float e[9], double plastic)
+{
+    double d[9], trace, squares = 0;
+    for (int k = 0; k < 9; k++) {
+        d[k] = e[k];
+        squares += d[k]*d[k];
+    }
+    trace = d[0] + d[4] + d[8];
+    double minors = (d[0]*d[4] - d[1]*d[3]) + (d[4]*d[8] - d[5]*d[7]) + (d[0]*d[8] - d[2]*d[6]);
+    double dilation = trace + minors + d[0]*(d[4]*d[8] - d[5]*d[7]) - d[1]*(d[3]*d[8] - d[5]*d[6]) +
+                      d[2]*(d[3]*d[7] - d[4]*d[6]);
+    dilation = fmax(dilation, -0.999);
+    double log_j = log1p(dilation);
+    switch (m->model) {
+    case TOBI_STATIONARY: return 0;
+    case TOBI_NEO_HOOKEAN: return m->mu*(trace + 0.5*squares - log_j) + 0.5*m->lambda*log_j*log_j;
+    case TOBI_LIQUID: return m->bulk/7*(expm1(-6*log_j)/6 + dilation);
+    default: return stretched_energy(m, e, dilation, plastic);
+    }
+}
+
+mpm_sight mpm_look(const mpm_view *v, int64_t i)
+{
+    mpm_parameters parameters;
+    float gradient[9], e[9], other[3], unused[3], tau[6], keep;
+    int32_t model;
+    uint32_t present;
+    mpm_sight s = { 0 };
+    mpm_load_columns(v->affine + i, gradient, unused);
+    mpm_load_columns(v->strain + i, e, other);
+    mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
+    mpm_deform(v->strain_dt, gradient, e);
+    mpm_find_stress(&parameters, model, present, gradient, e, &other[1], tau);
+    s.plastic = other[1];
+    s.ratio = 1 + (double)mpm_dilation(e);
+    if (model == TOBI_SNOW) s.ratio *= 1 + s.plastic;
+    if (model == TOBI_SAND) s.ratio *= exp(s.plastic);
+    for (int k = 0; k < 9; k++) s.strain[k] = e[k];
+    for (int k = 0; k < 6; k++) s.stress[k] = tau[k]/s.ratio;
+    s.energy = other[0]*energy_density(&v->material[v->solid[i]], e, s.plastic);
+    return s;
+}
+
+static double von_mises(const double s[6])
+{
+    double x = s[MPM_XX] - s[MPM_YY], y = s[MPM_YY] - s[MPM_ZZ], z = s[MPM_ZZ] - s[MPM_XX];
+    double shear = s[MPM_XY]*s[MPM_XY] + s[MPM_YZ]*s[MPM_YZ] + s[MPM_ZX]*s[MPM_ZX];
+    return sqrt(0.5*(x*x + y*y + z*z) + 3*shear);
+}
+
+void mpm_show_field(const mpm_view *v, double density, const char *field, int64_t i, double *out)
+{
+    const mpm_sight s = mpm_look(v, i);
+    if (!strcmp(field, "density")) {
+        out[0] = density/s.ratio;
+    } else if (!strcmp(field, "J")) {
+        out[0] = s.ratio;
+    } else if (!strcmp(field, "pressure")) {
+        out[0] = -(s.stress[MPM_XX] + s.stress[MPM_YY] + s.stress[MPM_ZZ])/3;
+    } else if (!strcmp(field, "von_mises")) {
+        out[0] = von_mises(s.stress);
+    } else if (!strcmp(field, "plastic")) {
+        out[0] = s.plastic;
+    } else if (!strcmp(field, "stress")) {
+        memcpy(out, s.stress, sizeof s.stress);
+    } else {
+        for (int k = 0; k < 9; k++) out[k] = s.strain[k] + (k%4 == 0);
+    }
+}

@@ -1,0 +1,17 @@
+/* What a particle of the material point method shows: stress, deformation, energy. */
+#pragma once
+#include "mpm/view.h"
+
+/* State of one particle at the present time. Nothing of the view is changed. */
+typedef struct mpm_sight {
+    double strain[9];                  /* F - I by rows, after plastic flow                        */
+    double stress[6];                  /* Pa, Cauchy: xx, yy, zz, xy, yz, zx                        */
+    double ratio;                      /* J: volume over that at the start, plastic part included  */
+    double plastic;                    /* materials.k.h: plastic strain, J - 1 or expansion         */
+    double energy;                     /* J, elastic                                                */
+} mpm_sight;
+
+/* v->strain_dt: the gradients that strain lacks, s. */
+mpm_sight mpm_look(const mpm_view *v, int64_t i);
+/* One of the fields of world/read.c that the stress or the strain makes; density: at the start, kg/m3. */
+void mpm_show_field(const mpm_view *v, double density, const char *field, int64_t i, double *out);

@@ -1,0 +1,194 @@
+/* Checks of what fills a scene at the start: boxes, spheres, meshes. */
+#include "scene/scene.h"
+#include "world/params.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char axis_name[3] = "xyz";
+
+/* A region may touch the domain's sides; rounding of decimal numbers is forgiven. */
+static double slack(const tobi_world_def *w, int axis)
+{
+    return 1e-9*(w->domain_max[axis] - w->domain_min[axis]);
+}
+
+static void check_box(const tobi_scene *scene, tobi_source *source, const tobi_fill_def *fill,
+                      const tobi_place *place)
+{
+    const tobi_world_def *w = &scene->world;
+    tobi_place box = { place, "box", 0 };
+    for (int a = 0; a < w->dimension; a++) {
+        if (!(fill->box_max[a] > fill->box_min[a])) {
+            tobi_source_mistake(source, &box,
+                                "min is %.10g and max is %.10g in %c, max must be greater",
+                                fill->box_min[a], fill->box_max[a], axis_name[a]);
+        } else if (tobi_check_has_domain(scene) && (fill->box_min[a] < w->domain_min[a] - slack(w, a) ||
+                                         fill->box_max[a] > w->domain_max[a] + slack(w, a))) {
+            tobi_source_mistake(source, &box,
+                                "reaches from %.10g to %.10g m in %c, the domain only from %.10g "
+                                "to %.10g m",
+                                fill->box_min[a], fill->box_max[a], axis_name[a], w->domain_min[a],
+                                w->domain_max[a]);
+        }
+    }
+}
+
+static void check_sphere(const tobi_scene *scene, tobi_source *source, const tobi_fill_def *fill,
+                         const tobi_place *place)
+{
+    const tobi_world_def *w = &scene->world;
+    tobi_place sphere = { place, "sphere", 0 }, radius = { &sphere, "radius", 0 };
+    if (!(fill->radius > 0)) {
+        tobi_source_mistake(source, &radius, "is %.10g m, must be greater than 0 m", fill->radius);
+        return;
+    }
+    for (int a = 0; tobi_check_has_domain(scene) && a < w->dimension; a++) {
+        double low = fill->centre[a] - fill->radius, high = fill->centre[a] + fill->radius;
+        if (low < w->domain_min[a] - slack(w, a) || high > w->domain_max[a] + slack(w, a))
+            tobi_source_mistake(source, &sphere,
+                                "reaches from %.10g to %.10g m in %c, the domain only from %.10g "
+                                "to %.10g m", low, high, axis_name[a], w->domain_min[a], w->domain_max[a]);
+    }
+}
+
+/* Both members of a box or sphere must be there, and right: then 1. */
+static int check_pair(tobi_source *source, const tobi_place *place, const tobi_bound *bound,
+                      const char *shape, const char *first, const char *second)
+{
+    const tobi_param_table *t = &tobi_fill_table;
+    char key[2][40];
+    snprintf(key[0], sizeof key[0], "%s.%s", shape, first);
+    snprintf(key[1], sizeof key[1], "%s.%s", shape, second);
+    for (int k = 0; k < 2; k++) {
+        tobi_place outer = { place, shape, 0 }, inner = { &outer, k ? second : first, 0 };
+        if (!tobi_bind_has(t, bound->given, key[k]))
+            tobi_source_mistake(source, &inner, "is missing: a %s has %s and %s", shape, first, second);
+    }
+    return tobi_bind_has(t, bound->good, key[0]) && tobi_bind_has(t, bound->good, key[1]);
+}
+
+static void check_motion(const tobi_scene *scene, tobi_source *source, const tobi_fill_def *fill,
+                         const tobi_place *place)
+{
+    tobi_place spin = { place, "spin", 0 };
+    if (scene->world.dimension != 2) return;
+    if (fill->velocity[2] != 0)
+        tobi_source_mistake(source, place, "moves in z, which a 2-D scene does not have");
+    if (fill->spin[0] != 0 || fill->spin[1] != 0)
+        tobi_source_mistake(source, &spin, "must be about z in a 2-D scene: [0, 0, spin]");
+}
+
+static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_scene_fill *fill,
+                       const tobi_place *place)
+{
+    static const char *const of_mesh[] = { "scale", "translation", "rotation.axis", "rotation.angle" };
+    const tobi_param_table *t = &tobi_fill_table;
+    uint64_t given = fill->bound.given;
+    tobi_place mesh = { place, "mesh", 0 };
+    tobi_place rotation = { place, "rotation", 0 }, axis = { &rotation, "axis", 0 };
+    int has_box = tobi_bind_has(t, given, "box.min") || tobi_bind_has(t, given, "box.max");
+    int has_sphere = tobi_bind_has(t, given, "sphere.centre") || tobi_bind_has(t, given, "sphere.radius");
+    int has_mesh = tobi_bind_has(t, given, "mesh");
+    if (has_box + has_sphere + has_mesh != 1)
+        tobi_source_mistake(source, place, "must have one of box, sphere and mesh, it has %s",
+                            has_box + has_sphere + has_mesh ? "several" : "none");
+    else if (has_mesh) tobi_check_file(source, &mesh, fill->def.mesh);
+    else if (has_box && check_pair(source, place, &fill->bound, "box", "min", "max"))
+        check_box(scene, source, &fill->def, place);
+    else if (has_sphere && check_pair(source, place, &fill->bound, "sphere", "centre", "radius"))
+        check_sphere(scene, source, &fill->def, place);
+    for (int k = 0; k < 4 && !has_mesh; k++) {
+        if (!tobi_bind_has(t, given, of_mesh[k])) continue;
+        tobi_source_mistake(source, place, "scale, rotation and translation belong to a mesh");
+        break;
+    }
+    const double *a = fill->def.rotation_axis;
+    if (has_mesh && a[0] == 0 && a[1] == 0 && a[2] == 0)
+        tobi_source_mistake(source, &axis, "is zero, must have a direction");
+    check_motion(scene, source, &fill->def, place);
+}
+
+void tobi_check_fills(const tobi_scene *scene, tobi_source *source, const tobi_place *owner,
+                      const tobi_scene_fill *fills, int count)
+{
+    tobi_place fill = { owner, "fill", 0 };
+    for (int j = 0; j < count; j++) {
+        tobi_place entry = { &fill, NULL, (size_t)j };
+        check_fill(scene, source, &fills[j], &entry);
+    }
+}
+
+/* A filled box or sphere, by its box, and where it stands in the scene. */
+typedef struct region {
+    const char *list;              /* "fluids" or "solids" */
+    int owner, index;
+    double lower[3], upper[3], radius;
+} region;
+
+static int do_overlap(const tobi_world_def *w, const region *a, const region *b)
+{
+    double apart = 0, reach = a->radius + b->radius;
+    for (int k = 0; k < w->dimension; k++) {
+        if (fmin(a->upper[k], b->upper[k]) - fmax(a->lower[k], b->lower[k]) <= slack(w, k)) return 0;
+        /* From a sphere's centre to the other's nearest point: its centre, or its box. */
+        double p = 0.5*(a->lower[k] + a->upper[k]), q = 0.5*(b->lower[k] + b->upper[k]);
+        if (b->radius == 0) q = fmin(fmax(p, b->lower[k]), b->upper[k]);
+        if (a->radius == 0) p = fmin(fmax(q, a->lower[k]), a->upper[k]);
+        apart += (p - q)*(p - q);
+    }
+    return reach == 0 || sqrt(apart) < reach*(1 - 1e-9);
+}
+
+static int order_regions(const void *a, const void *b)
+{
+    const region *p = a, *q = b;
+    if (p->lower[0] != q->lower[0]) return p->lower[0] > q->lower[0] ? 1 : -1;
+    return p->owner != q->owner ? p->owner - q->owner : p->index - q->index;
+}
+
+static size_t list_regions(region *list, size_t count, const char *name, int owner,
+                           const tobi_scene_fill *fills, int fill_count)
+{
+    for (int j = 0; j < fill_count; j++) {
+        const tobi_fill_def *f = &fills[j].def;
+        region *r = &list[count];
+        if (f->mesh) continue;
+        count++;
+        *r = (region){ .list = name, .owner = owner, .index = j, .radius = f->radius };
+        for (int a = 0; a < 3; a++) {
+            r->lower[a] = f->radius > 0 ? f->centre[a] - f->radius : f->box_min[a];
+            r->upper[a] = f->radius > 0 ? f->centre[a] + f->radius : f->box_max[a];
+        }
+    }
+    return count;
+}
+
+static void report_overlap(tobi_source *source, const region *first, const region *second)
+{
+    tobi_place root = { 0 }, list = { &root, second->list, 0 };
+    tobi_place owner = { &list, NULL, (size_t)second->owner };
+    tobi_place fill = { &owner, "fill", 0 }, entry = { &fill, NULL, (size_t)second->index };
+    tobi_source_mistake(source, &entry, "overlaps the %s %s[%d].fill[%d]",
+                        first->radius > 0 ? "sphere" : "box", first->list, first->owner, first->index);
+}
+
+/* Sorted along x, so that many regions side by side cost little. */
+void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source)
+{
+    size_t count = 0;
+    for (int i = 0; i < scene->fluid_count; i++) count += (size_t)scene->fluids[i].fill_count;
+    for (int i = 0; i < scene->solid_count; i++) count += (size_t)scene->solids[i].fill_count;
+    region *list = calloc(count + 1, sizeof *list);
+    if (!list) return;
+    count = 0;
+    for (int i = 0; i < scene->fluid_count; i++)
+        count = list_regions(list, count, "fluids", i, scene->fluids[i].fills, scene->fluids[i].fill_count);
+    for (int i = 0; i < scene->solid_count; i++)
+        count = list_regions(list, count, "solids", i, scene->solids[i].fills, scene->solids[i].fill_count);
+    qsort(list, count, sizeof *list, order_regions);
+    for (size_t i = 0; i < count && !tobi_report_full(source->report); i++)
+        for (size_t j = i + 1; j < count && list[j].lower[0] < list[i].upper[0]; j++)
+            if (do_overlap(&scene->world, &list[i], &list[j])) report_overlap(source, &list[i], &list[j]);
+    free(list);
+}
