@@ -256,7 +256,7 @@ typedef struct tobi_step_info {
     double  weight;               /* N, |m g| of all fluid                                            */
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
-    double  transfer_dissipation; /* J, kinetic energy that mlsmpm's transfers have cost so far       */
+    double  energy_lost; /* J, kinetic energy that mlsmpm's transfers have cost so far       */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

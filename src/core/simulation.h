@@ -71,7 +71,7 @@ typedef struct tobi_method {
     /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
        NULL: the fields of the SPH methods, from the particle arrays. */
     void (*read)(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out);
-    /* Adds elastic_energy and transfer_dissipation to s->info; NULL: there are none. */
+    /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */
     void (*measure)(tobi_simulation *s, const void *state);
     /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
     void (*derive)(tobi_simulation *s, void *state, const char *field);

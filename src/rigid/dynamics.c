@@ -203,7 +203,13 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
     if (hold < 0)
         return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', which is no axis; "
                          "allowed are x, y, z, turn_x, turn_y, turn_z, shift and turn", b->name, unknown);
-    if (!isfinite(vec3_dot(out.force, out.force) + vec3_dot(out.torque, out.torque)))
+    int turns = (hold | r->locked) >> 3;
+    if (turns == 1 || turns == 2 || turns == 4)
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', the turn about one axis "
+                         "alone; allowed are none, two and three", b->name, out.hold);
+    double sum = 0;
+    for (int a = 0; a < 3; a++) sum += 0*out.force[a] + 0*out.torque[a];
+    if (sum != 0)      /* 0 times a number is 0 */
         return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force or torque that is "
                          "not finite at t = %.9g s", b->name, t);
     if (out.phase != in.phase) r->phase_start = t;

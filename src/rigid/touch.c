@@ -11,7 +11,7 @@
 #define SKEW 0.004         /* sine of the angle between edges below which they count as parallel         */
 #define EDGE_BAND 0.004    /* of the reach: how far beside a face a corner still rests on it; at SKEW two
                               equal faces overhang by half of that                                       */
-#define DEEPEST 0.5        /* of the thickness: an overlap beyond this is no contact but a mistake       */
+#define DEEPEST 0.3        /* of the thickness: an overlap beyond this is no contact but a mistake       */
 #define SLOP 0.005         /* of the thickness                                                           */
 
 enum { CORNER_FACE = 1, FACE_CORNER = 2, EDGE_EDGE = 3, BALL = 4, SIDE = 5, KIND_SHIFT = 60, HALF = 30 };
@@ -25,6 +25,7 @@ typedef struct pair {
     frame to_b, to_world;          /* from a's rest axes to b's, from b's to the domain                */
     int64_t first;                 /* contact of this pair                                             */
     double margin, deepest, band, skin;
+    double around;                 /* the larger of margin and deepest: where to look              */
     int32_t ta;                    /* the triangle of a in work, and it in b's axes                    */
     double corner[3][3], normal[3];
 } pair;
@@ -251,8 +252,8 @@ static void visit_own(void *user, int32_t ta)
     for (int k = 0; k < 3; k++) {
         apply(&p->to_b, f->vertex[f->triangle[ta][k]], p->corner[k]);
         for (int a = 0; a < 3; a++) {
-            lower[a] = fmin(lower[a], p->corner[k][a] - p->margin);
-            upper[a] = fmax(upper[a], p->corner[k][a] + p->margin);
+            lower[a] = fmin(lower[a], p->corner[k][a] - p->around);
+            upper[a] = fmax(upper[a], p->corner[k][a] + p->around);
         }
     }
     tobi_bvh_touching(p->b->facets.bvh, lower, upper, meet_triangle, p);
@@ -287,8 +288,8 @@ static void meet_surfaces(pair *p)
             middle += p->to_b.turn[b][a]*(0.5*(min[b] + max[b]) - p->to_b.shift[b]);
             half += fabs(p->to_b.turn[b][a])*0.5*(max[b] - min[b]);
         }
-        lower[a] = middle - half - p->margin;
-        upper[a] = middle + half + p->margin;
+        lower[a] = middle - half - p->around;
+        upper[a] = middle + half + p->around;
     }
     tobi_bvh_touching(p->a->facets.bvh, lower, upper, visit_own, p);
 }
@@ -389,6 +390,7 @@ static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
     set_frames(p, &a->rigid, &b->rigid);
     double thickness = fmin(p->a->thickness, p->b->thickness);
     p->deepest = DEEPEST*thickness;
+    p->around = fmax(p->margin, p->deepest);
     p->skin = 2*SLOP*thickness;
     p->band = fmax(EDGE_BAND*fmin(p->a->facets.reach, p->b->facets.reach), p->skin);
     if (p->a->facets.ball > 0 && p->b->facets.ball > 0) meet_balls(p);

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
 #include "scene/suggest.h"
+#include "world/methods.h"
 #include "world/params.h"
 #include "world/world.h"
 #include <errno.h>
@@ -238,6 +239,27 @@ static void check_body_box(const tobi_scene *scene, tobi_source *source, int bod
                                 def->box_min[a], def->box_max[a], axis_name[a]);
 }
 
+/* A body moves by a motion or by forces, and forces need a method that knows them. */
+static void check_dynamics(const tobi_scene *scene, tobi_source *source, int i, const tobi_place *entry)
+{
+    const tobi_body_def *def = &scene->bodies[i].def;
+    const tobi_method *method = scene->method ? tobi_method_find(scene->method->name) : NULL;
+    json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)i);
+    tobi_place dynamics = { entry, "dynamics", 0 }, motion = { entry, "motion", 0 },
+               control = { entry, "control", 0 };
+    int controls = json_object_get(value, "control") != NULL, moves = def->dynamics != TOBI_PRESCRIBED;
+    if (moves && method && !method->free_bodies)
+        tobi_source_mistake(source, &dynamics, "must be prescribed: bodies that move by forces need the method "
+                            "\"mlsmpm\", %s does not know them yet", method->name);
+    if (moves && json_object_get(value, "motion"))
+        tobi_source_mistake(source, &motion, "is for prescribed bodies, this one is %s",
+                            def->dynamics == TOBI_FREE ? "free" : "controlled");
+    if (controls && def->dynamics != TOBI_CONTROLLED)
+        tobi_source_mistake(source, &control, "is for a body whose dynamics is \"controlled\"");
+    if (!controls && def->dynamics == TOBI_CONTROLLED)
+        tobi_source_mistake(source, &control, "is missing: a controlled body has a control program");
+}
+
 static void check_bodies(const tobi_scene *scene, tobi_source *source)
 {
     tobi_place bodies = { &root, "bodies", 0 };
@@ -248,6 +270,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         check_name(scene, source, &entry, BODIES);
         tobi_check_file(source, &mesh, body->def.mesh);
         check_body_box(scene, source, i, &entry);
+        check_dynamics(scene, source, i, &entry);
         if (is_zero(body->def.rotation_axis))
             tobi_source_mistake(source, &axis, "is zero, must have a direction");
     }

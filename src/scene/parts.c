@@ -1,4 +1,5 @@
 #include "scene/parts.h"
+#include "scene/controls.h"
 #include "world/params.h"
 #include "world/world.h"
 #include <assert.h>
@@ -24,6 +25,10 @@ static const tobi_part parts[] = {
       "The regions that the solid fills at the start." },
     { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
       "How the body moves, exactly one kind; without it the body is fixed." },
+    { "body", "control", TOBI_PART_OBJECT, &tobi_control_table, 0, 0,
+      "The program of a controlled body." },
+    { "control", "params", TOBI_PART_FREE, NULL, 0, 0,
+      "Any values, handed to the script as its global table `params`." },
     { "script", "params", TOBI_PART_FREE, NULL, 0, 0,
       "Any values, handed to the script as its global table `params`." }
 };

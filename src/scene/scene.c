@@ -114,7 +114,13 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
         tobi_scene_body *body = &scene->bodies[scene->body_count++];
         body->def = tobi_default_body_def();
         tobi_bind(binder, &tobi_body_table, value, &entry, also, &body->def);
-        json_t *moves = json_object_get(value, "motion");
+        json_t *moves = json_object_get(value, "motion"), *controls = json_object_get(value, "control");
+        if (controls) {
+            tobi_place control = { &entry, "control", 0 };
+            body->control = tobi_control_bind(binder, controls, &control, &body->control_def);
+            body->def.control = body->control ? tobi_script_control : NULL;
+            body->def.control_user = body->control;
+        }
         if (!moves) continue;
         body->motion = tobi_motion_bind(binder, moves, &motion, &body->motion_def);
         if (!body->motion) continue;
@@ -296,7 +302,10 @@ void tobi_scene_free(tobi_scene *scene)
     if (!scene) return;
     for (int i = 0; i < scene->fluid_count; i++) free(scene->fluids[i].fills);
     for (int i = 0; i < scene->solid_count; i++) free(scene->solids[i].fills);
-    for (int i = 0; i < scene->body_count; i++) tobi_motion_free(scene->bodies[i].motion);
+    for (int i = 0; i < scene->body_count; i++) {
+        tobi_motion_free(scene->bodies[i].motion);
+        tobi_script_free(scene->bodies[i].control);
+    }
     free(scene->fluids);
     free(scene->solids);
     free(scene->bodies);
@@ -409,6 +418,8 @@ static json_t *write_body(const tobi_scene_body *body)
     json_object_del(object, body->def.mesh ? "box" : "mesh");
     if (body->motion_def.table)
         failed = json_object_set_new(object, "motion", tobi_motion_write(&body->motion_def));
+    if (body->control)
+        failed |= json_object_set_new(object, "control", tobi_control_write(&body->control_def));
     return whole(object, failed);
 }
 

@@ -1,5 +1,6 @@
 /* Inside of a tobi_scene: the definitions that its file makes, and what they borrow from. */
 #pragma once
+#include "scene/controls.h"
 #include "scene/motions.h"
 #include "tobiuo/scene.h"
 
@@ -25,6 +26,8 @@ typedef struct tobi_scene_body {
     tobi_body_def def;
     tobi_motion_def motion_def;
     tobi_motion *motion;           /* owned; NULL = fixed                         */
+    tobi_control_def control_def;
+    tobi_script *control;          /* owned; NULL = not controlled                */
 } tobi_scene_body;
 
 struct tobi_scene {

@@ -20,16 +20,31 @@ static int call(tobi_script *script, double t)
     return 1;
 }
 
+static int control(tobi_script *script, double t)
+{
+    tobi_error err = { 0 };
+    tobi_control_input in = { .time = t, .orientation = { 1 }, .mass = 1, .phase = 1 };
+    tobi_control_output out = { .phase = 1 };
+    if (!passed(tobi_script_control(script, &in, &out, &err), &err)) return 0;
+    for (int k = 0; k < 3; k++) PROMISE(isfinite(out.force[k]) && isfinite(out.torque[k]));
+    PROMISE(out.hold && strlen(out.hold) < 64);
+    return 1;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[64];
     int fd = make_file(data, size, path);
     tobi_script *script = NULL;
     tobi_error err = { 0 };
-    tobi_status status = tobi_script_load(path, "{\"a\": 1.5, \"list\": [1, 2, 3], \"s\": \"x\"}",
-                                          &script, &err);
+    static const char params[] = "{\"a\": 1.5, \"list\": [1, 2, 3], \"s\": \"x\"}";
+    tobi_status status = tobi_script_load(path, params, TOBI_MOTION_SCRIPT, &script, &err);
     PROMISE(!script == !passed(status, &err));
     if (script && call(script, 0) && call(script, 0.25)) call(script, 1e300);
+    tobi_script_free(script);
+    status = tobi_script_load(path, params, TOBI_CONTROL_SCRIPT, &script, &err);
+    PROMISE(!script == !passed(status, &err));
+    if (script && control(script, 0)) control(script, 1e300);
     tobi_script_free(script);
     close(fd);
     return 0;

@@ -1,0 +1,51 @@
+#include "scene/controls.h"
+#include "scene/parts.h"
+#include "scene/write.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const tobi_param rows[] = {
+    { .key = "script", .type = TOBI_PARAM_TEXT, .offset = offsetof(tobi_control_def, script), .unit = "path",
+      .required = true,
+      .doc = "A Lua file with a function control(t, body) that returns { force = {x, y, z}, torque = {x, y, z}, "
+             "phase = 2, hold = \"z,turn\" }, all of them optional; body has position, orientation, velocity, "
+             "angular_velocity, contact_force, contact_torque, mass, phase and phase_time." },
+    { 0 }
+};
+const tobi_param_table tobi_control_table = {
+    "control", "The control program of a controlled body: a force (N) and a torque (N m) in every step.",
+    sizeof(tobi_control_def), rows };
+
+tobi_script *tobi_control_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
+                               tobi_control_def *def)
+{
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("control", also);
+    *def = (tobi_control_def){ 0 };
+    int64_t before = tobi_report_total(binder->source->report);
+    tobi_bind(binder, &tobi_control_table, value, place, also, def);
+    def->params = json_object_get(value, "params");
+    tobi_place params = { place, "params", 0 }, script_place = { place, "script", 0 };
+    if (def->params && !json_is_object(def->params))
+        tobi_source_mistake(binder->source, &params, "is %s, must be an object { ... }",
+                            tobi_json_kind(def->params));
+    if (tobi_report_total(binder->source->report) > before) return NULL;
+
+    tobi_script *script = NULL;
+    tobi_error err = { 0 };
+    char *text = def->params ? json_dumps(def->params, 0) : NULL;
+    if (tobi_script_load(def->script, text, TOBI_CONTROL_SCRIPT, &script, &err) != TOBI_OK)
+        tobi_source_mistake(binder->source, &script_place, "%s", err.text);
+    free(text);
+    return script;
+}
+
+json_t *tobi_control_write(const tobi_control_def *def)
+{
+    json_t *object = tobi_write_def(&tobi_control_table, def);
+    int failed = !object;
+    if (def->params) failed |= json_object_set(object, "params", def->params);
+    if (!failed) return object;
+    json_decref(object);
+    return NULL;
+}

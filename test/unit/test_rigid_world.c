@@ -1,0 +1,290 @@
+/* Bodies that move by forces in a world: restart, threads, control programs, what is refused. */
+#include "rigid_rig.h"
+#include "rigid/script.h"
+#include <unistd.h>
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static const char CONTROL[] =
+    "function control(t, body)\n"
+    "    if body.phase == 1 then\n"
+    "        if body.position[3] < 0.5 then return { phase = 2, hold = 'z' } end\n"
+    "        return { force = { 0, 0, -params.press*t }, torque = { 0, 0, 1 } }\n"
+    "    end\n"
+    "    return { force = { body.velocity[1] < 0.3 and 20 or 0, 0, 0 }, hold = 'z,turn' }\n"
+    "end\n";
+
+typedef struct scene { tobi_world *world; tobi_script *script; } scene;
+
+static void build(scene *s, int threads)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_error err = { 0 };
+    def.method = "mlsmpm";
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 4;
+    def.spacing = 0.1;
+    def.time_step = 0.005;
+    def.threads = threads;
+    assert_int_equal(tobi_world_create(&def, NULL, &s->world, &err), TOBI_OK);
+    write_file("control.lua", CONTROL);
+    assert_int_equal(tobi_script_load("control.lua", "{\"press\": 600}", TOBI_CONTROL_SCRIPT, &s->script, &err),
+                     TOBI_OK);
+    for (int k = 0; k < 12; k++) {
+        tobi_body_def b = tobi_default_body_def();
+        char name[16];
+        snprintf(name, sizeof name, "b%d", k);
+        b.name = name;
+        b.dynamics = k ? TOBI_FREE : TOBI_CONTROLLED;
+        b.control = k ? NULL : tobi_script_control;
+        b.control_user = s->script;
+        b.mass = k ? 0 : 2;
+        b.restitution = 0.1*(k%4);
+        b.rotation_angle = 25*k;
+        memcpy(b.rotation_axis, (double[3]){ 1, k, 2 }, sizeof b.rotation_axis);
+        memcpy(b.angular_velocity, (double[3]){ 0.5*k, 1, 0 }, sizeof b.angular_velocity);
+        for (int a = 0; a < 3; a++) {
+            b.box_min[a] = -0.2 - 0.05*a;
+            b.box_max[a] = 0.2 + 0.05*a;
+        }
+        memcpy(b.translation, (double[3]){ 1 + 1.0*(k%3), 1 + 0.9*(k/3%2), 1 + 1.0*(k/6) }, sizeof b.translation);
+        assert_int_equal(tobi_world_add_body(s->world, &b, &err), TOBI_OK);
+    }
+}
+
+static void destroy(scene *s)
+{
+    tobi_world_destroy(s->world);
+    tobi_script_free(s->script);
+}
+
+static uint64_t run_to(tobi_world *w, double t)
+{
+    tobi_error err = { 0 };
+    if (tobi_world_advance(w, t, NULL, &err) != TOBI_OK) fail_msg("%s", err.text);
+    return tobi_world_hash(w);
+}
+
+/* run = run + restart, and 1 thread = 3 threads, bit for bit, through collisions and phases of control. */
+static void test_restart(void **state)
+{
+    (void)state;
+    scene a, b, c;
+    tobi_error err = { 0 };
+    tobi_body_info info;
+    build(&a, 1);
+    build(&b, 3);
+    build(&c, 1);
+    run_to(a.world, 0.7);
+    assert_int_equal(tobi_world_save(a.world, "bodies.h5", &err), TOBI_OK);
+    uint64_t whole = run_to(a.world, 1.5);
+    run_to(b.world, 0.7);
+    assert_true(run_to(b.world, 1.5) == whole);
+    if (tobi_world_load(c.world, "bodies.h5", &err) != TOBI_OK) fail_msg("%s", err.text);
+    assert_true(run_to(c.world, 1.5) == whole);
+    assert_int_equal(tobi_world_body(c.world, 0, &info), TOBI_OK);
+    print_message("controlled body at %g %g %g m, %g m/s\n", info.position[0], info.position[1], info.position[2],
+                  info.velocity[0]);
+    assert_true(fabs(info.position[2] - 0.5) < 0.1);
+    destroy(&a);
+    destroy(&b);
+    destroy(&c);
+    remove("bodies.h5");
+}
+
+static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *err)
+{
+    tobi_script *script;
+    tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 }, .velocity = { 4, 5, 6 },
+                              .angular_velocity = { 7, 8, 9 }, .contact_force = { 10, 11, 12 },
+                              .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18 };
+    write_file("ask.lua", text);
+    TOBI_TRY(tobi_script_load("ask.lua", NULL, TOBI_CONTROL_SCRIPT, &script, err));
+    *out = (tobi_control_output){ .phase = in.phase };
+    tobi_status status = tobi_script_control(script, &in, out, err);
+    out->hold = out->hold && strcmp(out->hold, "x,turn") == 0 ? "x,turn" : "";
+    tobi_script_free(script);
+    remove("ask.lua");
+    return status;
+}
+
+static void test_control_script(void **state)
+{
+    (void)state;
+    tobi_control_output out;
+    tobi_error err = { 0 };
+    assert_int_equal(ask("function control(t, b)\n"
+                         "    local sum = t + b.orientation[1] + b.mass + b.phase + b.phase_time\n"
+                         "    for k = 1, 3 do sum = sum + b.position[k] + b.velocity[k] + b.angular_velocity[k]\n"
+                         "        + b.contact_force[k] + b.contact_torque[k] end\n"
+                         "    return { force = { sum, b.position[2], b.contact_force[3] },\n"
+                         "             torque = b.velocity, phase = 3, hold = 'x,turn' }\n"
+                         "end\n", &out, &err), TOBI_OK);
+    assert_true(out.force[0] == 2 + 1 + 16 + 17 + 18 + 120 && out.force[1] == 2 && out.force[2] == 12);
+    assert_true(out.torque[0] == 4 && out.torque[2] == 6 && out.phase == 3 && out.hold[0] == 'x');
+    assert_int_equal(ask("function control() end", &out, &err), TOBI_OK);
+    assert_true(out.force[0] == 0 && out.phase == 17 && !out.hold[0]);
+    static const struct { const char *text, *words; } bad[] = {
+        { "function control(t, b) return t.x end", "ask.lua:1: attempt to index" },
+        { "function place() return 0, 0, 0 end", "define function control(t, body)" },
+        { "function control() return 3 end", "must return a table or nothing" },
+        { "function control() return { force = 3 } end", "force of three numbers" },
+        { "function control() return { torque = {1, 2} } end", "torque of three numbers" },
+        { "function control() return { phase = 0.5 } end", "whole number as phase" },
+        { "function control() return { hold = 1 } end", "a text as hold" },
+        { "function control() return { froce = {0, 0, 0} } end", "unknown key 'froce'" },
+        { "function control() return { force = {0/0, 0, 0} } end", "force that is not finite (t = 2 s)" },
+        { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },
+        { "function control() while true do end end", "endless loop" },
+        { "function control() count = 1 end", "assignment to the global 'count'" },
+    };
+    for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
+        assert_int_equal(ask(bad[k].text, &out, &err), TOBI_SCRIPT);
+        if (!strstr(err.text, bad[k].words)) print_message("%s\n", err.text);
+        assert_non_null(strstr(err.text, bad[k].words));
+        assert_non_null(strstr(err.text, "control script"));
+    }
+    tobi_script *script;
+    assert_int_equal(tobi_script_load("nowhere.lua", "[1]", TOBI_CONTROL_SCRIPT, &script, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "control params: must be a JSON object"));
+}
+
+static int answer;         /* which mistake the program below makes */
+
+static tobi_status wrong_control(void *user, const tobi_control_input *in, tobi_control_output *out,
+                                 tobi_error *err)
+{
+    (void)user; (void)in; (void)err;
+    if (answer == 0) out->hold = "roll";
+    if (answer == 1) out->torque[1] = NAN;
+    if (answer == 2) out->hold = "turn_x";
+    if (answer == 3) out->force[1] = 1e200;
+    return TOBI_OK;
+}
+
+static void expect_failure(tobi_world_def *def, tobi_body_def *b, tobi_status status, const char *words)
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_world_create(def, NULL, &w, &err), TOBI_OK);
+    tobi_status got = tobi_world_add_body(w, b, &err);
+    for (int k = 0; k < 5 && got == TOBI_OK; k++) got = tobi_world_step(w, 0.01, NULL, &err);
+    if (got != status || !strstr(err.text, words)) print_message("%d: %s\n", got, err.text);
+    assert_int_equal(got, status);
+    assert_non_null(strstr(err.text, words));
+    tobi_world_destroy(w);
+}
+
+static void test_refused(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    def.method = "mlsmpm";
+    def.spacing = 0.1;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 2;
+    tobi_body_def b = tobi_default_body_def();
+    b.name = "box";
+    for (int a = 0; a < 3; a++) {
+        b.box_min[a] = 0.5;
+        b.box_max[a] = 1;
+    }
+    b.velocity[0] = 1;
+    expect_failure(&def, &b, TOBI_INVALID, "is prescribed: velocities, force");
+    b.velocity[0] = 0;
+    b.dynamics = TOBI_CONTROLLED;
+    b.control = wrong_control;
+    answer = 0;
+    expect_failure(&def, &b, TOBI_SCRIPT, "holds 'roll'");
+    answer = 1;
+    expect_failure(&def, &b, TOBI_SCRIPT, "not finite at t");
+    answer = 2;
+    expect_failure(&def, &b, TOBI_SCRIPT, "turn about one axis");
+    answer = 3;
+    expect_failure(&def, &b, TOBI_DIVERGED, "no number");
+    b.control = NULL;
+    b.dynamics = TOBI_FREE;
+    def.method = "dfsph";
+    expect_failure(&def, &b, TOBI_UNSUPPORTED, "the method dfsph does not know");
+    def.method = "mlsmpm";
+    def.dimension = 2;
+    b.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
+    memcpy(b.translation, (double[3]){ 1, 1, 0 }, sizeof b.translation);
+    expect_failure(&def, &b, TOBI_UNSUPPORTED, "prism or cylinder along z");
+}
+
+/* Overlaps at the start are said and pushed apart. */
+static void test_overlap(void **state)
+{
+    (void)state;
+    rig g;
+    rig_open(&g, 10, (double[3]){ 0, 0, -9.81 });
+    rig_box(&g, rig_def(), (double[3]){ 1, 1, 1 }, (double[3]){ 5, 5, 0.5 });
+    rig_box(&g, rig_def(), (double[3]){ 1, 1, 1 }, (double[3]){ 5.2, 5, 1.45 });
+    rig_box(&g, rig_def(), (double[3]){ 1, 1, 1 }, (double[3]){ 8, 5, 0.5 });
+    rig_start(&g);
+    print_message("%s", g.notes);
+    assert_non_null(strstr(g.notes, "'b0' overlaps body 'b1' by 0.05 m at the start"));
+    assert_null(strstr(g.notes, "b2"));
+    double fastest = 0;
+    for (int k = 0; k < 120; k++) {
+        rig_step(&g, 1.0/60);
+        fastest = fmax(fastest, vec3_length(g.bodies[1].rigid.velocity));
+    }
+    print_message("pushed apart to %.4f m, fastest %.3g m/s\n", g.bodies[1].rigid.position[2] - 1.5, fastest);
+    assert_true(fabs(g.bodies[1].rigid.position[2] - 1.5) < 0.004 && fastest < 0.2);
+    rig_close(&g);
+}
+
+/* Two squares and a disc in 2-D fall on each other and rest. */
+static void test_plane(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    tobi_error err = { 0 };
+    tobi_world *w;
+    tobi_body_info info[2];
+    def.method = "mlsmpm";
+    def.dimension = 2;
+    def.spacing = 0.1;
+    def.domain_max[0] = def.domain_max[1] = 4;
+    memcpy(def.gravity, (double[3]){ 0, -9.81, 0 }, sizeof def.gravity);
+    def.time_step = 0.005;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    for (int k = 0; k < 2; k++) {
+        tobi_body_def b = tobi_default_body_def();
+        char name[8] = { 'b', (char)('0' + k), 0 };
+        b.name = name;
+        b.dynamics = TOBI_FREE;
+        b.box_max[0] = b.box_max[1] = 0.5;
+        memcpy(b.translation, (double[3]){ 1 + 0.1*k, 0.1 + 0.7*k, 0 }, sizeof b.translation);
+        if (tobi_world_add_body(w, &b, &err) != TOBI_OK) fail_msg("%s", err.text);
+    }
+    if (tobi_world_advance(w, 3, NULL, &err) != TOBI_OK) fail_msg("%s", err.text);
+    for (int k = 0; k < 2; k++) tobi_world_body(w, k, &info[k]);
+    print_message("squares at %.4f and %.4f m, mass %g kg/m\n", info[0].position[1], info[1].position[1],
+                  info[0].mass);
+    assert_true(fabs(info[0].position[1] - 0.25) < 0.003 && fabs(info[1].position[1] - 0.75) < 0.005);
+    assert_true(fabs(info[0].mass - 250) < 1e-9 && fabs(info[0].inertia[8] - 250*0.25/6) < 1e-9);
+    assert_true(info[1].position[2] == 0 && vec3_length(info[1].velocity) < 1e-6);
+    tobi_world_destroy(w);
+}
+
+int main(void)
+{
+    char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
+    };
+    if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    remove("control.lua");
+    remove("ask.lua");
+    if (chdir("/") == 0) rmdir(folder);
+    return failed;
+}
