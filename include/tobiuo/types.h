@@ -224,6 +224,7 @@ typedef struct tobi_output_def {
     const char *fields;               /* names separated by commas; see tobi_world_field_name         */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
+    int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */
     int         ply;                  /* 1: write the fluid's positions as PLY                        */
     int         obj;                  /* 1: write each body's surface as OBJ                          */
     double      camera_position[3];   /* m, the eye of the pictures                                   */

@@ -6,6 +6,7 @@
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
+#include "mpm/nodes.h"
 #include "mpm/touch.h"
 #include "tobiuo/types.h"
 #include <math.h>
@@ -299,6 +300,12 @@ static void read_field(const tobi_simulation *s, const void *state, const char *
     mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
 }
 
+static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err)
+{
+    const mpm_view v = look_back(state);
+    return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
+}
+
 static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
 {
     for (int64_t i = begin; i < end; i++) totals[0] += mpm_look(view, i).energy;
@@ -346,6 +353,7 @@ const tobi_method tobi_mlsmpm = {
     .refresh = refresh,
     .derive = derive,
     .read = read_field,
+    .nodes = find_nodes,
     .measure = measure,
     .memory = list_memory,
     .bytes = count_bytes,
