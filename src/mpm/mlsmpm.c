@@ -6,6 +6,7 @@
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
+#include "mpm/nodes.h"
 #include "mpm/touch.h"
 #include "tobiuo/types.h"
 #include <math.h>
@@ -335,6 +336,12 @@ static void read_field(const tobi_simulation *s, const void *state, const char *
     mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
 }
 
+static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err)
+{
+    const mpm_view v = look_back(state);
+    return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
+}
+
 static void measure(tobi_simulation *s, const void *state)
 {
     const mlsmpm *m = state;
@@ -374,6 +381,7 @@ const tobi_method tobi_mlsmpm = {
     .refresh = refresh,
     .derive = derive,
     .read = read_field,
+    .nodes = find_nodes,
     .measure = measure,
     .memory = list_memory,
     .bytes = count_bytes,
