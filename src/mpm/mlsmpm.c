@@ -226,15 +226,14 @@ static double find_work(const tobi_body *b)
 
 static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    double g = 0, far;
+    double g = 0;
     for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
     double way = (m->memory[SPEED] + s->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
         .dt = s->dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
-    TOBI_TRY(mpm_touch_bodies(&m->touch, &s->contacts, &s->particles, s->bodies, s->body_count, &m->grid, &m->view,
-                              &contact, &s->exec, &s->info.contacts, &far, err));
-    m->memory[DRIFT] += far;
+    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, err));
+    m->memory[DRIFT] += m->touch.far;
     for (int k = 0; k < s->body_count; k++) m->memory[BODY_WORK] += find_work(&s->bodies[k])*s->dt;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;

@@ -244,14 +244,18 @@ static double start_head(const tobi_world *w)
     return head;
 }
 
+/* The fastest point of a region: its velocity, and its spin at the farthest corner. */
 static double start_speed(const tobi_world *w)
 {
-    double v2 = 0;
+    double fastest = 0;
     for (int k = 0; k < w->region_count; k++) {
-        const double *v = w->regions[k].velocity;
-        v2 = fmax(v2, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+        const tobi_region *r = &w->regions[k];
+        double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
+                          0.5*(r->upper[2] - r->lower[2])};
+        double reach = r->radius > 0 ? r->radius : length(half);
+        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach);
     }
-    return sqrt(v2);
+    return fastest;
 }
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
