@@ -77,7 +77,10 @@ static inline double part(const tobi_solve_row *r, int k, const double *a, const
     return vec3_dot(r->axis[k], d) + vec3_dot(r->lever_a[k], a + 3) - vec3_dot(r->lever_b[k], b + 3);
 }
 
-static inline double speed_along(const tobi_solve_row *r, int k) { return part(r, k, r->a->speed, r->b->speed); }
+static inline double speed_along(const tobi_solve_row *r, int k)
+{
+    return part(r, k, r->a->speed, r->b->speed);
+}
 
 static inline void drive(const tobi_solve_row *r, int k, double impulse, double *a, double *b)
 {
