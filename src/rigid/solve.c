@@ -27,6 +27,7 @@ struct tobi_solve_row {
     double target;                   /* m/s, the least speed apart                             */
     double friction;
     double pushed;                   /* of the displacements                                   */
+    double early;                    /* m, what bouncing before the gap has closed puts too far */
 };
 
 static void *grow(void *array, int64_t *capacity, int64_t count, size_t size)
@@ -99,13 +100,17 @@ static inline void push(tobi_solve_row *r, int k, double impulse)
     drive(r, k, impulse, r->a->speed, r->b->speed);
 }
 
+static int is_fixed(const tobi_solve_body *b) { return b->shift[0] + b->shift[1] + b->shift[2] == 0; }
+
 /* Speed apart that a contact must reach (R.7): to bounce if it arrives in this step, or to close its gap
    and no more. */
 static void set_target(tobi_solve_row *r, double restitution, double dt, double bounce)
 {
     double speed = speed_along(r, 0), open = fmax(r->contact->gap, 0);
     r->target = -open/dt;
-    if (speed < -bounce && -speed*dt > open) r->target = fmax(r->target, -restitution*speed);
+    if (!(speed < -bounce && -speed*dt > open && -restitution*speed > r->target)) return;
+    r->target = -restitution*speed;
+    if (is_fixed(r->a) || is_fixed(r->b)) r->early = (1 + restitution)*open;
 }
 
 static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi_body *bodies)
@@ -208,7 +213,9 @@ static void sweep_all(tobi_solver *s, int64_t count, double scale)
     }
 }
 
-/* Overlaps (R.10): the same sweeps for displacements along the normals. */
+/* Overlaps (R.10): the same sweeps for displacements along the normals. A bounce, which comes up to a step
+   early, is put where it would be had it met the surface; not between two bodies that move, whose angular momentum
+   about any point that would change. */
 static void push_out(tobi_solver *s, int64_t count)
 {
     for (int sweep = 0; sweep < PUSH_SWEEPS; sweep++)
@@ -216,8 +223,10 @@ static void push_out(tobi_solver *s, int64_t count)
             tobi_solve_row *r = &s->rows[k];
             double over = -r->contact->gap - r->contact->slop;
             double target = over > 0 ? fmin(PUSH_SHARE*over, PUSH_MOST*r->contact->slop) : over;
+            int bounced = r->early > 0 && r->sum[0] > 0;
+            if (bounced) target = -r->early;
             double more = r->mass[0]*(target - part(r, 0, r->a->push, r->b->push));
-            more = fmax(-r->pushed, more);
+            if (!bounced) more = fmax(-r->pushed, more);
             r->pushed += more;
             if (more != 0) drive(r, 0, more, r->a->push, r->b->push);
         }
