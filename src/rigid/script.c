@@ -115,7 +115,8 @@ static const char DRIVER[] =
     "    count, look = 0, 256\n"
     "    local function three(k) return { from[k], from[k + 1], from[k + 2] } end\n"
     "    local answer = h(from[0], { position = three(1),\n"
-    "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8), angular_velocity = three(11), contact_force = three(14),\n"
+    "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8),\n"
+    "        angular_velocity = three(11), contact_force = three(14),\n"
     "        contact_torque = three(17), mass = from[20], phase = from[21], phase_time = from[22] })\n"
     "    if answer == nil then return end\n"
     "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
@@ -335,7 +336,8 @@ tobi_status tobi_script_load(const char *path, const char *params_json, tobi_scr
     if (!json_is_object(params)) {
         json_decref(params);
         return tobi_fail(err, TOBI_INVALID, "%s params: %s",
-                         role == TOBI_CONTROL_SCRIPT ? "control" : "motion", params ? "must be a JSON object" : where.text);
+                         role == TOBI_CONTROL_SCRIPT ? "control" : "motion",
+                         params ? "must be a JSON object" : where.text);
     }
     tobi_script *script = calloc(1, sizeof *script);
     tobi_status status = TOBI_OK;

@@ -214,8 +214,8 @@ static void sweep_all(tobi_solver *s, int64_t count, double scale)
 }
 
 /* Overlaps (R.10): the same sweeps for displacements along the normals. A bounce, which comes up to a step
-   early, is put where it would be had it met the surface; not between two bodies that move, whose angular momentum
-   about any point that would change. */
+   early, is put where it would be had it met the surface; not between two bodies that move, whose angular
+   momentum about any point that would change. */
 static void push_out(tobi_solver *s, int64_t count)
 {
     for (int sweep = 0; sweep < PUSH_SWEEPS; sweep++)

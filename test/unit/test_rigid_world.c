@@ -106,7 +106,8 @@ static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *e
 {
     tobi_script *script;
     tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 },
-                              .velocity = { 4, 5, 6 }, .angular_velocity = { 7, 8, 9 }, .contact_force = { 10, 11, 12 },
+                              .velocity = { 4, 5, 6 }, .angular_velocity = { 7, 8, 9 },
+                              .contact_force = { 10, 11, 12 },
                               .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18 };
     write_file("ask.lua", text);
     TOBI_TRY(tobi_script_load("ask.lua", NULL, TOBI_CONTROL_SCRIPT, &script, err));
@@ -351,7 +352,8 @@ int main(void)
     char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged), cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
+        cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
