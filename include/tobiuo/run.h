@@ -7,6 +7,7 @@
    DIR/fluid.pvd, fluid/        the fluid's particles, VTU per output
    DIR/bodies.pvd, bodies/      the bodies' particles
    DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
+   DIR/grid.pvd, grid/          nodes of the grid of mlsmpm, if asked
    DIR/frames/                  pictures, if asked
    DIR/ply/, DIR/obj/           positions of the fluid, surfaces of the bodies, if asked
    DIR/checkpoints/             the last two states and the recorder's place in the files

@@ -96,6 +96,16 @@ TOBI_API tobi_status tobi_world_surface(const tobi_world *world, int body, int64
                                         const double (**vertices)[3], int64_t *triangle_count,
                                         const int32_t (**triangles)[3]);
 
+/* The nodes of the material point method's grid that particles reach, as the particles at the present time
+   make them: positions (m), velocities (m/s, of the particles' momentum; walls and bodies are not asked),
+   mass (kg; 2-D: kg/m) and mean Cauchy stress (Pa: xx, yy, zz, xy, yz, zx) by volume. Owned by the world,
+   valid until the next call of this function. TOBI_UNSUPPORTED for the other methods. */
+typedef struct tobi_grid {
+    int64_t count;
+    double (*position)[3], (*velocity)[3], *mass, (*stress)[6];
+} tobi_grid;
+TOBI_API tobi_status tobi_world_grid(tobi_world *world, const tobi_grid **grid, tobi_error *err);
+
 /* Hash of the whole state (positions, velocities, pressures in id order): equal for any thread count. */
 TOBI_API uint64_t tobi_world_hash(tobi_world *world);
 /* Bytes the world has allocated. */

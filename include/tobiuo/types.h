@@ -224,6 +224,7 @@ typedef struct tobi_output_def {
     const char *fields;               /* names separated by commas; see tobi_world_field_name         */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
+    int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */
     int         ply;                  /* 1: write the fluid's positions as PLY                        */
     int         obj;                  /* 1: write each body's surface as OBJ                          */
     double      camera_position[3];   /* m, the eye of the pictures                                   */
@@ -256,7 +257,7 @@ typedef struct tobi_step_info {
     double  weight;               /* N, |m g| of all fluid                                            */
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
-    double  transfer_dissipation; /* J, kinetic energy that mlsmpm's transfers have cost so far       */
+    double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

@@ -6,7 +6,7 @@
 #include "core/near.h"
 #include "core/particles.h"
 #include "core/smoothing.h"
-#include "tobiuo/types.h"
+#include "tobiuo/tobiuo.h"
 
 enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16 };
 
@@ -71,7 +71,9 @@ typedef struct tobi_method {
     /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
        NULL: the fields of the SPH methods, from the particle arrays. */
     void (*read)(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out);
-    /* Adds elastic_energy and transfer_dissipation to s->info; NULL: there are none. */
+    /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */
+    tobi_status (*nodes)(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err);
+    /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */
     void (*measure)(tobi_simulation *s, const void *state);
     /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
     void (*derive)(tobi_simulation *s, void *state, const char *field);

@@ -1,4 +1,5 @@
-/* Particles, of water or of solids: splatted into depth, thickness and value; the depth smoothed; the surface lit. */
+/* Particles, of water or of solids: splatted into depth, thickness and value; the depth smoothed; the surface
+   lit. */
 #include "io/frame_draw.h"
 #include <stdlib.h>
 #include <string.h>
@@ -88,7 +89,8 @@ static void shrink_spray(const tobi_frame *f, splat *splats)
 }
 
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
-static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, const double range[2], look what)
+static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, const double range[2],
+                          look what)
 {
     double low = range[0], high = range[1];
     splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
@@ -98,8 +100,8 @@ static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, co
         vec p = view_point(&c->camera, f->positions[i]);
         splat s = { 0 };
         bool left_out = f->opaque && what != DISCS && (what == GRAINS) != (f->opaque[i] != 0);
-        bool near = !left_out && is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
-        if (near && p.z > c->camera.near + radius) {
+        bool near = is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
+        if (near && !left_out && p.z > c->camera.near + radius) {
             spot at = project(&c->camera, p);
             float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
             value = value == value ? clampf(value, 0, 1) : 1;

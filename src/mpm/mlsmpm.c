@@ -6,6 +6,7 @@
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
+#include "mpm/nodes.h"
 #include "mpm/touch.h"
 #include "tobiuo/types.h"
 #include <math.h>
@@ -13,7 +14,7 @@
 #include <string.h>
 
 /* What a restart needs besides the particles. */
-enum { SPEED, STRAIN_DT, DRIFT, AGE, GRID_ENERGY, DISSIPATION, MEMORY };
+enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, MEMORY };
 
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
 
@@ -190,11 +191,7 @@ static void use_dt(const tobi_simulation *s, mlsmpm *m)
 
 static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
-    double t[TOBI_TOTALS];
-    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
-    /* What the last step's grid had and its particles have not, and what this grid will lack. */
-    if (m->memory[AGE] > 0 || s->step > 0) m->memory[DISSIPATION] += m->memory[GRID_ENERGY] - t[0];
-    m->memory[GRID_ENERGY] = t[0];
+    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, NULL);
     tobi_stage_end(&s->stages, "to grid", clock);
 }
 
@@ -203,8 +200,6 @@ static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     double t[TOBI_TOTALS];
     tobi_launch_each(&s->exec, m->kernels->collect, &m->view, m->grid.patch_count, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
-    m->memory[DISSIPATION] += m->memory[GRID_ENERGY] - t[3];
-    m->memory[GRID_ENERGY] = t[4];
     tobi_stage_end(&s->stages, "grid", clock);
 }
 
@@ -219,6 +214,16 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_stage_end(&s->stages, "to particles", clock);
 }
 
+/* What a body does to the material, W, by its rigid motion over the step. */
+static double find_work(const tobi_body *b)
+{
+    double work = 0;
+    for (int a = 0; a < 3; a++)
+        work -= (b->info.pressure_force[a] + b->info.viscous_force[a])*b->rigid.velocity[a] +
+                (b->info.pressure_torque[a] + b->info.viscous_torque[a])*b->rigid.angular_velocity[a];
+    return work;
+}
+
 static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
     double g = 0, far;
@@ -230,6 +235,7 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
     TOBI_TRY(mpm_touch_bodies(&m->touch, &s->contacts, &s->particles, s->bodies, s->body_count, &m->grid, &m->view,
                               &contact, &s->exec, &s->info.contacts, &far, err));
     m->memory[DRIFT] += far;
+    for (int k = 0; k < s->body_count; k++) m->memory[BODY_WORK] += find_work(&s->bodies[k])*s->dt;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;
 }
@@ -242,6 +248,43 @@ static tobi_status move_bodies(tobi_simulation *s, double *clock, tobi_error *er
     return TOBI_OK;
 }
 
+/* The view of reading: strain lags by the last step. */
+static mpm_view look_back(const mlsmpm *m)
+{
+    mpm_view v = m->view;
+    v.strain_dt = (float)m->memory[STRAIN_DT];
+    return v;
+}
+
+/* totals: elastic energy; kinetic, that of the affine motion of APIC included; potential. */
+static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const mpm_view *v = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double mass = v->strain[i].c[2].w;
+        double square = 0, affine = 0;
+        totals[0] += mpm_look(v, i).energy;
+        for (int a = 0; a < 3; a++) {
+            const tobi_float4 *c = &v->affine[i].c[a];
+            affine += (double)c->x*c->x + (double)c->y*c->y + (double)c->z*c->z;
+            square += (double)(&v->velocity[i].x)[a]*(&v->velocity[i].x)[a];
+            totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
+        }
+        if (v->affine_momentum) square += 0.25*(double)v->cell*v->cell*affine;
+        totals[1] += 0.5*mass*square;
+    }
+}
+
+/* The energy of all solids, J; *elastic is a part of it. */
+static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic)
+{
+    const mpm_view v = look_back(m);
+    double t[TOBI_TOTALS];
+    tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
+    *elastic = t[0];
+    return t[0] + t[1] + t[2];
+}
+
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
@@ -250,6 +293,8 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
     if (s->particles.count > 0) {
+        double elastic;
+        if (m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
         solve_grid(s, m, &clock);
@@ -275,14 +320,6 @@ static void derive(tobi_simulation *s, void *state, const char *field)
     (void)s; (void)state; (void)field;
 }
 
-/* The view of reading: strain lags by the last step. */
-static mpm_view look_back(const mlsmpm *m)
-{
-    mpm_view v = m->view;
-    v.strain_dt = (float)m->memory[STRAIN_DT];
-    return v;
-}
-
 static void read_field(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out)
 {
     const mpm_view v = look_back(state);
@@ -299,19 +336,17 @@ static void read_field(const tobi_simulation *s, const void *state, const char *
     mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
 }
 
-static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
+static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err)
 {
-    for (int64_t i = begin; i < end; i++) totals[0] += mpm_look(view, i).energy;
+    const mpm_view v = look_back(state);
+    return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
 }
 
 static void measure(tobi_simulation *s, const void *state)
 {
     const mlsmpm *m = state;
-    const mpm_view v = look_back(m);
-    double t[TOBI_TOTALS];
-    tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
-    s->info.elastic_energy = t[0];
-    s->info.transfer_dissipation = m->memory[DISSIPATION];
+    double energy = find_energy(s, m, &s->info.elastic_energy);
+    s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
 }
 
 /* After a load the blocks are built anew. */
@@ -346,6 +381,7 @@ const tobi_method tobi_mlsmpm = {
     .refresh = refresh,
     .derive = derive,
     .read = read_field,
+    .nodes = find_nodes,
     .measure = measure,
     .memory = list_memory,
     .bytes = count_bytes,

@@ -1,6 +1,7 @@
 /* Reading the rows, slopes at the rows, and the curve between two of them. Quaternions are w x y z. */
 #define _POSIX_C_SOURCE 200809L
 #include "rigid/keyframes.h"
+#include "core/rigid.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,15 +40,6 @@ typedef struct reader {
 
 /* --- quaternions -------------------------------------------------------------------------- */
 
-static void multiply(const double a[4], const double b[4], double out[4])
-{
-    double q[4] = {a[0]*b[0] - a[1]*b[1] - a[2]*b[2] - a[3]*b[3],
-                   a[0]*b[1] + a[1]*b[0] + a[2]*b[3] - a[3]*b[2],
-                   a[0]*b[2] - a[1]*b[3] + a[2]*b[0] + a[3]*b[1],
-                   a[0]*b[3] + a[1]*b[2] - a[2]*b[1] + a[3]*b[0]};
-    memcpy(out, q, sizeof q);
-}
-
 /* The turn by |v| radians about v. */
 static void from_vector(const double v[3], double scale, double q[4])
 {
@@ -69,7 +61,7 @@ static void to_vector(const double q[4], double v[3])
 static void between(const double a[4], const double b[4], double v[3])
 {
     double q[4];
-    multiply((double[4]){a[0], -a[1], -a[2], -a[3]}, b, q);
+    tobi_quaternion_product((double[4]){a[0], -a[1], -a[2], -a[3]}, b, q);
     to_vector(q, v);
 }
 
@@ -162,7 +154,7 @@ static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[
         for (int a = 0; a < 3; a++) {      /* roll first, so it stands rightmost */
             double one[4], axis[3] = {a == 0, a == 1, a == 2};
             from_vector(axis, fmod(v[ROLL + a], 360)*DEGREE, one);
-            multiply(one, q, q);
+            tobi_quaternion_product(one, q, q);
         }
     }
     return TOBI_OK;
@@ -280,19 +272,20 @@ static void curve_turn(const keyframe *k, double h, double s, double q[4])
     double b[3] = {1 - (1 - s)*(1 - s)*(1 - s), s*s*(3 - 2*s), s*s*s};
     from_vector(k[0].spin, -h/3, first);
     from_vector(k[1].spin, -h/3, last);
-    multiply((double[4]){k[0].turn[0], -k[0].turn[1], -k[0].turn[2], -k[0].turn[3]}, k[1].turn, inner);
+    tobi_quaternion_product((double[4]){k[0].turn[0], -k[0].turn[1], -k[0].turn[2], -k[0].turn[3]},
+                            k[1].turn, inner);
     if (inner[0] < 0)
         for (int a = 0; a < 4; a++) inner[a] = -inner[a];
-    multiply(first, inner, inner);
-    multiply(inner, last, inner);
+    tobi_quaternion_product(first, inner, inner);
+    tobi_quaternion_product(inner, last, inner);
     to_vector(inner, middle);
     memcpy(q, k[0].turn, sizeof k[0].turn);
     from_vector(k[0].spin, b[0]*h/3, first);
-    multiply(q, first, q);
+    tobi_quaternion_product(q, first, q);
     from_vector(middle, b[1], inner);
-    multiply(q, inner, q);
+    tobi_quaternion_product(q, inner, q);
     from_vector(k[1].spin, b[2]*h/3, last);
-    multiply(q, last, q);
+    tobi_quaternion_product(q, last, q);
 }
 
 static void curve_shift(const keyframe *k, double h, double s, double shift[3])
@@ -307,12 +300,9 @@ static void fill_matrix(const double quaternion[4], double m[3][3])
 {
     double length = sqrt(quaternion[0]*quaternion[0] + quaternion[1]*quaternion[1] +
                          quaternion[2]*quaternion[2] + quaternion[3]*quaternion[3]);
-    double w = quaternion[0]/length, x = quaternion[1]/length, y = quaternion[2]/length,
-           z = quaternion[3]/length;
-    double r[3][3] = {{1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y)},
-                      {2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x)},
-                      {2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)}};
-    memcpy(m, r, sizeof r);
+    double unit[4];
+    for (int k = 0; k < 4; k++) unit[k] = quaternion[k]/length;
+    tobi_quaternion_matrix(unit, m);
 }
 
 tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)

@@ -325,6 +325,10 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &interval,
                             "is %.10g s and makes more than %d outputs until end_time, %.10g s",
                             scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
+    const tobi_method *method = tobi_method_find(scene->world.method);
+    tobi_place grid = { &output, "grid", 0 };
+    if (scene->output.grid && method && !method->nodes)
+        tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method->name);
     tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
     if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)

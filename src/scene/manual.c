@@ -220,7 +220,8 @@ static void write_fields(FILE *out)
 {
     const char *name, *unit;
     int components;
-    fputs("\nFields that `fields` may list:\n\n| field | components | unit | methods |\n|---|---|---|---|\n", out);
+    fputs("\nFields that `fields` may list:\n\n"
+          "| field | components | unit | methods |\n|---|---|---|---|\n", out);
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) {
         fprintf(out, "| `%s` | %d | %s |", name, components, unit);
         const char *method, *known[TOBI_WORLD_FIELDS];
@@ -229,12 +230,12 @@ static void write_fields(FILE *out)
                 if (known[k] == name) fprintf(out, " %s", method);
         fputs(" |\n", out);
     }
-    fputs("\nSix components are xx, yy, zz, xy, yz, zx of a symmetric tensor, nine are a matrix by rows. `stress`\n"
-          "is Cauchy's, `pressure` of a solid a third of minus its trace, `J` the volume over that at the start,\n"
-          "`density` the density at the start over J. `deformation_gradient` is the elastic part where a model\n"
-          "flows, and of a liquid only its determinant means something. `plastic` is the plastic strain of\n"
-          "von-mises, the plastic part of J less 1 of snow, the logarithm of the volume that loose sand has gained.\n"
-          "`material` is the number of the solid, from 0.\n", out);
+    fputs("\nSix components are xx, yy, zz, xy, yz, zx of a symmetric tensor, nine are a matrix by rows.\n"
+          "`stress` is Cauchy's, `pressure` of a solid a third of minus its trace, `J` the volume over that\n"
+          "at the start, `density` the density at the start over J. `deformation_gradient` is the elastic\n"
+          "part where a model flows, and of a liquid only its determinant means something. `plastic` is the\n"
+          "plastic strain of von-mises, the plastic part of J less 1 of snow, and the logarithm of the\n"
+          "volume that loose sand has gained. `material` is the number of the solid, from 0.\n", out);
 }
 
 /* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */

@@ -67,9 +67,12 @@ static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first,
     tobi_particles *p = &s->particles;
     if (!p->strain) return;
     double volume = r->volume/(double)whole, density = s->solids[r->owner].def.density;
+    float w[3] = {(float)r->spin[0], (float)r->spin[1], (float)r->spin[2]};
+    tobi_columns turning = {{{0, w[2], -w[1], 0}, {-w[2], 0, w[0], 0}, {w[1], -w[0], 0, 0}}};
+    if (s->box.dimension == 2) turning.c[0].z = turning.c[1].z = turning.c[2].x = turning.c[2].y = 0;
     for (int64_t i = first; i < p->count; i++) {
         p->strain[i] = (tobi_columns){0};
-        p->affine[i] = (tobi_columns){0};
+        p->affine[i] = turning;
         p->strain[i].c[0].w = (float)volume;
         p->strain[i].c[2].w = (float)(density*volume);
     }

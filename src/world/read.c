@@ -205,6 +205,28 @@ tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_co
     return TOBI_OK;
 }
 
+void tobi_world_free_grid(tobi_world *w)
+{
+    free(w->grid.position);
+    free(w->grid.velocity);
+    free(w->grid.mass);
+    free(w->grid.stress);
+    w->grid = (tobi_grid){ 0 };
+}
+
+tobi_status tobi_world_grid(tobi_world *w, const tobi_grid **grid, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    *grid = &w->grid;
+    if (!w->method->nodes) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->method->name);
+    TOBI_TRY(tobi_world_start(w, err));
+    tobi_world_free_grid(w);
+    TOBI_TRY(w->method->nodes(s, w->method_state, &w->grid, err));
+    for (int64_t k = 0; k < w->grid.count; k++)
+        for (int a = 0; a < 3; a++) w->grid.position[k][a] += s->box.lower[a];
+    return TOBI_OK;
+}
+
 static uint64_t mix(uint64_t h, const void *data, size_t bytes)
 {
     const unsigned char *p = data;

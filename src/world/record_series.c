@@ -54,6 +54,8 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 {
     run->field_count = 0;
+    if (run->output.grid && !run->world->method->nodes)
+        return tobi_fail(err, TOBI_INVALID, "output.grid: %s has no grid", run->world->method->name);
     for (const char *p = run->output.fields ? run->output.fields : ""; *p;) {
         p += strspn(p, ", ");
         size_t length = strcspn(p, ", ");
@@ -67,7 +69,7 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 
 static bool is_taken(const tobi_run *run, int count, const char *name)
 {
-    if (strcmp(name, "fluid") == 0 || strcmp(name, "bodies") == 0) return true;
+    if (strcmp(name, "fluid") == 0 || strcmp(name, "bodies") == 0 || strcmp(name, "grid") == 0) return true;
     for (int k = 0; k < count; k++)
         if (strcmp(run->body_file[k], name) == 0) return true;
     return false;
@@ -99,6 +101,7 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
     if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
     if (run->output.ply) TOBI_TRY(tobi_record_make_dir(run->dir, "ply", err));
+    if (run->output.grid) TOBI_TRY(tobi_record_make_dir(run->dir, "grid", err));
     if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
     TOBI_TRY(tobi_record_make_dir(run->dir, "bodies", err));
     if (run->output.obj) TOBI_TRY(tobi_record_make_dir(run->dir, "obj", err));
@@ -171,6 +174,27 @@ static tobi_status write_ply(tobi_run *run, tobi_error *err)
     return status;
 }
 
+static tobi_status write_grid(tobi_run *run, tobi_error *err)
+{
+    const tobi_grid *g;
+    TOBI_TRY(tobi_world_grid(run->world, &g, err));
+    tobi_vtk_array arrays[] = {
+        { "velocity", TOBI_F32, 3, convert(&g->velocity[0][0], 3 * g->count, TOBI_F32) },
+        { "mass", TOBI_F32, 1, convert(g->mass, g->count, TOBI_F32) },
+        { "stress", TOBI_F32, 6, convert(&g->stress[0][0], 6 * g->count, TOBI_F32) },
+    };
+    char *path = tobi_record_path(run->dir, "grid/grid_%06lld.vtu", (long long)run->outputs);
+    tobi_status status = TOBI_OK;
+    if (!path || !arrays[0].data || !arrays[1].data || !arrays[2].data)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (status == TOBI_OK)
+        status = tobi_vtu_write(path, (tobi_compression)run->output.compression, g->count,
+                                (const double (*)[3])g->position, arrays, 3, err);
+    for (int k = 0; k < 3; k++) free((void *)arrays[k].data);
+    free(path);
+    return status;
+}
+
 /* --- surfaces -------------------------------------------------------------------------- */
 
 static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
@@ -237,6 +261,7 @@ static tobi_status write_lists(const tobi_run *run, int64_t count, tobi_error *e
     int bodies = tobi_world_body_count(run->world);
     TOBI_TRY(write_list(run, "fluid", "fluid", "vtu", count, err));
     if (bodies) TOBI_TRY(write_list(run, "bodies", "bodies", "vtu", count, err));
+    if (run->output.grid) TOBI_TRY(write_list(run, "grid", "grid", "vtu", count, err));
     for (int b = 0; run->output.surfaces && b < bodies; b++)
         TOBI_TRY(write_list(run, run->body_file[b], "surfaces", "vtp", count, err));
     return TOBI_OK;
@@ -253,6 +278,7 @@ tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
     TOBI_TRY(write_particles(run, TOBI_FLUID, "fluid", err));
     if (bodies) TOBI_TRY(write_particles(run, TOBI_BODIES, "bodies", err));
     for (int b = 0; run->output.surfaces && b < bodies; b++) TOBI_TRY(write_surface(run, b, err));
+    if (run->output.grid) TOBI_TRY(write_grid(run, err));
     if (run->output.ply) TOBI_TRY(write_ply(run, err));
     for (int b = 0; run->output.obj && b < bodies; b++) TOBI_TRY(write_obj(run, b, err));
     if (run->output.frames) TOBI_TRY(tobi_record_frame(run, err));

@@ -119,6 +119,7 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
     free(w->row_of);
+    tobi_world_free_grid(w);
     free(w->method_def);
     tobi_near_free(&w->sim.near);
     tobi_contact_free(&w->sim.contacts);

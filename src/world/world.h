@@ -21,6 +21,7 @@ struct tobi_world {
     char **notes;                  /* owned texts                                            */
     int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
@@ -35,6 +36,8 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 /* The names of the fields that a method has, all if it is unknown; returns how many. */
 enum { TOBI_WORLD_FIELDS = 32 };
 int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
+
+void tobi_world_free_grid(tobi_world *w);
 
 /* Reads a probe of a world that has just stepped. */
 void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *info);

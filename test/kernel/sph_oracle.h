@@ -541,7 +541,7 @@ static void oracle_smooth_normal(const oracle *o, const row *in, row *out, doubl
         double n[3], size = 0, whole = oracle_w(o, 0)*in[i][BAND];
         for (int c = 0; c < 3; c++) n[c] = -whole*in[i][ACC + c];
         EACH_NEIGHBOUR(o, in, i, j, x, r)
-            for (int c = 0; c < 3; c++) n[c] -= oracle_w(o, r)*in[j][BAND]*in[j][ACC + c] + 0*x[c];
+            for (int c = 0; c < 3; c++) n[c] -= oracle_w(o, r)*in[j][BAND]*in[j][ACC + c];
         for (int c = 0; c < 3; c++) size += n[c]*n[c];
         for (int c = 0; c < 3; c++) n[c] = size > 0 ? n[c]/sqrt(size) : 0;
         for (int k = 0; k < o->plane_count && size > 0; k++) {
@@ -588,7 +588,7 @@ static void oracle_tension(const oracle *o, const row *in, row *out, double *t)
     for (int i = 0; i < o->count; i++) {
         double weight = 0, sum = 0, p;
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
-            double b = oracle_w(o, r)*in[j][NORMAL_BAND] + 0*x[0];
+            double b = oracle_w(o, r)*in[j][NORMAL_BAND];
             weight += b;
             sum += b*in[j][PAYLOAD];
         }

@@ -134,6 +134,10 @@ def write_index():
             continue
         for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*|stated)) \|$", text, re.M):
             lines.append(f"| [{page.stem}]({page.name}) | {row} | {found[1]} | {found[2]} |")
+    cases = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
+    missing = [name for name in cases if not (VALIDATION / f"{name}.md").exists()]
+    if missing:
+        lines += ["", f"Without a page, so not run to the end at reference size: {', '.join(missing)}."]
     (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
 
 
