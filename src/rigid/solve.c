@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SWEEPS = 50, LEAST_SWEEPS = 4, PUSH_SWEEPS = 10 };
+enum { LEAST_SWEEPS = 4, PUSH_SWEEPS = 10 };
+/* At most so many rows per step, between so many sweeps: few bodies are solved to the end, piles on time. */
+enum { ROWS = 40000, FEWEST_SWEEPS = 40, MOST_SWEEPS = 400 };
 #define SETTLED 1e-6       /* of the fastest approach: a sweep that changes less is the last one         */
 #define PUSH_SHARE 0.2     /* of an overlap beyond the slop, taken out per step                          */
 #define PUSH_MOST 2        /* slops, at most, per step                                                   */
@@ -202,11 +204,13 @@ static void go_on(tobi_solver *s, int64_t count, double beta)
 static void sweep_all(tobi_solver *s, int64_t count, double scale)
 {
     double before = 0;
+    int64_t most = ROWS/(count + 1);
+    most = most < FEWEST_SWEEPS ? FEWEST_SWEEPS : most > MOST_SWEEPS ? MOST_SWEEPS : most;
     s->sweeps = 0;
     for (;;) {
         for (int64_t i = 0; i < count; i++) memcpy(s->rows[i].was, s->rows[i].sum, sizeof s->rows[i].was);
         double change = sweep(s, count);
-        if (s->sweeps >= MOST_SWEEPS || (s->sweeps >= LEAST_SWEEPS && change <= SETTLED*scale)) return;
+        if (s->sweeps >= most || (s->sweeps >= LEAST_SWEEPS && change <= SETTLED*scale)) return;
         double now = measure_change(s, count), beta = before > 0 ? now/before : 0;
         go_on(s, count, beta < 1 ? beta : 0);
         before = now;
