@@ -264,7 +264,7 @@ static tobi_status reserve_rest(mpm_grid *g, tobi_exec *x, tobi_error *err)
 {
     int64_t most = g->patch_count > g->block_count ? g->patch_count : g->block_count;
     TOBI_TRY(tobi_exec_reserve(x, most*TOBI_BLOCK, err));
-    return reserve_scratch(g, g->block_count*tile_nodes(g)*(int64_t)sizeof(tobi_float4), err);
+    return reserve_scratch(g, g->block_count*tile_nodes(g)*(g->keep_old ? 2 : 1)*(int64_t)sizeof(tobi_float4), err);
 }
 
 tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err)
@@ -303,4 +303,5 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
     v->node = g->node;
     v->old = g->keep_old ? g->old : NULL;
     v->tile = (tobi_float4 *)(void *)g->scratch;
+    v->calm = g->keep_old ? v->tile + g->block_count*tile_nodes(g) : NULL;
 }

@@ -167,6 +167,20 @@ TOBI_FN void mpm_add_rows(float *tile, int32_t first, row *sum, int dim)
     }
 }
 
+/* One particle's momentum alone, without stress: FLIP's changes are measured against it. */
+TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad momentum, const int dim)
+{
+    const int last = dim - 1, rows = dim == 3 ? 3 : 1;
+    quad along = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
+    row x = row_repeat(momentum)*row_spread(along);
+    for (int n = 0; n < 3; n++)
+        for (int r = 0; r < rows; r++) {
+            tobi_float4 *at = tile + s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
+            float w = dim == 3 ? s->weight[0][n][k]*s->weight[1][r][k] : s->weight[0][n][k];
+            row_store(at, row_load(at) + x*row_set(w));
+        }
+}
+
 /* Momentum and mass of a block's particles into its tile. */
 TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
@@ -177,7 +191,9 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     int32_t cell = -1;
     const quad step = {0, 1, 2, 0};
     (void)totals;
+    tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;
     for (int n = 0; n < 4*(nodes + 8); n++) tile[n] = 0;
+    for (int n = 0; calm && n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
     for (int r = 0; r < 9; r++) sum[r] = row_set(0);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
@@ -186,6 +202,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
         mpm_find_stencil(v, b, i, dim, &s);
         mpm_find_load(v, i, count, &load);
         for (int k = 0; k < count; k++) {
+            if (calm) mpm_add_calm(calm, &s, k, quad_load(&load.momentum[k]), dim);
             if (s.first[k] != cell) {
                 if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
                 cell = s.first[k];
@@ -244,7 +261,7 @@ TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
 }
 
 /* Sums the tiles over a block of nodes: momentum and mass. */
-TOBI_FN void mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, quad *sum, const int dim)
+TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *sum, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     const int tile_nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
@@ -252,7 +269,7 @@ TOBI_FN void mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, quad *sum, con
     for (int o = 0; o < 27; o++) {
         if (g->cover[o] < 0) continue;
         /* From the tile's block this one lies at the opposite offset. */
-        const tobi_float4 *tile = v->tile + (int64_t)g->cover[o]*(tile_nodes + 8);
+        const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*(tile_nodes + 8);
         const int ox = 1 - o/9, oy = 1 - o/3%3, oz = dim == 3 ? 1 - o%3 : 0;
         for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
             for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
@@ -286,14 +303,15 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const mpm_patch *g = &v->patch[number];
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     tobi_float4 *node = v->node + number*nodes;
-    quad sum[MPM_NODES_3D];
+    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D];
     float given[3] = {0, 0, 0}, fastest = 0;
-    mpm_sum_tiles(v, g, sum, dim);
+    mpm_sum_tiles(g, v->tile, sum, dim);
+    if (v->old) mpm_sum_tiles(g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], inverse = mass > 0 ? 1/mass : 0;
         float u[3], before[3], speed2 = 0;
         for (int a = 0; a < 3; a++) u[a] = sum[n][a]*inverse;
-        if (v->old) v->old[number*nodes + n] = (tobi_float4){u[0], u[1], u[2], mass};
+        if (v->old) quad_store(&v->old[number*nodes + n], calm[n]*quad_set(inverse));
         for (int a = 0; a < 3; a++) u[a] = before[a] = mass > 0 ? u[a] + v->gravity[a]*v->dt : 0;
         if (g->planes && mass > 0) mpm_meet_planes(v, g, n, u, dim);
         for (int a = 0; a < 3; a++) {
