@@ -39,8 +39,8 @@ static void print_ball(const bench_run *run, int threads)
     double n = (double)r->particles, each = 1e9 / n;
     double cores = threads > 0 ? threads : (double)sysconf(_SC_NPROCESSORS_ONLN);
     printf("solid particles        %lld, 8 in a cell\n", (long long)r->particles);
-    printf("measured               %d steps, %.3g s simulated, %.2f s of wall clock\n", r->steps, r->simulated,
-           r->seconds);
+    printf("measured               %d steps, %.3g s simulated, %.2f s of wall clock\n", r->steps,
+           r->simulated, r->seconds);
     printf("time step              %.3g to %.3g s\n", r->dt_least, r->dt_most);
     printf("cost                   %.1f ns per particle and step and core (mean), %.1f (median step)\n",
            r->seconds / r->steps * each * cores, r->median * each * cores);
@@ -57,7 +57,8 @@ int bench_ball(const bench_options *o)
     double spacing = o->spacing > 0.0 ? o->spacing : 0.005;
     int settle = o->settle ? o->settle : 50, steps = o->steps ? o->steps : 120;
     bench_run run = { 0 };
-    printf("case                   elastic ball of 0.4 m at %g m by mlsmpm, after %d steps\n", spacing, settle);
+    printf("case                   elastic ball of 0.4 m at %g m by mlsmpm, after %d steps\n", spacing,
+           settle);
     fflush(stdout);
     tobi_world *world = make_ball(o, spacing);
     int failed = !world ? EXIT_ERROR : bench_settle(world, settle);

@@ -55,7 +55,7 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
     double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w);
     char text[160];
     if (!(stable > 0) || wish <= stable) return TOBI_OK;
-    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids allows: each "
-             "is cut into %.0f or more\n", wish, stable, ceil(wish/stable*(1 - 1e-9)));
+    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids allows: "
+             "each is cut into %.0f or more\n", wish, stable, ceil(wish/stable*(1 - 1e-9)));
     return tobi_world_add_notes(w, "world", "time_step", text, err);
 }
