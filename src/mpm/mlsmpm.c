@@ -167,7 +167,7 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.45*m->cell;
+    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
     if (stale) {
         TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
         m->memory[AGE] = m->memory[DRIFT] = 0;
