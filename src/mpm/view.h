@@ -53,8 +53,9 @@ typedef struct mpm_view {
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
+    tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL unless transfer is flip      */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
-    tobi_float4 *TOBI_RESTRICT old;    /* the same before the forces; NULL unless transfer is flip  */
+    tobi_float4 *TOBI_RESTRICT old;    /* velocity before stress and forces; NULL unless transfer is flip  */
     double inverse_cell;               /* 1/m                                                      */
     float  cell;                       /* m                                                        */
     float  dt, strain_dt;              /* s, of this step and of the gradients that strain lacks    */

@@ -9,6 +9,7 @@ import argparse
 import array
 import csv
 import html
+import json
 import os
 import pathlib
 import re
@@ -76,6 +77,19 @@ class Case:
                 return None
             sys.exit(1)
         return target
+
+    def write_scene(self, label, content):
+        """A scene made by the case, for run(): a dictionary."""
+        self.out.mkdir(parents=True, exist_ok=True)
+        path = self.out / f"{label}.json"
+        path.write_text(json.dumps(content, indent=1))
+        return path
+
+    def solids(self, label, content, *options, **more):
+        """Runs a scene of the material point method given as a dictionary; what it leaves out is usual."""
+        usual = {"method": "mlsmpm", "gravity": [0]*len(content["domain"]["min"]),
+                 "dimension": len(content["domain"]["min"])}
+        return self.run(label, *options, scene=self.write_scene(label, {**usual, **content}), **more)
 
     def figure(self, text, value, goal, met):
         """A result beside its goal. Decides the exit code at reference size only."""
@@ -201,6 +215,11 @@ def interpolate(xs, ys, x):
         if a <= x <= b:
             return ya + (yb - ya)*((x - a)/(b - a) if b > a else 0)
     return float("nan")
+
+
+def crossings(xs, ys):
+    """Where ys go through zero, linear between xs."""
+    return [a + (b - a)*y/(y - z) for a, b, y, z in zip(xs, xs[1:], ys, ys[1:]) if y*z < 0]
 
 
 def draw(plots):
