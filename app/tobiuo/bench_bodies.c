@@ -69,7 +69,8 @@ static void print_pile(const bench_run *run)
         for (int a = 0; a < 3; a++) fastest = fmax(fastest, fabs(info.velocity[a]));
     printf("measured               %d steps, %.3g s simulated, %.2f s of wall clock\n", r->steps,
            r->simulated, r->seconds);
-    printf("steps per second       %.0f (mean), %.0f (median step)\n", r->steps / r->seconds, 1.0 / r->median);
+    printf("steps per second       %.0f (mean), %.0f (median step)\n", r->steps / r->seconds,
+           1.0 / r->median);
     printf("processor time         %.2f ms per step\n", 1e3 * r->processor / r->steps);
     printf("fastest body at end    %.2g m/s\n", fastest);
     printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(run->world));
