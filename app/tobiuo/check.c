@@ -64,6 +64,7 @@ static int check_world(tobi_scene *scene)
     int64_t fluid = 0, bodies = 0, bytes = 0;
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = tobi_world_estimate(world, &fluid, &bodies, &bytes, &err);
+    if (status == TOBI_OK && fluid == 0 && bodies > 0) status = tobi_world_start(world, &err);
     if (status == TOBI_OK) {
         print_scene(scene, world);
         print_solids(world, tobi_scene_world_def(scene)->dimension);
