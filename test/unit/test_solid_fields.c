@@ -421,6 +421,38 @@ static void many_solids_and_odd_domains(void **state)
     tobi_world_destroy(world);
 }
 
+/* Two small balls in opposite corners of a domain of this size, 4 particles across each. */
+static tobi_world *make_pair(double size, double spacing)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
+    tobi_world *world;
+    def.method = "mlsmpm";
+    def.spacing = spacing;
+    for (int a = 0; a < 3; a++) {
+        def.domain_max[a] = size;
+        fill[0].centre[a] = 4*spacing;
+        fill[1].centre[a] = size - 4*spacing;
+    }
+    fill[0].radius = fill[1].radius = 2*spacing;
+    assert_int_equal(tobi_world_create(&def, NULL, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_solid(world, &solid, fill, 2, NULL), TOBI_OK);
+    return world;
+}
+
+static void material_lies_too_far_apart(void **state)
+{
+    (void)state;
+    const tobi_grid *grid;
+    tobi_world *world = make_pair(400, 0.05);
+    REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_UNSUPPORTED, "the solids reach over");
+    tobi_world_destroy(world);
+    world = make_pair(300, 5e-5);
+    REFUSED(tobi_world_grid(world, &grid, &err), TOBI_UNSUPPORTED, "the material reaches over");
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -433,6 +465,7 @@ int main(void)
         cmocka_unit_test(runs_go_on_with_the_same_bits),
         cmocka_unit_test(calls_are_refused_in_words),
         cmocka_unit_test(many_solids_and_odd_domains),
+        cmocka_unit_test(material_lies_too_far_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
