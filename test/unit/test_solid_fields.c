@@ -316,6 +316,49 @@ static void nodes_have_the_particles_momentum(void **state)
     }
 }
 
+/* As many particles as on the lattice, one in each cell, all apart, no two in a row. */
+static void blue_noise_is_even(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world[2];
+    w.method = "mlsmpm";
+    w.spacing = 0.1;
+    for (int a = 0; a < 3; a++) w.domain_max[a] = fill.box_max[a] = 1;
+    solid.seeding = TOBI_SEED_BLUE_NOISE;
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(tobi_world_create(&w, NULL, &world[k], NULL), TOBI_OK);
+        assert_int_equal(tobi_world_add_solid(world[k], &solid, &fill, 1, NULL), TOBI_OK);
+        assert_int_equal(tobi_world_start(world[k], NULL), TOBI_OK);
+    }
+    assert_true(tobi_world_hash(world[0]) == tobi_world_hash(world[1]));
+    assert_int_equal(tobi_world_count(world[0], TOBI_FLUID), 1000);
+    assert_true(fabs(tobi_world_info(world[0])->weight - 9810) < 0.01);
+    double *x = get(world[0], "position", 3), mean = 0, least = 1;
+    int seen[1000] = { 0 }, rows = 0;
+    for (int i = 0; i < 1000; i++) {
+        double nearest = 1;
+        const double *p = x + 3*i;
+        seen[(int)(p[0]/0.1) + 10*(int)(p[1]/0.1) + 100*(int)(p[2]/0.1)]++;
+        for (int j = 0; j < 1000; j++) {
+            const double *q = x + 3*j;
+            if (i == j) continue;
+            nearest = fmin(nearest, sqrt(pow(p[0] - q[0], 2) + pow(p[1] - q[1], 2) + pow(p[2] - q[2], 2)));
+            rows += fabs(p[0] - q[0]) < 1e-9 && fabs(p[1] - q[1]) < 1e-9;
+        }
+        mean += nearest/1000;
+        least = fmin(least, nearest);
+    }
+    for (int k = 0; k < 1000; k++) assert_int_equal(seen[k], 1);
+    /* Seen: 0.89 spacings on average, 0.59 at least; one random point per cell has 0.67 and 0.12. */
+    assert_true(rows == 0 && mean > 0.08 && least > 0.04);
+    free(x);
+    tobi_world_destroy(world[0]);
+    tobi_world_destroy(world[1]);
+}
+
 /* --- the same bits --------------------------------------------------------------------------------- */
 
 static void check_bits(int dimension, int transfer)
@@ -462,6 +505,7 @@ int main(void)
         cmocka_unit_test(strain_is_that_of_now),
         cmocka_unit_test(reading_changes_nothing),
         cmocka_unit_test(nodes_have_the_particles_momentum),
+        cmocka_unit_test(blue_noise_is_even),
         cmocka_unit_test(runs_go_on_with_the_same_bits),
         cmocka_unit_test(calls_are_refused_in_words),
         cmocka_unit_test(many_solids_and_odd_domains),
