@@ -53,3 +53,7 @@ int bench_begin(bench_run *run, tobi_world *world, int steps);
 int bench_step(bench_run *run);
 void bench_end(bench_run *run);
 void bench_print(const bench_run *run, int threads);
+void bench_print_stages(const bench_run *run);
+
+/* bench_ball.c: the case of the material point method. */
+int bench_ball(const bench_options *o);

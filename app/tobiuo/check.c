@@ -14,11 +14,12 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return parse_scene_option(state, key, value, &o->set, &o->scene);
 }
 
-/* The step the CFL condition allows at the speed of a fall through the domain, the fastest that
+/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of a fall through the domain, the fastest that
    gravity alone can make: a run is seldom slower than this. Without gravity there is no guess. */
-static double guess_step(const tobi_world_def *d)
+static double guess_step(const tobi_world_def *d, double stable)
 {
-    if (d->time_step > 0.0) return d->time_step;
+    if (d->time_step > 0.0) return stable > 0.0 ? d->time_step / ceil(d->time_step / stable) : d->time_step;
+    if (stable > 0.0) return d->time_step_max > 0.0 ? fmin(d->time_step_max, stable) : stable;
     double work = 0.0;
     for (int a = 0; a < d->dimension; a++)
         work += fabs(d->gravity[a]) * (d->domain_max[a] - d->domain_min[a]);
@@ -27,7 +28,17 @@ static double guess_step(const tobi_world_def *d)
                                                                               : step;
 }
 
-static void print_scene(const tobi_scene *scene)
+static void print_solids(const tobi_world *world, int dimension)
+{
+    tobi_solid_info solid;
+    for (int k = 0; tobi_world_solid(world, k, &solid) == TOBI_OK; k++) {
+        printf("solid            %s: %lld particles, %.4g %s, %.4g kg/m3", solid.name,
+               (long long)solid.particles, solid.mass, dimension == 3 ? "kg" : "kg/m", solid.density);
+        printf(solid.time_step < 1.0 ? ", time step at most %.3g s\n" : "\n", solid.time_step);
+    }
+}
+
+static void print_scene(const tobi_scene *scene, const tobi_world *world)
 {
     const tobi_world_def *d = tobi_scene_world_def(scene);
     const tobi_output_def *out = tobi_scene_output_def(scene);
@@ -36,7 +47,7 @@ static void print_scene(const tobi_scene *scene)
     printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
            high[2]);
     printf("spacing          %g m\n", d->spacing);
-    double step = guess_step(d);
+    double step = guess_step(d, tobi_world_stable_step(world));
     if (step > 0.0)
         printf("time step        %s%.3g s, about %.0f steps to %g s\n",
                d->time_step > 0.0 ? "" : "about ", step, ceil(d->end_time / step), d->end_time);
@@ -54,16 +65,18 @@ static int check_world(tobi_scene *scene)
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = tobi_world_estimate(world, &fluid, &bodies, &bytes, &err);
     if (status == TOBI_OK) {
-        print_scene(scene);
+        print_scene(scene, world);
+        print_solids(world, tobi_scene_world_def(scene)->dimension);
         print_notes(world, stdout, "note             ");
     }
+    int solids = status == TOBI_OK ? tobi_world_solid_count(world) : 0;
     tobi_world_destroy(world);
     if (status != TOBI_OK) return complain("%s", err.text);
     if (tobi_scene_import_table(scene))
         printf("\nA scene of the Taichi program. What became of its keys:\n\n%s\n",
                tobi_scene_import_table(scene));
     double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    printf("fluid particles  %lld\n", (long long)fluid);
+    printf("%s particles  %lld\n", solids ? "solid" : "fluid", (long long)fluid);
     printf("body particles   %lld\n", (long long)bodies);
     printf("memory           %.1f MB of %.0f MB\n", (double)bytes * 1e-6, machine * 1e-6);
     if (fluid + bodies == 0) return complain("there is no particle at all");

@@ -74,6 +74,10 @@ TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_body_info *info);
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
+TOBI_API int     tobi_world_solid_count(const tobi_world *world);
+TOBI_API tobi_status tobi_world_solid(const tobi_world *world, int solid, tobi_solid_info *info);
+/* The longest step that the stiffness of the solids allows at rest, s; 0 = there are none. */
+TOBI_API double  tobi_world_stable_step(const tobi_world *world);
 TOBI_API int     tobi_world_probe_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_info *info, tobi_error *err);
 /* NULL for a number that is no probe; kind may be NULL. */

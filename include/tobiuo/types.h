@@ -274,6 +274,15 @@ typedef struct tobi_probe_info {
     double level;                 /* m, coordinate of the surface along gravity                       */
 } tobi_probe_info;
 
+/* A solid: what it is made of. Before the start `particles` is a good guess for spheres and meshes, and
+   nothing is cut out by bodies yet. */
+typedef struct tobi_solid_info {
+    const char *name;             /* owned by the world                                               */
+    int64_t particles;
+    double density, volume, mass; /* kg/m3, m3, kg of the regions at the start; 2-D: m2, kg/m         */
+    double time_step;             /* s, the longest that its stiffness and viscosity allow at rest    */
+} tobi_solid_info;
+
 /* What a body is doing. Pressure and viscous parts apart; torque about `position`. */
 typedef struct tobi_body_info {
     double position[3];           /* m, centre of mass                                                */

@@ -257,7 +257,8 @@ tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err)
 {
     if (b->rest_bvh) return TOBI_OK;
     if (!b->rest_vertex) b->rest_vertex = malloc((size_t)(b->mesh.vertex_count + 1)*sizeof *b->rest_vertex);
-    if (!b->rest_vertex) return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for its rest pose", b->name);
+    if (!b->rest_vertex)
+        return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for its rest pose", b->name);
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         vec3_sub(b->rest_vertex[i], b->mesh.vertices[i], b->rest.centre);
     TOBI_TRY(tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->rest_vertex, b->mesh.triangle_count,

@@ -50,7 +50,8 @@ static void choose_cells(tobi_cells *c, const tobi_box *box, double h, int64_t p
 /* The list doubles as scratch of the sort: keys, order and their copies, or one widest state field. */
 static int64_t scratch_entries(int64_t particles)
 {
-    int64_t sort = 4*particles, permute = particles + particles*tobi_particles_widest(TOBI_ALL | TOBI_SPH)/4 + 64;
+    int64_t sort = 4*particles, widest = tobi_particles_widest(TOBI_ALL | TOBI_SPH);
+    int64_t permute = particles + particles*widest/4 + 64;
     return sort > permute ? sort : permute;
 }
 

@@ -83,8 +83,9 @@ static int touch(const pose *at, const double x[3], tobi_contact *out)
     vec3_sub(out->arm, x, b->rigid.position);
     for (int a = 0; a < 3; a++)
         local[a] = at->matrix[0][a]*out->arm[0] + at->matrix[1][a]*out->arm[1] + at->matrix[2][a]*out->arm[2];
-    if (!(b->deforms ? tobi_bvh_closest(b->bvh, x, far, &hit) : tobi_bvh_closest(b->rest_bvh, local, far, &hit)))
-        return 0;
+    int found = b->deforms ? tobi_bvh_closest(b->bvh, x, far, &hit)
+                           : tobi_bvh_closest(b->rest_bvh, local, far, &hit);
+    if (!found) return 0;
     out->gap = hit.signed_distance - at->step->radius;
     if (!(out->gap < at->step->margin)) return 0;
     for (int a = 0; a < 3; a++)
@@ -94,7 +95,8 @@ static int touch(const pose *at, const double x[3], tobi_contact *out)
 }
 
 /* Contacts of one chunk into `found`; returns how many. */
-static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chunk, tobi_contact found[TOBI_BLOCK])
+static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chunk,
+                            tobi_contact found[TOBI_BLOCK])
 {
     int64_t n = 0;
     for (int64_t i = chunk*TOBI_BLOCK; i < (chunk + 1)*TOBI_BLOCK && i < p->count; i++) {
@@ -175,7 +177,8 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
 }
 
 /* Velocity of the material relative to the surface, for velocities of the body. */
-static void find_relative(const tobi_contact *k, const double velocity[3], const double spin[3], double out[3])
+static void find_relative(const tobi_contact *k, const double velocity[3], const double spin[3],
+                          double out[3])
 {
     double turning[3];
     vec3_cross(turning, spin, k->arm);
@@ -220,8 +223,9 @@ static void find_change(tobi_contact *k, const tobi_contacts *c, double friction
         k->change[a] = normal*k->normal[a] + (k->sliding ? slide[a]*grip/size : slide[a]) - k->impulse[a];
 }
 
-/* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact and P
-   keeps what of them its impulse answers: the normal part if it pushes, the rest if it does not slide. */
+/* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact
+   and P keeps what of them its impulse answers: the normal part if it pushes, the rest if it does not
+   slide. */
 static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt, double *sum)
 {
     double relative[3], p[3][3], g[3][6] = {{0}}, pg[3][6], aim[3];
@@ -315,7 +319,8 @@ static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec 
     memcpy(c->spin, b + 3, sizeof c->spin);
 }
 
-void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first, tobi_exec *x)
+void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
+                        tobi_exec *x)
 {
     const tobi_rigid *r = &b->rigid;
     int moves = r->kind != TOBI_PRESCRIBED;

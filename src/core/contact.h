@@ -2,13 +2,13 @@
 
    A particle fills half a spacing around it; nearer than that to a surface it may not come within a step. The
    velocity of the material at the particle, relative to the surface there (the body's turning and deforming
-   included), loses what would bring it nearer, with restitution, and as much of its sliding as Coulomb friction
-   takes, at most all. The body gets the opposite impulses.
+   included), loses what would bring it nearer, with restitution, and as much of its sliding as Coulomb
+   friction takes, at most all. The body gets the opposite impulses.
 
    The velocities are not the particles' own but those of the grid they move with: one who holds particles
    back while the grid goes on lets the material flow through its own stress, and it creeps. So the solver
-   alternates: the method gives velocities at the contacts, a sweep answers with impulses, the method puts them
-   on its grid. Impulses add up over the sweeps, and only their sums must push and obey friction. */
+   alternates: the method gives velocities at the contacts, a sweep answers with impulses, the method puts
+   them on its grid. Impulses add up over the sweeps, and only their sums must push and obey friction. */
 #pragma once
 #include "core/body.h"
 #include "core/particles.h"
@@ -59,11 +59,12 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
 /* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to
    impulse and to the body's foreseen velocities. first: 1 takes the starting impulses as the change. */
-void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first, tobi_exec *x);
+void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
+                        tobi_exec *x);
 /* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its forces: normal parts as
-   pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that still
-   overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m. Returns how
-   many contacts push. */
+   pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that
+   still overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m.
+   Returns how many contacts push. */
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
                             double *far, tobi_exec *x);
 void tobi_contact_free(tobi_contacts *c);

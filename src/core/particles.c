@@ -79,9 +79,10 @@ DEFINE_PERMUTE(float)
 DEFINE_PERMUTE(int64_t)
 DEFINE_PERMUTE(uint8_t)
 
-#define PERMUTE(field) \
-    _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4, \
-    tobi_columns *: permute_tobi_columns, float *: permute_float, int64_t *: permute_int64_t, uint8_t *: permute_uint8_t, default: permute_uint8_t)
+#define PERMUTE(field)                                                                                     \
+    _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4,            \
+             tobi_columns *: permute_tobi_columns, float *: permute_float, int64_t *: permute_int64_t,      \
+             uint8_t *: permute_uint8_t, default: permute_uint8_t)
 
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
 {
@@ -95,7 +96,8 @@ tobi_field_ref tobi_particles_state(tobi_particles *p, int index)
 {
     int k = 0;
 #define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name && k++ == index) return (tobi_field_ref){#name, p->name, sizeof(type)};
+    if ((life) == TOBI_STATE && p->name && k++ == index)                                                   \
+        return (tobi_field_ref){#name, p->name, sizeof(type)};
     TOBI_PARTICLE_FIELDS(X)
 #undef X
     return (tobi_field_ref){NULL, NULL, 0};

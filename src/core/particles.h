@@ -17,30 +17,30 @@ typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
 
 /*   type          name                 life, owner                unit     meaning */
 #define TOBI_PARTICLE_FIELDS(X) \
-    X(tobi_double3, position,     TOBI_STATE, TOBI_ALL,       "m",     "position from the domain's lower corner") \
-    X(tobi_float4,  velocity,     TOBI_STATE, TOBI_ALL,       "m/s",   "velocity; w: eq. (6b), 0 to 1") \
-    X(float,        pressure,     TOBI_STATE, TOBI_SPH,       "Pa",    "pressure") \
-    X(int64_t,      id,           TOBI_STATE, TOBI_ALL,       "1",     "stable particle id") \
-    X(uint8_t,      fluid,        TOBI_STATE, TOBI_ALL,       "1",     "number of the fluid or solid") \
-    X(tobi_columns, strain,       TOBI_STATE, TOBI_MPM,       "1",     "deformation gradient less identity; w: see mpm/view.h") \
-    X(tobi_columns, affine,       TOBI_STATE, TOBI_MPM,       "1/s",   "velocity gradient") \
-    X(tobi_float4,  rest,         TOBI_STATE, TOBI_MPM,       "m",     "position at the start, from the lower corner") \
-    X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",     "fixed-point position, payload of the pass") \
-    X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2",  "acceleration of the pass") \
-    X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",   "wall gradient G; w = G . wall velocity") \
-    X(float,        density,      TOBI_SCRATCH, TOBI_SPH,     "1",     "density over rest density") \
-    X(float,        diagonal,     TOBI_SCRATCH, TOBI_SPH,     "m/kg",  "diagonal of the pressure operator") \
-    X(float,        precondition, TOBI_SCRATCH, TOBI_SPH,     "kg/m",  "1/diagonal, 0 where pressure is held") \
-    X(float,        residual,     TOBI_SCRATCH, TOBI_SPH,     "1/s2",  "residual of the pressure equation") \
-    X(float,        product,      TOBI_SCRATCH, TOBI_SPH,     "1/s2",  "A q in a solve; else the mean pressure") \
-    X(float,        delta,        TOBI_SCRATCH, TOBI_SPH,     "Pa",    "pressure change of this solve") \
-    X(float,        correction,   TOBI_SCRATCH, TOBI_SPH,     "Pa",    "potential of the position correction") \
-    X(tobi_float4,  normal,       TOBI_SCRATCH, TOBI_TENSION, "1",     "unit normal of the surface; w = weight") \
-    X(float,        capillary,    TOBI_SCRATCH, TOBI_TENSION, "Pa",    "surface tension times curvature") \
-    X(uint8_t,      surface,      TOBI_SCRATCH, TOBI_SPH,     "1",     "1 at a free surface") \
-    X(int32_t,      near,         TOBI_SCRATCH, TOBI_SPH,     "1",     "last near-body entry, -1 = none") \
-    X(uint32_t,     list_start,   TOBI_SCRATCH, TOBI_SPH,     "8",     "first neighbour, in groups of 8") \
-    X(uint16_t,     list_groups,  TOBI_SCRATCH, TOBI_SPH,     "8",     "neighbour groups of 8")
+    X(tobi_double3, position,     TOBI_STATE,   TOBI_ALL,     "m",    "position from the lower corner") \
+    X(tobi_float4,  velocity,     TOBI_STATE,   TOBI_ALL,     "m/s",  "velocity; w: eq. (6b), 0 to 1") \
+    X(float,        pressure,     TOBI_STATE,   TOBI_SPH,     "Pa",   "pressure") \
+    X(int64_t,      id,           TOBI_STATE,   TOBI_ALL,     "1",    "stable particle id") \
+    X(uint8_t,      fluid,        TOBI_STATE,   TOBI_ALL,     "1",    "number of the fluid or solid") \
+    X(tobi_columns, strain,       TOBI_STATE,   TOBI_MPM,     "1",    "F - I; w: see mpm/view.h") \
+    X(tobi_columns, affine,       TOBI_STATE,   TOBI_MPM,     "1/s",  "velocity gradient") \
+    X(tobi_float4,  rest,         TOBI_STATE,   TOBI_MPM,     "m",    "position at the start") \
+    X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",    "fixed-point position, payload") \
+    X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2", "acceleration of the pass") \
+    X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",  "wall gradient G; w = G . v_wall") \
+    X(float,        density,      TOBI_SCRATCH, TOBI_SPH,     "1",    "density over rest density") \
+    X(float,        diagonal,     TOBI_SCRATCH, TOBI_SPH,     "m/kg", "diagonal of the pressure operator") \
+    X(float,        precondition, TOBI_SCRATCH, TOBI_SPH,     "kg/m", "1/diagonal, 0 where p is held") \
+    X(float,        residual,     TOBI_SCRATCH, TOBI_SPH,     "1/s2", "residual of the pressure equation") \
+    X(float,        product,      TOBI_SCRATCH, TOBI_SPH,     "1/s2", "A q in a solve; else mean pressure") \
+    X(float,        delta,        TOBI_SCRATCH, TOBI_SPH,     "Pa",   "pressure change of this solve") \
+    X(float,        correction,   TOBI_SCRATCH, TOBI_SPH,     "Pa",   "of the position correction") \
+    X(tobi_float4,  normal,       TOBI_SCRATCH, TOBI_TENSION, "1",    "normal of the surface; w = weight") \
+    X(float,        capillary,    TOBI_SCRATCH, TOBI_TENSION, "Pa",   "surface tension times curvature") \
+    X(uint8_t,      surface,      TOBI_SCRATCH, TOBI_SPH,     "1",    "1 at a free surface") \
+    X(int32_t,      near,         TOBI_SCRATCH, TOBI_SPH,     "1",    "last near-body entry, -1 = none") \
+    X(uint32_t,     list_start,   TOBI_SCRATCH, TOBI_SPH,     "8",    "first neighbour, in groups of 8") \
+    X(uint16_t,     list_groups,  TOBI_SCRATCH, TOBI_SPH,     "8",    "neighbour groups of 8")
 
 typedef struct tobi_particles {
     int64_t count, capacity;

@@ -103,8 +103,8 @@ static tobi_status set_locks(tobi_rigid *r, const tobi_body_def *def, int dimens
     r->locked = tobi_rigid_axes(def->locked, unknown);
     if (r->locked < 0)
         return tobi_fail(err, TOBI_INVALID,
-                         "body '%s': locked has '%s'; allowed are x, y, z, turn_x, turn_y, turn_z, shift (all "
-                         "three) and turn (all three)", def->name ? def->name : "", unknown);
+                         "body '%s': locked has '%s'; allowed are x, y, z, turn_x, turn_y, turn_z, shift "
+                         "(all three) and turn (all three)", def->name ? def->name : "", unknown);
     if (dimension == 2) r->locked |= 4 | 8 | 16;
     int turns = r->locked & ALL_TURNS;
     if (turns == 8 || turns == 16 || turns == 32)
@@ -123,8 +123,8 @@ static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
         for (int k = 0; k < 4; k++) sum += vec3_dot(given[k], given[k]);
         if (sum > 0 || def->locked)
             return tobi_fail(err, TOBI_INVALID,
-                             "body '%s' is prescribed: velocities, force, torque, air resistance and locked axes "
-                             "are for free and controlled bodies", name);
+                             "body '%s' is prescribed: velocities, force, torque, air resistance and locked "
+                             "axes are for free and controlled bodies", name);
         if (!def->control) return TOBI_OK;
         return tobi_fail(err, TOBI_INVALID, "body '%s' has a control program but is not controlled", name);
     }

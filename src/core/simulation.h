@@ -71,6 +71,8 @@ typedef struct tobi_method {
     /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
        NULL: the fields of the SPH methods, from the particle arrays. */
     void (*read)(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out);
+    /* The longest step that a solid's material allows at rest, s; NULL: there are no solids. */
+    double (*stable_dt)(const tobi_simulation *s, const void *def, int solid);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */
     tobi_status (*nodes)(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err);
     /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */

@@ -28,7 +28,8 @@ tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
                  double *totals);
 
-/* The same for items that are work enough on their own: blocks of one. Reserve for TOBI_BLOCK times as many. */
+/* The same for items that are work enough on their own: blocks of one. Reserve for TOBI_BLOCK times as
+   many. */
 void tobi_launch_each(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t count, double *totals);
 
 /* Stable radix sort of keys (each < key_limit) with their indices 0..n-1. On return keys are sorted

@@ -87,7 +87,8 @@ static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
 static int base_node(double x, double inverse_cell) { return (int)floor(x*inverse_cell - 0.5) + BLOCK; }
 
 /* The corner of the particle's block, in blocks: of its base node now, or where it is at home. */
-static void find_block(const tobi_particles *p, int64_t i, double inverse_cell, int home, int dimension, int b[3])
+static void find_block(const tobi_particles *p, int64_t i, double inverse_cell, int home, int dimension,
+                       int b[3])
 {
     const double *x = &p->position[i].x;
     for (int a = 0; a < 3; a++) {
@@ -102,7 +103,8 @@ static tobi_status find_box(mpm_grid *g, const tobi_particles *p, double inverse
                             tobi_error *err)
 {
     int lo0 = 1 << 30, lo1 = 1 << 30, lo2 = 1 << 30, hi0 = 0, hi1 = 0, hi2 = 0;
-    #pragma omp parallel for num_threads(x->threads) reduction(min: lo0, lo1, lo2) reduction(max: hi0, hi1, hi2)
+    #pragma omp parallel for num_threads(x->threads) reduction(min: lo0, lo1, lo2) \
+        reduction(max: hi0, hi1, hi2)
     for (int64_t i = 0; i < p->count; i++) {
         int b[3];
         find_block(p, i, inverse_cell, home, g->dimension, b);
@@ -122,8 +124,8 @@ static tobi_status find_box(mpm_grid *g, const tobi_particles *p, double inverse
     }
     if (total < MOST_BLOCKS) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED,
-                     "the solids reach over %d x %d x %d blocks of cells; allowed are %d together. Fewer particles "
-                     "astray or a larger spacing help",
+                     "the solids reach over %d x %d x %d blocks of cells; allowed are %d together. "
+                     "Fewer particles astray or a larger spacing help",
                      g->count[0], g->count[1], g->count[2], MOST_BLOCKS);
 }
 
@@ -155,7 +157,8 @@ static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse
     }
 }
 
-/* Where runs of equal keys (their low bits aside) begin, in order; returns how many. begin NULL only counts. */
+/* Where runs of equal keys (their low bits aside) begin, in order; returns how many. begin NULL only
+   counts. */
 static int64_t find_runs(const uint32_t *keys, int64_t n, int bits, int64_t *begin, tobi_exec *x)
 {
     int64_t counts[256] = {0}, total = 0;
@@ -246,7 +249,8 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
         mpm_patch *p = &g->patch[k];
         corner_of(g, g->patch_key[k], p->corner);
         for (int o = 0; o < 27; o++)
-            p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count, beside(g, g->patch_key[k], o)) : -1;
+            p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count,
+                                                     beside(g, g->patch_key[k], o)) : -1;
     }
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < g->block_count; k++)

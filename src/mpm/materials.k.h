@@ -29,9 +29,11 @@ TOBI_FN lane mpm_exp(lane x)
 {
     x = lane_where_less(x, lane_set(-80), lane_set(-80), x);
     x = lane_where_less(lane_set(80), x, lane_set(80), x);
-    lane_int n = lane_to_int(x*1.44269504f + lane_where_less(x, lane_set(0), lane_set(-0.5f), lane_set(0.5f)));
+    lane_int n = lane_to_int(x*1.44269504f +
+                             lane_where_less(x, lane_set(0), lane_set(-0.5f), lane_set(0.5f)));
     lane r = (x - lane_from_int(n)*0.693359375f) + lane_from_int(n)*2.12194440e-4f;
-    lane s = 1.0f + r*(1.0f + r*(0.5f + r*(0.16666667f + r*(0.041666668f + r*(0.0083333310f + r*0.0013888889f)))));
+    lane s = 1.0f + r*(1.0f + r*(0.5f +
+                                 r*(0.16666667f + r*(0.041666668f + r*(0.0083333310f + r*0.0013888889f)))));
     return s*lane_from_bits((n + 127) << 23);
 }
 
@@ -74,7 +76,8 @@ TOBI_FN void mpm_rotate(lane *app, lane *aqq, lane *apq, lane *apr, lane *aqr, l
     }
 }
 
-/* Eigenvalues of a into a[0..2], eigenvectors into v[number][component]. Four sweeps reach float precision. */
+/* Eigenvalues of a into a[0..2], eigenvectors into v[number][component]. Four sweeps reach float
+   precision. */
 TOBI_FN void mpm_eigen(lane a[6], lane v[3][3])
 {
     for (int i = 0; i < 3; i++)
@@ -144,8 +147,8 @@ TOBI_FN void mpm_fixed_corotated(const lane s1[3], lane dilation, lane mu, lane 
     for (int k = 0; k < 3; k++) value[k] = 2.0f*mu*s1[k]*(s1[k] + 1.0f) + p;
 }
 
-/* Snow (Stomakhin et al. 2013), eq. (9): stretches stay within limits, what is cut off hardens. state: J of the
-   plastic part, less 1. */
+/* Snow (Stomakhin et al. 2013), eq. (9): stretches stay within limits, what is cut off hardens. state: J
+   of the plastic part, less 1. */
 TOBI_FN void mpm_snow(const mpm_parameters *m, lane s1[3], lane g[3], lane *state, lane *harder)
 {
     lane plastic = *state + 1.0f;
@@ -207,9 +210,11 @@ TOBI_FN void mpm_principal(lane e[9], const mpm_parameters *m, lane_int model, l
         s1[k] = b/(1.0f + lane_sqrt(1.0f + b));                      /* stretch - 1 */
         h[k] = 0.5f*mpm_log1p(b);
     }
-    lane_int snow = lane_set_int(TOBI_SNOW), mises = lane_set_int(TOBI_VON_MISES), sand = lane_set_int(TOBI_SAND);
+    lane_int snow = lane_set_int(TOBI_SNOW), mises = lane_set_int(TOBI_VON_MISES),
+        sand = lane_set_int(TOBI_SAND);
     lane cold[3] = {s1[0], s1[1], s1[2]}, cold_g[3], cold_state = *state, harder;
-    lane bent[3] = {h[0], h[1], h[2]}, bent_state = *state, loose[3] = {h[0], h[1], h[2]}, loose_state = *state;
+    lane bent[3] = {h[0], h[1], h[2]}, bent_state = *state, loose[3] = {h[0], h[1], h[2]},
+        loose_state = *state;
     mpm_snow(m, cold, cold_g, &cold_state, &harder);
     mpm_von_mises(m, bent, &bent_state);
     mpm_sand(m, loose, &loose_state);

@@ -56,6 +56,12 @@ static mpm_material describe_material(const tobi_solid_def *d, double *sound)
         .friction = (float)(sqrt(2.0/3)*2*sine/(3 - sine)), .keep = 1 };
 }
 
+static double viscous_limit(const tobi_solid_def *d, double cell)
+{
+    int viscous = d->model == TOBI_LIQUID && d->viscosity > 0;
+    return viscous ? 0.1*cell*cell*d->density/d->viscosity : INFINITY;
+}
+
 static void add_planes(const tobi_simulation *s, mpm_view *v)
 {
     v->plane_count = 0;
@@ -130,8 +136,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         m->material[k] = describe_material(d, &sound);
         m->damping[k] = d->damping;
         m->sound = fmax(m->sound, sound);
-        if (d->model == TOBI_LIQUID && d->viscosity > 0)
-            m->viscous_dt = fmin(m->viscous_dt, 0.1*m->cell*m->cell*d->density/d->viscosity);
+        m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
     }
     bind_particles(s, m);
     return TOBI_OK;
@@ -148,6 +153,15 @@ static double choose_dt(const tobi_simulation *s, const mlsmpm *m)
     if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
     if (s->def.time_step > 0) dt = s->def.time_step/ceil(s->def.time_step/dt*(1 - 1e-9));
     return dt;
+}
+
+static double limit_dt(const tobi_simulation *s, const void *def, int solid)
+{
+    const tobi_mlsmpm_def *m = def;
+    const tobi_solid_def *d = &s->solids[solid].def;
+    double cell = m->cell*s->smoothing.spacing, sound;
+    describe_material(d, &sound);
+    return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
 }
 
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
@@ -226,15 +240,14 @@ static double find_work(const tobi_body *b)
 
 static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    double g = 0, far;
+    double g = 0;
     for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
     double way = (m->memory[SPEED] + s->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
         .dt = s->dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
-    TOBI_TRY(mpm_touch_bodies(&m->touch, &s->contacts, &s->particles, s->bodies, s->body_count, &m->grid, &m->view,
-                              &contact, &s->exec, &s->info.contacts, &far, err));
-    m->memory[DRIFT] += far;
+    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, err));
+    m->memory[DRIFT] += m->touch.far;
     for (int k = 0; k < s->body_count; k++) m->memory[BODY_WORK] += find_work(&s->bodies[k])*s->dt;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;
@@ -381,6 +394,7 @@ const tobi_method tobi_mlsmpm = {
     .refresh = refresh,
     .derive = derive,
     .read = read_field,
+    .stable_dt = limit_dt,
     .nodes = find_nodes,
     .measure = measure,
     .memory = list_memory,

@@ -1,6 +1,6 @@
-/* One transfer of the particles to the grid for output, eq. (3) without the stress. It changes nothing and needs
-   no blocks, so that it works before the first step and after a restart. The nodes live in a hash table; the
-   drawback is one core and some 3 us per particle. */
+/* One transfer of the particles to the grid for output, eq. (3) without the stress. It changes nothing and
+   needs no blocks, so that it works before the first step and after a restart. The nodes live in a hash
+   table; the drawback is that one core does it. */
 #include "mpm/nodes.h"
 #include "mpm/fields.h"
 #include <math.h>

@@ -28,13 +28,15 @@ static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, to
         t->node = malloc((size_t)(room*each)*sizeof *t->node);
         t->weight = malloc((size_t)(room*each)*sizeof *t->weight);
         t->room = t->node && t->weight ? room : 0;
-        if (!t->room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)contacts);
+        if (!t->room)
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)contacts);
     }
     if (nodes > t->node_room) {
         free(t->crowd);
         t->crowd = calloc((size_t)(nodes + nodes/8), sizeof *t->crowd);
         t->node_room = t->crowd ? nodes + nodes/8 : 0;
-        if (!t->node_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
+        if (!t->node_room)
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
     }
     return TOBI_OK;
 }
@@ -63,7 +65,8 @@ static int64_t place_of(const mpm_block *b, int dim, int32_t tile)
     return (int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) + n;
 }
 
-static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v, tobi_exec *x)
+static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
+                       tobi_exec *x)
 {
     const int dim = g->dimension, each = nodes_each(g);
     #pragma omp parallel for num_threads(x->threads)
@@ -121,35 +124,36 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
         }
 }
 
-static tobi_status touch_body(mpm_touch *t, tobi_contacts *c, tobi_particles *p, tobi_body *b, const mpm_grid *g,
-                              const mpm_view *v, const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
+static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, const mpm_grid *g,
+                              const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
-    TOBI_TRY(tobi_contact_find(c, p, b, step, x, err));
+    tobi_contacts *c = &s->contacts;
+    TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
     if (c->count == 0) return TOBI_OK;
     TOBI_TRY(reserve(t, g, c->count, err));
-    find_nodes(t, c, g, v, x);
-    find_mobility(t, c, g, x);
-    read_velocities(t, c, g, x);
-    tobi_contact_aim(c, b, step, x);
+    find_nodes(t, c, g, v, &s->exec);
+    find_mobility(t, c, g, &s->exec);
+    read_velocities(t, c, g, &s->exec);
+    tobi_contact_aim(c, b, step, &s->exec);
     for (int sweep = 0; sweep <= SWEEPS; sweep++) {
-        tobi_contact_sweep(c, b, step, sweep == 0, x);
+        tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
         add_impulses(t, c, g);
-        read_velocities(t, c, g, x);
+        read_velocities(t, c, g, &s->exec);
     }
     return TOBI_OK;
 }
 
-tobi_status mpm_touch_bodies(mpm_touch *t, tobi_contacts *c, tobi_particles *p, tobi_body *bodies, int body_count,
-                             const mpm_grid *g, const mpm_view *v, const tobi_contact_step *step, tobi_exec *x,
-                             int64_t *count, double *far, tobi_error *err)
+tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
+                             const tobi_contact_step *step, tobi_error *err)
 {
-    *count = 0;
-    *far = 0;
-    if (body_count == 0) return TOBI_OK;
-    TOBI_TRY(tobi_contact_begin(c, p, x, err));
-    for (int k = 0; k < body_count; k++) {
-        TOBI_TRY(touch_body(t, c, p, &bodies[k], g, v, step, x, err));
-        *count += tobi_contact_finish(c, p, &bodies[k], step, far, x);
+    t->far = 0;
+    s->info.contacts = 0;
+    if (s->body_count == 0) return TOBI_OK;
+    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, &s->exec, err));
+    for (int k = 0; k < s->body_count; k++) {
+        TOBI_TRY(touch_body(t, s, &s->bodies[k], g, v, step, err));
+        s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->bodies[k], step, &t->far,
+                                                &s->exec);
     }
     return TOBI_OK;
 }

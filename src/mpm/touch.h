@@ -1,7 +1,7 @@
-/* Contact of the material with bodies, on the grid: core/contact.h says what a contact asks for, this puts the
-   impulses on the nodes that each particle feels, so that stress and motion know of them. */
+/* Contact of the material with bodies, on the grid: core/contact.h says what a contact asks for, this puts
+   the impulses on the nodes that each particle feels, so that stress and motion know of them. */
 #pragma once
-#include "core/contact.h"
+#include "core/simulation.h"
 #include "mpm/grid.h"
 
 typedef struct mpm_touch {
@@ -9,11 +9,11 @@ typedef struct mpm_touch {
     float *weight;                     /* the same                                                */
     float *crowd;                      /* [nodes] sum of the contacts' weights                    */
     int64_t room, node_room;
+    double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;
 
-/* Changes the nodes' velocities, and particles' positions where they overlap a body. *count: contacts that push;
-   *far: the largest shift, m. */
-tobi_status mpm_touch_bodies(mpm_touch *t, tobi_contacts *c, tobi_particles *p, tobi_body *bodies, int body_count,
-                             const mpm_grid *g, const mpm_view *v, const tobi_contact_step *step, tobi_exec *x,
-                             int64_t *count, double *far, tobi_error *err);
+/* Changes the nodes' velocities, and particles' positions where they overlap a body. s->info.contacts: those
+   that push; t->far: the largest shift, m. */
+tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
+                             const tobi_contact_step *step, tobi_error *err);
 void mpm_touch_free(mpm_touch *t);

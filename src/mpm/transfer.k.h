@@ -81,15 +81,16 @@ TOBI_FN void mpm_deform(float dt, const lane gradient[9], lane e[9])
     for (int c = 0; c < 3; c++) {
         lane f[3] = {e[c], e[3 + c], e[6 + c]};
         for (int r = 0; r < 3; r++) {
-            lane rate = gradient[3*r + c] + (gradient[3*r]*f[0] + gradient[3*r + 1]*f[1] + gradient[3*r + 2]*f[2]);
+            lane rate = gradient[3*r + c] +
+                (gradient[3*r]*f[0] + gradient[3*r + 1]*f[1] + gradient[3*r + 2]*f[2]);
             e[3*r + c] = f[r] + dt*rate;
         }
     }
 }
 
 /* Kirchhoff stress of eight particles; brings their strain and plastic state up to date. */
-TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t present, const lane gradient[9],
-                             lane e[9], lane *state, lane tau[6])
+TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t present,
+                             const lane gradient[9], lane e[9], lane *state, lane tau[6])
 {
     const uint32_t simple = 1u << TOBI_NEO_HOOKEAN | 1u << TOBI_LIQUID | 1u << TOBI_STATIONARY;
     for (int k = 0; k < 6; k++) tau[k] = lane_set(0);
@@ -100,7 +101,8 @@ TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t p
     lane part[6], kept[9];
     if (present & 1u << TOBI_NEO_HOOKEAN) {
         mpm_neo_hookean(e, m, part);
-        for (int k = 0; k < 6; k++) tau[k] = lane_where_equal(model, lane_set_int(TOBI_NEO_HOOKEAN), part[k], tau[k]);
+        lane_int is = lane_set_int(TOBI_NEO_HOOKEAN);
+        for (int k = 0; k < 6; k++) tau[k] = lane_where_equal(model, is, part[k], tau[k]);
     }
     if (present & 1u << TOBI_LIQUID) {
         for (int k = 0; k < 9; k++) kept[k] = e[k];
@@ -129,8 +131,7 @@ typedef struct mpm_load {
     tobi_float4 matrix[3][8];          /* kg/s, columns                                           */
 } mpm_load;
 
-/* totals[0]: kinetic energy of particles and of their affine motion. */
-TOBI_FN void mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *load, double *totals)
+TOBI_FN void mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *load)
 {
     const int32_t next[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     lane velocity[4], gradient[9], e[9], other[3], unused[3], tau[6], keep;
@@ -145,21 +146,15 @@ TOBI_FN void mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *lo
     mpm_find_stress(&m, model, present, gradient, e, &other[1], tau);
     mpm_store_columns(v->strain + i, count, e, other);
     lane s = other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell), mass = other[2];
-    lane carried = v->affine_momentum ? mass*keep : lane_set(0), energy = lane_set(0);
+    lane carried = v->affine_momentum ? mass*keep : lane_set(0);
     const int at[3][3] = {{MPM_XX, MPM_XY, MPM_ZX}, {MPM_XY, MPM_YY, MPM_YZ}, {MPM_ZX, MPM_YZ, MPM_ZZ}};
     for (int c = 0; c < 3; c++) {
         lane column[3];
-        for (int r = 0; r < 3; r++) {
-            column[r] = s*tau[at[r][c]] + carried*gradient[3*r + c];
-            energy = energy + carried*gradient[3*r + c]*gradient[3*r + c];
-        }
+        for (int r = 0; r < 3; r++) column[r] = s*tau[at[r][c]] + carried*gradient[3*r + c];
         lane_store_float4(load->matrix[c], 1, 8, column[0], column[1], column[2], lane_set(0));
     }
-    energy = 0.25f*v->cell*v->cell*energy;
-    for (int k = 0; k < 3; k++) energy = energy + mass*velocity[k]*velocity[k];
     lane moving = mass*keep;
     lane_store_float4(load->momentum, 1, 8, moving*velocity[0], moving*velocity[1], moving*velocity[2], mass);
-    for (int k = 0; k < count; k++) totals[0] += 0.5*(double)lane_at(energy, k);
 }
 
 TOBI_FN void mpm_add_rows(float *tile, int32_t first, row *sum, int dim)
@@ -195,6 +190,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     row sum[9];
     int32_t cell = -1;
     const quad step = {0, 1, 2, 0};
+    (void)totals;
     tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;
     for (int n = 0; n < 4*(nodes + 8); n++) tile[n] = 0;
     for (int n = 0; calm && n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
@@ -204,7 +200,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
         mpm_stencil s;
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
-        mpm_find_load(v, i, count, &load, totals);
+        mpm_find_load(v, i, count, &load);
         for (int k = 0; k < count; k++) {
             if (calm) mpm_add_calm(calm, &s, k, quad_load(&load.momentum[k]), dim);
             if (s.first[k] != cell) {
@@ -264,10 +260,11 @@ TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
     for (int a = 0; a < 3; a++) v[a] = p->velocity[a] + r[a]*left;
 }
 
-/* Sums all blocks' tiles over a block of nodes. */
+/* Sums the tiles over a block of nodes: momentum and mass. */
 TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *sum, const int dim)
 {
-    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D, tile_nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    const int tile_nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
     for (int n = 0; n < nodes; n++) sum[n] = quad_set(0);
     for (int o = 0; o < 27; o++) {
         if (g->cover[o] < 0) continue;
@@ -276,69 +273,56 @@ TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *s
         const int ox = 1 - o/9, oy = 1 - o/3%3, oz = dim == 3 ? 1 - o%3 : 0;
         for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
             for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                if (dim == 2) {
-                    int n = (x - 1 - 4*ox)*4 + (y - 1 - 4*oy);
-                    sum[n] = sum[n] + quad_load(&tile[x*8 + y]);
-                    continue;
-                }
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz); z++) {
-                    int n = ((x - 1 - 4*ox)*4 + (y - 1 - 4*oy))*4 + (z - 1 - 4*oz);
+                const int row = (x - 1 - 4*ox)*4 + (y - 1 - 4*oy);
+                if (dim == 2) sum[row] = sum[row] + quad_load(&tile[x*8 + y]);
+                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz) && dim == 3; z++) {
+                    const int n = row*4 + (z - 1 - 4*oz);
                     sum[n] = sum[n] + quad_load(&tile[(x*8 + y)*8 + z]);
                 }
             }
     }
 }
 
-/* Sums the tiles over a block of nodes, turns momentum into velocity, applies gravity and planes.
-   totals: 0..2 momentum given to the planes, 3 kinetic energy before and 4 after the forces, 5 gravity's
-   work, 6 largest speed squared. */
+/* Planes that node n of a block lies behind change its velocity u. */
+TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float u[3], int dim)
+{
+    const int at[3] = {g->corner[0] + (dim == 3 ? n/16 : n/4), g->corner[1] + (dim == 3 ? n/4%4 : n%4),
+                       dim == 3 ? g->corner[2] + n%4 : 0};
+    for (int p = 0; p < v->plane_count; p++) {
+        const mpm_plane *plane = &v->plane[p];
+        double depth = plane->normal[0]*at[0] + plane->normal[1]*at[1] + plane->normal[2]*at[2] -
+                       plane->offset*v->inverse_cell;
+        if (depth < 1e-6) mpm_meet_plane(plane, u);
+    }
+}
+
+/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change.
+   totals: 0..2 momentum given to the planes, 6 largest speed squared. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_patch *g = &v->patch[number];
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D];
+    float given[3] = {0, 0, 0}, fastest = 0;
     mpm_sum_tiles(g, v->tile, sum, dim);
     if (v->old) mpm_sum_tiles(g, v->calm, calm, dim);
-    float energy[3] = {0, 0, 0}, given[3] = {0, 0, 0};
     for (int n = 0; n < nodes; n++) {
-        const float mass = sum[n][3];
-        float u[3] = {0, 0, 0}, before[3];
-        if (mass > 0) {
-            float inverse = 1/mass, old2 = 0, new2 = 0;
-            for (int a = 0; a < 3; a++) u[a] = sum[n][a]*inverse;
-            for (int a = 0; a < 3; a++) old2 += u[a]*u[a];
-            if (v->old)
-                v->old[number*nodes + n] = (tobi_float4){calm[n][0]*inverse, calm[n][1]*inverse, calm[n][2]*inverse, mass};
-            for (int a = 0; a < 3; a++) {
-                before[a] = u[a] + v->gravity[a]*v->dt;
-                energy[2] += mass*(before[a]*before[a] - u[a]*u[a]);
-                u[a] = before[a];
-            }
-            if (g->planes) {
-                const int at[3] = {g->corner[0] + (dim == 3 ? n/16 : n/4), g->corner[1] + (dim == 3 ? n/4%4 : n%4),
-                                   dim == 3 ? g->corner[2] + n%4 : 0};
-                for (int p = 0; p < v->plane_count; p++) {
-                    const mpm_plane *plane = &v->plane[p];
-                    double depth = plane->normal[0]*at[0] + plane->normal[1]*at[1] + plane->normal[2]*at[2] -
-                                   plane->offset*v->inverse_cell;
-                    if (depth < 1e-6) mpm_meet_plane(plane, u);
-                }
-            }
-            for (int a = 0; a < 3; a++) {
-                given[a] += mass*(before[a] - u[a]);
-                new2 += u[a]*u[a];
-            }
-            energy[0] += mass*old2;
-            energy[1] += mass*new2;
-            if (new2 > totals[6]) totals[6] = new2;
-        } else if (v->old) v->old[number*nodes + n] = (tobi_float4){0, 0, 0, 0};
+        const float mass = sum[n][3], inverse = mass > 0 ? 1/mass : 0;
+        float u[3], before[3], speed2 = 0;
+        for (int a = 0; a < 3; a++) u[a] = sum[n][a]*inverse;
+        if (v->old) quad_store(&v->old[number*nodes + n], calm[n]*quad_set(inverse));
+        for (int a = 0; a < 3; a++) u[a] = before[a] = mass > 0 ? u[a] + v->gravity[a]*v->dt : 0;
+        if (g->planes && mass > 0) mpm_meet_planes(v, g, n, u, dim);
+        for (int a = 0; a < 3; a++) {
+            given[a] += mass*(before[a] - u[a]);
+            speed2 += u[a]*u[a];
+        }
+        if (speed2 > fastest) fastest = speed2;
         node[n] = (tobi_float4){u[0], u[1], u[2], mass};
     }
-    for (int a = 0; a < 3; a++) {
-        totals[a] += given[a];
-        totals[3 + a] += 0.5*(double)energy[a];
-    }
+    for (int a = 0; a < 3; a++) totals[a] += given[a];
+    if (fastest > totals[6]) totals[6] = fastest;
 }
 
 /* The nodes around a block, from the node blocks into one tile. */
@@ -384,7 +368,8 @@ TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float sc
     gradient[1] = quad_set(0);
     gradient[2] = quad_set(0);
     if (dim == 3)
-        gradient[1] = factor*(row_fold((y[0]*w[0] + y[1]*w[1] + y[2]*w[2])*along) - v*quad_set(s->offset[1][k]));
+        gradient[1] = factor*(row_fold((y[0]*w[0] + y[1]*w[1] + y[2]*w[2])*along) -
+                              v*quad_set(s->offset[1][k]));
     gradient[last] = factor*(row_fold(t3) - v*quad_set(s->offset[last][k]));
     *velocity = v;
 }
@@ -447,7 +432,8 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
                 own = own*quad_set(v->material[v->solid[i + k]].keep);
                 u = u + quad_set(v->flip)*(own - before);
             }
-            /* The force of a contact in this step is kept for the next, and only that long (core/contact.h). */
+            /* The force of a contact in this step is kept for the next, and only that long
+               (core/contact.h). */
             const float force = v->velocity[i + k].w;
             u[3] = force > 0 ? -force : 0;
             quad_store(&v->velocity[i + k], u);

@@ -41,8 +41,8 @@ static tobi_status check_prism(const tobi_body *b, tobi_error *err)
         vec3_normalize(n);
         if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
         return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism or "
-                         "cylinder along z", b->name);
+                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism "
+                         "or cylinder along z", b->name);
     }
     return TOBI_OK;
 }
@@ -205,13 +205,13 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
                          "allowed are x, y, z, turn_x, turn_y, turn_z, shift and turn", b->name, unknown);
     int turns = (hold | r->locked) >> 3;
     if (turns == 1 || turns == 2 || turns == 4)
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', the turn about one axis "
-                         "alone; allowed are none, two and three", b->name, out.hold);
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', the turn about one "
+                         "axis alone; allowed are none, two and three", b->name, out.hold);
     double sum = 0;
     for (int a = 0; a < 3; a++) sum += 0*out.force[a] + 0*out.torque[a];
     if (sum != 0)      /* 0 times a number is 0 */
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force or torque that is "
-                         "not finite at t = %.9g s", b->name, t);
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force or torque that "
+                         "is not finite at t = %.9g s", b->name, t);
     if (out.phase != in.phase) r->phase_start = t;
     r->phase = out.phase;
     r->hold = hold;

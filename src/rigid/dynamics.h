@@ -15,8 +15,9 @@ typedef struct tobi_rigid_world {
 
 typedef struct tobi_dynamics_state tobi_dynamics_state;
 
-/* Prepares the bodies' surfaces for contact, once. notes (room bytes) receives a line for what is odd, beginning
-   with a body's name: bodies that overlap, that nothing can touch. Owned by the caller; the bodies must stay where they are. */
+/* Prepares the bodies' surfaces for contact, once. notes (room bytes) receives a line for what is odd,
+   beginning with a body's name: bodies that overlap, that nothing can touch, that are taken for balls. The
+   caller owns *out; the array of bodies must stay where it is. */
 tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
                              size_t room, tobi_dynamics_state **out, tobi_error *err);
 void tobi_rigid_free(tobi_dynamics_state *state);
@@ -38,4 +39,5 @@ void tobi_rigid_count(const tobi_dynamics_state *state, int64_t *touching, int *
 enum { TOBI_WARM = 8 };
 int64_t tobi_rigid_warm(const tobi_dynamics_state *state, double *rows);
 /* Takes them back; rows that name no body are TOBI_DAMAGED. */
-tobi_status tobi_rigid_set_warm(tobi_dynamics_state *state, int64_t count, const double *rows, tobi_error *err);
+tobi_status tobi_rigid_set_warm(tobi_dynamics_state *state, int64_t count, const double *rows,
+                                tobi_error *err);

@@ -114,8 +114,9 @@ static const char DRIVER[] =
     "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
     "    count, look = 0, 256\n"
     "    local function three(k) return { from[k], from[k + 1], from[k + 2] } end\n"
-    "    local answer = h(from[0], { position = three(1), orientation = { from[4], from[5], from[6], from[7] },\n"
-    "        velocity = three(8), angular_velocity = three(11), contact_force = three(14),\n"
+    "    local answer = h(from[0], { position = three(1),\n"
+    "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8),\n"
+    "        angular_velocity = three(11), contact_force = three(14),\n"
     "        contact_torque = three(17), mass = from[20], phase = from[21], phase_time = from[22] })\n"
     "    if answer == nil then return end\n"
     "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
@@ -128,7 +129,8 @@ static const char DRIVER[] =
     "    take(answer.force, 'force', into, 0)\n"
     "    take(answer.torque, 'torque', into, 3)\n"
     "    if answer.phase ~= nil then\n"
-    "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or math.abs(answer.phase) > 1e9 then\n"
+    "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or\n"
+    "           math.abs(answer.phase) > 1e9 then\n"
     "            error('control must return a whole number as phase', 0)\n"
     "        end\n"
     "        into[6] = answer.phase\n"
@@ -333,7 +335,8 @@ tobi_status tobi_script_load(const char *path, const char *params_json, tobi_scr
     json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
     if (!json_is_object(params)) {
         json_decref(params);
-        return tobi_fail(err, TOBI_INVALID, "%s params: %s", role == TOBI_CONTROL_SCRIPT ? "control" : "motion",
+        return tobi_fail(err, TOBI_INVALID, "%s params: %s",
+                         role == TOBI_CONTROL_SCRIPT ? "control" : "motion",
                          params ? "must be a JSON object" : where.text);
     }
     tobi_script *script = calloc(1, sizeof *script);

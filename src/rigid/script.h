@@ -26,9 +26,9 @@
    what the script answered last: the only memory a script may have. hold names the axes that stand still in
    this step, like `locked` of a body.
 
-   The script sees `params` (motion.params or control.params of the scene: numbers, texts, true/false, arrays from 1,
-   objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring, type,
-   unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no files,
+   The script sees `params` (motion.params or control.params of the scene: numbers, texts, true/false,
+   arrays from 1, objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring,
+   type, unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no files,
    no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
    global is an error, because it is nearly always a misspelt name, and because a motion that
    remembers things would break restarts. */

@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SWEEPS = 50, LEAST_SWEEPS = 4, PUSH_SWEEPS = 10 };
+enum { LEAST_SWEEPS = 4, PUSH_SWEEPS = 10 };
+/* At most so many rows per step, between so many sweeps: few bodies are solved to the end, piles on time. */
+enum { ROWS = 40000, FEWEST_SWEEPS = 40, MOST_SWEEPS = 400 };
 #define SETTLED 1e-6       /* of the fastest approach: a sweep that changes less is the last one         */
 #define PUSH_SHARE 0.2     /* of an overlap beyond the slop, taken out per step                          */
 #define PUSH_MOST 2        /* slops, at most, per step                                                   */
@@ -27,6 +29,7 @@ struct tobi_solve_row {
     double target;                   /* m/s, the least speed apart                             */
     double friction;
     double pushed;                   /* of the displacements                                   */
+    double early;                    /* m, what bouncing before the gap has closed puts too far */
 };
 
 static void *grow(void *array, int64_t *capacity, int64_t count, size_t size)
@@ -77,7 +80,10 @@ static inline double part(const tobi_solve_row *r, int k, const double *a, const
     return vec3_dot(r->axis[k], d) + vec3_dot(r->lever_a[k], a + 3) - vec3_dot(r->lever_b[k], b + 3);
 }
 
-static inline double speed_along(const tobi_solve_row *r, int k) { return part(r, k, r->a->speed, r->b->speed); }
+static inline double speed_along(const tobi_solve_row *r, int k)
+{
+    return part(r, k, r->a->speed, r->b->speed);
+}
 
 static inline void drive(const tobi_solve_row *r, int k, double impulse, double *a, double *b)
 {
@@ -96,13 +102,17 @@ static inline void push(tobi_solve_row *r, int k, double impulse)
     drive(r, k, impulse, r->a->speed, r->b->speed);
 }
 
+static int is_fixed(const tobi_solve_body *b) { return b->shift[0] + b->shift[1] + b->shift[2] == 0; }
+
 /* Speed apart that a contact must reach (R.7): to bounce if it arrives in this step, or to close its gap
    and no more. */
 static void set_target(tobi_solve_row *r, double restitution, double dt, double bounce)
 {
     double speed = speed_along(r, 0), open = fmax(r->contact->gap, 0);
     r->target = -open/dt;
-    if (speed < -bounce && -speed*dt > open) r->target = fmax(r->target, -restitution*speed);
+    if (!(speed < -bounce && -speed*dt > open && -restitution*speed > r->target)) return;
+    r->target = -restitution*speed;
+    if (is_fixed(r->a) || is_fixed(r->b)) r->early = (1 + restitution)*open;
 }
 
 static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi_body *bodies)
@@ -194,18 +204,22 @@ static void go_on(tobi_solver *s, int64_t count, double beta)
 static void sweep_all(tobi_solver *s, int64_t count, double scale)
 {
     double before = 0;
+    int64_t most = ROWS/(count + 1);
+    most = most < FEWEST_SWEEPS ? FEWEST_SWEEPS : most > MOST_SWEEPS ? MOST_SWEEPS : most;
     s->sweeps = 0;
     for (;;) {
         for (int64_t i = 0; i < count; i++) memcpy(s->rows[i].was, s->rows[i].sum, sizeof s->rows[i].was);
         double change = sweep(s, count);
-        if (s->sweeps >= MOST_SWEEPS || (s->sweeps >= LEAST_SWEEPS && change <= SETTLED*scale)) return;
+        if (s->sweeps >= most || (s->sweeps >= LEAST_SWEEPS && change <= SETTLED*scale)) return;
         double now = measure_change(s, count), beta = before > 0 ? now/before : 0;
         go_on(s, count, beta < 1 ? beta : 0);
         before = now;
     }
 }
 
-/* Overlaps (R.10): the same sweeps for displacements along the normals. */
+/* Overlaps (R.10): the same sweeps for displacements along the normals. A bounce, which comes up to a step
+   early, is put where it would be had it met the surface; not between two bodies that move, whose angular
+   momentum about any point that would change. */
 static void push_out(tobi_solver *s, int64_t count)
 {
     for (int sweep = 0; sweep < PUSH_SWEEPS; sweep++)
@@ -213,8 +227,10 @@ static void push_out(tobi_solver *s, int64_t count)
             tobi_solve_row *r = &s->rows[k];
             double over = -r->contact->gap - r->contact->slop;
             double target = over > 0 ? fmin(PUSH_SHARE*over, PUSH_MOST*r->contact->slop) : over;
+            int bounced = r->early > 0 && r->sum[0] > 0;
+            if (bounced) target = -r->early;
             double more = r->mass[0]*(target - part(r, 0, r->a->push, r->b->push));
-            more = fmax(-r->pushed, more);
+            if (!bounced) more = fmax(-r->pushed, more);
             r->pushed += more;
             if (more != 0) drive(r, 0, more, r->a->push, r->b->push);
         }

@@ -7,9 +7,10 @@
 static const tobi_param rows[] = {
     { .key = "script", .type = TOBI_PARAM_TEXT, .offset = offsetof(tobi_control_def, script), .unit = "path",
       .required = true,
-      .doc = "A Lua file with a function control(t, body) that returns { force = {x, y, z}, torque = {x, y, z}, "
-             "phase = 2, hold = \"z,turn\" }, all of them optional; body has position, orientation, velocity, "
-             "angular_velocity, contact_force, contact_torque, mass, phase and phase_time." },
+      .doc = "A Lua file with a function control(t, body) that returns { force = {x, y, z}, torque = "
+             "{x, y, z}, phase = 2, hold = \"z,turn\" }, all of them optional; body has position, "
+             "orientation, velocity, angular_velocity, contact_force, contact_torque, mass, phase and "
+             "phase_time." },
     { 0 }
 };
 const tobi_param_table tobi_control_table = {

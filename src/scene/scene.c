@@ -6,6 +6,7 @@
 #include "scene/parts.h"
 #include "scene/write.h"
 #include "world/params.h"
+#include "world/world.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -360,6 +361,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = add_solid(world, &scene->solids[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
+    if (status == TOBI_OK) status = tobi_world_note_time_step(world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);
     return status;

@@ -20,16 +20,10 @@ static tobi_status check_free(const tobi_world *w, tobi_error *err)
     const tobi_simulation *s = &w->sim;
     for (int k = 0; k < s->body_count; k++) {
         const tobi_body *b = &s->bodies[k];
-        if (b->rigid.kind == TOBI_PRESCRIBED) continue;
-        if (!w->method->free_bodies)
+        if (b->rigid.kind != TOBI_PRESCRIBED && !w->method->free_bodies)
             return tobi_fail(err, TOBI_UNSUPPORTED,
                              "body '%s' is %s, which the method %s does not know yet; mlsmpm does", b->name,
                              b->rigid.kind == TOBI_FREE ? "free" : "controlled", w->method->name);
-        for (int a = 0; a < s->box.dimension; a++)
-            if (s->box.periodic[a])
-                return tobi_fail(err, TOBI_UNSUPPORTED,
-                                 "body '%s' moves by forces in a domain whose sides along %c are periodic; it "
-                                 "needs walls there", b->name, "xyz"[a]);
     }
     return TOBI_OK;
 }

@@ -280,8 +280,8 @@ static const tobi_param body_rows[] = {
     { .key = "mass", REAL, AT(tobi_body_def, mass), FROM(0), .unit = "kg", .text = "by density",
       .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
     { .key = "inertia", VEC3, AT(tobi_body_def, inertia), FROM(0), .unit = "kg m2", .text = "mesh",
-      .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain as "
-             "the body starts; mesh takes that of the mesh, for the mass it has." },
+      .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain "
+             "as the body starts; mesh takes that of the mesh, for the mass it has." },
     { .key = "inertia_products", VEC3, AT(tobi_body_def, inertia_products), ANY, .unit = "kg m2",
       .doc = "Entries xy, xz, yz of a given inertia matrix." },
     { .key = "velocity", VEC3, AT(tobi_body_def, velocity), ANY, .unit = "m/s",
@@ -302,8 +302,8 @@ static const tobi_param body_rows[] = {
       .doc = "Coulomb friction; of two bodies the square root of the product counts, at a side of the domain "
              "the body's." },
     { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
-      .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a free "
-             "or controlled body does not move, with commas between: \"x,y,turn\"." },
+      .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a "
+             "free or controlled body does not move, with commas between: \"x,y,turn\"." },
     { 0 }
 };
 

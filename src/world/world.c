@@ -195,8 +195,11 @@ static int needed_fields(const tobi_world *w)
     return owners;
 }
 
-static int64_t list_bytes(const tobi_simulation *s)
+/* Beside the fields: neighbour lists, or sorting, tiles and nodes of the grid (seen: 60 to 90). */
+static int64_t list_bytes(const tobi_world *w)
 {
+    const tobi_simulation *s = &w->sim;
+    if (w->method->fields & TOBI_MPM) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
     return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 16);
 }
@@ -206,12 +209,12 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
 {
     int64_t fluid = 0, body = 0;
     (void)err;
-    for (int k = 0; k < w->region_count; k++) fluid += tobi_region_count(&w->sim, &w->regions[k]);
+    for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
     for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
     if (w->started) fluid = w->sim.particles.count;
     *fluid_particles = fluid;
     *body_particles = body;
-    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(w)) + list_bytes(&w->sim)) + body*48;
+    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(w)) + list_bytes(w)) + body*48;
     return TOBI_OK;
 }
 
@@ -244,28 +247,33 @@ static double start_head(const tobi_world *w)
     return head;
 }
 
+/* The fastest point of a region: its velocity, and its spin at the farthest corner. */
 static double start_speed(const tobi_world *w)
 {
-    double v2 = 0;
+    double fastest = 0;
     for (int k = 0; k < w->region_count; k++) {
-        const double *v = w->regions[k].velocity;
-        v2 = fmax(v2, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+        const tobi_region *r = &w->regions[k];
+        double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
+                          0.5*(r->upper[2] - r->lower[2])};
+        double reach = r->radius > 0 ? r->radius : length(half);
+        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach);
     }
-    return sqrt(v2);
+    return fastest;
 }
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    int64_t fluid, body, bytes;
+    int64_t fluid, body, bytes, room = 0;
     if (w->started) return TOBI_OK;
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
-    if (fluid + body == 0)
+    for (int k = 0; k < w->region_count; k++) room += tobi_region_count(s, &w->regions[k]);
+    if (room + body == 0)
         return tobi_fail(err, TOBI_INVALID,
                          "no particles at all: the scene needs a fluid region or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_create(&s->particles, fluid, needed_fields(w), err));
+    TOBI_TRY(tobi_particles_create(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;

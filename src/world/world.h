@@ -30,6 +30,11 @@ struct tobi_world {
 tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
                                  tobi_error *err);
 
+/* Particles of a region: exact for boxes, from the volume for others. */
+int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
+/* Adds a note if the definition's fixed time step will be cut. */
+tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
+
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 

@@ -53,7 +53,8 @@ static inline tobi_body *rig_add(rig *g, const tobi_body_def *def)
     snprintf(name, sizeof name, "b%d", g->count);
     named.name = name;
     g->bodies = realloc(g->bodies, (size_t)(g->count + 1)*sizeof *g->bodies);
-    if (tobi_body_create(&g->bodies[g->count], &named, &g->box, 0.5, &err) != TOBI_OK) fail_msg("%s", err.text);
+    if (tobi_body_create(&g->bodies[g->count], &named, &g->box, 0.5, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
     return &g->bodies[g->count++];
 }
 
@@ -81,7 +82,8 @@ static inline tobi_body *rig_ball(rig *g, tobi_body_def def, double radius, cons
 static inline void rig_start(rig *g)
 {
     tobi_error err = { 0 };
-    if (tobi_rigid_start(g->bodies, g->count, &g->world, g->notes, sizeof g->notes, &g->state, &err) != TOBI_OK)
+    if (tobi_rigid_start(g->bodies, g->count, &g->world, g->notes, sizeof g->notes, &g->state, &err) !=
+        TOBI_OK)
         fail_msg("%s", err.text);
 }
 

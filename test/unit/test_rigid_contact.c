@@ -59,11 +59,13 @@ static void test_incline(void **state)
     (void)state;
     double slope = acos(-1)/6, spin;
     double way = run_incline(0.5, slope, &spin), exact = 5.0/14*9.81*sin(slope);
-    print_message("rolling: %.5f m, %.5f m (%.2f %%), spin r/v %.5f\n", way, exact, 100*(way/exact - 1), spin);
+    print_message("rolling: %.5f m, %.5f m (%.2f %%), spin r/v %.5f\n", way, exact, 100*(way/exact - 1),
+                  spin);
     assert_true(fabs(way/exact - 1) < 0.02 && fabs(spin - 1) < 1e-6);
     way = run_incline(0.1, slope, &spin);
     exact = 0.5*9.81*(sin(slope) - 0.1*cos(slope));
-    print_message("slipping: %.5f m, %.5f m (%.2f %%), spin r/v %.5f\n", way, exact, 100*(way/exact - 1), spin);
+    print_message("slipping: %.5f m, %.5f m (%.2f %%), spin r/v %.5f\n", way, exact, 100*(way/exact - 1),
+                  spin);
     assert_true(fabs(way/exact - 1) < 0.02 && spin < 0.9);
 }
 
@@ -201,9 +203,10 @@ static void test_balls(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bounce),       cmocka_unit_test(test_incline), cmocka_unit_test(test_box_on_slope),
-        cmocka_unit_test(test_stack),        cmocka_unit_test(test_turned_stack),
-        cmocka_unit_test(test_collision),    cmocka_unit_test(test_balls),
+        cmocka_unit_test(test_bounce),    cmocka_unit_test(test_incline),
+        cmocka_unit_test(test_box_on_slope), cmocka_unit_test(test_stack),
+        cmocka_unit_test(test_turned_stack), cmocka_unit_test(test_collision),
+        cmocka_unit_test(test_balls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

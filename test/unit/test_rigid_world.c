@@ -1,6 +1,9 @@
 /* Bodies that move by forces in a world: restart, threads, control programs, what is refused. */
 #include "rigid_rig.h"
 #include "rigid/script.h"
+#include "scene/report.h"
+#include "scene/scene.h"
+#include "world/world.h"
 #include <unistd.h>
 
 static void write_file(const char *path, const char *text)
@@ -33,8 +36,9 @@ static void build(scene *s, int threads)
     def.threads = threads;
     assert_int_equal(tobi_world_create(&def, NULL, &s->world, &err), TOBI_OK);
     write_file("control.lua", CONTROL);
-    assert_int_equal(tobi_script_load("control.lua", "{\"press\": 600}", TOBI_CONTROL_SCRIPT, &s->script, &err),
-                     TOBI_OK);
+    tobi_status status =
+        tobi_script_load("control.lua", "{\"press\": 600}", TOBI_CONTROL_SCRIPT, &s->script, &err);
+    assert_int_equal(status, TOBI_OK);
     for (int k = 0; k < 12; k++) {
         tobi_body_def b = tobi_default_body_def();
         char name[16];
@@ -52,7 +56,8 @@ static void build(scene *s, int threads)
             b.box_min[a] = -0.2 - 0.05*a;
             b.box_max[a] = 0.2 + 0.05*a;
         }
-        memcpy(b.translation, (double[3]){ 1 + 1.0*(k%3), 1 + 0.9*(k/3%2), 1 + 1.0*(k/6) }, sizeof b.translation);
+        double at[3] = { 1 + 1.0*(k%3), 1 + 0.9*(k/3%2), 1 + 1.0*(k/6) };
+        memcpy(b.translation, at, sizeof at);
         assert_int_equal(tobi_world_add_body(s->world, &b, &err), TOBI_OK);
     }
 }
@@ -88,8 +93,8 @@ static void test_restart(void **state)
     if (tobi_world_load(c.world, "bodies.h5", &err) != TOBI_OK) fail_msg("%s", err.text);
     assert_true(run_to(c.world, 1.5) == whole);
     assert_int_equal(tobi_world_body(c.world, 0, &info), TOBI_OK);
-    print_message("controlled body at %g %g %g m, %g m/s\n", info.position[0], info.position[1], info.position[2],
-                  info.velocity[0]);
+    print_message("controlled body at %g %g %g m, %g m/s\n", info.position[0], info.position[1],
+                  info.position[2], info.velocity[0]);
     assert_true(fabs(info.position[2] - 0.5) < 0.1);
     destroy(&a);
     destroy(&b);
@@ -100,8 +105,9 @@ static void test_restart(void **state)
 static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *err)
 {
     tobi_script *script;
-    tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 }, .velocity = { 4, 5, 6 },
-                              .angular_velocity = { 7, 8, 9 }, .contact_force = { 10, 11, 12 },
+    tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 },
+                              .velocity = { 4, 5, 6 }, .angular_velocity = { 7, 8, 9 },
+                              .contact_force = { 10, 11, 12 },
                               .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18 };
     write_file("ask.lua", text);
     TOBI_TRY(tobi_script_load("ask.lua", NULL, TOBI_CONTROL_SCRIPT, &script, err));
@@ -120,7 +126,8 @@ static void test_control_script(void **state)
     tobi_error err = { 0 };
     assert_int_equal(ask("function control(t, b)\n"
                          "    local sum = t + b.orientation[1] + b.mass + b.phase + b.phase_time\n"
-                         "    for k = 1, 3 do sum = sum + b.position[k] + b.velocity[k] + b.angular_velocity[k]\n"
+                         "    for k = 1, 3 do\n"
+                         "        sum = sum + b.position[k] + b.velocity[k] + b.angular_velocity[k]\n"
                          "        + b.contact_force[k] + b.contact_torque[k] end\n"
                          "    return { force = { sum, b.position[2], b.contact_force[3] },\n"
                          "             torque = b.velocity, phase = 3, hold = 'x,turn' }\n"
@@ -150,7 +157,8 @@ static void test_control_script(void **state)
         assert_non_null(strstr(err.text, "control script"));
     }
     tobi_script *script;
-    assert_int_equal(tobi_script_load("nowhere.lua", "[1]", TOBI_CONTROL_SCRIPT, &script, &err), TOBI_INVALID);
+    assert_int_equal(tobi_script_load("nowhere.lua", "[1]", TOBI_CONTROL_SCRIPT, &script, &err),
+                     TOBI_INVALID);
     assert_non_null(strstr(err.text, "control params: must be a JSON object"));
 }
 
@@ -217,6 +225,71 @@ static void test_refused(void **state)
     expect_failure(&def, &b, TOBI_UNSUPPORTED, "prism or cylinder along z");
 }
 
+static void expect_line(const char *body, const char *method, const char *begin, const char *contains)
+{
+    char text[2000];
+    tobi_scene *s;
+    tobi_report *report;
+    tobi_error err = { 0 };
+    snprintf(text, sizeof text,
+             "{ \"method\": \"%s\", \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] },\n"
+             "\"spacing\": 0.1, \"end_time\": 1, \"%s\": [ { \"name\": \"m\", \"fill\": [\n"
+             "{ \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.1] } } ] } ], \"bodies\": [\n"
+             "{ \"name\": \"b\", \"box\": { \"min\": [0.4, 0.4, 0.4], \"max\": [0.6, 0.6, 0.6] }, %s } ] }",
+             method, strcmp(method, "dfsph") == 0 ? "fluids" : "solids", body);
+    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &s, &report, &err), TOBI_INVALID);
+    const char *line = tobi_report_line(report, 0);
+    if (!strstr(line, begin) || !strstr(line, contains)) fail_msg("%s without %s%s", line, begin, contains);
+    assert_int_equal(tobi_report_count(report), 1);
+    tobi_report_free(report);
+}
+
+/* The same mistakes in a scene, with their places. */
+static void test_scene_mistakes(void **state)
+{
+    (void)state;
+    const char *at = "bodies[0].dynamics: ", *control = "bodies[0].control: ";
+    write_file("good.lua", "function control() end");
+    write_file("place.lua", "function place() return 0, 0, 0 end");
+    expect_line("\"dynamics\": \"free\"", "dfsph", at, "need the method \"mlsmpm\", dfsph does not");
+    expect_line("\"dynamics\": \"fre\"", "mlsmpm", at, "did you mean \"free\"?");
+    expect_line("\"dynamics\": \"free\", \"motion\": { \"translation\": { \"velocity\": [1, 0, 0] } }",
+                "mlsmpm", "bodies[0].motion: ", "is for prescribed bodies, this one is free");
+    expect_line("\"dynamics\": \"controlled\"", "mlsmpm", control, "has a control program");
+    expect_line("\"dynamics\": \"free\", \"control\": { \"script\": \"good.lua\" }", "mlsmpm", control,
+                "whose dynamics is \"controlled\"");
+    expect_line("\"dynamics\": \"controlled\", \"control\": { \"script\": \"place.lua\" }", "mlsmpm",
+                "bodies[0].control.script: ", "define function control(t, body)");
+    expect_line("\"dynamics\": \"controlled\", \"control\": { \"script\": \"good.lua\", \"params\": 3 }",
+                "mlsmpm", "bodies[0].control.params: ", "must be an object");
+    expect_line("\"friction_coefficient\": -1", "mlsmpm", "bodies[0].friction_coefficient: ", "allowed is");
+    remove("good.lua");
+    remove("place.lua");
+}
+
+static void test_damaged(void **state)
+{
+    (void)state;
+    scene s;
+    tobi_error err = { 0 };
+    double row[TOBI_WARM] = { 0, 1, 4, 0, 1, 0, 0, 0 };
+    build(&s, 1);
+    run_to(s.world, 0.1);
+    assert_int_equal(tobi_rigid_set_warm(s.world->dynamics, 1, row, &err), TOBI_OK);
+    row[1] = 99;
+    assert_int_equal(tobi_rigid_set_warm(s.world->dynamics, 1, row, &err), TOBI_DAMAGED);
+    assert_non_null(strstr(err.text, "names no body"));
+    row[4] = NAN;
+    assert_int_equal(tobi_rigid_set_warm(s.world->dynamics, 1, row, &err), TOBI_DAMAGED);
+    assert_non_null(strstr(err.text, "is no number"));
+    s.world->sim.bodies[3].rigid.momentum[1] = NAN;
+    assert_int_equal(tobi_world_save(s.world, "bodies.h5", &err), TOBI_OK);
+    assert_int_equal(tobi_world_load(s.world, "bodies.h5", &err), TOBI_DAMAGED);
+    assert_non_null(strstr(err.text, "state of body 'b3' is no number"));
+    remove("bodies.h5");
+    destroy(&s);
+}
+
 /* Overlaps at the start are said and pushed apart. */
 static void test_overlap(void **state)
 {
@@ -279,6 +352,7 @@ int main(void)
     char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;

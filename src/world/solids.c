@@ -1,0 +1,61 @@
+/* What a world tells about its solids. */
+#include "base/error.h"
+#include "world/params.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdio.h>
+
+int tobi_world_solid_count(const tobi_world *w) { return w->sim.solid_count; }
+
+static double cell_of(const tobi_world *w)
+{
+    double d = w->sim.smoothing.spacing;
+    return w->sim.box.dimension == 3 ? d*d*d : d*d;
+}
+
+int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
+{
+    int64_t most = tobi_region_count(&w->sim, r);
+    double about = floor(r->volume/cell_of(w) + 0.5);
+    return (r->shape.triangle_count || r->radius > 0) && about < (double)most ? (int64_t)about : most;
+}
+
+tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *info)
+{
+    const tobi_simulation *s = &w->sim;
+    if (solid < 0 || solid >= s->solid_count) return TOBI_NOT_FOUND;
+    *info = (tobi_solid_info){ .name = s->solids[solid].name, .density = s->solids[solid].def.density };
+    for (int k = 0; k < w->region_count; k++) {
+        if (w->regions[k].owner != solid) continue;
+        info->volume += w->regions[k].volume;
+        if (!w->started) info->particles += tobi_world_guess_particles(w, &w->regions[k]);
+    }
+    info->mass = info->density*info->volume;
+    if (w->method->stable_dt) info->time_step = w->method->stable_dt(s, w->method_def, solid);
+    if (!w->started) return TOBI_OK;
+    info->mass = 0;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        if (s->particles.fluid[i] != solid) continue;
+        info->particles++;
+        info->mass += s->particles.strain[i].c[2].w;
+    }
+    return TOBI_OK;
+}
+
+double tobi_world_stable_step(const tobi_world *w)
+{
+    double least = INFINITY;
+    for (int k = 0; k < w->sim.solid_count && w->method->stable_dt; k++)
+        least = fmin(least, w->method->stable_dt(&w->sim, w->method_def, k));
+    return isfinite(least) ? least : 0;
+}
+
+tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
+{
+    double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w);
+    char text[160];
+    if (!(stable > 0) || wish <= stable) return TOBI_OK;
+    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids allows: "
+             "each is cut into %.0f or more\n", wish, stable, ceil(wish/stable*(1 - 1e-9)));
+    return tobi_world_add_notes(w, "world", "time_step", text, err);
+}
