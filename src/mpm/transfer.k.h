@@ -54,7 +54,7 @@ TOBI_FN void mpm_store_columns(tobi_columns *to, int count, const lane m[9], con
     for (int c = 0; c < 3; c++) lane_store_float4(&to->c[c], 3, count, m[c], m[3 + c], m[6 + c], w[c]);
 }
 
-/* 1 if the eight particles from i on are of one solid. Rows are padded, so that they may be read past the end. */
+/* 1 if the eight particles from i on are of one solid. Rows are padded: they may be read past the end. */
 TOBI_FN int mpm_is_uniform(const uint8_t *solid)
 {
     int same = 1;
@@ -327,7 +327,11 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], inverse = mass > 0 ? 1/mass : 0;
         quad u = sum[n]*quad_set(inverse);
-        if (v->old) quad_store(&v->old[number*nodes + n], calm[n]*quad_set(inverse));
+        if (v->old) {
+            quad before = calm[n]*quad_set(inverse);
+            if (v->wave) quad_store(&v->wave[number*nodes + n], before);
+            quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
+        }
         if (mass > 0) u = u + fall;
         if (g->planes && mass > 0) {
             float after[3] = {u[0], u[1], u[2]};
@@ -410,6 +414,47 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const double size[3], int dim)
     return out;
 }
 
+/* XPIC, eq. (16): the velocity `wave` goes to the particles and back to the tiles, */
+TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
+    row g[9] = {0};
+    (void)totals;
+    mpm_copy_tile(v->wave, b->around, tile, dim);
+    for (int n = 0; n < 8; n++) tile[nodes + n] = (tobi_float4){0, 0, 0, 0};
+    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
+        const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
+        mpm_stencil s;
+        mpm_find_stencil(v, b, i, dim, &s);
+        for (int k = 0; k < count; k++) {
+            quad u, unused[3];
+            mpm_load_rows(tile, s.first[k], g, dim);
+            mpm_interpolate(g, &s, k, 0, dim, &u, unused);
+            u[3] = 1;
+            mpm_add_calm(calm, &s, k, u*quad_set(v->strain[i + k].c[2].w), dim);
+        }
+    }
+}
+
+/* and from there to the nodes; `old` takes its share. */
+TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    quad sum[MPM_NODES_3D];
+    (void)totals;
+    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    for (int n = 0; n < nodes; n++) {
+        const float mass = sum[n][3];
+        const int64_t at = number*nodes + n;
+        quad u = sum[n]*quad_set(mass > 0 ? 1/mass : 0);
+        quad_store(&v->wave[at], u);
+        quad_store(&v->old[at], quad_load(&v->old[at]) - u*quad_set(v->order));
+    }
+}
+
 /* Velocities, their gradients and new positions of a block's particles.
    totals: 0 particles that had to be kept inside the domain, 6 largest speed squared, 7 largest way along an
    axis, m. */
@@ -454,7 +499,7 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
             if (edge) totals[0] += mpm_keep_inside(&position[i + k], v->size, dim);
             far = quad_larger(far, u*u);
             if (flip) {
-                quad before, unused[3], own = quad_load(&velocity[i + k])*quad_set(material->keep);
+                quad before, unused[3], own = quad_load(&velocity[i + k])*quad_set(material->keep*v->own);
                 mpm_interpolate(h, &s, k, scale, dim, &before, unused);
                 u = u + quad_set(v->flip)*(own - before);
             }
