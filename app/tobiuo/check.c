@@ -14,8 +14,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return parse_scene_option(state, key, value, &o->set, &o->scene);
 }
 
-/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of a fall through the domain, the fastest that
-   gravity alone can make: a run is seldom slower than this. Without gravity there is no guess. */
+/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of
+   a fall through the domain, the fastest that gravity alone can make: a run is seldom slower than this.
+   Without gravity there is no guess. */
 static double guess_step(const tobi_world_def *d, double stable)
 {
     if (d->time_step > 0.0) return stable > 0.0 ? d->time_step / ceil(d->time_step / stable) : d->time_step;
