@@ -68,5 +68,7 @@ tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
+/* A box around the body at its present pose, from the domain's lower corner; m. */
+void tobi_body_box(const tobi_body *b, double min[3], double max[3]);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */
 void tobi_body_report(tobi_body *b);

@@ -160,7 +160,7 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     int64_t runs;
     if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
     tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
-    tobi_bvh_box(b->bvh, at.low, at.high);
+    tobi_body_box(b, at.low, at.high);
     for (int a = 0; a < 3; a++) {
         at.low[a] -= step->radius + step->margin;
         at.high[a] += step->radius + step->margin;

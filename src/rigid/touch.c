@@ -394,8 +394,8 @@ static void meet_ball_surface(pair *p)
 
 static double squared(double x) { return x*x; }
 
-/* Of many contacts the deepest, and then always the one that is farthest from those kept; those nearly as deep
-   come first, since a ring on the floor stands on them and not on what is wider and higher. */
+/* Of many contacts the deepest, and then always the one that is farthest from those kept; those nearly as
+   deep come first, since a ring on the floor stands on them and not on what is wider and higher. */
 void tobi_touch_thin(tobi_touch_list *out, int64_t first)
 {
     enum { MOST = 16 };

@@ -59,15 +59,16 @@ static void test_torus(void **state)
     rig_start(&g);
     for (int i = 0; i < 4000; i++) rig_step(&g, 1e-3);
     const tobi_rigid *ball = &g.bodies[1].rigid;
-    print_message("ball in torus at %.4f %.4f %.4f m, smooth torus %.4f m, energy %.2g J\n", ball->position[0],
-                  ball->position[1], ball->position[2], rest, rig_energy(&g));
+    print_message("ball in torus at %.4f %.4f %.4f m, smooth torus %.4f m, energy %.2g J\n",
+                  ball->position[0], ball->position[1], ball->position[2], rest, rig_energy(&g));
     /* the torus is a polyhedron: its facets lie up to 1 % of the minor radius inside */
     assert_true(fabs(ball->position[2] - rest) < 0.01 && rig_energy(&g) < 1e-6);
     assert_true(hypot(ball->position[0] - 5, ball->position[1] - 5) < 0.01);
     rig_close(&g);
 }
 
-/* 50 m/s at 60 steps a second are 0.8 m a step (fewer when they turn fast): nothing passes a plate of 20 mm. */
+/* 50 m/s at 60 steps a second are 0.8 m a step (shorter ones when they turn fast): nothing passes a plate
+   of 20 mm. */
 static void test_speed(void **state)
 {
     (void)state;
