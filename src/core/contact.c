@@ -153,24 +153,6 @@ static tobi_status reserve(tobi_contacts *c, int64_t count, tobi_error *err)
     return c->room ? TOBI_OK : fail_memory(count, err);
 }
 
-/* The box around the body where it is now, with all who may touch it. */
-static void find_box(pose *at)
-{
-    const tobi_body *b = at->body;
-    double low[3], high[3], near = at->step->radius + at->step->margin;
-    tobi_bvh_box(b->deforms ? b->bvh : b->rest_bvh, low, high);
-    for (int a = 0; a < 3; a++) {
-        double middle = b->deforms ? 0.5*(low[a] + high[a]) : b->rigid.position[a];
-        double half = b->deforms ? 0.5*(high[a] - low[a]) : 0;
-        for (int k = 0; k < 3 && !b->deforms; k++) {
-            middle += at->matrix[a][k]*0.5*(low[k] + high[k]);
-            half += fabs(at->matrix[a][k])*0.5*(high[k] - low[k]);
-        }
-        at->low[a] = middle - half - near;
-        at->high[a] = middle + half + near;
-    }
-}
-
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
 {
@@ -178,7 +160,11 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     int64_t runs;
     if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
     tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
-    find_box(&at);
+    tobi_body_box(b, at.low, at.high);
+    for (int a = 0; a < 3; a++) {
+        at.low[a] -= step->radius + step->margin;
+        at.high[a] += step->radius + step->margin;
+    }
     while ((c->count = search(c, &at, p, &runs, x)) > c->room) TOBI_TRY(reserve(c, c->count, err));
     int64_t n = 0;
     for (int64_t k = 0; k < runs; k++) {       /* in the order of the chunks, whoever was first */

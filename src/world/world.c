@@ -341,6 +341,7 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     TOBI_TRY(tobi_world_start(w, err));
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
     w->fresh = 0;
+    tobi_world_cap_step(w);
     tobi_status status = w->method->step(s, w->method_state, max_dt, err);
     if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
     if (status != TOBI_OK) {

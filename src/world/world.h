@@ -14,6 +14,7 @@ struct tobi_world {
     void *method_def;              /* copy of the method's parameters                        */
     void *method_state;
     struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
+    double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
     tobi_region *regions;
     int region_count;
     tobi_probe *probes;
