@@ -119,6 +119,25 @@ static void a_long_time_step_is_told(void **state)
     tobi_scene_free(scene);
 }
 
+/* A body in the middle of the ball: what it takes away is told. */
+static void bodies_in_solids_are_told(void **state)
+{
+    (void)state;
+    tobi_scene *scene = parse(make(ball, ", \"bodies\": [ { \"name\": \"b\", "
+                                         BOX("[0, 0, 0]", "[0.2, 0.2, 0.2]") " } ]"));
+    tobi_world *world;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
+    assert_null(tobi_world_note(world, 0));
+    assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+    const char *note = tobi_world_note(world, 0);
+    assert_non_null(note);
+    assert_non_null(strstr(note, "solid 'it': 8 of "));
+    assert_non_null(strstr(note, "particles lie inside bodies"));
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
 static void bad_solids_are_refused_in_words(void **state)
 {
     (void)state;
@@ -204,6 +223,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_have_solids),
         cmocka_unit_test(a_long_time_step_is_told),
+        cmocka_unit_test(bodies_in_solids_are_told),
         cmocka_unit_test(bad_solids_are_refused_in_words),
         cmocka_unit_test(bad_regions_are_refused_in_words),
         cmocka_unit_test(methods_refuse_what_they_do_not_know),
