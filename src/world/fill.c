@@ -138,7 +138,7 @@ static int inside_region(const tobi_region *r, const tobi_bvh *tree, const doubl
     return !(r->radius > 0) || d2 < r->radius*r->radius;
 }
 
-tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
+tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, int64_t *cut, tobi_error *err)
 {
     int64_t n[3], first = s->particles.count, whole = 0;
     double step[3];
@@ -172,6 +172,7 @@ tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_erro
                 if (!out && !inside_body(s, x)) add_particle(s, r, x);
             }
     set_volumes(s, r, first, whole);
+    *cut = whole - (s->particles.count - first);
     free(c.point);
     tobi_bvh_free(tree);
     return TOBI_OK;

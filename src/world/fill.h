@@ -14,5 +14,6 @@ typedef struct tobi_region {
 
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
 int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r);
-/* Appends the region's particles to s->particles (capacity must suffice). */
-tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err);
+/* Appends the region's particles to s->particles (capacity must suffice). *cut: how many more would be there
+   if no body and no side of the domain were. */
+tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, int64_t *cut, tobi_error *err);
