@@ -313,6 +313,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
         grid_to_particles(s, m, &clock);
+        tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
     }
     TOBI_TRY(move_bodies(s, &clock, err));
