@@ -18,6 +18,7 @@ void tobi_contact_free(tobi_contacts *c)
     free(c->run);
     free(c->chunk_box);
     free(c->partial);
+    free(c->shift);
     memset(c, 0, sizeof *c);
 }
 
@@ -31,6 +32,7 @@ static tobi_status fail_memory(int64_t contacts, tobi_error *err)
 tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err)
 {
     int64_t chunks = count_chunks(p->count);
+    c->shift_count = 0;
     if (chunks > c->chunk_room) {
         free(c->run);
         free(c->chunk_box);
@@ -153,6 +155,17 @@ static tobi_status reserve(tobi_contacts *c, int64_t count, tobi_error *err)
     return c->room ? TOBI_OK : fail_memory(count, err);
 }
 
+static tobi_status reserve_shifts(tobi_contacts *c, tobi_error *err)
+{
+    int64_t need = c->shift_count + c->count;
+    if (need <= c->shift_room) return TOBI_OK;
+    tobi_shift *more = realloc(c->shift, (size_t)(need + need/4)*sizeof *more);
+    if (!more) return fail_memory(need, err);
+    c->shift = more;
+    c->shift_room = need + need/4;
+    return TOBI_OK;
+}
+
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
 {
@@ -166,6 +179,7 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
         at.high[a] += step->radius + step->margin;
     }
     while ((c->count = search(c, &at, p, &runs, x)) > c->room) TOBI_TRY(reserve(c, c->count, err));
+    TOBI_TRY(reserve_shifts(c, err));
     int64_t n = 0;
     for (int64_t k = 0; k < runs; k++) {       /* in the order of the chunks, whoever was first */
         memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
@@ -345,6 +359,19 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
     }
 }
 
+/* The part of an overlap that is mended in one step, m. */
+static double find_push(const tobi_contact *k, const tobi_contact_step *step)
+{
+    return k->gap < 0 ? fmin(-0.2*k->gap, 0.1*step->radius) : 0;
+}
+
+void tobi_contact_shift(tobi_contacts *c, tobi_particles *p)
+{
+    for (int64_t n = 0; n < c->shift_count; n++)
+        for (int a = 0; a < 3; a++) (&p->position[c->shift[n].particle].x)[a] += c->shift[n].by[a];
+    c->shift_count = 0;
+}
+
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
                             double *far, tobi_exec *x)
 {
@@ -367,10 +394,15 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
             }
             sum[12] += normal > 0;
             p->velocity[k->particle].w = (float)(normal/dt);
-            double push = k->gap < 0 ? fmin(-0.2*k->gap, 0.1*step->radius) : 0;
-            for (int a = 0; a < step->dimension; a++) (&p->position[k->particle].x)[a] += push*k->normal[a];
-            sum[13] = fmax(sum[13], push);
+            sum[13] = fmax(sum[13], find_push(k, step));
         }
+    }
+    for (int64_t n = 0; n < c->count; n++) {
+        const tobi_contact *k = &c->list[n];
+        if (!(k->gap < 0)) continue;
+        tobi_shift *shift = &c->shift[c->shift_count++];
+        *shift = (tobi_shift){ .particle = k->particle };
+        for (int a = 0; a < step->dimension; a++) shift->by[a] = find_push(k, step)*k->normal[a];
     }
     for (int64_t q = 0; q < parts; q++) {
         for (int n = 0; n < IMPULSES - 1; n++) total[n] += c->partial[q*SUMS + n];

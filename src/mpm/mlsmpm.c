@@ -40,12 +40,19 @@ static void choose_smoothing(const void *def, int *shape, double *support)
     *support = 2;
 }
 
+/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; in plane strain, where
+   the stress out of the plane is the mean of the others in flow, theirs there. */
+static double find_cone(const tobi_solid_def *d, int dimension)
+{
+    double sine = sin(d->friction_angle*acos(-1)/180);
+    return dimension == 2 ? sqrt(2.0)/3*sine : sqrt(2.0/3)*2*sine/(3 - sine);
+}
+
 /* Constants of a material, and how fast sound is in it; hardened snow is up to e^2 times as stiff. */
-static mpm_material describe_material(const tobi_solid_def *d, double *sound)
+static mpm_material describe_material(const tobi_solid_def *d, int dimension, double *sound)
 {
     double mu = d->youngs_modulus/(2*(1 + d->poissons_ratio));
     double lambda = d->youngs_modulus*d->poissons_ratio/((1 + d->poissons_ratio)*(1 - 2*d->poissons_ratio));
-    double sine = sin(d->friction_angle*acos(-1)/180);
     double stiffness = d->model == TOBI_LIQUID ? d->bulk_modulus : lambda + 2*mu;
     if (d->model == TOBI_SNOW && d->hardening > 0) stiffness *= exp(2);
     *sound = d->model == TOBI_STATIONARY ? 0 : sqrt(stiffness/d->density);
@@ -53,7 +60,7 @@ static mpm_material describe_material(const tobi_solid_def *d, double *sound)
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)(sqrt(2.0/3)*2*sine/(3 - sine)), .keep = 1 };
+        .friction = (float)find_cone(d, dimension), .keep = 1 };
 }
 
 static double viscous_limit(const tobi_solid_def *d, double cell)
@@ -134,7 +141,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     for (int k = 0; k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
-        m->material[k] = describe_material(d, &sound);
+        m->material[k] = describe_material(d, s->box.dimension, &sound);
         m->damping[k] = d->damping;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
@@ -161,7 +168,7 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
     const tobi_mlsmpm_def *m = def;
     const tobi_solid_def *d = &s->solids[solid].def;
     double cell = m->cell*s->smoothing.spacing, sound;
-    describe_material(d, &sound);
+    describe_material(d, s->box.dimension, &sound);
     return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
 }
 
@@ -329,6 +336,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
         grid_to_particles(s, m, &clock);
+        tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
     }
     TOBI_TRY(move_bodies(s, &clock, err));
