@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { PASSES = 16 };
-#define REACH 1.3                      /* spacings; densest packings of this density have neighbours at 1.12 */
+#define REACH 1.3                      /* spacings; in the densest packing neighbours would be 1.12 apart */
 #define STIFFNESS 0.2                  /* share of an overlap taken out in a pass */
 #define MOST 0.2                       /* spacings, of one pass */
 #define JITTER 0.45                    /* spacings */

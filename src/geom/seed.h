@@ -13,8 +13,8 @@ typedef struct tobi_seed_shape {
 
 /* Moves `count` points (m), which come from a lattice of the given spacing (m) inside the shape: scatters
    them by random numbers that depend on `number` and their order alone, then lets them repel each other and
-   their images behind the surface, so that they fill the shape evenly (in the manner of Colagrossi et al. 2012,
-   Comput. Phys. Commun. 183, 1641). Nearest neighbours end up 0.95 spacings apart on average, seldom
+   their images behind the surface, so that they fill the shape evenly (in the manner of Colagrossi et al.
+   2012, Comput. Phys. Commun. 183, 1641). Nearest neighbours end up 0.95 spacings apart on average, seldom
    less than 0.75. The same points for any number of threads. */
 tobi_status tobi_seed_scatter(const tobi_seed_shape *shape, double spacing, uint64_t number, int64_t count,
                               double (*points)[3], int threads, tobi_error *err);

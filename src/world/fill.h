@@ -1,5 +1,5 @@
-/* Where fluids and solids start: lattice points of boxes, spheres and meshes, or as many scattered ones, minus
-   those inside bodies. */
+/* Where fluids and solids start: lattice points of boxes, spheres and meshes, or as many scattered ones,
+   minus those inside bodies. */
 #pragma once
 #include "core/simulation.h"
 
