@@ -290,7 +290,8 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, room, needed_fields(w), err));
-    TOBI_TRY(fill_regions(w, err));
+    for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     if (n + body == 0)
