@@ -57,3 +57,5 @@ void bench_print_stages(const bench_run *run);
 
 /* bench_ball.c: the case of the material point method. */
 int bench_ball(const bench_options *o);
+/* bench_bodies.c: rigid bodies. */
+int bench_bodies(const bench_options *o);

@@ -14,8 +14,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return parse_scene_option(state, key, value, &o->set, &o->scene);
 }
 
-/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of a fall through the domain, the fastest that
-   gravity alone can make: a run is seldom slower than this. Without gravity there is no guess. */
+/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of
+   a fall through the domain, the fastest that gravity alone can make: a run is seldom slower than this.
+   Without gravity there is no guess. */
 static double guess_step(const tobi_world_def *d, double stable)
 {
     if (d->time_step > 0.0) return stable > 0.0 ? d->time_step / ceil(d->time_step / stable) : d->time_step;
@@ -64,6 +65,7 @@ static int check_world(tobi_scene *scene)
     int64_t fluid = 0, bodies = 0, bytes = 0;
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = tobi_world_estimate(world, &fluid, &bodies, &bytes, &err);
+    if (status == TOBI_OK && fluid == 0 && bodies > 0) status = tobi_world_start(world, &err);
     if (status == TOBI_OK) {
         print_scene(scene, world);
         print_solids(world, tobi_scene_world_def(scene)->dimension);

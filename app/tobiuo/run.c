@@ -49,6 +49,7 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     tobi_status status =
         tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved, &run, &err);
     free(resolved);
+    if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     if (status != TOBI_OK) return complain("%s", err.text);
     drive_options d = { dir, tobi_scene_world_def(scene)->end_time, o->quiet };
     int code = drive(world, run, &d);
@@ -62,7 +63,6 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     tobi_world *world = NULL;
     char *dir = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
-    if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     int length =
         o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
     if (tobi_scene_import_table(scene) && !o->quiet)

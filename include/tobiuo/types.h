@@ -221,7 +221,7 @@ typedef struct tobi_output_def {
     double      checkpoint_interval;  /* s of simulated time between checkpoints; 0 = only at the end */
     int         compression;          /* tobi_compression                                             */
     double      probe_interval;       /* s of simulated time between rows of probes.csv; 0 = every step */
-    const char *fields;               /* names separated by commas; see tobi_world_field_name         */
+    const char *fields;               /* names separated by commas, see tobi_world_field_name; "usual" */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
     int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */

@@ -173,7 +173,7 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     int64_t runs;
     if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
     tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
-    tobi_bvh_box(b->bvh, at.low, at.high);
+    tobi_body_box(b, at.low, at.high);
     for (int a = 0; a < 3; a++) {
         at.low[a] -= step->radius + step->margin;
         at.high[a] += step->radius + step->margin;
@@ -416,5 +416,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         b->info.viscous_force[a] = total[6 + a]/dt;
         b->info.viscous_torque[a] = total[9 + a]/dt;
     }
+    /* It moves as it will, or a resting body would fall into the material by g dt^2 in every step. */
+    if (b->rigid.kind != TOBI_PRESCRIBED && c->count > 0) tobi_body_correct(b, c->velocity, c->spin, dt);
     return (int64_t)total[12];
 }

@@ -10,11 +10,11 @@ enum { BLOCK = 4, KEY_BITS = 6, MOST_BLOCKS = 1 << 26 };
 static int tile_nodes(const mpm_grid *g) { return (g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8; }
 static int block_nodes(const mpm_grid *g) { return g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D; }
 
-tobi_status mpm_grid_create(mpm_grid *g, int dimension, int keep_old, const tobi_exec *x, tobi_error *err)
+tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_exec *x, tobi_error *err)
 {
     memset(g, 0, sizeof *g);
     g->dimension = dimension;
-    g->keep_old = keep_old;
+    g->layers = layers;
     g->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *g->histogram);
     return g->histogram ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the grid");
 }
@@ -22,13 +22,13 @@ tobi_status mpm_grid_create(mpm_grid *g, int dimension, int keep_old, const tobi
 void mpm_grid_free(mpm_grid *g)
 {
     free(g->block); free(g->patch); free(g->block_key); free(g->patch_key);
-    free(g->node); free(g->old); free(g->scratch); free(g->histogram);
+    free(g->node); free(g->old); free(g->wave); free(g->scratch); free(g->histogram);
     memset(g, 0, sizeof *g);
 }
 
 int64_t mpm_grid_bytes(const mpm_grid *g)
 {
-    int64_t node = (int64_t)sizeof(tobi_float4)*block_nodes(g)*(g->keep_old ? 2 : 1);
+    int64_t node = (int64_t)sizeof(tobi_float4)*block_nodes(g)*g->layers;
     return g->scratch_bytes + g->block_room*(int64_t)(sizeof(mpm_block) + sizeof(uint32_t)) +
            g->patch_room*(node + (int64_t)(sizeof(mpm_patch) + sizeof(uint32_t)));
 }
@@ -74,7 +74,8 @@ static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
         if (!grow((void **)&g->patch, g->patch_room, sizeof *g->patch) ||
             !grow((void **)&g->patch_key, g->patch_room, sizeof *g->patch_key) ||
             !grow((void **)&g->node, nodes, sizeof *g->node) ||
-            (g->keep_old && !grow((void **)&g->old, nodes, sizeof *g->old))) {
+            (g->layers > 1 && !grow((void **)&g->old, nodes, sizeof *g->old)) ||
+            (g->layers > 2 && !grow((void **)&g->wave, nodes, sizeof *g->wave))) {
             g->patch_room = 0;
             return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
         }
@@ -264,7 +265,8 @@ static tobi_status reserve_rest(mpm_grid *g, tobi_exec *x, tobi_error *err)
 {
     int64_t most = g->patch_count > g->block_count ? g->patch_count : g->block_count;
     TOBI_TRY(tobi_exec_reserve(x, most*TOBI_BLOCK, err));
-    return reserve_scratch(g, g->block_count*tile_nodes(g)*(g->keep_old ? 2 : 1)*(int64_t)sizeof(tobi_float4), err);
+    int64_t tiles = g->block_count*(g->layers > 1 ? 2 : 1);
+    return reserve_scratch(g, tiles*tile_nodes(g)*(int64_t)sizeof(tobi_float4), err);
 }
 
 tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err)
@@ -301,7 +303,8 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
     v->block = g->block;
     v->patch = g->patch;
     v->node = g->node;
-    v->old = g->keep_old ? g->old : NULL;
+    v->old = g->layers > 1 ? g->old : NULL;
+    v->wave = g->layers > 2 ? g->wave : NULL;
     v->tile = (tobi_float4 *)(void *)g->scratch;
-    v->calm = g->keep_old ? v->tile + g->block_count*tile_nodes(g) : NULL;
+    v->calm = g->layers > 1 ? v->tile + g->block_count*tile_nodes(g) : NULL;
 }

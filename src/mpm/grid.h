@@ -10,15 +10,15 @@ typedef struct mpm_grid {
     mpm_patch *patch;
     uint32_t *block_key, *patch_key;   /* in rising order, for finding neighbours                */
     int64_t block_count, patch_count, block_room, patch_room;
-    tobi_float4 *node, *old;           /* [patch_room][nodes]; old: NULL unless asked for         */
+    tobi_float4 *node, *old, *wave;    /* [patch_room][nodes]; see view.h                         */
     char *scratch;                     /* of the sort; the tiles in between                       */
     int64_t scratch_bytes;
     int64_t *histogram;
     int low[3], count[3];              /* box of blocks that holds all, with one more around      */
-    int keep_old;
+    int layers;                        /* of node arrays: 1 APIC, 2 FLIP, 3 XPIC                  */
 } mpm_grid;
 
-tobi_status mpm_grid_create(mpm_grid *g, int dimension, int keep_old, const tobi_exec *x, tobi_error *err);
+tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_exec *x, tobi_error *err);
 void mpm_grid_free(mpm_grid *g);
 int64_t mpm_grid_bytes(const mpm_grid *g);
 

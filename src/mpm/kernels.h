@@ -7,6 +7,8 @@ typedef struct mpm_kernels {
     tobi_kernel scatter;               /* over particle blocks                                    */
     tobi_kernel collect;               /* over node blocks                                        */
     tobi_kernel gather;                /* over particle blocks                                    */
+    tobi_kernel filter;                /* over particle blocks, XPIC                              */
+    tobi_kernel filter_nodes;          /* over node blocks                                        */
 } mpm_kernels;
 
 /* isa: exec's level. Static data, never NULL. */

@@ -98,7 +98,8 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
     v->affine_momentum = m->def.transfer == TOBI_APIC;
-    v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 0;
+    v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 1;
+    v->own = m->def.transfer == TOBI_FLIP;
     for (int a = 0; a < 3; a++) {
         v->size[a] = s->box.size[a];
         v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
@@ -131,7 +132,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->viscous_dt = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
-        status = mpm_grid_create(&m->grid, s->box.dimension, m->def.transfer == TOBI_FLIP, &s->exec, err);
+        status = mpm_grid_create(&m->grid, s->box.dimension, 1 + m->def.transfer, &s->exec, err);
     if (status != TOBI_OK) {
         free(m);
         *state = NULL;
@@ -174,7 +175,7 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.45*m->cell;
+    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
     if (stale) {
         TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
         m->memory[AGE] = m->memory[DRIFT] = 0;
@@ -216,10 +217,25 @@ static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_stage_end(&s->stages, "to grid", clock);
 }
 
+/* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
+static void filter_velocity(tobi_simulation *s, mlsmpm *m)
+{
+    double share = m->def.xpic_order;
+    if (m->def.transfer != TOBI_XPIC) return;
+    for (int k = 2; k <= m->def.xpic_order; k++) {
+        share *= -(m->def.xpic_order - k + 1.0)/k;
+        m->view.order = (float)share;
+        tobi_launch_each(&s->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
+        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, m->grid.patch_count, NULL);
+    }
+}
+
 static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    m->view.order = (float)m->def.xpic_order;
     tobi_launch_each(&s->exec, m->kernels->collect, &m->view, m->grid.patch_count, t);
+    filter_velocity(s, m);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
     tobi_stage_end(&s->stages, "grid", clock);
 }

@@ -54,23 +54,40 @@ TOBI_FN void mpm_store_columns(tobi_columns *to, int count, const lane m[9], con
     for (int c = 0; c < 3; c++) lane_store_float4(&to->c[c], 3, count, m[c], m[3 + c], m[6 + c], w[c]);
 }
 
+/* 1 if the eight particles from i on are of one solid. Rows are padded: they may be read past the end. */
+TOBI_FN int mpm_is_uniform(const uint8_t *solid)
+{
+    int same = 1;
+    for (int k = 1; k < MPM_WIDE; k++) same &= solid[k] == solid[0];
+    return same;
+}
+
 TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_parameters *m, lane *keep,
                                    lane_int *model, uint32_t *present)
 {
+    const mpm_material *one = &v->material[v->solid[i]];
     float p[10][MPM_WIDE];
     int32_t number[MPM_WIDE];
+    if (mpm_is_uniform(v->solid + i)) {
+        *m = (mpm_parameters){lane_set(one->mu), lane_set(one->lambda), lane_set(one->bulk),
+                              lane_set(one->viscosity), lane_set(one->yield), lane_set(one->hardening),
+                              lane_set(one->compression), lane_set(one->stretch), lane_set(one->friction)};
+        *keep = lane_set(one->keep);
+        *model = lane_set_int(one->model);
+        *present = 1u << one->model;
+        return;
+    }
     *present = 0;
     for (int k = 0; k < MPM_WIDE; k++) {
-        const mpm_material *a = &v->material[k < count ? v->solid[i + k] : v->solid[i]];
+        const mpm_material *a = k < count ? &v->material[v->solid[i + k]] : one;
         p[0][k] = a->mu; p[1][k] = a->lambda; p[2][k] = a->bulk; p[3][k] = a->viscosity;
         p[4][k] = a->yield; p[5][k] = a->hardening; p[6][k] = a->compression; p[7][k] = a->stretch;
         p[8][k] = a->friction; p[9][k] = a->keep;
         number[k] = a->model;
         *present |= 1u << a->model;
     }
-    m->mu = lane_load(p[0]); m->lambda = lane_load(p[1]); m->bulk = lane_load(p[2]);
-    m->viscosity = lane_load(p[3]); m->yield = lane_load(p[4]); m->hardening = lane_load(p[5]);
-    m->compression = lane_load(p[6]); m->stretch = lane_load(p[7]); m->friction = lane_load(p[8]);
+    *m = (mpm_parameters){lane_load(p[0]), lane_load(p[1]), lane_load(p[2]), lane_load(p[3]), lane_load(p[4]),
+                          lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8])};
     *keep = lane_load(p[9]);
     *model = lane_load_index(number);
 }
@@ -215,15 +232,15 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
             base = base - a2*quad_set(s.offset[last][k]);
             quad along = {s.weight[last][0][k], s.weight[last][1][k], s.weight[last][2][k], 0};
             row w = row_spread(along), d0 = row_repeat(a0)*w, d1 = row_repeat(a1)*w;
-            row x = (row_repeat(a2)*row_spread(step) + row_repeat(base))*w;
+            row x = row_fma(row_repeat(a2), row_spread(step), row_repeat(base))*w;
             for (int n = 0; n < 3; n++) {
                 row wx = row_set(s.weight[0][n][k]), t = x*wx, u = d1*wx;
-                sum[rows*n] = sum[rows*n] + (dim == 3 ? t*row_set(s.weight[1][0][k]) : t);
+                sum[rows*n] = dim == 3 ? row_fma(t, row_set(s.weight[1][0][k]), sum[rows*n]) : sum[rows*n] + t;
                 if (dim == 3) {
                     t = t + u;
-                    sum[3*n + 1] = sum[3*n + 1] + t*row_set(s.weight[1][1][k]);
+                    sum[3*n + 1] = row_fma(t, row_set(s.weight[1][1][k]), sum[3*n + 1]);
                     t = t + u;
-                    sum[3*n + 2] = sum[3*n + 2] + t*row_set(s.weight[1][2][k]);
+                    sum[3*n + 2] = row_fma(t, row_set(s.weight[1][2][k]), sum[3*n + 2]);
                 }
                 x = x + d0;
             }
@@ -297,32 +314,36 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
 }
 
 /* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change.
-   totals: 0..2 momentum given to the planes, 6 largest speed squared. */
+   totals: 0..2 momentum given to the planes. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_patch *g = &v->patch[number];
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    const quad fall = {v->gravity[0]*v->dt, v->gravity[1]*v->dt, v->gravity[2]*v->dt, 0};
     tobi_float4 *node = v->node + number*nodes;
-    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D];
-    float given[3] = {0, 0, 0}, fastest = 0;
+    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
     mpm_sum_tiles(g, v->tile, sum, dim);
     if (v->old) mpm_sum_tiles(g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], inverse = mass > 0 ? 1/mass : 0;
-        float u[3], before[3], speed2 = 0;
-        for (int a = 0; a < 3; a++) u[a] = sum[n][a]*inverse;
-        if (v->old) quad_store(&v->old[number*nodes + n], calm[n]*quad_set(inverse));
-        for (int a = 0; a < 3; a++) u[a] = before[a] = mass > 0 ? u[a] + v->gravity[a]*v->dt : 0;
-        if (g->planes && mass > 0) mpm_meet_planes(v, g, n, u, dim);
-        for (int a = 0; a < 3; a++) {
-            given[a] += mass*(before[a] - u[a]);
-            speed2 += u[a]*u[a];
+        quad u = sum[n]*quad_set(inverse);
+        if (v->old) {
+            quad before = calm[n]*quad_set(inverse);
+            if (v->wave) quad_store(&v->wave[number*nodes + n], before);
+            quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
         }
-        if (speed2 > fastest) fastest = speed2;
-        node[n] = (tobi_float4){u[0], u[1], u[2], mass};
+        if (mass > 0) u = u + fall;
+        if (g->planes && mass > 0) {
+            float after[3] = {u[0], u[1], u[2]};
+            mpm_meet_planes(v, g, n, after, dim);
+            quad change = {u[0] - after[0], u[1] - after[1], u[2] - after[2], 0};
+            given = given + change*quad_set(mass);
+            u = u - change;
+        }
+        u[3] = mass;
+        quad_store(&node[n], u);
     }
     for (int a = 0; a < 3; a++) totals[a] += given[a];
-    if (fastest > totals[6]) totals[6] = fastest;
 }
 
 /* The nodes around a block, from the node blocks into one tile. */
@@ -354,22 +375,22 @@ TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float sc
     for (int n = 0; n < 3; n++) {
         w[n] = row_set(s->weight[0][n][k]);
         if (dim == 3) {
-            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]);
-            row b = g[3*n + 1]*y1, c = g[3*n + 2]*y2;
-            u[n] = g[3*n]*row_set(s->weight[1][0][k]) + b + c;
-            y[n] = b + c + c;
+            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]), b = g[3*n + 1]*y1;
+            u[n] = row_fma(g[3*n + 2], y2, row_fma(g[3*n], row_set(s->weight[1][0][k]), b));
+            y[n] = row_fma(g[3*n + 2], y2 + y2, b);
         } else u[n] = g[n];
     }
     quad z = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
-    row along = row_spread(z), m1 = u[1]*w[1], m2 = u[2]*w[2];
-    row t0 = (u[0]*w[0] + m1 + m2)*along, t1 = (m1 + m2 + m2)*along, t3 = t0*row_spread(step);
+    row along = row_spread(z), m2 = u[2]*w[2], m12 = row_fma(u[1], w[1], m2);
+    row t0 = row_fma(u[0], w[0], m12)*along, t1 = (m12 + m2)*along, t3 = t0*row_spread(step);
     quad v = row_fold(t0), factor = quad_set(scale);
     gradient[0] = factor*(row_fold(t1) - v*quad_set(s->offset[0][k]));
     gradient[1] = quad_set(0);
     gradient[2] = quad_set(0);
-    if (dim == 3)
-        gradient[1] = factor*(row_fold((y[0]*w[0] + y[1]*w[1] + y[2]*w[2])*along) -
-                              v*quad_set(s->offset[1][k]));
+    if (dim == 3) {
+        row t2 = row_fma(y[2], w[2], row_fma(y[1], w[1], y[0]*w[0]))*along;
+        gradient[1] = factor*(row_fold(t2) - v*quad_set(s->offset[1][k]));
+    }
     gradient[last] = factor*(row_fold(t3) - v*quad_set(s->offset[last][k]));
     *velocity = v;
 }
@@ -393,69 +414,111 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const double size[3], int dim)
     return out;
 }
 
+/* XPIC, eq. (16): the velocity `wave` goes to the particles and back to the tiles, */
+TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
+    row g[9] = {0};
+    (void)totals;
+    mpm_copy_tile(v->wave, b->around, tile, dim);
+    for (int n = 0; n < 8; n++) tile[nodes + n] = (tobi_float4){0, 0, 0, 0};
+    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
+        const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
+        mpm_stencil s;
+        mpm_find_stencil(v, b, i, dim, &s);
+        for (int k = 0; k < count; k++) {
+            quad u, unused[3];
+            mpm_load_rows(tile, s.first[k], g, dim);
+            mpm_interpolate(g, &s, k, 0, dim, &u, unused);
+            u[3] = 1;
+            mpm_add_calm(calm, &s, k, u*quad_set(v->strain[i + k].c[2].w), dim);
+        }
+    }
+}
+
+/* and from there to the nodes; `old` takes its share. */
+TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    quad sum[MPM_NODES_3D];
+    (void)totals;
+    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    for (int n = 0; n < nodes; n++) {
+        const float mass = sum[n][3];
+        const int64_t at = number*nodes + n;
+        quad u = sum[n]*quad_set(mass > 0 ? 1/mass : 0);
+        quad_store(&v->wave[at], u);
+        quad_store(&v->old[at], quad_load(&v->old[at]) - u*quad_set(v->order));
+    }
+}
+
 /* Velocities, their gradients and new positions of a block's particles.
    totals: 0 particles that had to be kept inside the domain, 6 largest speed squared, 7 largest way along an
    axis, m. */
 TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
+    const int beyond = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, flip = v->old != NULL;
+    const float scale = (float)(4*v->inverse_cell), dt = v->dt;
+    const quad home = {(float)b->corner[0], (float)b->corner[1], (float)b->corner[2], 0};
+    /* Locals, because what is stored below could be the view for all the compiler knows. */
+    tobi_float4 *const velocity = v->velocity;
+    tobi_columns *const affine = v->affine;
+    tobi_double3 *const position = v->position;
     tobi_float4 tile[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8];
     row g[9] = {0}, h[9] = {0};
+    quad far = quad_set(0);
+    float fast = 0;
     int32_t cell = -1;
-    const float scale = (float)(4*v->inverse_cell);
-    float far = 0, fast = 0;
     int edge = 0;
     for (int a = 0; a < dim; a++) edge |= b->corner[a] < 2 || (b->corner[a] + 8)*(double)v->cell > v->size[a];
     mpm_copy_tile(v->node, b->around, tile, dim);
-    if (v->old) mpm_copy_tile(v->old, b->around, old, dim);
-    for (int n = 0; n < 8; n++) {              /* what the last rows read beyond the tile */
-        const int beyond = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + n;
-        tile[beyond] = old[beyond] = (tobi_float4){0, 0, 0, 0};
-    }
+    if (flip) mpm_copy_tile(v->old, b->around, old, dim);
+    for (int n = beyond; n < beyond + 8; n++)              /* what the last rows read beyond the tile */
+        tile[n] = old[n] = (tobi_float4){0, 0, 0, 0};
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
+            const mpm_material *material = &v->material[v->solid[i + k]];
             quad u, gradient[3];
+            if (material->model == TOBI_STATIONARY) continue;
             if (s.first[k] != cell) {
                 cell = s.first[k];
                 mpm_load_rows(tile, cell, g, dim);
-                if (v->old) mpm_load_rows(old, cell, h, dim);
+                if (flip) mpm_load_rows(old, cell, h, dim);
             }
-            if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
             mpm_interpolate(g, &s, k, scale, dim, &u, gradient);
-            quad way = u;
-            if (v->old) {
-                quad before, unused[3], own = quad_load(&v->velocity[i + k]);
+            position[i + k].x += (double)u[0]*dt;
+            position[i + k].y += (double)u[1]*dt;
+            if (dim == 3) position[i + k].z += (double)u[2]*dt;
+            if (edge) totals[0] += mpm_keep_inside(&position[i + k], v->size, dim);
+            far = quad_larger(far, u*u);
+            if (flip) {
+                quad before, unused[3], own = quad_load(&velocity[i + k])*quad_set(material->keep*v->own);
                 mpm_interpolate(h, &s, k, scale, dim, &before, unused);
-                own = own*quad_set(v->material[v->solid[i + k]].keep);
                 u = u + quad_set(v->flip)*(own - before);
             }
-            /* The force of a contact in this step is kept for the next, and only that long
-               (core/contact.h). */
-            const float force = v->velocity[i + k].w;
+            quad square = u*u;
+            float speed2 = square[0] + square[1] + square[2];
+            if (!(speed2 <= fast)) fast = speed2;          /* NaN stays */
+            /* The force of a contact in this step is kept for the next, and only that long. */
+            const float force = velocity[i + k].w;
             u[3] = force > 0 ? -force : 0;
-            quad_store(&v->velocity[i + k], u);
+            quad_store(&velocity[i + k], u);
             for (int c = 0; c < 3; c++) {
-                gradient[c][3] = (float)b->corner[c];   /* where it is at home, for mpm_grid_restore */
-                quad_store(&v->affine[i + k].c[c], gradient[c]);
+                gradient[c][3] = home[c];                  /* for mpm_grid_restore */
+                quad_store(&affine[i + k].c[c], gradient[c]);
             }
-            tobi_double3 *x = &v->position[i + k];
-            x->x += (double)way[0]*v->dt;
-            x->y += (double)way[1]*v->dt;
-            if (dim == 3) x->z += (double)way[2]*v->dt;
-            if (edge) totals[0] += mpm_keep_inside(x, v->size, dim);
-            for (int n = 0; n < 3; n++) {
-                float w = way[n] < 0 ? -way[n] : way[n];
-                if (w > far) far = w;
-            }
-            float speed2 = u[0]*u[0] + u[1]*u[1] + u[2]*u[2];
-            if (!(speed2 <= fast)) fast = speed2;       /* NaN stays */
         }
     }
     if (!(fast <= totals[6])) totals[6] = fast;
-    if ((double)far*v->dt > totals[7]) totals[7] = (double)far*v->dt;
+    for (int a = 0; a < 3; a++)
+        if (sqrtf(far[a])*(double)dt > totals[7]) totals[7] = sqrtf(far[a])*(double)dt;
 }
 
 /* Kernels over blocks, as tobi_launch wants them. */

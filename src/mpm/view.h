@@ -53,14 +53,17 @@ typedef struct mpm_view {
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
-    tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL unless transfer is flip      */
+    tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
-    tobi_float4 *TOBI_RESTRICT old;    /* velocity before stress and forces; NULL unless transfer is flip  */
+    tobi_float4 *TOBI_RESTRICT old;    /* what the particle's share of the grid replaces, m/s; NULL with APIC */
+    tobi_float4 *TOBI_RESTRICT wave;   /* XPIC: the velocity filtered once more, m/s                */
     double inverse_cell;               /* 1/m                                                      */
     float  cell;                       /* m                                                        */
     float  dt, strain_dt;              /* s, of this step and of the gradients that strain lacks    */
     int    affine_momentum;            /* 1: APIC                                                  */
-    float  flip;                       /* share of FLIP, 0 = none                                  */
+    float  flip;                       /* share of FLIP; 1 with XPIC                               */
+    float  own;                        /* 1 if the particle's own velocity goes on: FLIP           */
+    float  order;                      /* m of XPIC, and in its sweeps the share of this one       */
     float  gravity[3];
     int    plane_count;
     mpm_plane plane[MPM_PLANES];

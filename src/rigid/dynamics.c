@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define PLASTIC 3.0          /* times gravity and step: slower approaches do not bounce                 */
+#define SAGITTA 0.3          /* of the least thickness: twice what a corner's arc may leave its chord     */
 #define PLASTIC_LEAST 1e-3   /* m/s, the same without gravity                                           */
 
 struct tobi_dynamics_state {
@@ -15,6 +16,7 @@ struct tobi_dynamics_state {
     tobi_rigid_world world;
     tobi_shape *shapes;
     tobi_broad broad;
+    double thinnest;             /* m, the least thickness of all bodies that can be touched */
     tobi_touch_list contacts, before;
     tobi_touch_list *part;     /* [threads] */
     tobi_solver solver;
@@ -71,7 +73,8 @@ static double find_overlap(tobi_dynamics_state *d, int a, int b)
 {
     double deepest = 0;
     d->contacts.count = 0;
-    tobi_touch_bodies(&d->bodies[a], &d->shapes[a], &d->bodies[b], &d->shapes[b], 0, &d->contacts);
+    tobi_touch_bodies(&d->bodies[a], &d->shapes[a], &d->bodies[b], &d->shapes[b],
+                      (tobi_touch_look){ 0, 0 }, &d->contacts);
     for (int64_t k = 0; k < d->contacts.count; k++)
         if (-d->contacts.at[k].gap > 2*d->contacts.at[k].slop)
             deepest = fmax(deepest, -d->contacts.at[k].gap);
@@ -150,9 +153,12 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
     d->bodies = bodies;
     d->count = count;
     d->world = *world;
+    d->thinnest = INFINITY;
     tobi_status status = TOBI_OK;
     for (int k = 0; k < count && status == TOBI_OK; k++)
         status = make_shape(&bodies[k], &d->shapes[k], world->dimension, err);
+    for (int k = 0; k < count; k++)
+        if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
     if (status == TOBI_OK) note_shapes(d, notes, room);
     if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
     if (status == TOBI_OK) *out = d;
@@ -163,9 +169,13 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
 double tobi_rigid_step_limit(const tobi_dynamics_state *d)
 {
     double g = vec3_length(d->world.gravity), limit = 1.0/60;
-    for (int k = 0; k < d->count; k++)
-        if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED && g > 0)
-            limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
+    for (int k = 0; k < d->count; k++) {
+        const tobi_rigid *r = &d->bodies[k].rigid;
+        if (r->kind == TOBI_PRESCRIBED) continue;
+        double turn = sqrt(SAGITTA*d->thinnest/d->shapes[k].facets.reach);
+        limit = fmin(limit, fmin(turn, 0.5)/(vec3_length(r->angular_velocity) + 1e-9));
+        if (g > 0) limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
+    }
     return limit;
 }
 
@@ -265,11 +275,14 @@ static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *ou
     }
 }
 
-static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, tobi_touch_list *out)
+static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, double dt, tobi_touch_list *out)
 {
     int64_t first = out->count;
-    double margin = tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b);
-    tobi_touch_bodies(&d->bodies[p.a], &d->shapes[p.a], &d->bodies[p.b], &d->shapes[p.b], margin, out);
+    double turn[3];
+    tobi_touch_look look = { tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b), 0 };
+    vec3_sub(turn, d->bodies[p.a].rigid.angular_velocity, d->bodies[p.b].rigid.angular_velocity);
+    look.turn = 1.2*dt*vec3_length(turn);
+    tobi_touch_bodies(&d->bodies[p.a], &d->shapes[p.a], &d->bodies[p.b], &d->shapes[p.b], look, out);
     for (int64_t i = first; i < out->count; i++) {
         out->at[i].a = p.a;
         out->at[i].b = p.b;
@@ -306,7 +319,7 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
 #pragma omp for schedule(dynamic, 4) nowait
         for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
 #pragma omp for schedule(dynamic, 4)
-        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], out);
+        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], dt, out);
     }
     return gather_contacts(d, err);
 }

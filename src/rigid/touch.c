@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BEHIND 0.05        /* sine: a neighbour this far before the face still counts as behind it       */
+#define BEHIND 0.05        /* rad: a neighbour this far before the face still counts as behind it        */
+#define BETWEEN 0.02       /* of the cosine: as far outside of the two faces of an edge still is between */
 #define SKEW 0.004         /* sine of the angle between edges below which they count as parallel         */
 #define EDGE_BAND 0.004    /* of the reach: how far beside a face a corner still rests on it; at SKEW two
                               equal faces overhang by half of that                                       */
@@ -25,6 +26,7 @@ typedef struct pair {
     frame to_b, to_world;          /* from a's rest axes to b's, from b's to the domain                */
     int64_t first;                 /* contact of this pair                                             */
     double margin, deepest, band, skin;
+    double behind, between;        /* tolerances of the two tests, larger where bodies turn fast    */
     double around;                 /* the larger of margin and deepest: where to look              */
     int32_t ta;                    /* the triangle of a in work, and it in b's axes                    */
     double corner[3][3], normal[3];
@@ -109,13 +111,13 @@ static int is_better(pair *p, int64_t corner_key, int convex, const double norma
 }
 
 /* Do all neighbours of a corner lie behind it along n? n in the corner's own axes. */
-static int is_behind(const tobi_facets *f, int32_t corner, const double n[3])
+static int is_behind(const tobi_facets *f, int32_t corner, const double n[3], double tolerance)
 {
     for (int64_t k = f->ring_start[corner]; k < f->ring_start[corner + 1]; k++) {
         double d[3];
         vec3_sub(d, f->vertex[f->ring[k]], f->vertex[corner]);
         double along = vec3_dot(d, n);
-        if (along < 0 && along*along > BEHIND*BEHIND*vec3_dot(d, d)) return 0;
+        if (along < 0 && along*along > tolerance*tolerance*vec3_dot(d, d)) return 0;
     }
     return 1;
 }
@@ -134,6 +136,37 @@ static int is_over(const double (*t)[3], const double n[3], const double x[3], d
     return 1;
 }
 
+/* From b's axes to those of the body whose corner it is. */
+static void turn_to_owner(const pair *p, int side, const double n[3], double out[3])
+{
+    for (int a = 0; a < 3; a++)
+        out[a] = side < 0 ? n[a]
+                          : p->to_b.turn[0][a]*n[0] + p->to_b.turn[1][a]*n[1] + p->to_b.turn[2][a]*n[2];
+}
+
+/* A corner that meets a face this close below a sharp edge rides over the edge: else a box that slides over
+   a row of tiles would run into the side of each, since contact lets it sink in by the slop. */
+static int rides_over(const pair *p, int32_t v, const double x[3], const double (*t)[3], const double n[3],
+                      int32_t triangle, int side)
+{
+    const tobi_facets *own = side > 0 ? &p->a->facets : &p->b->facets,
+                      *other = side > 0 ? &p->b->facets : &p->a->facets;
+    for (int k = 0; k < 3; k++) {
+        double next[3], d[3], along[3], edge[3], bend[3];
+        int32_t twin = other->opposite[triangle][k];
+        if (twin < 0) continue;
+        memcpy(next, other->normal[twin/3], sizeof next);
+        if (side < 0) turn(&p->to_b, next, next);
+        vec3_sub(d, x, t[k]);
+        if (fabs(vec3_dot(d, next)) > p->skin || vec3_dot(n, next) > 0.87) continue;
+        vec3_sub(edge, t[(k + 1)%3], t[k]);
+        vec3_cross(bend, n, next);
+        turn_to_owner(p, side, next, along);
+        if (vec3_dot(bend, edge) > 0 && is_behind(own, v, along, BEHIND)) return 1;
+    }
+    return 0;
+}
+
 /* Corner x of one body (number v) over a triangle of the other, both in b's axes. side: 1 if the corner is
    a's, -1 if it is b's. */
 static void meet_corner(pair *p, int32_t v, const double x[3], const double (*t)[3], const double n[3],
@@ -146,10 +179,9 @@ static void meet_corner(pair *p, int32_t v, const double x[3], const double (*t)
     vec3_sub(d, x, t[0]);
     double gap = vec3_dot(d, n);
     if (gap > p->margin || gap < -p->deepest || !is_over(t, n, x, p->band)) return;
-    for (int a = 0; a < 3; a++)
-        along[a] = side < 0 ? n[a]
-                            : p->to_b.turn[0][a]*n[0] + p->to_b.turn[1][a]*n[1] + p->to_b.turn[2][a]*n[2];
-    if (!is_behind(own, v, along)) return;
+    turn_to_owner(p, side, n, along);
+    if (!is_behind(own, v, along, p->behind)) return;
+    if (gap > -p->skin && rides_over(p, v, x, t, n, triangle, side)) return;
     vec3_add_scaled(point, x, -0.5*gap, n);
     for (int a = 0; a < 3; a++) normal[a] = side*n[a];
     int kind = side > 0 ? CORNER_FACE : FACE_CORNER;
@@ -158,12 +190,12 @@ static void meet_corner(pair *p, int32_t v, const double x[3], const double (*t)
 }
 
 /* Is w, which is at right angles to the edge, between the normals of its two faces? */
-static int is_between(const double n1[3], const double n2[3], const double w[3])
+static int is_between(const double n1[3], const double n2[3], const double w[3], double tolerance)
 {
     double middle[3];
     vec3_add_scaled(middle, n1, 1, n2);
     vec3_normalize(middle);
-    return vec3_dot(middle, w) >= vec3_dot(middle, n1) - 0.02;
+    return vec3_dot(middle, w) >= vec3_dot(middle, n1) - tolerance;
 }
 
 /* A normal that is nearly a face's is the face's: crossings of nearly flush edges are noisy. */
@@ -197,7 +229,7 @@ static void meet_edges(pair *p, int ka, int32_t tb, int kb)
     }
     double gap = -vec3_dot(d, n);
     if (gap > p->margin || gap < -p->deepest) return;
-    if (!is_between(nb1, nb2, n) || !is_between(p->normal, na2, neg)) return;
+    if (!is_between(nb1, nb2, n, p->between) || !is_between(p->normal, na2, neg, p->between)) return;
     snap(n, 1, nb1);
     snap(n, 1, nb2);
     snap(n, -1, p->normal);
@@ -333,6 +365,11 @@ static void meet_ball_edge(pair *p)
     if (!tobi_bvh_closest(p->b->facets.bvh, p->to_b.shift, r + p->margin, &hit)) return;
     if (hit.signed_distance <= 0) return;
     vec3_sub(n, p->to_b.shift, hit.point);
+    const tobi_facets *f = &p->b->facets;
+    for (int k = 0; k < 4; k++) {      /* it rolls on one of the faces there and over their edge */
+        int32_t half = k < 3 ? f->opposite[hit.triangle][k] : 3*hit.triangle, twin = half/3;
+        if (half >= 0 && vec3_dot(n, f->normal[twin]) >= r - p->skin) return;
+    }
     vec3_normalize(n);
     double gap = hit.distance - r;
     int64_t key = key_of(BALL, 1, 0);
@@ -357,18 +394,23 @@ static void meet_ball_surface(pair *p)
 
 static double squared(double x) { return x*x; }
 
-/* Of many contacts the deepest, and then always the one that is farthest from those kept. */
+/* Of many contacts the deepest, and then always the one that is farthest from those kept; those nearly as
+   deep come first, since a ring on the floor stands on them and not on what is wider and higher. */
 void tobi_touch_thin(tobi_touch_list *out, int64_t first)
 {
-    enum { MOST = 12 };
+    enum { MOST = 16 };
     int64_t n = out->count - first;
     tobi_touch *c = out->at + first;
+    double deep = INFINITY;
     if (n <= MOST) return;
+    for (int64_t i = 0; i < n; i++) deep = fmin(deep, c[i].gap + 4*c[i].slop);
     for (int64_t kept = 0; kept < MOST; kept++) {
         int64_t best = kept;
         double most = -INFINITY;
         for (int64_t i = kept; i < n; i++) {
             double worth = -c[i].gap;
+            if (c[i].gap > deep && c[best].gap <= deep) continue;
+            if (c[i].gap <= deep && c[best].gap > deep) most = -INFINITY;
             for (int64_t k = 0; k < kept; k++) {
                 double d2 = vec3_distance2(c[i].point, c[k].point);
                 d2 += squared(c[i].slop)*vec3_distance2(c[i].normal, c[k].normal);
@@ -401,9 +443,11 @@ static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
 }
 
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                       double margin, tobi_touch_list *out)
+                       tobi_touch_look look, tobi_touch_list *out)
 {
-    pair p = { .a = sa, .b = sb, .out = out, .first = out->count, .margin = margin };
+    pair p = { .a = sa, .b = sb, .out = out, .first = out->count, .margin = look.margin };
+    p.behind = sin(fmin(BEHIND + look.turn, 0.8));
+    p.between = BETWEEN + p.behind*p.behind;
     if (!(sb->facets.ball > 0) || sa->facets.ball > 0) {
         touch_ordered(&p, a, b);
         return;

@@ -32,9 +32,15 @@ typedef struct tobi_shape {
 /* Sides: 0 lower x, 1 upper x, 2 lower y, ... */
 enum { TOBI_SIDES = 6 };
 
-/* Adds the contacts of two bodies, a < b by number, that are nearer than margin (m). */
+/* What may happen until the next look. */
+typedef struct tobi_touch_look {
+    double margin;               /* m, how near surfaces must be                                        */
+    double turn;                 /* rad, how far the bodies turn against each other                     */
+} tobi_touch_look;
+
+/* Adds the contacts of two bodies, a < b by number. */
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                       double margin, tobi_touch_list *out);
+                       tobi_touch_look look, tobi_touch_list *out);
 /* Adds those of a body with a side of the domain: the plane x[axis] = at, whose inside is at larger x if
    sign is 1, at smaller if -1. */
 void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,

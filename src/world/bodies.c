@@ -41,10 +41,15 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     tobi_status status = tobi_rigid_start(s->bodies, s->body_count, &world, notes, NOTES, &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);
     free(notes);
-    if (status != TOBI_OK) return status;
+    w->step_cap = s->def.time_step_max;
+    return status;
+}
+
+void tobi_world_cap_step(tobi_world *w)
+{
+    if (!w->dynamics) return;
     double cap = tobi_rigid_step_limit(w->dynamics);
-    s->def.time_step_max = s->def.time_step_max > 0 ? fmin(cap, s->def.time_step_max) : cap;
-    return TOBI_OK;
+    w->sim.def.time_step_max = w->step_cap > 0 ? fmin(cap, w->step_cap) : cap;
 }
 
 tobi_status tobi_world_kick_bodies(tobi_world *w, tobi_error *err)

@@ -1,7 +1,9 @@
 #include "world/fill.h"
 #include "base/error.h"
+#include "geom/seed.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Far more than any machine takes; sums of a scene's regions, in bytes, still fit in 64 bits. */
 #define COUNT_LIMIT 1e12
@@ -89,35 +91,75 @@ static int inside_region(const tobi_region *r, const tobi_bvh *tree, const doubl
     return !(r->radius > 0) || d2 < r->radius*r->radius;
 }
 
-tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
+/* The lattice points inside a region, in the order of z, y, x; those outside the domain included. */
+static int64_t place_lattice(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+                             double (*points)[3])
 {
-    int64_t n[3], first = s->particles.count, whole = 0;
+    int64_t n[3], count = 0;
     double step[3];
-    const tobi_mesh *m = &r->shape;
-    tobi_bvh *tree = NULL;
-    if (m->triangle_count)
-        TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
-                                (const int32_t (*)[3])m->triangles, &tree, err));
-    if (m->overlapping) tobi_bvh_use_winding(tree);
     lattice(s, r, n, step);
     for (int64_t k = 0; k < n[2]; k++)
         for (int64_t j = 0; j < n[1]; j++)
             for (int64_t i = 0; i < n[0]; i++) {
-                double w[3] = {r->lower[0] + ((double)i + 0.5) * step[0],
-                               r->lower[1] + ((double)j + 0.5) * step[1],
-                               s->box.dimension == 3 ? r->lower[2] + ((double)k + 0.5) * step[2]
-                                                     : 0},
-                       x[3];
-                int out = 0;
-                for (int a = 0; a < 3; a++) {
-                    x[a] = w[a] - s->box.lower[a];
-                    if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
-                }
-                if (!inside_region(r, tree, w, s->box.dimension)) continue;
-                whole++;
-                if (!out && !inside_body(s, x)) add_particle(s, r, x);
+                const double at[3] = {(double)i + 0.5, (double)j + 0.5, (double)k + 0.5};
+                double *x = points[count];
+                for (int a = 0; a < 3; a++)
+                    x[a] = a < s->box.dimension ? r->lower[a] + at[a]*step[a] : 0;
+                count += inside_region(r, tree, x, s->box.dimension);
             }
-    set_volumes(s, r, first, whole);
-    tobi_bvh_free(tree);
+    return count;
+}
+
+static int scattered(const tobi_simulation *s, const tobi_region *r)
+{
+    return s->solid_count && s->solids[r->owner].def.seeding == TOBI_SEED_BLUE_NOISE;
+}
+
+static tobi_status scatter(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+                           int64_t count, double (*points)[3], tobi_error *err)
+{
+    tobi_seed_shape shape = { .radius = r->radius, .tree = tree, .dimension = s->box.dimension };
+    memcpy(shape.lower, r->lower, sizeof shape.lower);
+    memcpy(shape.upper, r->upper, sizeof shape.upper);
+    return tobi_seed_scatter(&shape, s->smoothing.spacing, (uint64_t)r->owner << 32 | (uint64_t)r->number,
+                             count, points, s->exec.threads, err);
+}
+
+/* Places the points of a region and keeps those in the domain and outside of bodies. */
+static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
+                        tobi_error *err)
+{
+    const int64_t first = s->particles.count, count = place_lattice(s, r, tree, points);
+    if (scattered(s, r)) TOBI_TRY(scatter(s, r, tree, count, points, err));
+    for (int64_t i = 0; i < count; i++) {
+        double *x = points[i];
+        int out = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] -= s->box.lower[a];
+            if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
+        }
+        r->outside += out;
+        if (out) continue;
+        if (inside_body(s, x)) r->covered++;
+        else add_particle(s, r, x);
+    }
+    set_volumes(s, r, first, count);
     return TOBI_OK;
+}
+
+tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err)
+{
+    const tobi_mesh *m = &r->shape;
+    tobi_bvh *tree = NULL;
+    r->outside = r->covered = 0;
+    if (m->triangle_count)
+        TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
+                                (const int32_t (*)[3])m->triangles, &tree, err));
+    if (m->overlapping) tobi_bvh_use_winding(tree);
+    double (*points)[3] = malloc((size_t)(tobi_region_count(s, r) + 1)*sizeof *points);
+    tobi_status status = points ? fill(s, r, tree, points, err)
+                                : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the particles of a region");
+    free(points);
+    tobi_bvh_free(tree);
+    return status;
 }

@@ -189,7 +189,7 @@ static const tobi_param solid_rows[] = {
     { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
       .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),
-      .doc = "Whether its particles start on a lattice, or scattered at even distances." },
+      .doc = "Whether its particles start on a lattice or scattered, one in each cell of it." },
     { .key = "color", COLOR, AT(tobi_solid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is." },
     { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },

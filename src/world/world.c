@@ -261,6 +261,22 @@ static double start_speed(const tobi_world *w)
     return fastest;
 }
 
+/* Bodies in solids are told: the solid's mass is less than was asked for. */
+static tobi_status fill_regions(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    for (int k = 0; k < w->region_count; k++) {
+        char text[160];
+        int64_t cut = 0, first = s->particles.count;
+        TOBI_TRY(tobi_region_fill(s, &w->regions[k], &cut, err));
+        if (cut == 0 || !s->solid_count) continue;
+        snprintf(text, sizeof text, "%lld of %lld particles lie inside bodies or outside the domain and were "
+                 "left out\n", (long long)cut, (long long)(cut + s->particles.count - first));
+        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[w->regions[k].owner].name, text, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -275,6 +291,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     if (n + body == 0)
@@ -341,6 +358,7 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     TOBI_TRY(tobi_world_start(w, err));
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
     w->fresh = 0;
+    tobi_world_cap_step(w);
     tobi_status status = w->method->step(s, w->method_state, max_dt, err);
     if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
     if (status != TOBI_OK) {

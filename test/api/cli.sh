@@ -256,5 +256,55 @@ expect 1 "no run to resume" resume empty
 expect 0 "" resume whole --quiet
 check "resuming a finished run changes nothing" same_results whole halves
 
+# --- solids -----------------------------------------------------------------------------------------
+cat > solids.json <<'END'
+{ "method": "mlsmpm",   # a jelly and a ball of snow fall onto a steel plate that lies in sand
+  "domain": { "min": [0, 0, 0], "max": [0.6, 0.4, 0.4], "friction": 0.4,
+              "walls": { "x": "separate", "y": "separate", "z": ["no-slip", "separate"] } },
+  "spacing": 0.02, "end_time": 0.2,
+  "solids": [
+    { "name": "jelly", "density": 900, "youngs_modulus": 5e4, "color": [200, 60, 60],
+      "fill": [ { "sphere": { "centre": [0.15, 0.2, 0.25], "radius": 0.1 }, "spin": [0, 8, 0] } ] },
+    { "name": "snow", "model": "snow", "density": 400, "youngs_modulus": 1e5, "hardening": 10,
+      "fill": [ { "sphere": { "centre": [0.42, 0.2, 0.25], "radius": 0.1 }, "velocity": [-1, 0, -2] } ] },
+    { "name": "sand", "model": "sand", "mass": 30,
+      "fill": [ { "box": { "min": [0, 0, 0], "max": [0.6, 0.4, 0.08] } } ] } ],
+  "output": { "interval": 0.02, "checkpoint_interval": 0.04, "grid": true, "fields": ["usual", "stress", "J"] }
+}
+END
+same_solids() {
+    cmp "$1/history.csv" "$2/history.csv" && same_hash "$1" "$2" || return 1
+    local part
+    for part in fluid grid; do diff -r "$1/$part" "$2/$part" && cmp "$1/$part.pvd" "$2/$part.pvd" || return 1; done
+}
+expect 0 "" check solids.json
+check "check names the solids" grep -q "solid  *jelly: [0-9]* particles, 3.77 kg, 900 kg/m3, time step" out.txt
+check "a mass makes the density" grep -q "sand: 2400 particles, 30 kg, 1563" out.txt
+expect 0 "is longer than" run solids.json --out cut --set time_step=0.01 --until 0.001
+expect 0 "" run solids.json --quiet --out solids --threads 1
+expect 0 "" run solids/resolved.json --quiet --out solids_2 --threads 2
+check "solids: 1 thread = 2 threads, resolved.json = scene" same_solids solids solids_2
+"$program" run solids.json --quiet --out solids_int > out.txt 2> err.txt &
+pid=$!
+while [ ! -e solids_int/fluid/fluid_000003.vtu ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+kill -INT $pid
+got=0; wait $pid || got=$?
+check "solids, SIGINT: exit code 130 (was $got)" test $got = 130
+expect 0 "" resume solids_int --quiet --threads 2
+check "solids, SIGINT + resume = run" same_solids solids solids_int
+vtk=0
+/usr/bin/python3 "$here/read_vtk.py" solids/grid/grid_000010.vtu \
+    'arrays={"velocity": 3, "mass": 1, "stress": 6}' > out.txt || vtk=$?
+check "VTK reads the grid (77: no VTK; was $vtk)" test $vtk = 0 -o $vtk = 77
+vtk=0
+/usr/bin/python3 "$here/read_vtk.py" solids/fluid/fluid_000010.vtu 'arrays={"velocity": 3, "pressure": 1, '\
+'"density": 1, "object_id": 1, "particle_id": 1, "von_mises": 1, "material": 1, "stress": 6, "J": 1}' \
+    > out.txt || vtk=$?
+check "VTK reads the solids (77: no VTK; was $vtk)" test $vtk = 0 -o $vtk = 77
+expect 1 "there is no field \"surface\"" check solids.json --set output.fields=surface
+expect 0 "" bench ball --spacing 0.04 --steps 3 --settle 1
+check "bench ball: ns" grep -q "ns per particle and step and core" out.txt
+check "bench ball: a hash" grep -q "^state  *[0-9a-f]*$" out.txt
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -271,7 +271,8 @@ static void files(void **state)
     assert_int_equal(fseek(file, 4 << 20, SEEK_SET), 0);
     fputc('\n', file);
     fclose(file);
-    REFUSED(tobi_script_load("long.lua", NULL, TOBI_MOTION_SCRIPT, &script, &err), TOBI_INVALID, "larger than 4 MiB");
+    REFUSED(tobi_script_load("long.lua", NULL, TOBI_MOTION_SCRIPT, &script, &err), TOBI_INVALID,
+            "larger than 4 MiB");
     remove("long.lua");
 }
 
