@@ -93,6 +93,7 @@ typedef struct tobi_mlsmpm_def {
     double flip;                      /* 1, share of FLIP in the blend with PIC                       */
     int    xpic_order;                /* order m of XPIC(m)                                           */
     double cfl;                       /* 1, dt <= cfl cell/(speed of sound + |v|)                     */
+    int    measure_transfer;          /* 1: sum up the energy that transfers cost, in every step      */
 } tobi_mlsmpm_def;
 
 /* A solid (or liquid, snow, sand) of the material point method: one material. */
@@ -258,6 +259,7 @@ typedef struct tobi_step_info {
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
     double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
+    double  transfer_dissipation; /* J, of that by transfers, if mlsmpm measures it                   */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

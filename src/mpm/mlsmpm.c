@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* What a restart needs besides the particles. */
-enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, MEMORY };
+enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, MEMORY };
 
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
 
@@ -132,7 +132,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->viscous_dt = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
-        status = mpm_grid_create(&m->grid, s->box.dimension, 1 + m->def.transfer, &s->exec, err);
+        status = mpm_grid_create(&m->grid, s->box.dimension, m->def.transfer == TOBI_APIC ? 1 + m->def.measure_transfer : 1 + m->def.transfer, &s->exec, err);
     if (status != TOBI_OK) {
         free(m);
         *state = NULL;
@@ -191,6 +191,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
         }
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
+    if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }
@@ -215,6 +216,26 @@ static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, NULL);
     tobi_stage_end(&s->stages, "to grid", clock);
+}
+
+/* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last step
+   took: nodes have what they have, particles what arrives. */
+static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
+{
+    double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
+    if (!m->def.measure_transfer) return;
+    tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
+    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, m->grid.patch_count, arrived);
+    if (s->step > 0) m->memory[TRANSFER] += m->memory[NODE_ENERGY] - came[0];
+    m->memory[TRANSFER] += came[1] - arrived[0];
+}
+
+static void measure_nodes(tobi_simulation *s, mlsmpm *m)
+{
+    double t[TOBI_TOTALS];
+    if (!m->def.measure_transfer) return;
+    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, m->grid.patch_count, t);
+    m->memory[NODE_ENERGY] = t[0];
 }
 
 /* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
@@ -333,8 +354,10 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         if (m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
+        measure_way_to_grid(s, m);
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
+        measure_nodes(s, m);
         grid_to_particles(s, m, &clock);
         tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
@@ -384,6 +407,7 @@ static void measure(tobi_simulation *s, const void *state)
     const mlsmpm *m = state;
     double energy = find_energy(s, m, &s->info.elastic_energy);
     s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
+    s->info.transfer_dissipation = m->memory[TRANSFER];
 }
 
 /* After a load the blocks are built anew. */

@@ -198,6 +198,50 @@ TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad m
         }
 }
 
+/* For measuring what transfers cost: momentum with APIC's affine part, without stress, into the calm tile.
+   totals: kinetic energy of the particles, 0 as they came and 1 after damping. */
+TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, rows = dim == 3 ? 3 : 1, last = dim - 1;
+    tobi_float4 *calm = v->calm + number*(nodes + 8);
+    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
+        const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
+        mpm_stencil s;
+        mpm_find_stencil(v, b, i, dim, &s);
+        for (int k = 0; k < count; k++) {
+            const float mass = v->strain[i + k].c[2].w, keep = v->material[v->solid[i + k]].keep;
+            double square = 0;
+            for (int n = 0; n < 9*v->affine_momentum; n++) {
+                double c = (&v->affine[i + k].c[n/3].x)[n%3];
+                square += 0.25*(double)v->cell*v->cell*c*c;
+            }
+            for (int a = 0; a < 3; a++) {
+                double u = (&v->velocity[i + k].x)[a];
+                square += u*u;
+            }
+            totals[0] += 0.5*mass*square;
+            totals[1] += 0.5*mass*keep*keep*square;
+            for (int n = 0; n < 3*rows*3; n++) {
+                const int at[3] = {dim == 3 ? n/9 : n/3, dim == 3 ? n/3%3 : n%3, n%3};
+                float w = s.weight[0][at[0]][k]*s.weight[last][at[last]][k], u[3];
+                if (dim == 3) w *= s.weight[1][at[1]][k];
+                for (int a = 0; a < 3; a++) {
+                    u[a] = (&v->velocity[i + k].x)[a];
+                    for (int c = 0; c < dim*v->affine_momentum; c++)
+                        u[a] += (&v->affine[i + k].c[c].x)[a]*((float)at[c] - s.offset[c][k])*v->cell;
+                }
+                tobi_float4 *node = calm + s.first[k] + (dim == 3 ? 64*at[0] + 8*at[1] + at[2] : 8*at[0] + at[1]);
+                node->x += w*mass*keep*u[0];
+                node->y += w*mass*keep*u[1];
+                node->z += w*mass*keep*u[2];
+                node->w += w*mass;
+            }
+        }
+    }
+}
+
 /* Momentum and mass of a block's particles into its tile. */
 TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
@@ -208,7 +252,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     int32_t cell = -1;
     const quad step = {0, 1, 2, 0};
     (void)totals;
-    tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;
+    tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
     for (int n = 0; n < 4*(nodes + 8); n++) tile[n] = 0;
     for (int n = 0; calm && n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
     for (int r = 0; r < 9; r++) sum[r] = row_set(0);
@@ -345,6 +389,27 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
         quad_store(&node[n], u);
     }
     for (int a = 0; a < 3; a++) totals[a] += given[a];
+}
+
+/* Kinetic energy of a block of nodes into totals[0]: of the calm tiles, */
+TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    quad sum[MPM_NODES_3D];
+    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
+        quad square = sum[n]*sum[n];
+        if (sum[n][3] > 0) totals[0] += 0.5*(double)(square[0] + square[1] + square[2])/sum[n][3];
+    }
+}
+
+/* and of the nodes as they are. */
+TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int64_t n = number*nodes; n < (number + 1)*nodes; n++) {
+        quad u = quad_load(&v->node[n]), square = u*u;
+        totals[0] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
+    }
 }
 
 /* The nodes around a block, from the node blocks into one tile. */
