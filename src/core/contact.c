@@ -63,6 +63,24 @@ typedef struct pose {
     double low[3], high[3];          /* m, of the body with all who may touch it */
 } pose;
 
+/* The box around the body. The tree of the present pose is that of the start where a body moves by forces; the
+   turned box of the rest pose holds whatever moved it. */
+static void find_box(pose *at)
+{
+    const tobi_body *b = at->body;
+    double low[3], high[3];
+    tobi_bvh_box(b->deforms ? b->bvh : b->rest_bvh, low, high);
+    for (int a = 0; a < 3; a++) {
+        double middle = b->rigid.position[a], half = 0;
+        for (int k = 0; k < 3; k++) {
+            middle += 0.5*at->matrix[a][k]*(low[k] + high[k]);
+            half += 0.5*fabs(at->matrix[a][k])*(high[k] - low[k]);
+        }
+        at->low[a] = (b->deforms ? low[a] : middle - half) - at->step->radius - at->step->margin;
+        at->high[a] = (b->deforms ? high[a] : middle + half) + at->step->radius + at->step->margin;
+    }
+}
+
 /* What the surface moves at the hit besides the body's rigid motion. */
 static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_contact *c)
 {
@@ -173,11 +191,7 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     int64_t runs;
     if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
     tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
-    tobi_body_box(b, at.low, at.high);
-    for (int a = 0; a < 3; a++) {
-        at.low[a] -= step->radius + step->margin;
-        at.high[a] += step->radius + step->margin;
-    }
+    find_box(&at);
     while ((c->count = search(c, &at, p, &runs, x)) > c->room) TOBI_TRY(reserve(c, c->count, err));
     TOBI_TRY(reserve_shifts(c, err));
     int64_t n = 0;

@@ -40,8 +40,8 @@ static void choose_smoothing(const void *def, int *shape, double *support)
     *support = 2;
 }
 
-/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; 2-D: in plane
-   strain, where the stress out of the plane is the mean of the others in flow. */
+/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; in plane strain,
+   where the stress out of the plane is the mean of the others in flow, theirs there. */
 static double find_cone(const tobi_solid_def *d, int dimension)
 {
     double sine = sin(d->friction_angle*acos(-1)/180);

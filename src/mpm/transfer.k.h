@@ -235,7 +235,8 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
             row x = row_fma(row_repeat(a2), row_spread(step), row_repeat(base))*w;
             for (int n = 0; n < 3; n++) {
                 row wx = row_set(s.weight[0][n][k]), t = x*wx, u = d1*wx;
-                sum[rows*n] = dim == 3 ? row_fma(t, row_set(s.weight[1][0][k]), sum[rows*n]) : sum[rows*n] + t;
+                row y0 = dim == 3 ? row_set(s.weight[1][0][k]) : row_set(1);
+                sum[rows*n] = row_fma(t, y0, sum[rows*n]);
                 if (dim == 3) {
                     t = t + u;
                     sum[3*n + 1] = row_fma(t, row_set(s.weight[1][1][k]), sum[3*n + 1]);

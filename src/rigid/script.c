@@ -379,7 +379,7 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
     int64_t i = failed ? (int64_t)at : 0;
     while (!failed && i < n && isfinite(position[i][0] + position[i][1] + position[i][2])) i++;
     if (!failed && i == n) return TOBI_OK;
-    if (i >= n) return tobi_fail(err, TOBI_SCRIPT, "motion script %s: %s", script->path, why);
+    if (i >= n) return tobi_fail(err, TOBI_SCRIPT, "%s: %s", script->label, why);
     return tobi_fail(err, TOBI_SCRIPT,
                      "motion script %s: %s (t = %.9g s, rest point %.6g %.6g %.6g)", script->path,
                      why, t, rest[i][0], rest[i][1], rest[i][2]);

@@ -261,22 +261,6 @@ static double start_speed(const tobi_world *w)
     return fastest;
 }
 
-/* Bodies in solids are told: the solid's mass is less than was asked for. */
-static tobi_status fill_regions(tobi_world *w, tobi_error *err)
-{
-    tobi_simulation *s = &w->sim;
-    for (int k = 0; k < w->region_count; k++) {
-        char text[160];
-        int64_t cut = 0, first = s->particles.count;
-        TOBI_TRY(tobi_region_fill(s, &w->regions[k], &cut, err));
-        if (cut == 0 || !s->solid_count) continue;
-        snprintf(text, sizeof text, "%lld of %lld particles lie inside bodies or outside the domain and were "
-                 "left out\n", (long long)cut, (long long)(cut + s->particles.count - first));
-        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[w->regions[k].owner].name, text, err));
-    }
-    return TOBI_OK;
-}
-
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;

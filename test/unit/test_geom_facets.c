@@ -17,7 +17,8 @@ static void open_solid(solid *s, const char *name, int flat)
     char path[300];
     snprintf(path, sizeof path, "%s/test/meshes/%s.obj", TOBI_SOURCE_DIR, name);
     memset(s, 0, sizeof *s);
-    if (tobi_mesh_read(path, &s->mesh, &err) != TOBI_OK || tobi_mesh_orient(&s->mesh, name, &err) != TOBI_OK ||
+    if (tobi_mesh_read(path, &s->mesh, &err) != TOBI_OK ||
+        tobi_mesh_orient(&s->mesh, name, &err) != TOBI_OK ||
         tobi_bvh_build(s->mesh.vertex_count, (const double (*)[3])s->mesh.vertices, s->mesh.triangle_count,
                        (const int32_t (*)[3])s->mesh.triangles, &s->bvh, &err) != TOBI_OK ||
         tobi_facets_build(&s->facets, s->bvh, (const double (*)[3])s->mesh.vertices, flat, &err) != TOBI_OK)
