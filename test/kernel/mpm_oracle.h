@@ -18,7 +18,9 @@ typedef struct oracle_particle {
 } oracle_particle;
 
 /* bound: what the absolute values of all terms of the momentum sum up to, kg m/s. */
-typedef struct oracle_node { double mass, momentum[3], calm[3], v[3], old[3], bound; } oracle_node;
+typedef struct oracle_node {
+    double mass, momentum[3], calm[3], v[3], old[3], wave[3], kept[3], bound;
+} oracle_node;
 
 typedef struct oracle_side { int axis, upper, kind; double at, friction, velocity[3]; } oracle_side;
 
@@ -97,7 +99,7 @@ static void oracle_corotated(double mu, double lambda, double F[3][3], double ta
     for (int i = 0; i < 3; i++) tau[i][i] += lambda*(J - 1)*J;
 }
 
-/* Snow: singular values of the elastic part are clamped, J of the plastic part takes the rest, and hardens. */
+/* Snow: singular values of the elastic part are clamped, J of the plastic part takes the rest and hardens. */
 static void oracle_snow(const oracle_solid *m, double mu, double lambda, oracle_particle *p, double tau[3][3])
 {
     double U[3][3], V[3][3], s[3], plastic = 1 + p->state;
@@ -163,8 +165,8 @@ static void oracle_liquid(const oracle_solid *m, oracle_particle *p, double tau[
                         (i == j ? pressure*J : 0);
 }
 
-/* Takes the last step's gradient into F, lets it flow; Kirchhoff stress. models: neo-Hookean, corotated, liquid,
-   von Mises, snow, sand, stationary in the order of the public list. */
+/* Takes the last step's gradient into F, lets it flow; Kirchhoff stress. Models: neo-Hookean, corotated,
+   liquid, von Mises, snow, sand, stationary in the order of the public list. */
 static void oracle_stress(const oracle_solid *m, double strain_dt, oracle_particle *p, double tau[3][3])
 {
     double G[3][3], mu = m->E/(2*(1 + m->nu)), lambda = m->E*m->nu/((1 + m->nu)*(1 - 2*m->nu));
@@ -196,6 +198,13 @@ static double oracle_spline(double r)
     return r < 0.5 ? 0.75 - r*r : r < 1.5 ? 0.5*(1.5 - r)*(1.5 - r) : 0;
 }
 
+static void oracle_place(int at, int place[3])
+{
+    place[0] = at/ORACLE_NODES/ORACLE_NODES - 4;
+    place[1] = at/ORACLE_NODES%ORACLE_NODES - 4;
+    place[2] = at%ORACLE_NODES - 4;
+}
+
 static oracle_node *oracle_at(oracle_grid *g, const int at[3])
 {
     for (int a = 0; a < 3; a++) if (at[a] < -4 || at[a] >= ORACLE_NODES - 4) return NULL;
@@ -210,7 +219,8 @@ static oracle_node *oracle_at(oracle_grid *g, const int at[3])
 
 static oracle_node *oracle_weigh(oracle_grid *g, const oracle_particle *p, int at, double *w, double r[3])
 {
-    const int place[3] = {at/ORACLE_NODES/ORACLE_NODES - 4, at/ORACLE_NODES%ORACLE_NODES - 4, at%ORACLE_NODES - 4};
+    int place[3];
+    oracle_place(at, place);
     *w = 1;
     for (int a = 0; a < 3; a++) {
         r[a] = a < g->dimension ? place[a]*g->h - p->x[a] : 0;
@@ -221,7 +231,8 @@ static oracle_node *oracle_weigh(oracle_grid *g, const oracle_particle *p, int a
     return *w > 0 ? &g->node[at] : NULL;
 }
 
-static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_particle *p, long count, double strain_dt)
+static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_particle *p, long count,
+                           double strain_dt)
 {
     memset(g->node, 0, sizeof g->node);
     for (long i = 0; i < count; i++) {
@@ -262,7 +273,8 @@ static void oracle_solve_grid(oracle_grid *g)
 {
     for (int at = 0; at < ORACLE_NODES*ORACLE_NODES*ORACLE_NODES; at++) {
         oracle_node *n = &g->node[at];
-        const int place[3] = {at/ORACLE_NODES/ORACLE_NODES - 4, at/ORACLE_NODES%ORACLE_NODES - 4, at%ORACLE_NODES - 4};
+        int place[3];
+        oracle_place(at, place);
         if (!(n->mass > 0)) continue;
         for (int a = 0; a < 3; a++) {
             n->old[a] = n->calm[a]/n->mass;
@@ -276,10 +288,38 @@ static void oracle_solve_grid(oracle_grid *g)
     }
 }
 
-/* Velocity, gradient, position; *bound: by how much rounding at the nodes may show in v, m/s. */
-static void oracle_to_particle(oracle_grid *g, const oracle_solid *m, double flip, oracle_particle *p, double *bound)
+/* XPIC: kept = sum over k of (-1)^(k+1) (order over k) (S+ S)^(k-1) old. */
+static void oracle_filter(oracle_grid *g, const oracle_particle *p, long count, int order)
 {
-    double v[3] = {0}, old[3] = {0}, C[3][3] = {{0}};
+    const int nodes = ORACLE_NODES*ORACLE_NODES*ORACLE_NODES;
+    double share = order;
+    for (int at = 0; at < nodes; at++)
+        for (int a = 0; a < 3; a++) {
+            g->node[at].wave[a] = g->node[at].old[a];
+            g->node[at].kept[a] = share*g->node[at].old[a];
+        }
+    for (int k = 2; k <= order; k++) {
+        share *= -(order - k + 1.0)/k;
+        for (int at = 0; at < nodes; at++) memset(g->node[at].calm, 0, sizeof g->node[at].calm);
+        for (long i = 0; i < count; i++) {
+            double u[3] = {0};
+            ORACLE_EACH_NODE(g, &p[i], w, r, n) for (int a = 0; a < 3; a++) u[a] += w*n->wave[a];
+            ORACLE_EACH_NODE(g, &p[i], w, r, n) for (int a = 0; a < 3; a++) n->calm[a] += w*p[i].mass*u[a];
+        }
+        for (int at = 0; at < nodes; at++)
+            for (int a = 0; a < 3 && g->node[at].mass > 0; a++) {
+                g->node[at].wave[a] = g->node[at].calm[a]/g->node[at].mass;
+                g->node[at].kept[a] += share*g->node[at].wave[a];
+            }
+    }
+}
+
+/* Velocity, gradient, position; transfer: 0 APIC, 1 FLIP, 2 XPIC; *bound: what the absolute values of all
+   terms of v sum up to, m/s. */
+static void oracle_to_particle(oracle_grid *g, const oracle_solid *m, int transfer, double flip,
+                               oracle_particle *p, double *bound)
+{
+    double v[3] = {0}, old[3] = {0}, kept[3] = {0}, C[3][3] = {{0}};
     *bound = 0;
     if (m->model == 6) return;                                              /* stationary */
     ORACLE_EACH_NODE(g, p, w, r, n) {
@@ -287,12 +327,14 @@ static void oracle_to_particle(oracle_grid *g, const oracle_solid *m, double fli
         for (int a = 0; a < 3; a++) {
             v[a] += w*n->v[a];
             old[a] += w*n->old[a];
+            kept[a] += w*n->kept[a];
             for (int b = 0; b < 3; b++) C[a][b] += 4/(g->h*g->h)*w*n->v[a]*r[b];
         }
     }
     for (int a = 0; a < 3; a++) {
         p->x[a] += g->dt*v[a];
-        p->v[a] = v[a] + flip*(m->keep*p->v[a] - old[a]);
+        if (transfer == 1) p->v[a] = v[a] + flip*(m->keep*p->v[a] - old[a]);
+        else p->v[a] = v[a] + (transfer == 2 ? kept[a] - old[a] : 0);
     }
     memcpy(p->C, C, sizeof C);
 }
