@@ -63,8 +63,8 @@ typedef struct pose {
     double low[3], high[3];          /* m, of the body with all who may touch it */
 } pose;
 
-/* The box around the body. The tree of the present pose is that of the start where a body moves by forces; the
-   turned box of the rest pose holds whatever moved it. */
+/* The box around the body. The tree of the present pose is that of the start where a body moves by forces;
+   the turned box of the rest pose holds whatever moved it. */
 static void find_box(pose *at)
 {
     const tobi_body *b = at->body;

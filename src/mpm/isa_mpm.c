@@ -1,6 +1,6 @@
 /* Turns the transfers into loops, compiled once per instruction set. */
 #include "mpm/kernels.h"
-#include "mpm/transfer.k.h"
+#include "mpm/filter.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)

@@ -120,6 +120,12 @@ static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_e
     return TOBI_OK;
 }
 
+/* Node arrays: XPIC has one more than FLIP, measuring needs what FLIP has. */
+static int count_layers(const tobi_mlsmpm_def *d)
+{
+    return d->transfer == TOBI_APIC ? 1 + d->measure_transfer : 1 + d->transfer;
+}
+
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
 {
     mlsmpm *m = calloc(1, sizeof *m);
@@ -132,7 +138,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->viscous_dt = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
-        status = mpm_grid_create(&m->grid, s->box.dimension, m->def.transfer == TOBI_APIC ? 1 + m->def.measure_transfer : 1 + m->def.transfer, &s->exec, err);
+        status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->exec, err);
     if (status != TOBI_OK) {
         free(m);
         *state = NULL;
@@ -218,8 +224,8 @@ static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_stage_end(&s->stages, "to grid", clock);
 }
 
-/* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last step
-   took: nodes have what they have, particles what arrives. */
+/* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last
+   step took: nodes have what they have, particles what arrives. */
 static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
 {
     double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
