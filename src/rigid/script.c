@@ -25,11 +25,14 @@
 #define FILE_LIMIT   (4 << 20)        /* bytes of a script file             */
 #define TICK_LIMIT   10000000         /* loop turns and calls per point     */
 #define SECONDS_LIMIT 3               /* processor time per point           */
+#define POOL          (64 << 10)      /* bytes for making a state           */
 #define DEPTH_LIMIT  50               /* nesting of params                  */
 
 struct tobi_script {
     lua_State *lua;
-    size_t bytes;             /* held by Lua now                             */
+    size_t bytes;             /* held by Lua now, outside of the pool        */
+    size_t pooled;            /* of the pool given away                      */
+    bool making;              /* the state is                                */
     char *label;              /* "motion script PATH", for messages              */
     const char *path;         /* its end                                         */
     tobi_script_role role;
@@ -37,6 +40,7 @@ struct tobi_script {
     bool open;                /* Lua's libraries are, and DRIVER has run     */
     int deform, place, control;   /* registry references of the walks in DRIVER  */
     char hold[64];            /* the last answer of control                  */
+    _Alignas(16) char pool[POOL];
     double pivot[3];          /* m                                           */
 };
 
@@ -142,10 +146,31 @@ static const char DRIVER[] =
     "end\n"
     "return seal, bind, deform, place, control\n";
 
+/* A piece of the pool, which serves while the state is made: LuaJIT crashes in lua_newstate when it gets its
+   first piece and then one less. Pieces are never given back. */
+static void *take_from_pool(tobi_script *script, const void *p, size_t old, size_t size)
+{
+    size_t begin = script->pooled;
+    if (!script->making || size == 0 || size > POOL - begin) return NULL;
+    script->pooled = begin + (size + 15)/16*16 < POOL ? begin + (size + 15)/16*16 : POOL;
+    if (p) memcpy(script->pool + begin, p, old < size ? old : size);
+    return script->pool + begin;
+}
+
 static void *allocate(void *user, void *p, size_t old, size_t size)
 {
     tobi_script *script = user;
+    bool pooled = p && (char *)p >= script->pool && (char *)p < script->pool + POOL;
     if (!p) old = 0;
+    if (!p || pooled) {
+        void *piece = take_from_pool(script, p, old, size);
+        if (piece) return piece;
+    }
+    if (pooled) {
+        void *moved = size ? allocate(script, NULL, 0, size) : NULL;
+        if (moved) memcpy(moved, p, old < size ? old : size);
+        return moved;
+    }
     if (size > old && script->bytes + (size - old) > MEMORY_LIMIT) return NULL;
     void *q = NULL;
     if (size == 0) free(p);
@@ -277,7 +302,9 @@ static const char *message(lua_State *lua)
 
 static tobi_status load(load_job *job, tobi_error *err)
 {
+    job->script->making = true;
     lua_State *lua = lua_newstate(allocate, job->script);
+    job->script->making = false;
     if (!lua) return tobi_fail(err, TOBI_NO_MEMORY, "%s: no memory for Lua", job->script->label);
     job->script->lua = lua;
     if (lua_cpcall(lua, load_protected, job) == 0) return TOBI_OK;
