@@ -189,6 +189,9 @@ static void bad_scenes_are_refused_in_words(void **state)
                     "\"name\": "
              "\"a\", %s } ] }", ball);
     refuse(text, "s.json:2:17: domain.walls.x: ", "is periodic, which mlsmpm does not know");
+    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1],\n"
+             "\"walls\": { \"z\": [\"open\", \"slip\"] } }, \"spacing\": 0.1, \"end_time\": 1,\n%s }", fluid);
+    refuse(text, "s.json:2:17: domain.walls.z: ", "is open, which only mlsmpm knows");
     snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"domain\": { \"min\": [-1, "
            "-1], \"max\": "
              "[1, 1] },\n\"spacing\": 0.1, \"end_time\": 1, \"solids\": [ { \"name\": \"a\",\n\"fill\": [ { "
