@@ -12,12 +12,14 @@ extern "C" {
 #endif
 
 /* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
-   the SPH methods slip along both. Sticky and no-slip are the same. */
+   the SPH methods slip along both. Sticky and no-slip are the same. Nothing is at an open side: particles of
+   mlsmpm and bodies pass it; the SPH methods refuse it. */
 typedef enum tobi_wall {
     TOBI_WALL_SLIP,
     TOBI_WALL_NO_SLIP,
     TOBI_WALL_PERIODIC,
-    TOBI_WALL_SEPARATE
+    TOBI_WALL_SEPARATE,
+    TOBI_WALL_OPEN
 } tobi_wall;
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
@@ -39,6 +41,8 @@ typedef enum tobi_model {
     TOBI_STATIONARY
 } tobi_model;
 typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
+/* Of particles beyond a side that is not open. */
+typedef enum tobi_leaving { TOBI_KEEP, TOBI_REMOVE } tobi_leaving;
 typedef enum tobi_seeding { TOBI_SEED_REGULAR, TOBI_SEED_BLUE_NOISE } tobi_seeding;
 
 /* The box, the fluid resolution and the clock. */
@@ -92,6 +96,7 @@ typedef struct tobi_mlsmpm_def {
     int    transfer;                  /* tobi_transfer                                                */
     double flip;                      /* 1, share of FLIP in the blend with PIC                       */
     int    xpic_order;                /* order m of XPIC(m)                                           */
+    int    leaving;                   /* tobi_leaving                                                 */
     double cfl;                       /* 1, dt <= cfl cell/(speed of sound + |v|)                     */
     int    measure_transfer;          /* 1: sum up the energy that transfers cost, in every step      */
 } tobi_mlsmpm_def;

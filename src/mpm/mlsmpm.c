@@ -16,6 +16,8 @@
 /* What a restart needs besides the particles. */
 enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, MEMORY };
 
+#define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
+
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
 
 typedef struct mlsmpm {
@@ -69,17 +71,20 @@ static double viscous_limit(const tobi_solid_def *d, double cell)
     return viscous ? 0.1*cell*cell*d->density/d->viscosity : INFINITY;
 }
 
-static void add_planes(const tobi_simulation *s, mpm_view *v)
+static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
 {
-    v->plane_count = 0;
+    v->plane_count = v->held = 0;
     for (int a = 0; a < s->box.dimension; a++)
         for (int side = 0; side < 2; side++) {
+            const int kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            if (kind == TOBI_WALL_OPEN) continue;
+            v->held |= keep << (2*a + side);
             mpm_plane *p = &v->plane[v->plane_count++];
             const double *velocity = side ? s->def.wall_velocity_max[a] : s->def.wall_velocity_min[a];
             memset(p, 0, sizeof *p);
             p->normal[a] = side ? -1 : 1;
             p->offset = side ? -s->box.size[a] : 0;
-            p->kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            p->kind = kind;
             p->friction = (float)s->def.friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }
@@ -104,7 +109,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
         v->size[a] = s->box.size[a];
         v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
     }
-    add_planes(s, v);
+    add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
 static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
@@ -112,7 +117,8 @@ static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_e
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a])
             return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip and separate");
+                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip, separate, "
+                             "open");
         if (s->box.size[a] > 1e8*m->cell)
             return tobi_fail(err, TOBI_UNSUPPORTED, "the domain has %g cells along %c, allowed are 1e8",
                              s->box.size[a]/m->cell, "xyz"[a]);
@@ -178,10 +184,15 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
     return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
 }
 
+static int is_stale(const mlsmpm *m)
+{
+    return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
+}
+
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
+    const int stale = is_stale(m);
     if (stale) {
         TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
         m->memory[AGE] = m->memory[DRIFT] = 0;
@@ -348,16 +359,45 @@ static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic)
     return t[0] + t[1] + t[2];
 }
 
+static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
+{
+    int beyond = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        beyond |= (&x->x)[a] < 0 || (&x->x)[a] > s->box.size[a];
+    return beyond;
+}
+
+/* Takes out the particles beyond the domain, before a sort; the others stay in their order. They take their
+   energy with them. */
+static void remove_leavers(tobi_simulation *s, mlsmpm *m)
+{
+    tobi_particles *p = &s->particles;
+    const mpm_view v = look_back(m);
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->count; i++) {
+        if (is_beyond(s, &p->position[i])) {
+            double t[3] = {0, 0, 0};
+            sum_energy(&v, i, i + 1, t);
+            m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
+            continue;
+        }
+        if (kept < i) tobi_particles_copy(p, i, kept);
+        kept++;
+    }
+    s->info.particles_lost += p->count - kept;
+    s->info.fluid_particles = p->count = kept;
+}
+
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
-    double clock = tobi_clock();
+    double clock = tobi_clock(), elastic;
     s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
+    if (s->particles.count > 0 && m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
+    if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
-        double elastic;
-        if (m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
         measure_way_to_grid(s, m);

@@ -236,12 +236,14 @@ TOBI_FN void mpm_load_rows(const tobi_float4 *tile, int32_t first, row *g, int d
 }
 
 /* 1 if a particle had to be brought back. */
-TOBI_FN int mpm_keep_inside(tobi_double3 *x, const double size[3], int dim)
+TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
 {
     double *at = &x->x;
+    const double *size = v->size;
     int out = 0;
     for (int a = 0; a < dim; a++) {
         if (at[a] >= 0 && at[a] <= size[a]) continue;
+        if (!(v->held >> (2*a + (at[a] > size[a])) & 1)) continue;
         at[a] = at[a] > size[a] ? size[a] : 0;
         out = 1;
     }
@@ -289,7 +291,7 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
             position[i + k].x += (double)u[0]*dt;
             position[i + k].y += (double)u[1]*dt;
             if (dim == 3) position[i + k].z += (double)u[2]*dt;
-            if (edge) totals[0] += mpm_keep_inside(&position[i + k], v->size, dim);
+            if (edge) totals[0] += mpm_keep_inside(&position[i + k], v, dim);
             far = quad_larger(far, u*u);
             if (flip) {
                 quad before, unused[3], own = quad_load(&velocity[i + k])*quad_set(material->keep*v->own);

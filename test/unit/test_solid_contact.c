@@ -6,7 +6,7 @@
 #include <cmocka.h>
 #include "tobiuo/tobiuo.h"
 
-/* From a height of two spacings: whoever looks for contacts only where the body was at the start finds none. */
+/* From a height of two spacings: who looks for contacts only where the body was at the start finds none. */
 static void a_falling_box_is_caught(void **state)
 {
     (void)state;

@@ -316,7 +316,7 @@ static void nodes_have_the_particles_momentum(void **state)
     }
 }
 
-/* As many particles as on the lattice, one in each cell, all apart, no two in a row. */
+/* As many particles as on the lattice, all apart, no two in a row. */
 static void blue_noise_is_even(void **state)
 {
     (void)state;
@@ -350,8 +350,8 @@ static void blue_noise_is_even(void **state)
         mean += nearest/1000;
         least = fmin(least, nearest);
     }
-    /* One random point per cell would have 0.67 spacings on average and 0.12 at least. */
-    assert_true(rows == 0 && mean > 0.08 && least > 0.04);
+    /* Seen: 0.95 spacings on average, 0.75 at least; one random point per cell has 0.67 and 0.12. */
+    assert_true(rows == 0 && mean > 0.09 && least > 0.065);
     free(x);
     tobi_world_destroy(world[0]);
     tobi_world_destroy(world[1]);

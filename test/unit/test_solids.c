@@ -210,11 +210,21 @@ static void methods_refuse_what_they_do_not_know(void **state)
     refuse(text, "s.json:2:11: solids: ", "dfsph takes fluids; solids need \"method\": \"mlsmpm\"");
     snprintf(text, sizeof text, "%s%s, \"output\": {\n\"grid\": true } }", plain, fluid);
     refuse(text, "s.json:3:9: output.grid: ", "dfsph has no grid; mlsmpm has one");
-    snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"spacing\": 0.1, \"end_time\": 1,\n"
-             "\"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1], "
-             "\"walls\": { \"x\": \"periodic\" } },\n"
-             "\"solids\": [ { \"name\": \"a\", %s } ] }", ball);
-    refuse(text, "s.json:2:68: domain.walls.x: ", "is periodic, which mlsmpm does not know");
+    snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, "
+           "1, 1],\n"
+             "\"walls\": { \"x\": \"periodic\" } }, \"spacing\": 0.1, \"end_time\": 1,\n\"solids\": [ { "
+                    "\"name\": "
+             "\"a\", %s } ] }", ball);
+    refuse(text, "s.json:2:17: domain.walls.x: ", "is periodic, which mlsmpm does not know");
+    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1],\n"
+             "\"walls\": { \"z\": [\"open\", \"slip\"] } }, \"spacing\": 0.1, \"end_time\": 1,\n%s }", fluid);
+    refuse(text, "s.json:2:17: domain.walls.z: ", "is open, which only mlsmpm knows");
+    snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"domain\": { \"min\": [-1, "
+           "-1], \"max\": "
+             "[1, 1] },\n\"spacing\": 0.1, \"end_time\": 1, \"solids\": [ { \"name\": \"a\",\n\"fill\": [ { "
+                    "\"sphere\": "
+             "{ \"centre\": [0, 0], \"radius\": 0.5 }, \"spin\": [1, 0, 0] } ] } ] }");
+    refuse(text, "s.json:3:68: solids[0].fill[0].spin: ", "must be about z in a 2-D scene");
 }
 
 int main(void)
