@@ -164,6 +164,31 @@ int64_t tobi_scan(tobi_exec *x, int64_t n, int64_t *counts)
     return total;
 }
 
+int64_t tobi_find_runs(tobi_exec *x, int64_t n, const uint32_t *keys, int bits, int64_t *begin)
+{
+    int64_t counts[256] = {0}, total = 0;
+    int parts = x->threads < 256 ? x->threads : 256;
+    for (int pass = 0; pass < (begin ? 2 : 1); pass++) {
+        #pragma omp parallel for num_threads(parts) schedule(static, 1)
+        for (int t = 0; t < parts; t++) {
+            int64_t found = pass ? counts[t] : 0;
+            for (int64_t i = n*t/parts; i < n*(t + 1)/parts; i++)
+                if (i == 0 || keys[i] >> bits != keys[i - 1] >> bits) {
+                    if (pass) begin[found] = i;
+                    found++;
+                }
+            if (!pass) counts[t] = found;
+        }
+        if (pass) break;
+        for (int t = 0; t < parts; t++) {
+            int64_t c = counts[t];
+            counts[t] = total;
+            total += c;
+        }
+    }
+    return total;
+}
+
 double tobi_clock(void)
 {
     struct timespec t;

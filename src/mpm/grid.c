@@ -158,41 +158,14 @@ static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse
     }
 }
 
-/* Where runs of equal keys (their low bits aside) begin, in order; returns how many. begin NULL only
-   counts. */
-static int64_t find_runs(const uint32_t *keys, int64_t n, int bits, int64_t *begin, tobi_exec *x)
-{
-    int64_t counts[256] = {0}, total = 0;
-    int parts = x->threads < 256 ? x->threads : 256;
-    for (int pass = 0; pass < (begin ? 2 : 1); pass++) {
-        #pragma omp parallel for num_threads(parts) schedule(static, 1)
-        for (int t = 0; t < parts; t++) {
-            int64_t found = pass ? counts[t] : 0;
-            for (int64_t i = n*t/parts; i < n*(t + 1)/parts; i++)
-                if (i == 0 || keys[i] >> bits != keys[i - 1] >> bits) {
-                    if (pass) begin[found] = i;
-                    found++;
-                }
-            if (!pass) counts[t] = found;
-        }
-        if (pass) break;
-        for (int t = 0; t < parts; t++) {
-            int64_t c = counts[t];
-            counts[t] = total;
-            total += c;
-        }
-    }
-    return total;
-}
-
 /* Blocks of particles from their sorted keys. `begin` is scratch for the starts of the runs. */
 static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tobi_exec *x, tobi_error *err)
 {
-    int64_t count = find_runs(keys, n, KEY_BITS, NULL, x);
+    int64_t count = tobi_find_runs(x, n, keys, KEY_BITS, NULL);
     TOBI_TRY(reserve_blocks(g, count, err));
     int64_t *begin = malloc((size_t)(count + 1)*sizeof *begin);
     if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
-    find_runs(keys, n, KEY_BITS, begin, x);
+    tobi_find_runs(x, n, keys, KEY_BITS, begin);
     begin[count] = n;
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < count; k++) {
@@ -238,9 +211,9 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
             if (is_offset(g, o)) keys[k*around + at++] = beside(g, g->block_key[k], o);
     uint32_t limit = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
     tobi_sort_by_key(x, n, limit, keys, order, key_scratch, order_scratch, g->histogram);
-    int64_t count = find_runs(keys, n, 0, NULL, x), *begin = malloc((size_t)(count + 1)*sizeof *begin);
+    int64_t count = tobi_find_runs(x, n, keys, 0, NULL), *begin = malloc((size_t)(count + 1)*sizeof *begin);
     if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
-    find_runs(keys, n, 0, begin, x);
+    tobi_find_runs(x, n, keys, 0, begin);
     tobi_status status = reserve_patches(g, count, err);
     for (int64_t k = 0; k < count && status == TOBI_OK; k++) g->patch_key[k] = keys[begin[k]];
     free(begin);

@@ -8,37 +8,62 @@
 
 enum { SWEEPS = 8 };
 
+static void free_entries(mpm_touch *t)
+{
+    free(t->node); free(t->weight); free(t->key); free(t->key_scratch);
+    free(t->order); free(t->order_scratch); free(t->begin);
+    t->room = 0;
+}
+
 void mpm_touch_free(mpm_touch *t)
 {
-    free(t->node);
-    free(t->weight);
+    free_entries(t);
     free(t->crowd);
+    free(t->histogram);
     memset(t, 0, sizeof *t);
 }
 
 static int nodes_each(const mpm_grid *g) { return g->dimension == 3 ? 27 : 9; }
 
-static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, tobi_error *err)
+static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
 {
-    int64_t each = nodes_each(g), nodes = g->patch_count*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
-    if (contacts > t->room) {
-        int64_t room = contacts + contacts/4 + 256;
-        free(t->node);
-        free(t->weight);
-        t->node = malloc((size_t)(room*each)*sizeof *t->node);
-        t->weight = malloc((size_t)(room*each)*sizeof *t->weight);
-        t->room = t->node && t->weight ? room : 0;
-        if (!t->room)
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)contacts);
+    if (count <= t->room) return TOBI_OK;
+    int64_t room = count + count/4 + 4096;
+    free_entries(t);
+    t->node = malloc((size_t)room*sizeof *t->node);
+    t->weight = malloc((size_t)room*sizeof *t->weight);
+    t->key = malloc((size_t)room*sizeof *t->key);
+    t->key_scratch = malloc((size_t)room*sizeof *t->key_scratch);
+    t->order = malloc((size_t)room*sizeof *t->order);
+    t->order_scratch = malloc((size_t)room*sizeof *t->order_scratch);
+    t->begin = malloc((size_t)(room + 1)*sizeof *t->begin);
+    if (t->node && t->weight && t->key && t->key_scratch && t->order && t->order_scratch && t->begin) {
+        t->room = room;
+        return TOBI_OK;
     }
+    free_entries(t);
+    t->node = t->key = t->key_scratch = NULL;
+    t->weight = NULL;
+    t->order = t->order_scratch = NULL;
+    t->begin = NULL;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)count);
+}
+
+static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, const tobi_exec *x,
+                           tobi_error *err)
+{
+    int64_t nodes = g->patch_count*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
+    t->count = contacts*nodes_each(g);
+    TOBI_TRY(reserve_entries(t, t->count, err));
+    if (!t->histogram) t->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *t->histogram);
     if (nodes > t->node_room) {
         free(t->crowd);
-        t->crowd = calloc((size_t)(nodes + nodes/8), sizeof *t->crowd);
-        t->node_room = t->crowd ? nodes + nodes/8 : 0;
-        if (!t->node_room)
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
+        t->node_room = nodes + nodes/8;
+        t->crowd = malloc((size_t)t->node_room*sizeof *t->crowd);
     }
-    return TOBI_OK;
+    if (t->crowd && t->histogram) return TOBI_OK;
+    t->node_room = 0;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
 }
 
 static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
@@ -77,10 +102,21 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
         for (int n = 0; n < each; n++) {
             int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = n%3;
             float w = s.weight[0][i][0]*s.weight[1][j][0];
-            t->node[k*each + n] = place_of(b, dim, s.first[0] + (dim == 3 ? i*64 + j*8 + l : i*8 + j));
+            t->node[k*each + n] = (uint32_t)place_of(b, dim, s.first[0] + (dim == 3 ? i*64 + j*8 + l : i*8 + j));
             t->weight[k*each + n] = dim == 3 ? w*s.weight[2][l][0] : w;
         }
     }
+}
+
+/* Lists the entries of every node. */
+static void sort_by_node(mpm_touch *t, const mpm_grid *g, tobi_exec *x)
+{
+    int64_t nodes = g->patch_count*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
+    memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
+    tobi_sort_by_key(x, t->count, (uint32_t)nodes, t->key, t->order, t->key_scratch, t->order_scratch,
+                     t->histogram);
+    t->touched = tobi_find_runs(x, t->count, t->key, 0, t->begin);
+    t->begin[t->touched] = t->count;
 }
 
 /* Rows of the matrix that turns impulses into velocities: their sums bound how strongly all contacts together
@@ -88,8 +124,12 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
 static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const int64_t each = nodes_each(g);
-    for (int64_t k = 0; k < c->count*each; k++) t->crowd[t->node[k]] = 0;
-    for (int64_t k = 0; k < c->count*each; k++) t->crowd[t->node[k]] += t->weight[k];
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t n = 0; n < t->touched; n++) {
+        float sum = 0;
+        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->weight[t->order[e]];
+        t->crowd[t->key[t->begin[n]]] = sum;
+    }
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < c->count; k++) {
         double sum = 0;
@@ -111,17 +151,20 @@ static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid
     }
 }
 
-/* Nodes are few along a surface; each is changed by many contacts, in the order of the list. */
-static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g)
+static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const int64_t each = nodes_each(g);
-    for (int64_t k = 0; k < c->count; k++)
-        for (int64_t n = k*each; n < (k + 1)*each; n++) {
-            tobi_float4 *node = &g->node[t->node[n]];
-            if (!(node->w > 0)) continue;
-            for (int a = 0; a < 3; a++)
-                (&node->x)[a] += (float)(t->weight[n]*c->list[k].change[a]/node->w);
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t n = 0; n < t->touched; n++) {
+        tobi_float4 *node = &g->node[t->key[t->begin[n]]];
+        double sum[3] = {0, 0, 0};
+        if (!(node->w > 0)) continue;
+        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
+            const tobi_contact *k = &c->list[t->order[e]/each];
+            for (int a = 0; a < 3; a++) sum[a] += t->weight[t->order[e]]*k->change[a];
         }
+        for (int a = 0; a < 3; a++) (&node->x)[a] += (float)(sum[a]/node->w);
+    }
 }
 
 static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, const mpm_grid *g,
@@ -130,14 +173,15 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     tobi_contacts *c = &s->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
     if (c->count == 0) return TOBI_OK;
-    TOBI_TRY(reserve(t, g, c->count, err));
+    TOBI_TRY(reserve(t, g, c->count, &s->exec, err));
     find_nodes(t, c, g, v, &s->exec);
+    sort_by_node(t, g, &s->exec);
     find_mobility(t, c, g, &s->exec);
     read_velocities(t, c, g, &s->exec);
     tobi_contact_aim(c, b, step, &s->exec);
     for (int sweep = 0; sweep <= SWEEPS; sweep++) {
         tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
-        add_impulses(t, c, g);
+        add_impulses(t, c, g, &s->exec);
         read_velocities(t, c, g, &s->exec);
     }
     return TOBI_OK;

@@ -5,10 +5,16 @@
 #include "mpm/grid.h"
 
 typedef struct mpm_touch {
-    int64_t *node;                     /* [contacts][nodes each]: place in the nodes' array       */
-    float *weight;                     /* the same                                                */
+    int64_t count;                     /* entries: contacts times nodes each feels                */
+    uint32_t *node;                    /* place in the nodes' array                               */
+    float *weight;
+    /* The entries by node, so that every node is changed by one thread, in one order. */
+    uint32_t *key, *key_scratch;       /* nodes, sorted                                           */
+    int32_t *order, *order_scratch;    /* entries                                                 */
+    int64_t *begin, *histogram;        /* of the entries of each touched node                     */
+    int64_t touched, room;
     float *crowd;                      /* [nodes] sum of the contacts' weights                    */
-    int64_t room, node_room;
+    int64_t node_room;
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;
 
