@@ -17,7 +17,7 @@ typedef struct panel_row {
     int logarithmic;
     int from_start;                 /* the change since the first row               */
     int of_steps;                   /* values of a step: the row before any step has none */
-    curve_row curves[5];            /* ended by a row without column                */
+    curve_row curves[6];            /* ended by a row without column                */
 } panel_row;
 
 typedef struct picture_row {

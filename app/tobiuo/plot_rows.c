@@ -9,13 +9,15 @@
       { "z", column "_z", NULL, CURVE_LINE, 0, NULL } }
 
 const picture_row plot_history[] = {
-    { "energies", "Energy of the fluid", {
+    { "energies", "Energy of the fluid or solids", {
         { "kinetic energy, J", 0, 1, 0, 0, 0,
           { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL } } },
         { "change since the start, J", 0, 1, 0, 1, 0,
           { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL },
             { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL },
-            { "sum", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL } } } } },
+            { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy" },
+            { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy" },
+            { "kinetic + potential", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL } } } } },
     { "walls", "Force of the fluid on the walls of the domain", {
         { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
         { "force along gravity / weight", 0, 0, 0, 0, 1,

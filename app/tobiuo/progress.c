@@ -37,15 +37,15 @@ void progress_begin(progress *p, double time, int quiet)
 
 static void print_line(progress *p, const tobi_step_info *info, double end, double rate)
 {
-    char line[256], left[32];
+    char line[256], left[32], solver[80] = "";
     double done = info->time - p->start_time, elapsed = wall_clock() - p->begun;
     duration_text(done > 0.0 ? elapsed * (end - info->time) / done : 0.0, left);
     bool converged = info->density_converged && info->divergence_converged;
-    snprintf(
-        line, sizeof line,
-        "t %.5f/%g s  step %lld  dt %.3g s  iterations %d+%d%s  %.2f M particle-steps/s  left %s",
-        info->time, end, (long long)info->step, info->dt, info->density_iterations,
-        info->divergence_iterations, converged ? "" : " (not converged)", rate * 1e-6, left);
+    if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
+        snprintf(solver, sizeof solver, "iterations %d+%d%s  ", info->density_iterations,
+                 info->divergence_iterations, converged ? "" : " (not converged)");
+    snprintf(line, sizeof line, "t %.5f/%g s  step %lld  dt %.3g s  %s%.2f M particle-steps/s  left %s",
+             info->time, end, (long long)info->step, info->dt, solver, rate*1e-6, left);
     if (p->terminal) fprintf(stderr, "\r%-*.*s", p->columns - 1, p->columns - 1, line);
     else fprintf(stderr, "%s\n", line);
     fflush(stderr);

@@ -12,12 +12,14 @@ extern "C" {
 #endif
 
 /* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
-   the SPH methods slip along both. Sticky and no-slip are the same. */
+   the SPH methods slip along both. Sticky and no-slip are the same. Nothing is at an open side: particles of
+   mlsmpm and bodies pass it; the SPH methods refuse it. */
 typedef enum tobi_wall {
     TOBI_WALL_SLIP,
     TOBI_WALL_NO_SLIP,
     TOBI_WALL_PERIODIC,
-    TOBI_WALL_SEPARATE
+    TOBI_WALL_SEPARATE,
+    TOBI_WALL_OPEN
 } tobi_wall;
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
@@ -39,6 +41,8 @@ typedef enum tobi_model {
     TOBI_STATIONARY
 } tobi_model;
 typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
+/* Of particles beyond a side that is not open. */
+typedef enum tobi_leaving { TOBI_KEEP, TOBI_REMOVE } tobi_leaving;
 typedef enum tobi_seeding { TOBI_SEED_REGULAR, TOBI_SEED_BLUE_NOISE } tobi_seeding;
 
 /* The box, the fluid resolution and the clock. */
@@ -92,7 +96,9 @@ typedef struct tobi_mlsmpm_def {
     int    transfer;                  /* tobi_transfer                                                */
     double flip;                      /* 1, share of FLIP in the blend with PIC                       */
     int    xpic_order;                /* order m of XPIC(m)                                           */
+    int    leaving;                   /* tobi_leaving                                                 */
     double cfl;                       /* 1, dt <= cfl cell/(speed of sound + |v|)                     */
+    int    measure_transfer;          /* 1: sum up the energy that transfers cost, in every step      */
 } tobi_mlsmpm_def;
 
 /* A solid (or liquid, snow, sand) of the material point method: one material. */
@@ -221,7 +227,7 @@ typedef struct tobi_output_def {
     double      checkpoint_interval;  /* s of simulated time between checkpoints; 0 = only at the end */
     int         compression;          /* tobi_compression                                             */
     double      probe_interval;       /* s of simulated time between rows of probes.csv; 0 = every step */
-    const char *fields;               /* names separated by commas; see tobi_world_field_name         */
+    const char *fields;               /* names separated by commas, see tobi_world_field_name; "usual" */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
     int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */
@@ -258,6 +264,7 @@ typedef struct tobi_step_info {
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
     double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
+    double  transfer_dissipation; /* J, of that by transfers, if mlsmpm measures it                   */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

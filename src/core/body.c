@@ -409,16 +409,34 @@ void tobi_body_free(tobi_body *b)
     memset(b, 0, sizeof *b);
 }
 
+static void place_next(tobi_body *b)
+{
+    const tobi_rigid *r = &b->rigid;
+    pose_points(b, r->next_position, r->next_orientation, b->mesh.vertex_count,
+                (const double (*)[3])b->mesh.vertices, b->next);
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++) vec3_sub(b->next[i], b->next[i], b->lower);
+}
+
+void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt)
+{
+    tobi_rigid *r = &b->rigid;
+    double turn[3];
+    for (int a = 0; a < 3; a++) {
+        r->next_position[a] += (velocity[a] - r->velocity[a])*dt;
+        turn[a] = (spin[a] - r->angular_velocity[a])*dt;
+    }
+    tobi_quaternion_turn(r->next_orientation, turn);
+    place_next(b);
+}
+
 /* The drift of a free body, and the velocities its points have now. */
 static void predict_free(tobi_body *b, double dt)
 {
     tobi_rigid *r = &b->rigid;
     tobi_rigid_drift(r, dt);
-    pose_points(b, r->next_position, r->next_orientation, b->mesh.vertex_count,
-                (const double (*)[3])b->mesh.vertices, b->next);
+    place_next(b);
     for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
         double arm[3], turning[3];
-        vec3_sub(b->next[i], b->next[i], b->lower);
         vec3_sub(arm, b->vertex[i], r->position);
         vec3_cross(turning, r->angular_velocity, arm);
         vec3_add_scaled(b->vertex_velocity[i], r->velocity, 1, turning);

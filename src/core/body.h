@@ -66,6 +66,9 @@ tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
    double: the central difference at its middle. A free body drifts by its present velocities instead.
    *speed is raised to the fastest point. */
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err);
+/* Between the two calls, for a free body: it drifts by these velocities (m/s, rad/s) instead of the present
+   ones, because contact has changed them. */
+void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
 /* A box around the body at its present pose, from the domain's lower corner; m. */

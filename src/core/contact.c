@@ -18,6 +18,7 @@ void tobi_contact_free(tobi_contacts *c)
     free(c->run);
     free(c->chunk_box);
     free(c->partial);
+    free(c->shift);
     memset(c, 0, sizeof *c);
 }
 
@@ -31,6 +32,7 @@ static tobi_status fail_memory(int64_t contacts, tobi_error *err)
 tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err)
 {
     int64_t chunks = count_chunks(p->count);
+    c->shift_count = 0;
     if (chunks > c->chunk_room) {
         free(c->run);
         free(c->chunk_box);
@@ -60,6 +62,24 @@ typedef struct pose {
     double matrix[3][3];             /* rest axes to world axes */
     double low[3], high[3];          /* m, of the body with all who may touch it */
 } pose;
+
+/* The box around the body. The tree of the present pose is that of the start where a body moves by forces;
+   the turned box of the rest pose holds whatever moved it. */
+static void find_box(pose *at)
+{
+    const tobi_body *b = at->body;
+    double low[3], high[3];
+    tobi_bvh_box(b->deforms ? b->bvh : b->rest_bvh, low, high);
+    for (int a = 0; a < 3; a++) {
+        double middle = b->rigid.position[a], half = 0;
+        for (int k = 0; k < 3; k++) {
+            middle += 0.5*at->matrix[a][k]*(low[k] + high[k]);
+            half += 0.5*fabs(at->matrix[a][k])*(high[k] - low[k]);
+        }
+        at->low[a] = (b->deforms ? low[a] : middle - half) - at->step->radius - at->step->margin;
+        at->high[a] = (b->deforms ? high[a] : middle + half) + at->step->radius + at->step->margin;
+    }
+}
 
 /* What the surface moves at the hit besides the body's rigid motion. */
 static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_contact *c)
@@ -153,6 +173,17 @@ static tobi_status reserve(tobi_contacts *c, int64_t count, tobi_error *err)
     return c->room ? TOBI_OK : fail_memory(count, err);
 }
 
+static tobi_status reserve_shifts(tobi_contacts *c, tobi_error *err)
+{
+    int64_t need = c->shift_count + c->count;
+    if (need <= c->shift_room) return TOBI_OK;
+    tobi_shift *more = realloc(c->shift, (size_t)(need + need/4)*sizeof *more);
+    if (!more) return fail_memory(need, err);
+    c->shift = more;
+    c->shift_room = need + need/4;
+    return TOBI_OK;
+}
+
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
 {
@@ -160,12 +191,9 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     int64_t runs;
     if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
     tobi_quaternion_matrix(b->rigid.orientation, at.matrix);
-    tobi_body_box(b, at.low, at.high);
-    for (int a = 0; a < 3; a++) {
-        at.low[a] -= step->radius + step->margin;
-        at.high[a] += step->radius + step->margin;
-    }
+    find_box(&at);
     while ((c->count = search(c, &at, p, &runs, x)) > c->room) TOBI_TRY(reserve(c, c->count, err));
+    TOBI_TRY(reserve_shifts(c, err));
     int64_t n = 0;
     for (int64_t k = 0; k < runs; k++) {       /* in the order of the chunks, whoever was first */
         memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
@@ -345,6 +373,19 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
     }
 }
 
+/* The part of an overlap that is mended in one step, m. */
+static double find_push(const tobi_contact *k, const tobi_contact_step *step)
+{
+    return k->gap < 0 ? fmin(-0.2*k->gap, 0.1*step->radius) : 0;
+}
+
+void tobi_contact_shift(tobi_contacts *c, tobi_particles *p)
+{
+    for (int64_t n = 0; n < c->shift_count; n++)
+        for (int a = 0; a < 3; a++) (&p->position[c->shift[n].particle].x)[a] += c->shift[n].by[a];
+    c->shift_count = 0;
+}
+
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
                             double *far, tobi_exec *x)
 {
@@ -367,10 +408,15 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
             }
             sum[12] += normal > 0;
             p->velocity[k->particle].w = (float)(normal/dt);
-            double push = k->gap < 0 ? fmin(-0.2*k->gap, 0.1*step->radius) : 0;
-            for (int a = 0; a < step->dimension; a++) (&p->position[k->particle].x)[a] += push*k->normal[a];
-            sum[13] = fmax(sum[13], push);
+            sum[13] = fmax(sum[13], find_push(k, step));
         }
+    }
+    for (int64_t n = 0; n < c->count; n++) {
+        const tobi_contact *k = &c->list[n];
+        if (!(k->gap < 0)) continue;
+        tobi_shift *shift = &c->shift[c->shift_count++];
+        *shift = (tobi_shift){ .particle = k->particle };
+        for (int a = 0; a < step->dimension; a++) shift->by[a] = find_push(k, step)*k->normal[a];
     }
     for (int64_t q = 0; q < parts; q++) {
         for (int n = 0; n < IMPULSES - 1; n++) total[n] += c->partial[q*SUMS + n];
@@ -384,5 +430,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         b->info.viscous_force[a] = total[6 + a]/dt;
         b->info.viscous_torque[a] = total[9 + a]/dt;
     }
+    /* It moves as it will, or a resting body would fall into the material by g dt^2 in every step. */
+    if (b->rigid.kind != TOBI_PRESCRIBED && c->count > 0) tobi_body_correct(b, c->velocity, c->spin, dt);
     return (int64_t)total[12];
 }

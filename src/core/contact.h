@@ -29,10 +29,15 @@ typedef struct tobi_contact {
     double  change[3];               /* N s, by the last sweep                                   */
 } tobi_contact;
 
+/* A way by which an overlap of one particle is lessened. */
+typedef struct tobi_shift { int32_t particle; double by[3]; } tobi_shift;
+
 typedef struct tobi_contacts {
     tobi_contact *list;              /* of the present body                                      */
     int64_t count, room;
     tobi_contact *found;             /* the same as the threads found them                       */
+    tobi_shift *shift;               /* of this step, at all bodies so far                       */
+    int64_t shift_count, shift_room;
     struct tobi_contact_run *run;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
     double *partial;                 /* sums of parts of the list                                */
@@ -67,4 +72,7 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
    Returns how many contacts push. */
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
                             double *far, tobi_exec *x);
+/* Shifts the particles that overlapped. To be called when the grid has moved them: shifted before, they would
+   take other velocities from it than they gave, and momentum would be lost. */
+void tobi_contact_shift(tobi_contacts *c, tobi_particles *p);
 void tobi_contact_free(tobi_contacts *c);

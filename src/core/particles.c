@@ -92,6 +92,14 @@ void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scrat
 #undef X
 }
 
+void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to)
+{
+#define X(type, name, life, owner, unit, doc) \
+    if ((life) == TOBI_STATE && p->name) p->name[to] = p->name[from];
+    TOBI_PARTICLE_FIELDS(X)
+#undef X
+}
+
 tobi_field_ref tobi_particles_state(tobi_particles *p, int index)
 {
     int k = 0;

@@ -62,6 +62,9 @@ int64_t tobi_particles_row_bytes(int owners);
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads);
 int64_t tobi_particles_widest(int owners);
 
+/* Copies the STATE fields of row `from` over row `to`. */
+void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to);
+
 /* Walks the state fields, for checkpoints: name and pointer by index, NULL past the end. */
 typedef struct tobi_field_ref { const char *name; void *data; size_t bytes; } tobi_field_ref;
 tobi_field_ref tobi_particles_state(tobi_particles *p, int index);

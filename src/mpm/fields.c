@@ -2,7 +2,7 @@
    summed in double, since small strains make small differences. Equation numbers: docs/theory/mlsmpm.md. */
 #define TOBI_SCALAR_LANES
 #include "mpm/fields.h"
-#include "mpm/transfer.k.h"
+#include "mpm/particle.k.h"
 #include <string.h>
 
 static double square_sum(const double x[3]) { return x[0]*x[0] + x[1]*x[1] + x[2]*x[2]; }

@@ -1,6 +1,6 @@
 /* Turns the transfers into loops, compiled once per instruction set. */
 #include "mpm/kernels.h"
-#include "mpm/transfer.k.h"
+#include "mpm/filter.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -10,13 +10,21 @@ MPM_KERNEL(collect_2d, mpm_collect, 2)
 MPM_KERNEL(gather_2d, mpm_gather, 2)
 MPM_KERNEL(filter_2d, mpm_filter, 2)
 MPM_KERNEL(filter_nodes_2d, mpm_filter_nodes, 2)
+MPM_KERNEL(scatter_calm_2d, mpm_scatter_calm, 2)
+MPM_KERNEL(energy_calm_2d, mpm_energy_calm, 2)
+MPM_KERNEL(energy_nodes_2d, mpm_energy_nodes, 2)
 MPM_KERNEL(scatter_3d, mpm_scatter, 3)
 MPM_KERNEL(collect_3d, mpm_collect, 3)
 MPM_KERNEL(gather_3d, mpm_gather, 3)
 MPM_KERNEL(filter_3d, mpm_filter, 3)
 MPM_KERNEL(filter_nodes_3d, mpm_filter_nodes, 3)
+MPM_KERNEL(scatter_calm_3d, mpm_scatter_calm, 3)
+MPM_KERNEL(energy_calm_3d, mpm_energy_calm, 3)
+MPM_KERNEL(energy_nodes_3d, mpm_energy_nodes, 3)
 
 const mpm_kernels JOIN(mpm_kernels, TOBI_ISA)[2] = {
-    {scatter_2d, collect_2d, gather_2d, filter_2d, filter_nodes_2d},
-    {scatter_3d, collect_3d, gather_3d, filter_3d, filter_nodes_3d},
+    {scatter_2d, collect_2d, gather_2d, filter_2d, filter_nodes_2d,
+     scatter_calm_2d, energy_calm_2d, energy_nodes_2d},
+    {scatter_3d, collect_3d, gather_3d, filter_3d, filter_nodes_3d,
+     scatter_calm_3d, energy_calm_3d, energy_nodes_3d},
 };

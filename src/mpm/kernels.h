@@ -9,6 +9,8 @@ typedef struct mpm_kernels {
     tobi_kernel gather;                /* over particle blocks                                    */
     tobi_kernel filter;                /* over particle blocks, XPIC                              */
     tobi_kernel filter_nodes;          /* over node blocks                                        */
+    tobi_kernel scatter_calm;          /* over particle blocks; these three to measure transfers  */
+    tobi_kernel energy_calm, energy_nodes;   /* over node blocks                                  */
 } mpm_kernels;
 
 /* isa: exec's level. Static data, never NULL. */

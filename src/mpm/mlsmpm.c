@@ -14,7 +14,9 @@
 #include <string.h>
 
 /* What a restart needs besides the particles. */
-enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, MEMORY };
+enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, MEMORY };
+
+#define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
 
@@ -40,12 +42,19 @@ static void choose_smoothing(const void *def, int *shape, double *support)
     *support = 2;
 }
 
+/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; in plane strain,
+   where the stress out of the plane is the mean of the others in flow, theirs there. */
+static double find_cone(const tobi_solid_def *d, int dimension)
+{
+    double sine = sin(d->friction_angle*acos(-1)/180);
+    return dimension == 2 ? sqrt(2.0)/3*sine : sqrt(2.0/3)*2*sine/(3 - sine);
+}
+
 /* Constants of a material, and how fast sound is in it; hardened snow is up to e^2 times as stiff. */
-static mpm_material describe_material(const tobi_solid_def *d, double *sound)
+static mpm_material describe_material(const tobi_solid_def *d, int dimension, double *sound)
 {
     double mu = d->youngs_modulus/(2*(1 + d->poissons_ratio));
     double lambda = d->youngs_modulus*d->poissons_ratio/((1 + d->poissons_ratio)*(1 - 2*d->poissons_ratio));
-    double sine = sin(d->friction_angle*acos(-1)/180);
     double stiffness = d->model == TOBI_LIQUID ? d->bulk_modulus : lambda + 2*mu;
     if (d->model == TOBI_SNOW && d->hardening > 0) stiffness *= exp(2);
     *sound = d->model == TOBI_STATIONARY ? 0 : sqrt(stiffness/d->density);
@@ -53,7 +62,7 @@ static mpm_material describe_material(const tobi_solid_def *d, double *sound)
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)(sqrt(2.0/3)*2*sine/(3 - sine)), .keep = 1 };
+        .friction = (float)find_cone(d, dimension), .keep = 1 };
 }
 
 static double viscous_limit(const tobi_solid_def *d, double cell)
@@ -62,17 +71,20 @@ static double viscous_limit(const tobi_solid_def *d, double cell)
     return viscous ? 0.1*cell*cell*d->density/d->viscosity : INFINITY;
 }
 
-static void add_planes(const tobi_simulation *s, mpm_view *v)
+static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
 {
-    v->plane_count = 0;
+    v->plane_count = v->held = 0;
     for (int a = 0; a < s->box.dimension; a++)
         for (int side = 0; side < 2; side++) {
+            const int kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            if (kind == TOBI_WALL_OPEN) continue;
+            v->held |= keep << (2*a + side);
             mpm_plane *p = &v->plane[v->plane_count++];
             const double *velocity = side ? s->def.wall_velocity_max[a] : s->def.wall_velocity_min[a];
             memset(p, 0, sizeof *p);
             p->normal[a] = side ? -1 : 1;
             p->offset = side ? -s->box.size[a] : 0;
-            p->kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            p->kind = kind;
             p->friction = (float)s->def.friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }
@@ -97,7 +109,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
         v->size[a] = s->box.size[a];
         v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
     }
-    add_planes(s, v);
+    add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
 static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
@@ -105,12 +117,19 @@ static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_e
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a])
             return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip and separate");
+                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip, separate, "
+                             "open");
         if (s->box.size[a] > 1e8*m->cell)
             return tobi_fail(err, TOBI_UNSUPPORTED, "the domain has %g cells along %c, allowed are 1e8",
                              s->box.size[a]/m->cell, "xyz"[a]);
     }
     return TOBI_OK;
+}
+
+/* Node arrays: XPIC has one more than FLIP, measuring needs what FLIP has. */
+static int count_layers(const tobi_mlsmpm_def *d)
+{
+    return d->transfer == TOBI_APIC ? 1 + d->measure_transfer : 1 + d->transfer;
 }
 
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
@@ -125,7 +144,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->viscous_dt = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
-        status = mpm_grid_create(&m->grid, s->box.dimension, 1 + m->def.transfer, &s->exec, err);
+        status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->exec, err);
     if (status != TOBI_OK) {
         free(m);
         *state = NULL;
@@ -134,7 +153,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     for (int k = 0; k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
-        m->material[k] = describe_material(d, &sound);
+        m->material[k] = describe_material(d, s->box.dimension, &sound);
         m->damping[k] = d->damping;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
@@ -161,14 +180,19 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
     const tobi_mlsmpm_def *m = def;
     const tobi_solid_def *d = &s->solids[solid].def;
     double cell = m->cell*s->smoothing.spacing, sound;
-    describe_material(d, &sound);
+    describe_material(d, s->box.dimension, &sound);
     return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
+}
+
+static int is_stale(const mlsmpm *m)
+{
+    return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
 }
 
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
-    int stale = m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
+    const int stale = is_stale(m);
     if (stale) {
         TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
         m->memory[AGE] = m->memory[DRIFT] = 0;
@@ -184,6 +208,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
         }
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
+    if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }
@@ -208,6 +233,26 @@ static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, NULL);
     tobi_stage_end(&s->stages, "to grid", clock);
+}
+
+/* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last
+   step took: nodes have what they have, particles what arrives. */
+static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
+{
+    double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
+    if (!m->def.measure_transfer) return;
+    tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
+    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, m->grid.patch_count, arrived);
+    if (s->step > 0) m->memory[TRANSFER] += m->memory[NODE_ENERGY] - came[0];
+    m->memory[TRANSFER] += came[1] - arrived[0];
+}
+
+static void measure_nodes(tobi_simulation *s, mlsmpm *m)
+{
+    double t[TOBI_TOTALS];
+    if (!m->def.measure_transfer) return;
+    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, m->grid.patch_count, t);
+    m->memory[NODE_ENERGY] = t[0];
 }
 
 /* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
@@ -314,21 +359,53 @@ static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic)
     return t[0] + t[1] + t[2];
 }
 
+static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
+{
+    int beyond = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        beyond |= (&x->x)[a] < 0 || (&x->x)[a] > s->box.size[a];
+    return beyond;
+}
+
+/* Takes out the particles beyond the domain, before a sort; the others stay in their order. They take their
+   energy with them. */
+static void remove_leavers(tobi_simulation *s, mlsmpm *m)
+{
+    tobi_particles *p = &s->particles;
+    const mpm_view v = look_back(m);
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->count; i++) {
+        if (is_beyond(s, &p->position[i])) {
+            double t[3] = {0, 0, 0};
+            sum_energy(&v, i, i + 1, t);
+            m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
+            continue;
+        }
+        if (kept < i) tobi_particles_copy(p, i, kept);
+        kept++;
+    }
+    s->info.particles_lost += p->count - kept;
+    s->info.fluid_particles = p->count = kept;
+}
+
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
-    double clock = tobi_clock();
+    double clock = tobi_clock(), elastic;
     s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
+    if (s->particles.count > 0 && m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
+    if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
-        double elastic;
-        if (m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
+        measure_way_to_grid(s, m);
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
+        measure_nodes(s, m);
         grid_to_particles(s, m, &clock);
+        tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
     }
     TOBI_TRY(move_bodies(s, &clock, err));
@@ -376,6 +453,7 @@ static void measure(tobi_simulation *s, const void *state)
     const mlsmpm *m = state;
     double energy = find_energy(s, m, &s->info.elastic_energy);
     s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
+    s->info.transfer_dissipation = m->memory[TRANSFER];
 }
 
 /* After a load the blocks are built anew. */

@@ -55,7 +55,7 @@ typedef struct mpm_view {
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
-    tobi_float4 *TOBI_RESTRICT old;    /* what the particle's share of the grid replaces, m/s; NULL with APIC */
+    tobi_float4 *TOBI_RESTRICT old;    /* what of the particle's own is replaced, m/s; NULL: APIC  */
     tobi_float4 *TOBI_RESTRICT wave;   /* XPIC: the velocity filtered once more, m/s                */
     double inverse_cell;               /* 1/m                                                      */
     float  cell;                       /* m                                                        */
@@ -68,4 +68,5 @@ typedef struct mpm_view {
     int    plane_count;
     mpm_plane plane[MPM_PLANES];
     double size[3];                    /* m, of the domain                                         */
+    int    held;                       /* bit 2 axis + side: that side keeps particles inside      */
 } mpm_view;

@@ -266,7 +266,7 @@ static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *ou
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
     for (int side = 0; side < 2*d->world.dimension; side++) {
         int64_t first = out->count;
-        if (!d->world.wall[side/2]) continue;
+        if (!(d->world.wall[side/2] >> side%2 & 1)) continue;
         tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin, out);
         for (int64_t i = first; i < out->count; i++) {
             out->at[i].a = k;

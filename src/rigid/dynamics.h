@@ -9,7 +9,7 @@ typedef struct tobi_rigid_world {
     double gravity[3];           /* m/s2                                                        */
     double size[3];              /* m, of the domain; its sides are at 0 and size               */
     int dimension;
-    int wall[3];                 /* 0: no sides along this axis                                 */
+    int wall[3];                 /* sides along this axis: 1 the lower, 2 the upper, 3 both     */
     int threads;                 /* that look for contacts; they do not change the result       */
 } tobi_rigid_world;
 

@@ -86,7 +86,11 @@ static void check_domain(const tobi_scene *scene, tobi_source *source)
                                 "is periodic on one side only; write \"%s\": \"periodic\"", name);
         if (w->wall_min[a] == TOBI_WALL_PERIODIC && scene->method == &tobi_mlsmpm_table)
             tobi_source_mistake(source, &wall, "is periodic, which mlsmpm does not know; allowed are slip, "
-                                               "no-slip and separate");
+                                               "no-slip, separate and open");
+        const int open = w->wall_min[a] == TOBI_WALL_OPEN || w->wall_max[a] == TOBI_WALL_OPEN;
+        if (open && scene->method && scene->method != &tobi_mlsmpm_table)
+            tobi_source_mistake(source, &wall, "is open, which only mlsmpm knows; allowed are slip, no-slip, "
+                                               "periodic and separate");
         if (!tobi_check_has_domain(scene)) continue;
         tobi_place entry = { &corner, NULL, (size_t)a };
         if (!(length > 0))

@@ -11,7 +11,8 @@ static void describe_world(const tobi_simulation *s, tobi_rigid_world *r)
     for (int a = 0; a < s->box.dimension; a++) {
         r->gravity[a] = s->def.gravity[a];
         r->size[a] = s->box.size[a];
-        r->wall[a] = !s->box.periodic[a];
+        r->wall[a] = s->box.periodic[a] ? 0 : (s->def.wall_min[a] != TOBI_WALL_OPEN) +
+                                              2*(s->def.wall_max[a] != TOBI_WALL_OPEN);
     }
 }
 

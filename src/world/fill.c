@@ -1,5 +1,6 @@
 #include "world/fill.h"
 #include "base/error.h"
+#include "geom/seed.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,54 +80,6 @@ static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first,
     }
 }
 
-/* Scattered points: one in each cell of the lattice, the best of a few candidates, that is the one farthest
-   from the points of the cells before (Mitchell 1991). Density is as even as the lattice's, and no row of
-   particles lies along an axis. */
-typedef struct scatter {
-    double (*point)[3];            /* [2 layers][n1][n0]; NULL: the points of the lattice itself */
-    uint64_t random;
-} scatter;
-
-static double draw(scatter *c)     /* 0 to 1: splitmix64 */
-{
-    uint64_t z = c->random += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30))*UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27))*UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ (z >> 31)) >> 11)*0x1p-53;
-}
-
-/* Distance squared to the nearest point of the 13 cells before. */
-static double look_around(const scatter *c, const int64_t n[3], const int64_t at[3], const double x[3])
-{
-    double nearest = INFINITY;
-    for (int m = 0; m < 13; m++) {
-        int64_t i = at[0] + m%3 - 1, j = at[1] + m/3%3 - 1, k = at[2] + m/9 - 1;
-        if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1]) continue;
-        const double *p = c->point[((k & 1)*n[1] + j)*n[0] + i];
-        double d2 = 0;
-        for (int a = 0; a < 3; a++) d2 += (x[a] - p[a])*(x[a] - p[a]);
-        nearest = fmin(nearest, d2);
-    }
-    return nearest;
-}
-
-/* The particle of a cell, m in the world. */
-static void place_point(const tobi_region *r, scatter *c, const int64_t n[3], const double step[3],
-                        const int64_t at[3], int dimension, double w[3])
-{
-    enum { CANDIDATES = 12 };
-    double best = -1;
-    for (int a = 0; a < 3; a++) w[a] = a < dimension ? r->lower[a] + ((double)at[a] + 0.5)*step[a] : 0;
-    for (int m = 0; c->point && m < CANDIDATES; m++) {
-        double x[3] = {0}, d2;
-        for (int a = 0; a < dimension; a++) x[a] = r->lower[a] + ((double)at[a] + draw(c))*step[a];
-        d2 = look_around(c, n, at, x);
-        if (d2 > best) memcpy(w, x, sizeof x);
-        best = fmax(best, d2);
-    }
-    if (c->point) memcpy(c->point[((at[2] & 1)*n[1] + at[1])*n[0] + at[0]], w, sizeof *c->point);
-}
-
 static int inside_region(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension)
 {
     double d2 = 0;
@@ -138,41 +91,75 @@ static int inside_region(const tobi_region *r, const tobi_bvh *tree, const doubl
     return !(r->radius > 0) || d2 < r->radius*r->radius;
 }
 
-tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err)
+/* The lattice points inside a region, in the order of z, y, x; those outside the domain included. */
+static int64_t place_lattice(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+                             double (*points)[3])
 {
-    int64_t n[3], first = s->particles.count, whole = 0;
+    int64_t n[3], count = 0;
     double step[3];
+    lattice(s, r, n, step);
+    for (int64_t k = 0; k < n[2]; k++)
+        for (int64_t j = 0; j < n[1]; j++)
+            for (int64_t i = 0; i < n[0]; i++) {
+                const double at[3] = {(double)i + 0.5, (double)j + 0.5, (double)k + 0.5};
+                double *x = points[count];
+                for (int a = 0; a < 3; a++)
+                    x[a] = a < s->box.dimension ? r->lower[a] + at[a]*step[a] : 0;
+                count += inside_region(r, tree, x, s->box.dimension);
+            }
+    return count;
+}
+
+static int scattered(const tobi_simulation *s, const tobi_region *r)
+{
+    return s->solid_count && s->solids[r->owner].def.seeding == TOBI_SEED_BLUE_NOISE;
+}
+
+static tobi_status scatter(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+                           int64_t count, double (*points)[3], tobi_error *err)
+{
+    tobi_seed_shape shape = { .radius = r->radius, .tree = tree, .dimension = s->box.dimension };
+    memcpy(shape.lower, r->lower, sizeof shape.lower);
+    memcpy(shape.upper, r->upper, sizeof shape.upper);
+    return tobi_seed_scatter(&shape, s->smoothing.spacing, (uint64_t)r->owner << 32 | (uint64_t)r->number,
+                             count, points, s->exec.threads, err);
+}
+
+/* Places the points of a region and keeps those in the domain and outside of bodies. */
+static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
+                        tobi_error *err)
+{
+    const int64_t first = s->particles.count, count = place_lattice(s, r, tree, points);
+    if (scattered(s, r)) TOBI_TRY(scatter(s, r, tree, count, points, err));
+    for (int64_t i = 0; i < count; i++) {
+        double *x = points[i];
+        int out = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] -= s->box.lower[a];
+            if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
+        }
+        r->outside += out;
+        if (out) continue;
+        if (inside_body(s, x)) r->covered++;
+        else add_particle(s, r, x);
+    }
+    set_volumes(s, r, first, count);
+    return TOBI_OK;
+}
+
+tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err)
+{
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
-    scatter c = {0};
+    r->outside = r->covered = 0;
     if (m->triangle_count)
         TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
                                 (const int32_t (*)[3])m->triangles, &tree, err));
     if (m->overlapping) tobi_bvh_use_winding(tree);
-    lattice(s, r, n, step);
-    if (s->particles.strain && s->solids[r->owner].def.seeding == TOBI_SEED_BLUE_NOISE) {
-        c = (scatter){ calloc((size_t)(2*n[0]*n[1]), sizeof *c.point), (uint64_t)r->owner };
-        if (!c.point) {
-            tobi_bvh_free(tree);
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the particles of a region");
-        }
-    }
-    for (int64_t k = 0; k < n[2]; k++)
-        for (int64_t j = 0; j < n[1]; j++)
-            for (int64_t i = 0; i < n[0]; i++) {
-                double w[3], x[3];
-                int out = 0;
-                place_point(r, &c, n, step, (int64_t[3]){i, j, k}, s->box.dimension, w);
-                for (int a = 0; a < 3; a++) {
-                    x[a] = w[a] - s->box.lower[a];
-                    if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
-                }
-                if (!inside_region(r, tree, w, s->box.dimension)) continue;
-                whole++;
-                if (!out && !inside_body(s, x)) add_particle(s, r, x);
-            }
-    set_volumes(s, r, first, whole);
-    free(c.point);
+    double (*points)[3] = malloc((size_t)(tobi_region_count(s, r) + 1)*sizeof *points);
+    tobi_status status = points ? fill(s, r, tree, points, err)
+                                : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the particles of a region");
+    free(points);
     tobi_bvh_free(tree);
-    return TOBI_OK;
+    return status;
 }

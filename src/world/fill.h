@@ -1,18 +1,21 @@
-/* Where fluids and solids start: lattice points of boxes, spheres and meshes, minus those inside bodies. */
+/* Where fluids and solids start: lattice points of boxes, spheres and meshes, or as many scattered ones,
+   minus those inside bodies. */
 #pragma once
 #include "core/simulation.h"
 
 /* One region of one fluid or solid; its mesh is owned. */
 typedef struct tobi_region {
     int owner;                     /* number of the fluid or solid */
+    int number;                    /* of the region among those of its owner */
     double lower[3], upper[3];     /* m, world; the box, or the mesh's box */
     tobi_mesh shape;               /* placed and oriented; without triangles: the box */
     double radius;                 /* m, of the sphere in the middle of that box; 0 = none */
     double volume;                 /* m3, exact; 2-D: m2 */
     double velocity[3], spin[3];   /* m/s, rad/s about the middle of the box */
+    int64_t outside, covered;      /* points left out beyond the domain, inside bodies */
 } tobi_region;
 
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
 int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r);
-/* Appends the region's particles to s->particles (capacity must suffice). */
-tobi_status tobi_region_fill(tobi_simulation *s, const tobi_region *r, tobi_error *err);
+/* Appends the region's particles to s->particles (capacity must suffice); counts what it left out. */
+tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err);

@@ -22,7 +22,7 @@
     .type = TOBI_PARAM_CHOICE, .min = 0, .max = (count) - 1, .choices = words, .unit = "word"
 
 #define WALL(key_, member_, axis_, doc_)                                              \
-    { .key = key_, CHOICE("slip|no-slip|periodic|separate", 4),                                \
+    { .key = key_, CHOICE("slip|no-slip|periodic|separate|open", 5),                                \
       .offset = offsetof(tobi_world_def, member_) + (axis_)*sizeof(int), .doc = doc_ }
 
 #define WALL_VELOCITY(key_, member_, axis_, doc_)                                     \
@@ -47,7 +47,7 @@ static const tobi_param world_rows[] = {
       .required = true, .doc = "Lower corner of the box that holds everything, of any sign." },
     { .key = "domain.max", VEC3, AT(tobi_world_def, domain_max), ANY, .unit = "m",
       .required = true, .doc = "Upper corner of the box." },
-    WALL("domain.walls.x[0]", wall_min, 0, "Side at the lower x."),
+    WALL("domain.walls.x[0]", wall_min, 0, "Side at the lower x; open lets the particles of mlsmpm out."),
     WALL("domain.walls.x[1]", wall_max, 0, "Side at the upper x; periodic comes in pairs."),
     WALL("domain.walls.y[0]", wall_min, 1, "Side at the lower y."),
     WALL("domain.walls.y[1]", wall_max, 1, "Side at the upper y."),
@@ -152,6 +152,8 @@ static const tobi_param mlsmpm_rows[] = {
     { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
       .positive = true, .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
+    { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
+      .doc = "What becomes of particles that get past a side; those past an open side are removed." },
     { 0 }
 };
 
@@ -189,7 +191,7 @@ static const tobi_param solid_rows[] = {
     { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
       .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),
-      .doc = "Whether its particles start on a lattice or scattered, one in each cell of it." },
+      .doc = "Whether its particles start on a lattice, or scattered at even distances." },
     { .key = "color", COLOR, AT(tobi_solid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is." },
     { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },

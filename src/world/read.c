@@ -43,6 +43,18 @@ int64_t tobi_world_count(const tobi_world *w, tobi_set set)
     return n;
 }
 
+/* Ids go up to the capacity; those of particles that have left are passed over. */
+static void order_rows(tobi_world *w)
+{
+    const tobi_particles *p = &w->sim.particles;
+    int64_t n = 0;
+    if (p->count < p->capacity) memset(w->row_of, -1, (size_t)p->capacity*sizeof *w->row_of);
+    for (int64_t i = 0; i < p->count; i++) w->row_of[p->id[i]] = (int32_t)i;
+    if (p->count == p->capacity) return;
+    for (int64_t id = 0; id < p->capacity; id++)
+        if (w->row_of[id] >= 0) w->row_of[n++] = w->row_of[id];
+}
+
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -54,7 +66,7 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     s->info = kept;
     s->info.density_error_mean = mean;
     s->info.density_error_max = max;
-    for (int64_t i = 0; i < s->particles.count; i++) w->row_of[s->particles.id[i]] = (int32_t)i;
+    order_rows(w);
     w->fresh = 1;
     return TOBI_OK;
 }
@@ -112,7 +124,7 @@ static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3])
 
 static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer)
 {
-    int64_t row = 0, id = w->sim.particles.count;
+    int64_t row = 0, id = w->sim.particles.capacity;
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
         double *out = buffer + row*components;

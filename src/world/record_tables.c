@@ -32,7 +32,8 @@
     H("kinetic_energy",             real, i->kinetic_energy)                        \
     H("potential_energy",           real, i->potential_energy)                      \
     H("elastic_energy",             real, i->elastic_energy)                        \
-    H("energy_lost",       real, i->energy_lost)                  \
+    H("energy_lost",                real, i->energy_lost)                           \
+    H("transfer_dissipation",       real, i->transfer_dissipation)                  \
     H("momentum_x",                 real, i->momentum[0])                           \
     H("momentum_y",                 real, i->momentum[1])                           \
     H("momentum_z",                 real, i->momentum[2])                           \

@@ -81,6 +81,7 @@ static tobi_status add_regions(tobi_world *w, const char *kind, const char *name
         tobi_region *r = &w->regions[w->region_count];
         memset(r, 0, sizeof *r);
         r->owner = owner;
+        r->number = k;
         tobi_status status = measure_region(w, &fills[k], r, err);
         w->region_count++;
         *volume += r->volume;
@@ -145,5 +146,28 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     solid->def = *def;
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
+    return TOBI_OK;
+}
+
+/* One line per solid or fluid: what was cut off at the domain and by bodies. */
+tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
+    for (int k = 0; k < owners; k++) {
+        long long outside = 0, covered = 0;
+        char text[200];
+        for (int r = 0; r < w->region_count; r++) {
+            if (w->regions[r].owner != k) continue;
+            outside += w->regions[r].outside;
+            covered += w->regions[r].covered;
+        }
+        const char *name = solids ? s->solids[k].name : s->fluid[k].name;
+        snprintf(text, sizeof text, "%lld particles that would start inside bodies were cut out\n", covered);
+        if (covered > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
+        snprintf(text, sizeof text, "%lld particles that would start outside the domain were left out\n",
+                 outside);
+        if (outside > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
+    }
     return TOBI_OK;
 }

@@ -55,6 +55,17 @@ static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
     return TOBI_OK;
 }
 
+static tobi_status check_open(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
+{
+    for (int a = 0; a < d->dimension; a++)
+        if ((d->wall_min[a] == TOBI_WALL_OPEN || d->wall_max[a] == TOBI_WALL_OPEN) &&
+            !(method->fields & TOBI_MPM))
+            return tobi_fail(err, TOBI_UNSUPPORTED,
+                             "domain: a side along %c is open, which %s does not know; mlsmpm does", "xyz"[a],
+                             method->name);
+    return TOBI_OK;
+}
+
 static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -83,6 +94,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     if (!method)
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
                          def->method ? def->method : "", tobi_method_at(0)->name);
+    TOBI_TRY(check_open(def, method, err));
     const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
     void *params = calloc(1, method->def_size);
@@ -275,6 +287,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_create(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     if (n + body == 0)

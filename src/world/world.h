@@ -33,6 +33,8 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 
 /* Particles of a region: exact for boxes, from the volume for others. */
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
+/* Notes what the filling of the regions left out. */
+tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 

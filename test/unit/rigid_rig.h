@@ -32,7 +32,7 @@ static inline void rig_open(rig *g, double size, const double gravity[3])
     for (int a = 0; a < 3; a++) {
         g->world.gravity[a] = gravity[a];
         g->world.size[a] = size;
-        g->world.wall[a] = 1;
+        g->world.wall[a] = 3;
     }
 }
 

@@ -124,6 +124,38 @@ static void things_are_where_they_belong(void **state)
     free(all), free(drained), free(empty), free(water_only);
 }
 
+/* The left half of the block is a green solid, the right half water: only the solid hides the cube. */
+static void solids_hide_what_is_behind(void **state)
+{
+    (void)state;
+    static uint8_t opaque[N];
+    static float number[N];
+    static const float palette[2][3] = { { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.2f, 0.9f } };
+    tobi_frame f = make_frame();
+    f.opaque = opaque, f.values = number, f.palette = palette, f.palette_count = 2;
+    for (int i = 0; i < N; i++) {
+        opaque[i] = position[i][0] < 0.5;
+        number[i] = !opaque[i];
+    }
+    int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    unsigned char *with = draw(&f);
+    omp_set_num_threads(4);
+    unsigned char *again = draw(&f);
+    omp_set_num_threads(threads);
+    f.mesh_count = 0;
+    unsigned char *without = draw(&f);
+    const int y = H/2 + 26, left = W/2 - 6, right = W/2 + 6;
+    const unsigned char *green = pixel(with, left, y);
+    assert_true(green[1] > green[0] + 40 && green[1] > green[2] + 40);
+    assert_memory_equal(green, pixel(without, left, y), 3);
+    assert_true(redness(pixel(with, right, y)) > redness(pixel(without, right, y)) + 10);
+    assert_memory_equal(with, again, 3*W*H);
+    free(with);
+    free(again);
+    free(without);
+}
+
 static void threads_do_not_matter(void **state)
 {
     (void)state;
@@ -294,7 +326,7 @@ int main(void)
         cmocka_unit_test(things_are_where_they_belong), cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
-        cmocka_unit_test(full_disk_leaves_nothing)
+        cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
     return cmocka_run_group_tests_name("io/frame", tests, set_up, tear_down);
 }

@@ -51,7 +51,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_fill_table), 0);
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control);
     assert_int_equal(count_uncovered(&tobi_output_table), 2*hole);
-    assert_int_equal(count_uncovered(&tobi_mlsmpm_table), 2*hole);
+    assert_int_equal(count_uncovered(&tobi_mlsmpm_table), hole);
     assert_int_equal(count_uncovered(&tobi_solid_table), 3*hole);
     assert_int_equal(count_uncovered(&tobi_reference_table), 0);
 }
@@ -126,6 +126,7 @@ static void words_follow_the_enums(void **state)
     assert_true(word_is(models, TOBI_NEO_HOOKEAN, "neo-hookean") && word_is(models, TOBI_SAND, "sand") &&
                 word_is(models, TOBI_LIQUID, "liquid") && word_is(models, TOBI_STATIONARY, "stationary"));
     assert_true(word_is(walls, TOBI_WALL_SEPARATE, "separate"));
+    assert_true(word_is(walls, TOBI_WALL_OPEN, "open"));
     int length;
     assert_null(tobi_choice_word(forms, 4, &length));
 }
@@ -182,7 +183,7 @@ static void ranges_are_enforced(void **state)
                      TOBI_INVALID); /* spacing is 0 */
     w.spacing = 0.01;
     assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_OK);
-    w.wall_max[1] = 4;
+    w.wall_max[1] = 5;
     assert_int_equal(tobi_param_check(&tobi_world_table, &w, &err), TOBI_INVALID);
 }
 

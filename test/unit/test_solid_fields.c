@@ -316,7 +316,7 @@ static void nodes_have_the_particles_momentum(void **state)
     }
 }
 
-/* As many particles as on the lattice, one in each cell, all apart, no two in a row. */
+/* As many particles as on the lattice, all apart, no two in a row. */
 static void blue_noise_is_even(void **state)
 {
     (void)state;
@@ -337,11 +337,10 @@ static void blue_noise_is_even(void **state)
     assert_int_equal(tobi_world_count(world[0], TOBI_FLUID), 1000);
     assert_true(fabs(tobi_world_info(world[0])->weight - 9810) < 0.01);
     double *x = get(world[0], "position", 3), mean = 0, least = 1;
-    int seen[1000] = { 0 }, rows = 0;
+    int rows = 0;
     for (int i = 0; i < 1000; i++) {
         double nearest = 1;
         const double *p = x + 3*i;
-        seen[(int)(p[0]/0.1) + 10*(int)(p[1]/0.1) + 100*(int)(p[2]/0.1)]++;
         for (int j = 0; j < 1000; j++) {
             const double *q = x + 3*j;
             if (i == j) continue;
@@ -351,9 +350,8 @@ static void blue_noise_is_even(void **state)
         mean += nearest/1000;
         least = fmin(least, nearest);
     }
-    for (int k = 0; k < 1000; k++) assert_int_equal(seen[k], 1);
-    /* Seen: 0.89 spacings on average, 0.59 at least; one random point per cell has 0.67 and 0.12. */
-    assert_true(rows == 0 && mean > 0.08 && least > 0.04);
+    /* Seen: 0.95 spacings on average, 0.75 at least; one random point per cell has 0.67 and 0.12. */
+    assert_true(rows == 0 && mean > 0.09 && least > 0.065);
     free(x);
     tobi_world_destroy(world[0]);
     tobi_world_destroy(world[1]);

@@ -16,6 +16,9 @@ static const char start[] =
     "\"spacing\": 0.1, \"end_time\": 1,\n";
 static const char ball[] = "\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.5 } } ]";
 
+#define BOX(low, high) "\"box\": { \"min\": " low ", \"max\": " high " }"
+#define SPHERE(centre, radius) "\"sphere\": { \"centre\": " centre ", \"radius\": " radius " }"
+
 /* A scene with one solid of these lines, and `rest` after it. */
 static char *make(const char *solid, const char *rest)
 {
@@ -50,20 +53,17 @@ static void refuse(const char *text, const char *place, const char *part)
 static void scenes_have_solids(void **state)
 {
     (void)state;
-    char rest[1200];
-    snprintf(rest, sizeof rest,
-             ", \"output\": { \"fields\": [\"usual\", \"stress\"], \"grid\": true }, \"mlsmpm\": { \"cfl\": "
-                    "0.3 }");
+    const char rest[] = ", \"output\": { \"fields\": [\"usual\", \"stress\"], \"grid\": true },\n"
+                        "\"mlsmpm\": { \"cfl\": 0.3 }";
     tobi_scene *scene =
         parse(make("\"model\": \"sand\", \"mass\": 500, \"friction_angle\": 35, \"color\": [1, 2, 3],\n"
-                   "\"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [0.5, 0.5, 0.5] }, \"spin\": [0, "
-                          "0, 2] },\n"
-                   "{ \"sphere\": { \"centre\": [-0.5, 0, 0], \"radius\": 0.4 }, \"velocity\": [1, 0, 0] } "
-                          "]", rest));
+                   "\"fill\": [ { " BOX("[0, 0, 0]", "[0.5, 0.5, 0.5]") ", \"spin\": [0, 0, 2] },\n"
+                   "{ " SPHERE("[-0.5, 0, 0]", "0.4") ", \"velocity\": [1, 0, 0] } ]", rest));
     assert_int_equal(scene->solid_count, 1);
     assert_int_equal(scene->fluid_count, 0);
     const tobi_solid_def *def = &scene->solids[0].def;
-    assert_true(def->model == TOBI_SAND && def->mass == 500 && def->friction_angle == 35 && def->color[1] == 2);
+    assert_true(def->model == TOBI_SAND && def->mass == 500 && def->friction_angle == 35);
+    assert_true(def->color[1] == 2);
     assert_true(scene->solids[0].fills[0].def.spin[2] == 2 && scene->solids[0].fills[1].def.radius == 0.4);
     tobi_world *world;
     tobi_error err = { 0 };
@@ -119,16 +119,30 @@ static void a_long_time_step_is_told(void **state)
     tobi_scene_free(scene);
 }
 
-static void bad_scenes_are_refused_in_words(void **state)
+/* A body in the middle of the ball: what it takes away is told. */
+static void bodies_in_solids_are_told(void **state)
+{
+    (void)state;
+    tobi_scene *scene = parse(make(ball, ", \"bodies\": [ { \"name\": \"b\", "
+                                         BOX("[0, 0, 0]", "[0.2, 0.2, 0.2]") " } ]"));
+    tobi_world *world;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
+    assert_null(tobi_world_note(world, 0));
+    assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+    const char *note = tobi_world_note(world, 0);
+    assert_non_null(note);
+    assert_non_null(strstr(note, "solid 'it': 8 particles that would start inside bodies were cut out"));
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
+static void bad_solids_are_refused_in_words(void **state)
 {
     (void)state;
     char text[2048];
-    const char fluid[] = "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0, 0], "
-           "\"max\": "
-                         "[1, 1, 1] } } ] } ]";
-    refuse(make("\"density\": 1000, \"mass\": 2, \"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], "
-           "\"radius\": 0.5 "
-                "} } ]", ""), "s.json:4:18: solids[0].mass: ", "given beside density");
+    refuse(make("\"density\": 1000, \"mass\": 2, \"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") " } ]", ""),
+           "s.json:4:18: solids[0].mass: ", "given beside density");
     snprintf(text, sizeof text, "\"model\": \"liquid\", \"youngs_modulus\": 1e5, %s", ball);
     refuse(make(text, ""), "s.json:4:20: solids[0].youngs_modulus: ",
            "is nothing that this model knows; it has density or mass, bulk_modulus, viscosity, damping");
@@ -136,52 +150,65 @@ static void bad_scenes_are_refused_in_words(void **state)
     refuse(make(text, ""), "s.json:4:19: solids[0].poissons_ratio: ", "is 0.5, allowed is -0.99 to 0.495");
     snprintf(text, sizeof text, "\"youngs_modulus\": 0, %s", ball);
     refuse(make(text, ""), "s.json:4:19: solids[0].youngs_modulus: ", "is 0, allowed is greater than 0 Pa");
-    refuse(make("\"fill\": []", ""), "s.json:4:9: solids[0].fill: ", "a list of the regions this solid "
-           "fills");
+    snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s }, { \"name\": \"a\",\n"
+             "\"fill\": [ { " BOX("[0.6, 0, 0]", "[1, 1, 1]") " } ] } ] }", start, ball);
+    refuse(text, "s.json:3:", "\"a\" is already the name of solids[0]");
+}
+
+static void bad_regions_are_refused_in_words(void **state)
+{
+    (void)state;
+    const char two[] = "\"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") " },\n"
+                       "{ " BOX("[%s, %s, -0.1]", "[0.6, 0.6, 0.1]") " } ]";
+    char text[2048];
+    refuse(make("\"fill\": []", ""), "s.json:4:9: solids[0].fill: ",
+           "a list of the regions this solid fills");
     refuse(make("\"fill\": [ { \"sphere\": { \"radius\": 0.5 } } ]", ""),
            "s.json:4:23: solids[0].fill[0].sphere.centre: ", "is missing: a sphere has centre and radius");
-    refuse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0 } } ]", ""),
+    refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0") " } ]", ""),
            "s.json:4:56: solids[0].fill[0].sphere.radius: ", "must be greater than 0 m");
-    refuse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0.6], \"radius\": 0.5 } } ]", ""),
-           "s.json:4:23: solids[0].fill[0].sphere: ", "reaches from 0.1 to 1.1 m in z, the domain only from "
-                  "-1 to 1 m");
-    refuse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.5 }, \"mesh\": \"a.obj\" } "
-           "]", ""),
+    refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0.6]", "0.5") " } ]", ""),
+           "s.json:4:23: solids[0].fill[0].sphere: ",
+           "reaches from 0.1 to 1.1 m in z, the domain only from -1 to 1 m");
+    refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") ", \"mesh\": \"a.obj\" } ]", ""),
            "s.json:4:11: solids[0].fill[0]: ", "must have one of box, sphere and mesh, it has several");
-    refuse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.5 },\n"
-                "\"rotation\": { \"angle\": 3 } } ]", ""),
+    refuse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") ",\n\"rotation\": { \"angle\": 3 } } ]", ""),
            "s.json:4:11: solids[0].fill[0]: ", "scale, rotation and translation belong to a mesh");
     refuse(make("\"fill\": [ { \"mesh\": \"" TOBI_SOURCE_DIR "/test/meshes/box.obj\",\n"
                 "\"rotation\": { \"axis\": [0, 0, 0] } } ]", ""),
            "s.json:5:23: solids[0].fill[0].rotation.axis: ", "is zero, must have a direction");
-    refuse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.5 } },\n"
-                "{ \"box\": { \"min\": [0.3, 0.3, -0.1], \"max\": [0.6, 0.6, 0.1] } } ]", ""),
-           "s.json:5:1: solids[0].fill[1]: ", "overlaps the sphere solids[0].fill[0]");
-    snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s }, { \"name\": \"a\",\n\"fill\": [ { "
-           "\"box\": "
-             "{ \"min\": [0.6, 0, 0], \"max\": [1, 1, 1] } } ] } ] }", start, ball);
-    refuse(text, "s.json:3:", "\"a\" is already the name of solids[0]");
-    /* A box in the corner between spheres does not touch them. */
-    tobi_scene_free(parse(make("\"fill\": [ { \"sphere\": { \"centre\": [0, 0, 0], \"radius\": 0.5 } },\n"
-                               "{ \"box\": { \"min\": [0.36, 0.36, -0.1], \"max\": [0.6, 0.6, 0.1] } } ]",
-                                      "")));
+    snprintf(text, sizeof text, two, "0.3", "0.3");
+    refuse(make(text, ""), "s.json:5:1: solids[0].fill[1]: ", "overlaps the sphere solids[0].fill[0]");
+    snprintf(text, sizeof text, two, "0.36", "0.36");        /* boxes overlap, box and sphere do not */
+    tobi_scene_free(parse(make(text, "")));
+    snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2,\n"
+             "\"domain\": { \"min\": [-1, -1], \"max\": [1, 1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
+             "\"solids\": [ { \"name\": \"a\",\n"
+             "\"fill\": [ { " SPHERE("[0, 0]", "0.5") ", \"spin\": [1, 0, 0] } ] } ] }");
+    refuse(text, "s.json:4:68: solids[0].fill[0].spin: ", "must be about z in a 2-D scene");
+}
+
+/* Fluids with mlsmpm, solids with the others, and what only one of them has. */
+static void methods_refuse_what_they_do_not_know(void **state)
+{
+    (void)state;
+    const char fluid[] = "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { " BOX("[0, 0, 0]", "[1, 1, 1]")
+                         " } ] } ]";
+    const char plain[] = "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1] }, \"spacing\": 0.1, "
+                         "\"end_time\": 1,\n";
+    char text[2048];
     snprintf(text, sizeof text, "%s%s }", start, fluid);
     refuse(text, "s.json:3:11: fluids: ", "mlsmpm takes no fluids; write a solid of \"model\": \"liquid\"");
     snprintf(text, sizeof text, "%s\"bodies\": [] }", start);
-    refuse(text, "s.json:1:1: solids: ", "is missing or empty: a scene of mlsmpm needs at least one solid or "
-           "body");
-    refuse(make(ball, ", \"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ]"), "s.json:6:13: "
-           "probes: ",
-           "mlsmpm has no probes");
+    refuse(text, "s.json:1:1: solids: ",
+           "is missing or empty: a scene of mlsmpm needs at least one solid or body");
+    refuse(make(ball, ", \"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ]"),
+           "s.json:6:13: probes: ", "mlsmpm has no probes");
     refuse(make(ball, ", \"output\": { \"fields\": [\"vorticity\"] }"), "s.json:6:25: output.fields: ",
            "there is no field \"vorticity\"; allowed are position, velocity, pressure");
-    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1] }, \"spacing\": "
-           "0.1, "
-             "\"end_time\": 1,\n\"solids\": [ { \"name\": \"a\", %s } ] }", ball);
+    snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s } ] }", plain, ball);
     refuse(text, "s.json:2:11: solids: ", "dfsph takes fluids; solids need \"method\": \"mlsmpm\"");
-    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1] }, \"spacing\": "
-           "0.1, "
-             "\"end_time\": 1,\n%s, \"output\": {\n\"grid\": true } }", fluid);
+    snprintf(text, sizeof text, "%s%s, \"output\": {\n\"grid\": true } }", plain, fluid);
     refuse(text, "s.json:3:9: output.grid: ", "dfsph has no grid; mlsmpm has one");
     snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, "
            "1, 1],\n"
@@ -189,6 +216,9 @@ static void bad_scenes_are_refused_in_words(void **state)
                     "\"name\": "
              "\"a\", %s } ] }", ball);
     refuse(text, "s.json:2:17: domain.walls.x: ", "is periodic, which mlsmpm does not know");
+    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, 1, 1],\n"
+             "\"walls\": { \"z\": [\"open\", \"slip\"] } }, \"spacing\": 0.1, \"end_time\": 1,\n%s }", fluid);
+    refuse(text, "s.json:2:17: domain.walls.z: ", "is open, which only mlsmpm knows");
     snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"dimension\": 2, \"domain\": { \"min\": [-1, "
            "-1], \"max\": "
              "[1, 1] },\n\"spacing\": 0.1, \"end_time\": 1, \"solids\": [ { \"name\": \"a\",\n\"fill\": [ { "
@@ -202,7 +232,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_have_solids),
         cmocka_unit_test(a_long_time_step_is_told),
-        cmocka_unit_test(bad_scenes_are_refused_in_words),
+        cmocka_unit_test(bodies_in_solids_are_told),
+        cmocka_unit_test(bad_solids_are_refused_in_words),
+        cmocka_unit_test(bad_regions_are_refused_in_words),
+        cmocka_unit_test(methods_refuse_what_they_do_not_know),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,7 +38,7 @@ def shoot(label, dim, model, angle=0, moving=0):
         x = read_vtu(path)["Points"]
         behind = max(behind, sum(1 for i in range(0, len(x), 3) if x[i] > at - moving*t - slope*(x[i + 1] - 0.5)))
     h = read_table(out/"history.csv")
-    case.hold(f"{label}: the plate was hit", max(h["contacts"]) > 10)
+    case.hold(f"{label}: the plate was hit", max(h["contacts"]) > 0)
     return behind, h["fluid_particles"][0], h["particles_lost"][-1]
 
 

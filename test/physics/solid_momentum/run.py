@@ -22,7 +22,7 @@ def thrown(dim, transfer):
     out = case.solids(f"sides_{dim}_{transfer}", {
         "domain": {"min": [0]*dim, "max": [0.5]*dim, "friction": 0.3,
                    "walls": {axis: ["separate", "slip"] for axis in "xyz"[:dim]}},
-        "gravity": [0]*(dim - 1) + [-9.81], "spacing": d, "end_time": case.pick(0.1, 0.4),
+        "gravity": [0]*(dim - 1) + [-9.81], "spacing": d, "end_time": case.pick(0.08, 0.4),
         "solids": [{"name": "block", "youngs_modulus": 1e5, "fill": [
             {"box": {"min": [0.1]*dim, "max": [0.3]*dim}, "velocity": [-1.5, 0.7, -2][-dim:]}]}],
         "mlsmpm": {"transfer": transfer}, "time_step": STEP, "output": {"interval": STEP, "fields": ["velocity"]}})
@@ -47,7 +47,7 @@ def against_body(dim):
     d = 0.0125 if dim == 2 else 0.02
     mass = 500*0.2**dim
     out = case.solids(f"body_{dim}", {
-        "domain": {"min": [0]*dim, "max": [1] + [0.5]*(dim - 1)}, "spacing": d, "end_time": case.pick(0.15, 0.3),
+        "domain": {"min": [0] + [-0.4]*(dim - 1), "max": [1.2] + [0.8]*(dim - 1)}, "spacing": d, "end_time": case.pick(0.05, 0.2),
         "solids": [{"name": "block", "youngs_modulus": 1e5, "fill": [
             {"box": {"min": [0.1]*dim, "max": [0.3]*dim}, "velocity": [2, 0, 0][:dim]}]}],
         "bodies": [{"name": "target", "dynamics": "free", "mass": mass, "box": {
@@ -57,6 +57,7 @@ def against_body(dim):
     error, moved = 0.0, 0.0
     for a in "xyz"[:dim]:
         start = h[f"momentum_{a}"][0]
+        case.hold(f"body {dim}-D: no side met along {a}", not any(h[f"wall_force_{a}"]))
         for p, v in zip(h[f"momentum_{a}"], b[f"velocity_{a}"]):
             error = max(error, abs(p + mass*v - start))
             moved = max(moved, abs(mass*v))
@@ -64,7 +65,7 @@ def against_body(dim):
 
 
 found = []
-for dim, transfer in case.pick([(2, "apic"), (2, "flip"), (3, "apic")], [(2, "apic"), (2, "flip"), (2, "xpic"), (3, "apic"), (3, "flip")]):
+for dim, transfer in case.pick([(2, "apic"), (2, "flip")], [(2, "apic"), (2, "flip"), (2, "xpic"), (3, "apic"), (3, "flip")]):
     error = thrown(dim, transfer)
     found.append(error)
     case.figure(f"sides, {dim}-D, {transfer}: error of the balance over the sum of |F| dt", error, "<= 1e-6", error <= 1e-6)

@@ -1,0 +1,110 @@
+/* What only some runs need: the filter of XPIC, and measuring what transfers cost. */
+#pragma once
+#include "mpm/transfer.k.h"
+
+/* XPIC, eq. (16): the velocity `wave` goes to the particles and back to the tiles, */
+TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
+    row g[9] = {0};
+    (void)totals;
+    mpm_copy_tile(v->wave, b->around, tile, dim);
+    for (int n = 0; n < 8; n++) tile[nodes + n] = (tobi_float4){0, 0, 0, 0};
+    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
+        const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
+        mpm_stencil s;
+        mpm_find_stencil(v, b, i, dim, &s);
+        for (int k = 0; k < count; k++) {
+            quad u, unused[3];
+            mpm_load_rows(tile, s.first[k], g, dim);
+            mpm_interpolate(g, &s, k, 0, dim, &u, unused);
+            u[3] = 1;
+            mpm_add_calm(calm, &s, k, u*quad_set(v->strain[i + k].c[2].w), dim);
+        }
+    }
+}
+
+/* and from there to the nodes; `old` takes its share. */
+TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    quad sum[MPM_NODES_3D];
+    (void)totals;
+    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    for (int n = 0; n < nodes; n++) {
+        const float mass = sum[n][3];
+        const int64_t at = number*nodes + n;
+        quad u = sum[n]*quad_set(mass > 0 ? 1/mass : 0);
+        quad_store(&v->wave[at], u);
+        quad_store(&v->old[at], quad_load(&v->old[at]) - u*quad_set(v->order));
+    }
+}
+
+/* For measuring what transfers cost: momentum with APIC's affine part, without stress, into the calm tile.
+   totals: kinetic energy of the particles, 0 as they came and 1 after damping. */
+TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, rows = dim == 3 ? 3 : 1, last = dim - 1;
+    tobi_float4 *calm = v->calm + number*(nodes + 8);
+    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
+        const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
+        mpm_stencil s;
+        mpm_find_stencil(v, b, i, dim, &s);
+        for (int k = 0; k < count; k++) {
+            const float mass = v->strain[i + k].c[2].w, keep = v->material[v->solid[i + k]].keep;
+            double square = 0;
+            for (int n = 0; n < 9*v->affine_momentum; n++) {
+                double c = (&v->affine[i + k].c[n/3].x)[n%3];
+                square += 0.25*(double)v->cell*v->cell*c*c;
+            }
+            for (int a = 0; a < 3; a++) {
+                double u = (&v->velocity[i + k].x)[a];
+                square += u*u;
+            }
+            totals[0] += 0.5*mass*square;
+            totals[1] += 0.5*mass*keep*keep*square;
+            for (int n = 0; n < 3*rows*3; n++) {
+                const int at[3] = {dim == 3 ? n/9 : n/3, dim == 3 ? n/3%3 : n%3, n%3};
+                float w = s.weight[0][at[0]][k]*s.weight[last][at[last]][k], u[3];
+                if (dim == 3) w *= s.weight[1][at[1]][k];
+                for (int a = 0; a < 3; a++) {
+                    u[a] = (&v->velocity[i + k].x)[a];
+                    for (int c = 0; c < dim*v->affine_momentum; c++)
+                        u[a] += (&v->affine[i + k].c[c].x)[a]*((float)at[c] - s.offset[c][k])*v->cell;
+                }
+                tobi_float4 *node = calm + s.first[k] +
+                    (dim == 3 ? 64*at[0] + 8*at[1] + at[2] : 8*at[0] + at[1]);
+                node->x += w*mass*keep*u[0];
+                node->y += w*mass*keep*u[1];
+                node->z += w*mass*keep*u[2];
+                node->w += w*mass;
+            }
+        }
+    }
+}
+
+/* Kinetic energy of a block of nodes into totals[0]: of the calm tiles, */
+TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    quad sum[MPM_NODES_3D];
+    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
+        quad square = sum[n]*sum[n];
+        if (sum[n][3] > 0) totals[0] += 0.5*(double)(square[0] + square[1] + square[2])/sum[n][3];
+    }
+}
+
+/* and of the nodes as they are. */
+TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
+{
+    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int64_t n = number*nodes; n < (number + 1)*nodes; n++) {
+        quad u = quad_load(&v->node[n]), square = u*u;
+        totals[0] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
+    }
+}
