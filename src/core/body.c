@@ -253,23 +253,6 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
     return TOBI_OK;
 }
 
-void tobi_body_box(const tobi_body *b, double min[3], double max[3])
-{
-    if (b->rigid.kind == TOBI_PRESCRIBED) {
-        tobi_bvh_box(b->bvh, min, max);
-        return;
-    }
-    for (int a = 0; a < 3; a++) {
-        min[a] = INFINITY;
-        max[a] = -INFINITY;
-    }
-    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
-        for (int a = 0; a < 3; a++) {
-            min[a] = fmin(min[a], b->vertex[i][a]);
-            max[a] = fmax(max[a], b->vertex[i][a]);
-        }
-}
-
 tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err)
 {
     if (b->rest_bvh) return TOBI_OK;

@@ -71,7 +71,5 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
-/* A box around the body at its present pose, from the domain's lower corner; m. */
-void tobi_body_box(const tobi_body *b, double min[3], double max[3]);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */
 void tobi_body_report(tobi_body *b);

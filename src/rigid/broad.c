@@ -130,7 +130,7 @@ tobi_status tobi_broad_find(tobi_broad *b, const tobi_body *bodies, const tobi_s
             if (!add_pair(b, x->body, y->body)) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for pairs");
         }
     }
-    qsort(b->pairs, (size_t)b->pair_count, sizeof *b->pairs, compare_pairs);
+    if (b->pair_count > 0) qsort(b->pairs, (size_t)b->pair_count, sizeof *b->pairs, compare_pairs);
     return TOBI_OK;
 }
 

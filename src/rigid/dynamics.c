@@ -301,7 +301,8 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
         failed |= d->part[i].failed;
     }
     if (failed || d->contacts.failed) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
-    qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
+    if (d->contacts.count > 0)
+        qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
     return TOBI_OK;
 }
 
