@@ -42,7 +42,8 @@ int64_t tobi_sort_histogram_size(const tobi_exec *x);
 /* Exclusive prefix sum in place over n counts; returns the total. */
 int64_t tobi_scan(tobi_exec *x, int64_t n, int64_t *counts);
 
-/* Where runs of equal keys begin, their `bits` lowest bits aside; returns how many. begin NULL only counts. */
+/* Where runs of equal keys begin, their `bits` lowest bits aside; returns how many. begin NULL only
+   counts. */
 int64_t tobi_find_runs(tobi_exec *x, int64_t n, const uint32_t *keys, int bits, int64_t *begin);
 
 /* Wall-clock seconds, for stage timers only. */

@@ -102,7 +102,8 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
         for (int n = 0; n < each; n++) {
             int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = n%3;
             float w = s.weight[0][i][0]*s.weight[1][j][0];
-            t->node[k*each + n] = (uint32_t)place_of(b, dim, s.first[0] + (dim == 3 ? i*64 + j*8 + l : i*8 + j));
+            t->node[k*each + n] = (uint32_t)place_of(b, dim, s.first[0] +
+                                                     (dim == 3 ? i*64 + j*8 + l : i*8 + j));
             t->weight[k*each + n] = dim == 3 ? w*s.weight[2][l][0] : w;
         }
     }

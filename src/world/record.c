@@ -83,7 +83,7 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
     if (!force) TOBI_TRY(tobi_record_find_results(run->dir, &found, err));
     if (found)
         return tobi_fail(err, TOBI_INVALID, "%s: holds the results of a run; nothing was changed"
-                         " (choose another directory, or force to replace them)", run->dir);
+                         " (choose another directory, or --force to replace them)", run->dir);
     /* A world that cannot start must not cost the old results. */
     TOBI_TRY(tobi_world_start(run->world, err));
     TOBI_TRY(tobi_record_clear(run->dir, false, err));
