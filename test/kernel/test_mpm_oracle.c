@@ -249,8 +249,8 @@ static void transfers_match_the_oracle(void **state)
                     make(&g, dim, only, large ? 0.15 : 0.003, 1, 0, transfer);
                     step(&g, transfer, 1);
                     double moved = compare_particles(&g, o, p, transfer);
-                    printf("%d-D model %2d large %d transfer %d: F %.2f nodes %.2f particles %.2f of 1\n",
-                           dim, only, large, transfer, strain, nodes, moved);
+                    printf("%d-D model %2d large %d transfer %d: F %.2f nodes %.2f particles %.2f\n", dim,
+                            only, large, transfer, strain, nodes, moved);
                     assert_true(strain < 1 && nodes < 1 && moved < 1);
                     end(&g);
                     free(o);
