@@ -152,6 +152,9 @@ static const tobi_param mlsmpm_rows[] = {
     { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
       .positive = true, .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
+    { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
+      .doc = "Sum up in every step what the way to the grid and back costs, for transfer_dissipation in "
+             "history.csv; takes half as long again." },
     { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
       .doc = "What becomes of particles that get past a side; those past an open side are removed." },
     { 0 }

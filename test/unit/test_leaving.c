@@ -112,6 +112,57 @@ static void nothing_may_be_left(void **state)
     tobi_world_destroy(world);
 }
 
+static tobi_status push(void *user, double t, int64_t n, const double (*rest)[3], double (*x)[3],
+                        tobi_error *err)
+{
+    (void)user, (void)err;
+    memcpy(x, rest, (size_t)n*sizeof *x);
+    for (int64_t i = 0; i < n; i++) x[i][0] -= t;
+    return TOBI_OK;
+}
+
+/* A piston drives all of a block through a slip side: kept there, or removed. */
+static int64_t press(int leaving)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_mlsmpm_def method = tobi_default_mlsmpm_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_world *world;
+    tobi_error err = { 0 };
+    w.method = "mlsmpm";
+    w.dimension = 2;
+    w.spacing = 0.05;
+    method.leaving = leaving;
+    solid.youngs_modulus = 1e4;
+    for (int a = 0; a < 3; a++) {
+        w.gravity[a] = 0;
+        w.domain_max[a] = 1;
+        fill.box_max[a] = a ? 1 : 0.2;
+        body.box_min[a] = a ? -1 : 0.3;
+        body.box_max[a] = a ? 2 : 0.7;
+    }
+    body.name = "piston";
+    body.motion = push;
+    body.motion_rigid = 1;
+    assert_int_equal(tobi_world_create(&w, &method, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+    if (tobi_world_add_body(world, &body, &err)) fail_msg("%s", err.text);
+    if (tobi_world_advance(world, 0.5, NULL, &err)) fail_msg("%s", err.text);
+    int64_t lost = tobi_world_info(world)->particles_lost;
+    assert_int_equal(tobi_world_count(world, TOBI_FLUID), 80 - lost);
+    tobi_world_destroy(world);
+    return lost;
+}
+
+static void other_sides_keep_or_remove(void **state)
+{
+    (void)state;
+    assert_int_equal(press(TOBI_KEEP), 0);
+    assert_true(press(TOBI_REMOVE) > 0);
+}
+
 static void sph_has_no_open_sides(void **state)
 {
     (void)state;
@@ -130,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_open_side_lets_out),
         cmocka_unit_test(nothing_may_be_left),
+        cmocka_unit_test(other_sides_keep_or_remove),
         cmocka_unit_test(sph_has_no_open_sides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
