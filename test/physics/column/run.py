@@ -42,7 +42,7 @@ def collapse(ratio, cells):
     return fronts[-1], thick, (2*h["kinetic_energy"][-1]/(h["weight"][-1]/9.81))**0.5
 
 
-for ratio, cells in case.pick([(1, 16), (4, 8)], [(0.5, 32), (1, 16), (1, 32), (1, 64), (4, 16), (4, 32), (8, 16), (8, 32)]):
+for ratio, cells in case.pick([(1, 16), (4, 8)], [(0.5, 32), (1, 16), (1, 32), (1, 64), (4, 16), (4, 32), (8, 16)]):
     exact = 1.2*ratio if ratio < 1.8 else 1.9*ratio**(2/3)
     found, thick, speed = collapse(ratio, cells)
     text = f"a = {ratio}, {cells} cells in d"

@@ -48,7 +48,7 @@ def float_cube(dim, cells):
     return mean(last), max(last) - min(last)
 
 
-for dim, cells in case.pick([(2, 8)], [(2, 8), (2, 16), (2, 32), (3, 8)]):
+for dim, cells in case.pick([(2, 8)], [(2, 8), (2, 16), (3, 8)]):
     draft, swing = float_cube(dim, cells)
     text = f"{dim}-D, {cells} cells in a side"
     case.figure(f"{text}: draft over height", draft, "0.8 within 1 % of the height", abs(draft - 0.8) <= 0.01)
