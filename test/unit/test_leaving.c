@@ -112,44 +112,31 @@ static void nothing_may_be_left(void **state)
     tobi_world_destroy(world);
 }
 
-static tobi_status push(void *user, double t, int64_t n, const double (*rest)[3], double (*x)[3],
-                        tobi_error *err)
-{
-    (void)user, (void)err;
-    memcpy(x, rest, (size_t)n*sizeof *x);
-    for (int64_t i = 0; i < n; i++) x[i][0] -= t;
-    return TOBI_OK;
-}
-
-/* A piston drives all of a block through a slip side: kept there, or removed. */
-static int64_t press(int leaving)
+/* A block too soft to stop is thrown at a slip side; how many of its 80 particles are lost until they have
+   been sorted twice. */
+static int64_t throw_at_side(int leaving)
 {
     tobi_world_def w = tobi_default_world_def();
     tobi_mlsmpm_def method = tobi_default_mlsmpm_def();
     tobi_solid_def solid = tobi_default_solid_def();
     tobi_fill_def fill = tobi_default_fill_def();
-    tobi_body_def body = tobi_default_body_def();
     tobi_world *world;
     tobi_error err = { 0 };
     w.method = "mlsmpm";
     w.dimension = 2;
     w.spacing = 0.05;
     method.leaving = leaving;
-    solid.youngs_modulus = 1e4;
+    solid.youngs_modulus = 1;
+    fill.velocity[0] = -5;
     for (int a = 0; a < 3; a++) {
         w.gravity[a] = 0;
         w.domain_max[a] = 1;
-        fill.box_max[a] = a ? 1 : 0.2;
-        body.box_min[a] = a ? -1 : 0.3;
-        body.box_max[a] = a ? 2 : 0.7;
+        fill.box_min[a] = a ? 0 : 0.1;
+        fill.box_max[a] = a ? 1 : 0.3;
     }
-    body.name = "piston";
-    body.motion = push;
-    body.motion_rigid = 1;
     assert_int_equal(tobi_world_create(&w, &method, &world, NULL), TOBI_OK);
     assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
-    if (tobi_world_add_body(world, &body, &err)) fail_msg("%s", err.text);
-    if (tobi_world_advance(world, 0.5, NULL, &err)) fail_msg("%s", err.text);
+    if (tobi_world_advance(world, 5, NULL, &err)) fail_msg("%s", err.text);
     int64_t lost = tobi_world_info(world)->particles_lost;
     assert_int_equal(tobi_world_count(world, TOBI_FLUID), 80 - lost);
     tobi_world_destroy(world);
@@ -159,8 +146,8 @@ static int64_t press(int leaving)
 static void other_sides_keep_or_remove(void **state)
 {
     (void)state;
-    assert_int_equal(press(TOBI_KEEP), 0);
-    assert_true(press(TOBI_REMOVE) > 0);
+    assert_int_equal(throw_at_side(TOBI_KEEP), 0);
+    assert_true(throw_at_side(TOBI_REMOVE) > 0);
 }
 
 static void sph_has_no_open_sides(void **state)
