@@ -8,8 +8,9 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     const mpm_block *b = &v->block[number];
     const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
     tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
-    row g[9] = {0};
+    row g[9];
     (void)totals;
+    for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_copy_tile(v->wave, b->around, tile, dim);
     for (int n = 0; n < 8; n++) tile[nodes + n] = (tobi_float4){0, 0, 0, 0};
     for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};

@@ -12,7 +12,7 @@ TOBI_FN void mpm_add_rows(float *tile, int32_t first, row *sum, int dim)
     const int rows = dim == 3 ? 9 : 3;
     for (int r = 0; r < rows; r++) {
         float *at = tile + 4*(first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r));
-        row_store(at, row_load(at) + sum[r]);
+        row_store(at, row_add(row_load(at), sum[r]));
         sum[r] = row_set(0);
     }
 }
@@ -22,12 +22,12 @@ TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad m
 {
     const int last = dim - 1, rows = dim == 3 ? 3 : 1;
     quad along = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
-    row x = row_repeat(momentum)*row_spread(along);
+    row x = row_mul(row_repeat(momentum), row_spread(along));
     for (int n = 0; n < 3; n++)
         for (int r = 0; r < rows; r++) {
             tobi_float4 *at = tile + s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
             float w = dim == 3 ? s->weight[0][n][k]*s->weight[1][r][k] : s->weight[0][n][k];
-            row_store(at, row_load(at) + x*row_set(w));
+            row_store(at, row_add(row_load(at), row_mul(x, row_set(w))));
         }
 }
 
@@ -64,19 +64,19 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
             if (dim == 3) base = base - a1*quad_set(s.offset[1][k]);
             base = base - a2*quad_set(s.offset[last][k]);
             quad along = {s.weight[last][0][k], s.weight[last][1][k], s.weight[last][2][k], 0};
-            row w = row_spread(along), d0 = row_repeat(a0)*w, d1 = row_repeat(a1)*w;
-            row x = row_fma(row_repeat(a2), row_spread(step), row_repeat(base))*w;
+            row w = row_spread(along), d0 = row_mul(row_repeat(a0), w), d1 = row_mul(row_repeat(a1), w);
+            row x = row_mul(row_fma(row_repeat(a2), row_spread(step), row_repeat(base)), w);
             for (int n = 0; n < 3; n++) {
-                row wx = row_set(s.weight[0][n][k]), t = x*wx, u = d1*wx;
+                row wx = row_set(s.weight[0][n][k]), t = row_mul(x, wx), u = row_mul(d1, wx);
                 row y0 = dim == 3 ? row_set(s.weight[1][0][k]) : row_set(1);
                 sum[rows*n] = row_fma(t, y0, sum[rows*n]);
                 if (dim == 3) {
-                    t = t + u;
+                    t = row_add(t, u);
                     sum[3*n + 1] = row_fma(t, row_set(s.weight[1][1][k]), sum[3*n + 1]);
-                    t = t + u;
+                    t = row_add(t, u);
                     sum[3*n + 2] = row_fma(t, row_set(s.weight[1][2][k]), sum[3*n + 2]);
                 }
-                x = x + d0;
+                x = row_add(x, d0);
             }
         }
     }
@@ -209,20 +209,21 @@ TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float sc
     for (int n = 0; n < 3; n++) {
         w[n] = row_set(s->weight[0][n][k]);
         if (dim == 3) {
-            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]), b = g[3*n + 1]*y1;
+            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]), b = row_mul(g[3*n + 1], y1);
             u[n] = row_fma(g[3*n + 2], y2, row_fma(g[3*n], row_set(s->weight[1][0][k]), b));
-            y[n] = row_fma(g[3*n + 2], y2 + y2, b);
+            y[n] = row_fma(g[3*n + 2], row_add(y2, y2), b);
         } else u[n] = g[n];
     }
     quad z = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
-    row along = row_spread(z), m2 = u[2]*w[2], m12 = row_fma(u[1], w[1], m2);
-    row t0 = row_fma(u[0], w[0], m12)*along, t1 = (m12 + m2)*along, t3 = t0*row_spread(step);
+    row along = row_spread(z), m2 = row_mul(u[2], w[2]), m12 = row_fma(u[1], w[1], m2);
+    row t0 = row_mul(row_fma(u[0], w[0], m12), along), t1 = row_mul(row_add(m12, m2), along);
+    row t3 = row_mul(t0, row_spread(step));
     quad v = row_fold(t0), factor = quad_set(scale);
     gradient[0] = factor*(row_fold(t1) - v*quad_set(s->offset[0][k]));
     gradient[1] = quad_set(0);
     gradient[2] = quad_set(0);
     if (dim == 3) {
-        row t2 = row_fma(y[2], w[2], row_fma(y[1], w[1], y[0]*w[0]))*along;
+        row t2 = row_mul(row_fma(y[2], w[2], row_fma(y[1], w[1], row_mul(y[0], w[0]))), along);
         gradient[1] = factor*(row_fold(t2) - v*quad_set(s->offset[1][k]));
     }
     gradient[last] = factor*(row_fold(t3) - v*quad_set(s->offset[last][k]));
@@ -264,8 +265,9 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
     tobi_columns *const affine = v->affine;
     tobi_double3 *const position = v->position;
     tobi_float4 tile[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8];
-    row g[9] = {0}, h[9] = {0};
+    row g[9], h[9];
     quad far = quad_set(0);
+    for (int r = 0; r < 9; r++) g[r] = h[r] = row_set(0);
     float fast = 0;
     int32_t cell = -1;
     int edge = 0;
