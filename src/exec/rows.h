@@ -3,6 +3,7 @@
    row run in one order on every instruction set. */
 #pragma once
 #include "exec/portable.h"
+#include <stddef.h>
 
 #if defined(__CUDACC__)
 
@@ -159,6 +160,7 @@ TOBI_FN quad quad_load(const void *p)
     return q;
 }
 TOBI_FN void quad_store(void *p, quad q) { __builtin_memcpy(p, &q, sizeof q); }
+#if defined(__AVX512F__) || defined(__CUDACC__)
 TOBI_FN row row_load(const void *p)
 {
     row r;
@@ -166,3 +168,18 @@ TOBI_FN row row_load(const void *p)
     return r;
 }
 TOBI_FN void row_store(void *p, row r) { __builtin_memcpy(p, &r, sizeof r); }
+#else
+/* Part by part, or gcc 12 copies in small pieces and waits for them. */
+TOBI_FN row row_load(const void *p)
+{
+    row r;
+    for (int k = 0; k < ROW_PARTS_; k++)
+        __builtin_memcpy(&r.part[k], (const char *)p + (size_t)k*sizeof r.part[k], sizeof r.part[k]);
+    return r;
+}
+TOBI_FN void row_store(void *p, row r)
+{
+    for (int k = 0; k < ROW_PARTS_; k++)
+        __builtin_memcpy((char *)p + (size_t)k*sizeof r.part[k], &r.part[k], sizeof r.part[k]);
+}
+#endif
