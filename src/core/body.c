@@ -412,18 +412,34 @@ void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin
     place_next(b);
 }
 
-/* The drift of a free body, and the velocities its points have now. */
+static void drive_points(const tobi_rigid *r, const double velocity[3], const double spin[3], int64_t n,
+                         const double (*at)[3], double (*out)[3])
+{
+    for (int64_t i = 0; i < n; i++) {
+        double arm[3], turning[3];
+        vec3_sub(arm, at[i], r->position);
+        vec3_cross(turning, spin, arm);
+        vec3_add_scaled(out[i], velocity, 1, turning);
+    }
+}
+
+void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3])
+{
+    drive_points(&b->rigid, velocity, spin, b->mesh.vertex_count, (const double (*)[3])b->vertex,
+                 b->vertex_velocity);
+    drive_points(&b->rigid, velocity, spin, b->point_count, (const double (*)[3])b->point, b->point_velocity);
+}
+
+void tobi_body_bring_surface(tobi_body *b) { update_surface(b); }
+
+/* The drift of a free body, and the velocities its vertices have now. */
 static void predict_free(tobi_body *b, double dt)
 {
     tobi_rigid *r = &b->rigid;
     tobi_rigid_drift(r, dt);
     place_next(b);
-    for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
-        double arm[3], turning[3];
-        vec3_sub(arm, b->vertex[i], r->position);
-        vec3_cross(turning, r->angular_velocity, arm);
-        vec3_add_scaled(b->vertex_velocity[i], r->velocity, 1, turning);
-    }
+    drive_points(r, r->velocity, r->angular_velocity, b->mesh.vertex_count, (const double (*)[3])b->vertex,
+                 b->vertex_velocity);
 }
 
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err)

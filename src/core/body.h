@@ -69,6 +69,10 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 /* Between the two calls, for a free body: it drifts by these velocities (m/s, rad/s) instead of the present
    ones, because contact has changed them. */
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
+/* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
+void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3]);
+/* Brings the quadrature points and the tree of a free body to its present pose. */
+void tobi_body_bring_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */

@@ -387,7 +387,7 @@ static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e,
 }
 
 /* Sums of the reactions on one body over the entries. */
-typedef struct reaction { const tobi_simulation *s; int body; int viscous; } reaction;
+typedef struct reaction { const tobi_simulation *s; int body; int viscous, known; } reaction;
 
 static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
 {
@@ -406,8 +406,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
         }
         if (r->viscous) turning_traction(s, e, turning);
         float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
-        double push = r->viscous ? 0
-                                 : 2*s->smoothing.volume*(s->particles.pressure[e->particle] - capillary);
+        float pressure = r->known ? 0 : s->particles.pressure[e->particle];
+        double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
             t[a] += force[a] + push*e->gradient[a];
@@ -417,12 +417,23 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
     }
 }
 
+void tobi_near_known_forces(tobi_simulation *s, int body, double force[6])
+{
+    memset(force, 0, 6*sizeof *force);
+    for (int viscous = 0; viscous < 2; viscous++) {
+        double t[TOBI_TOTALS];
+        reaction r = {s, body, viscous, 1};
+        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        for (int a = 0; a < 6; a++) force[a] += t[a];
+    }
+}
+
 void tobi_near_body_forces(tobi_simulation *s)
 {
     for (int k = 0; k < s->body_count; k++) {
         tobi_body_info *info = &s->bodies[k].info;
         double t[TOBI_TOTALS];
-        reaction r = {s, k, 0};
+        reaction r = {s, k, 0, 0};
         tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
         memcpy(info->pressure_force, t, 3*sizeof *t);
         memcpy(info->pressure_torque, t + 3, 3*sizeof *t);

@@ -47,6 +47,8 @@ void tobi_near_add_gradients(struct tobi_simulation *s);
 void tobi_near_add_forces(struct tobi_simulation *s);
 /* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
 void tobi_near_contact(struct tobi_simulation *s);
+/* Force and torque on one body by lift, friction and surface tension: all that does not wait for pressure. */
+void tobi_near_known_forces(struct tobi_simulation *s, int body, double force[6]);
 /* Forces and torques on every body of the pressure and the friction of this step. */
 void tobi_near_body_forces(struct tobi_simulation *s);
 /* Puts particles that the body's new pose has caught, or that came nearer than 0.2 d, back outside:

@@ -78,6 +78,14 @@ void tobi_simulation_add_hydrostatic(tobi_simulation *s)
     }
 }
 
+void tobi_simulation_body_hydrostatic(const tobi_simulation *s, int body, double f[6])
+{
+    for (int a = 0; a < s->box.dimension; a++) {
+        double push = s->def.gravity[a] - s->gravity[a];
+        if (push != 0) f[a] -= s->fluid[0].density*push*s->bodies[body].info.volume;
+    }
+}
+
 double tobi_simulation_speed_scale(const tobi_simulation *s)
 {
     double fall = 0, capillary = 0;

@@ -97,6 +97,8 @@ void tobi_simulation_fill_up(tobi_simulation *s);
 double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3]);
 /* Adds its forces to those on the walls and the bodies of this step. */
 void tobi_simulation_add_hydrostatic(tobi_simulation *s);
+/* Adds that on one body to force and torque f, N and N m. */
+void tobi_simulation_body_hydrostatic(const tobi_simulation *s, int body, double f[6]);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_simulation_measure(tobi_simulation *s);
 

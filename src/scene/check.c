@@ -254,7 +254,7 @@ static void check_dynamics(const tobi_scene *scene, tobi_source *source, int i, 
     int controls = json_object_get(value, "control") != NULL, moves = def->dynamics != TOBI_PRESCRIBED;
     if (moves && method && !method->free_bodies)
         tobi_source_mistake(source, &dynamics, "must be prescribed: bodies that move by forces need the "
-                            "method \"mlsmpm\", %s does not know them yet", method->name);
+                            "method \"dfsph\" or \"mlsmpm\", %s does not know them", method->name);
     if (moves && json_object_get(value, "motion"))
         tobi_source_mistake(source, &motion, "is for prescribed bodies, this one is %s",
                             def->dynamics == TOBI_FREE ? "free" : "controlled");

@@ -7,6 +7,7 @@
      iteration. A multigrid cycle preconditions them, so that iterations hardly grow with the depth.
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/dfsph.h"
+#include "core/couple.h"
 #include "sph/kernels.h"
 #include "sph/multigrid.h"
 #include "sph/stages.h"
@@ -37,6 +38,7 @@ typedef struct solve {
     double nothing;               /* mean |r| dt^2 so small that no iteration is due             */
     int min, max;
     int grid;                     /* 1: with the multigrid preconditioner                        */
+    int coupled;                  /* 1: bodies that move by forces answer the pressure           */
     /* results */
     int iterations, converged;
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
@@ -98,7 +100,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m)
     if (s->def.time_step > 0) {
         dt = s->def.time_step;
     } else {
-        dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+        dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
         if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         m->memory.dt = dt;
@@ -153,6 +155,7 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         center(s, m, k->sph_center_direction, t[0], NULL);
         launch(s, m, k->sph_pressure_accel, NULL);
         launch(s, m, k->sph_product, t);
+        if (q->coupled) tobi_couple_product(s, t);
         center(s, m, k->sph_center_product, t[1], t);
         if (!(t[0] > 0)) break;
         m->view.alpha = (float)(rz/t[0]);
@@ -201,9 +204,11 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
                .source = t[0],
                .min = m->def.divergence_iterations_min,
                .max = m->def.divergence_iterations_max,
-               .grid = 1};
+               .grid = 1,
+               .coupled = 1};
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_product, NULL);
+    tobi_couple_product(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
     sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);
     solve_pressure(s, m, t, &q);
@@ -256,10 +261,12 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     apply_forces(s, m, &clock);
+    tobi_couple_begin(s);
     remove_divergence(s, m, &clock);
     correct_density(s, m, &clock);
     sph_measure_forces(s, &m->view, m->kernel, &clock);
     tobi_simulation_add_hydrostatic(s);
+    tobi_couple_correct(s);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
     TOBI_TRY(sph_move_bodies(s, &clock, err));
     s->time += s->dt;
@@ -296,6 +303,7 @@ const tobi_method tobi_dfsph = {
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .def_size = sizeof(tobi_dfsph_def),
     .fields = TOBI_SPH,
+    .free_bodies = 1,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

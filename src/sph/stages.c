@@ -1,4 +1,5 @@
 #include "sph/stages.h"
+#include "core/couple.h"
 #include <math.h>
 #include <string.h>
 
@@ -161,11 +162,18 @@ double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k
     return diagonal;
 }
 
+static tobi_status predict_body(tobi_simulation *s, tobi_body *b, tobi_error *err)
+{
+    TOBI_TRY(tobi_body_predict(b, s->time, s->dt, &s->body_speed, err));
+    if (b->rigid.kind != TOBI_PRESCRIBED) tobi_body_drive(b, b->rigid.velocity, b->rigid.angular_velocity);
+    return TOBI_OK;
+}
+
 tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
 {
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+        TOBI_TRY(predict_body(s, &s->bodies[k], err));
     tobi_stage_end(&s->stages, "motion", clock);
     return TOBI_OK;
 }
@@ -216,9 +224,12 @@ double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k,
 
 tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
 {
-    for (int k = 0; k < s->body_count; k++)
+    for (int k = 0; k < s->body_count; k++) {
         TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
+        if (s->bodies[k].rigid.kind != TOBI_PRESCRIBED) tobi_body_bring_surface(&s->bodies[k]);
+    }
     if (s->body_count > 0) tobi_near_push_out(s);
+    tobi_couple_finish(s);
     s->info.contacts += s->near.contacts;
     tobi_stage_end(&s->stages, "motion", clock);
     return TOBI_OK;

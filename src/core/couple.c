@@ -1,0 +1,178 @@
+#include "core/couple.h"
+#include "core/simulation.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <string.h>
+
+static int moves(const tobi_body *b) { return b->rigid.kind != TOBI_PRESCRIBED; }
+
+static int any_moves(const tobi_simulation *s)
+{
+    for (int k = 0; k < s->body_count; k++)
+        if (moves(&s->bodies[k])) return 1;
+    return 0;
+}
+
+/* First of the entries, which are sorted by body, of this body or a later one. */
+static int64_t first_entry(const tobi_near_bodies *n, int body)
+{
+    int64_t low = 0, high = n->count;
+    while (low < high) {
+        int64_t middle = (low + high)/2;
+        if (n->entry[middle].body < body) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+/* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and contact,
+   which the next step knows from the velocities it starts with. */
+static void foresee(const tobi_simulation *s, tobi_body *b, const double f[6])
+{
+    tobi_rigid *r = &b->rigid;
+    double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
+    tobi_rigid_inverse(r, shift, turn);
+    for (int a = 0; a < 3; a++) {
+        double force = r->mass*s->def.gravity[a] + r->force[a] + f[a];
+        r->foreseen[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
+        momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + f[3 + a]));
+        r->mobility[a] = keep*shift[a];
+        for (int c = 0; c < 3; c++) r->turn_mobility[a][c] = keep*turn[a][c];
+    }
+    for (int a = 0; a < 3; a++) r->foreseen_spin[a] = vec3_dot(turn[a], momentum);
+}
+
+/* What an entry makes of six velocities of its body: -sum A W n . (v + w x arm), 1/s. */
+static double flux(const tobi_near_entry *e, const double u[6])
+{
+    return vec3_dot(e->gradient, u) + vec3_dot(e->torque_arm, u + 3);
+}
+
+/* Sum over the moving bodies that a particle sees. */
+static double answer_at(const tobi_simulation *s, int64_t i)
+{
+    double sum = 0;
+    for (int64_t k = s->particles.near[i]; k >= 0; k = s->near.entry[k].previous) {
+        const tobi_near_entry *e = &s->near.entry[k];
+        if (moves(&s->bodies[e->body])) sum += flux(e, s->bodies[e->body].rigid.answer);
+    }
+    return sum;
+}
+
+static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const tobi_simulation *s = view;
+    (void)t;
+    for (int64_t i = begin; i < end; i++)
+        if (s->particles.near[i] >= 0) s->particles.wall[i].w += (float)answer_at(s, i);
+}
+
+void tobi_couple_begin(tobi_simulation *s)
+{
+    if (!any_moves(s)) return;
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_body *b = &s->bodies[k];
+        tobi_rigid *r = &b->rigid;
+        double f[6];
+        if (!moves(b)) continue;
+        tobi_near_known_forces(s, k, f);
+        tobi_simulation_body_hydrostatic(s, k, f);
+        foresee(s, b, f);
+        vec3_sub(r->answer, r->foreseen, r->velocity);
+        vec3_sub(r->answer + 3, r->foreseen_spin, r->angular_velocity);
+    }
+    tobi_launch(&s->exec, add_flux, s, 0, s->particles.count, NULL);
+}
+
+/* Force and torque of the records' pressures on a body, without the factor of two volumes. */
+static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const tobi_simulation *s = view;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_near_entry *e = &s->near.entry[k];
+        double q = s->particles.record[e->particle].w;
+        for (int a = 0; a < 3; a++) {
+            t[a] += q*e->gradient[a];
+            t[3 + a] += q*e->torque_arm[a];
+        }
+    }
+}
+
+/* product = A q gains 2 J M^-1 (2 V J^T q), J the flux of all particles by the six velocities: symmetric. */
+static void add_answer(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const tobi_simulation *s = view;
+    const tobi_particles *p = &s->particles;
+    for (int64_t i = begin; i < end; i++) {
+        if (p->near[i] < 0) continue;
+        float before = p->product[i], after = before + (float)(2*answer_at(s, i));
+        p->product[i] = after;
+        t[0] += ((double)after - before)*p->record[i].w;
+        t[1] += (double)after - before;
+    }
+}
+
+void tobi_couple_product(tobi_simulation *s, double *totals)
+{
+    double t[TOBI_TOTALS];
+    if (!any_moves(s)) return;
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_rigid *r = &s->bodies[k].rigid;
+        if (!moves(&s->bodies[k])) continue;
+        tobi_launch(&s->exec, sum_pressure, s, first_entry(&s->near, k), first_entry(&s->near, k + 1), t);
+        for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
+        for (int a = 0; a < 3; a++) {
+            r->answer[a] = r->mobility[a]*t[a];
+            r->answer[3 + a] = vec3_dot(r->turn_mobility[a], t + 3);
+        }
+    }
+    tobi_launch(&s->exec, add_answer, s, 0, s->particles.count, t);
+    if (!totals) return;
+    totals[0] += t[0];
+    totals[1] += t[1];
+}
+
+static void collect_forces(const tobi_body *b, double f[6])
+{
+    vec3_add_scaled(f, b->info.pressure_force, 1, b->info.viscous_force);
+    vec3_add_scaled(f + 3, b->info.pressure_torque, 1, b->info.viscous_torque);
+}
+
+void tobi_couple_correct(tobi_simulation *s)
+{
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_body *b = &s->bodies[k];
+        double f[6];
+        if (!moves(b)) continue;
+        collect_forces(b, f);
+        foresee(s, b, f);
+        tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);
+        tobi_body_drive(b, b->rigid.foreseen, b->rigid.foreseen_spin);
+    }
+}
+
+void tobi_couple_finish(tobi_simulation *s)
+{
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_body *b = &s->bodies[k];
+        double f[6];
+        if (!moves(b)) continue;
+        collect_forces(b, f);
+        vec3_add_scaled(b->rigid.impulse, b->rigid.impulse, s->dt, f);
+        vec3_add_scaled(b->rigid.twist, b->rigid.twist, s->dt, f + 3);
+    }
+}
+
+/* The particles within a spacing of a no-slip surface of area S take nu 4/d per step and area from the body; its
+   turns have a smaller inertia: three times that, as in a ball. */
+double tobi_couple_dt(const tobi_simulation *s)
+{
+    double viscosity = 0, dt = INFINITY;
+    for (int f = 0; f < s->fluid_count; f++) viscosity = fmax(viscosity, s->fluid[f].viscosity);
+    for (int k = 0; k < s->body_count; k++) {
+        const tobi_body *b = &s->bodies[k];
+        if (!moves(b) || b->friction != TOBI_NO_SLIP || !(viscosity > 0)) continue;
+        dt = fmin(dt, 0.8*b->rigid.mass*s->smoothing.spacing/(12*viscosity*b->rest.area));
+    }
+    return dt;
+}

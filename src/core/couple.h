@@ -1,0 +1,21 @@
+/* Bodies that move by forces, inside the pressure equation of a liquid (docs/theory/rigid.md, R.11 to R.14).
+   Order of a step: tobi_near_find, the forces of the particles, tobi_couple_begin, the pressure solve with
+   tobi_couple_product after each product, tobi_near_body_forces, tobi_couple_correct, tobi_body_advance,
+   tobi_couple_finish. */
+#pragma once
+#include "base/error.h"
+
+struct tobi_simulation;
+/* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are, into
+   particles.wall. */
+void tobi_couple_begin(struct tobi_simulation *s);
+/* Adds to particles.product how the bodies answer the pressures in the particles' records. totals (or NULL):
+   [0] and [1] receive what this adds to record.w times product and to the sum of products. */
+void tobi_couple_product(struct tobi_simulation *s, double *totals);
+/* Lets the bodies drift by the velocities that the forces in their `info` make, not by those of the step's start:
+   the liquid was solved for these. */
+void tobi_couple_correct(struct tobi_simulation *s);
+/* Impulse and twist of this step for tobi_rigid_step, from the forces in the bodies' `info`. */
+void tobi_couple_finish(struct tobi_simulation *s);
+/* The longest step for the explicit friction between bodies and liquid, s; INFINITY without. */
+double tobi_couple_dt(const struct tobi_simulation *s);
