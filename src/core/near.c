@@ -265,10 +265,12 @@ static const tobi_near_entry *next_entry(const tobi_simulation *s, const tobi_ne
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
-/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the nearer id asks. */
+/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or rounding
+   would let a segment through an edge pass one way only. */
 static int separated(const tobi_simulation *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
+    if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
     const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
     double d[3] = {(int32_t)((uint32_t)p->record[i].x - (uint32_t)p->record[j].x)/s->box.to_fixed[0],
                    (int32_t)((uint32_t)p->record[i].y - (uint32_t)p->record[j].y)/s->box.to_fixed[1],
@@ -285,9 +287,7 @@ static int separated(const tobi_simulation *s, int64_t i, int64_t j)
             }
             if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
             const tobi_bvh *tree = s->bodies[a->body].bvh;
-            if (p->id[i] < p->id[j] ? tobi_bvh_segment_hits(tree, x, to)
-                                    : tobi_bvh_segment_hits(tree, to, x))
-                return 1;
+            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
         }
     return 0;
 }
