@@ -25,8 +25,8 @@ static int64_t first_entry(const tobi_near_bodies *n, int body)
     return low;
 }
 
-/* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and contact,
-   which the next step knows from the velocities it starts with. */
+/* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and
+   contact, which the next step knows from the velocities it starts with. */
 static void foresee(const tobi_simulation *s, tobi_body *b, const double f[6])
 {
     tobi_rigid *r = &b->rigid;
@@ -163,8 +163,8 @@ void tobi_couple_finish(tobi_simulation *s)
     }
 }
 
-/* The particles within a spacing of a no-slip surface of area S take nu 4/d per step and area from the body; its
-   turns have a smaller inertia: three times that, as in a ball. */
+/* The two layers of particles at a no-slip surface of area S brake a body at some 4 mu S/(d m); its turns
+   have a smaller inertia: three times that, as those of a ball. */
 double tobi_couple_dt(const tobi_simulation *s)
 {
     double viscosity = 0, dt = INFINITY;

@@ -216,8 +216,8 @@ static void test_refused(void **state)
     expect_failure(&def, &b, TOBI_DIVERGED, "no number");
     b.control = NULL;
     b.dynamics = TOBI_FREE;
-    def.method = "dfsph";
-    expect_failure(&def, &b, TOBI_UNSUPPORTED, "the method dfsph does not know");
+    def.method = "wcsph";
+    expect_failure(&def, &b, TOBI_UNSUPPORTED, "the method wcsph does not know");
     def.method = "mlsmpm";
     def.dimension = 2;
     b.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
@@ -236,7 +236,7 @@ static void expect_line(const char *body, const char *method, const char *begin,
              "\"spacing\": 0.1, \"end_time\": 1, \"%s\": [ { \"name\": \"m\", \"fill\": [\n"
              "{ \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.1] } } ] } ], \"bodies\": [\n"
              "{ \"name\": \"b\", \"box\": { \"min\": [0.4, 0.4, 0.4], \"max\": [0.6, 0.6, 0.6] }, %s } ] }",
-             method, strcmp(method, "dfsph") == 0 ? "fluids" : "solids", body);
+             method, strcmp(method, "mlsmpm") != 0 ? "fluids" : "solids", body);
     assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &s, &report, &err), TOBI_INVALID);
     const char *line = tobi_report_line(report, 0);
     if (!strstr(line, begin) || !strstr(line, contains)) fail_msg("%s without %s%s", line, begin, contains);
@@ -251,7 +251,7 @@ static void test_scene_mistakes(void **state)
     const char *at = "bodies[0].dynamics: ", *control = "bodies[0].control: ";
     write_file("good.lua", "function control() end");
     write_file("place.lua", "function place() return 0, 0, 0 end");
-    expect_line("\"dynamics\": \"free\"", "dfsph", at, "need the method \"mlsmpm\", dfsph does not");
+    expect_line("\"dynamics\": \"free\"", "wcsph", at, "method \"dfsph\" or \"mlsmpm\", wcsph does not");
     expect_line("\"dynamics\": \"fre\"", "mlsmpm", at, "did you mean \"free\"?");
     expect_line("\"dynamics\": \"free\", \"motion\": { \"translation\": { \"velocity\": [1, 0, 0] } }",
                 "mlsmpm", "bodies[0].motion: ", "is for prescribed bodies, this one is free");
