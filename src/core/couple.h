@@ -6,14 +6,14 @@
 #include "base/error.h"
 
 struct tobi_simulation;
-/* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are, into
-   particles.wall. */
+/* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are,
+   into particles.wall. */
 void tobi_couple_begin(struct tobi_simulation *s);
 /* Adds to particles.product how the bodies answer the pressures in the particles' records. totals (or NULL):
    [0] and [1] receive what this adds to record.w times product and to the sum of products. */
 void tobi_couple_product(struct tobi_simulation *s, double *totals);
-/* Lets the bodies drift by the velocities that the forces in their `info` make, not by those of the step's start:
-   the liquid was solved for these. */
+/* Lets the bodies drift by the velocities that the forces in their `info` make, not by those of the step's
+   start: the liquid was solved for these. */
 void tobi_couple_correct(struct tobi_simulation *s);
 /* Impulse and twist of this step for tobi_rigid_step, from the forces in the bodies' `info`. */
 void tobi_couple_finish(struct tobi_simulation *s);

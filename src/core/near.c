@@ -265,8 +265,8 @@ static const tobi_near_entry *next_entry(const tobi_simulation *s, const tobi_ne
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
-/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or rounding
-   would let a segment through an edge pass one way only. */
+/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
+   rounding would let a segment through an edge pass one way only. */
 static int separated(const tobi_simulation *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
@@ -453,7 +453,8 @@ typedef struct pusher {
 } pusher;
 
 /* A particle that a body has caught: where, and its speed along the normal against the body's. */
-static int find_caught(const tobi_simulation *s, const tobi_body *b, int64_t i, tobi_bvh_hit *hit, double *along)
+static int find_caught(const tobi_simulation *s, const tobi_body *b, int64_t i, tobi_bvh_hit *hit,
+                       double *along)
 {
     tobi_double3 q = s->particles.position[i];
     double x[3] = {q.x, q.y, q.z}, u[3];
@@ -469,14 +470,15 @@ static int find_caught(const tobi_simulation *s, const tobi_body *b, int64_t i, 
     return 1;
 }
 
-/* Counts a caught particle that would push a free body in t[0]; t[6]: by how much an impulse of its mass times
-   1 m/s changes the body's speed at that point. */
+/* Counts a caught particle that would push a free body in t[0]; t[6]: by how much an impulse of its mass
+   times 1 m/s changes the body's speed at that point. */
 static void count_push(const pusher *p, int64_t i, const tobi_bvh_hit *hit, const double twist[3], double *t)
 {
     const tobi_simulation *s = p->s;
     double shift[3], turn[3][3], answer = 0;
     tobi_rigid_inverse(&p->b->rigid, shift, turn);
-    for (int a = 0; a < 3; a++) answer += shift[a]*hit->normal[a]*hit->normal[a] + twist[a]*dot(turn[a], twist);
+    for (int a = 0; a < 3; a++)
+        answer += shift[a]*hit->normal[a]*hit->normal[a] + twist[a]*dot(turn[a], twist);
     answer *= s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
     t[0] += 1;
     t[6] = fmax(t[6], answer);

@@ -23,7 +23,8 @@ static tobi_status check_free(const tobi_world *w, tobi_error *err)
         const tobi_body *b = &s->bodies[k];
         if (b->rigid.kind != TOBI_PRESCRIBED && !w->method->free_bodies)
             return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "body '%s' is %s, which the method %s does not know; dfsph and mlsmpm do", b->name,
+                             "body '%s' is %s, which the method %s does not know; dfsph and mlsmpm do",
+                             b->name,
                              b->rigid.kind == TOBI_FREE ? "free" : "controlled", w->method->name);
     }
     return TOBI_OK;

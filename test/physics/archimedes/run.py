@@ -8,8 +8,8 @@ from harness import ROOT, Case, mean, read_table
 
 case = Case("archimedes", "Archimedes", """
 A sphere and a cube, 0.1 m across, held in the middle of a tank of 0.3 x 0.3 m, 0.3 m deep. Force: the mean vertical force of
-the water from 1 s to the end (2 s), over rho g times the volume of the mesh. Held bodies only: free ones are not
-built yet. 16 spacings across are asked for as well: stopped after five minutes, not shown.""")
+the water from 1 s to the end (2 s), over rho g times the volume of the mesh. Held bodies only; free ones are the case
+"floating". 16 spacings across are asked for as well: stopped after five minutes, not shown.""")
 
 G, RHO, SIZE = 9.81, 1000, 0.1
 
