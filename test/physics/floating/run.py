@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Bodies that move by forces in water of dfsph: added mass, draft, a very light one, momentum, restart."""
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -64,6 +65,14 @@ for density in case.pick((500,), (500, 2000)):
                     "1 within 0.1", abs(share - 1) <= 0.1)
         # Water at rest under pressure is a lattice that yields late: six spacings across, 0.85 was seen.
         case.hold(f"under a surface, density ratio {density/RHO}: within 20 %", abs(share - 1) <= 0.2)
+
+# Why it is too slow: the same sphere moved by a motion. Drag in theory 0.08 N (coefficient 0.5).
+for depth in 0.3, 0.4:
+    moved = {"name": "body", "translation": [0.15, 0.15, 0.09], "motion": {"translation": {"velocity": [0, 0, 0.2]}}, **mesh}
+    out = case.run(f"moved_{depth}", scene=write(f"moved_{depth}", [0.3, 0.3, 0.4], depth, [moved], SIDE/6, 0.3))
+    table = read_table(out / "bodies.csv")
+    drag = RHO*G*math.pi/6*SIDE**3 - mean([f for t, f in zip(table["time"], table["mean_pressure_force_z"]) if t > 0.1])
+    case.state(f"sphere moved up at 0.2 m/s, 6 across, {'free surface' if depth < 0.4 else 'full vessel'}: drag, N", drag)
 
 # --- cubes at the surface ------------------------------------------------------------------------
 curves = []
