@@ -48,8 +48,8 @@ TOBI_FN quad quad_larger(quad a, quad b)
     return (quad)(((mask)a & m) | ((mask)b & ~m));
 }
 
-/* a b + c is rounded once on machines that can (x86-64-v3 and v4), where it saves a third of the work. So rows
-   give the same bits on AVX2 and AVX-512, and others on older machines. */
+/* a b + c is rounded once on machines that can (x86-64-v3 and v4), where it saves a third of the work. So
+   rows give the same bits on AVX2 and AVX-512, and others on older machines. */
 #if defined(__AVX512F__)
 
 typedef float row __attribute__((vector_size(64)));

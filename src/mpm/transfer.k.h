@@ -209,7 +209,8 @@ TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float sc
     for (int n = 0; n < 3; n++) {
         w[n] = row_set(s->weight[0][n][k]);
         if (dim == 3) {
-            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]), b = row_mul(g[3*n + 1], y1);
+            row y1 = row_set(s->weight[1][1][k]), y2 = row_set(s->weight[1][2][k]),
+                b = row_mul(g[3*n + 1], y1);
             u[n] = row_fma(g[3*n + 2], y2, row_fma(g[3*n], row_set(s->weight[1][0][k]), b));
             y[n] = row_fma(g[3*n + 2], row_add(y2, y2), b);
         } else u[n] = g[n];
@@ -249,6 +250,20 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
         out = 1;
     }
     return out;
+}
+
+/* The w of the velocity: the force of a contact in this step is kept for the next, and only that long. The
+   w of the gradient: where the particle is at home, for mpm_grid_restore. */
+TOBI_FN void mpm_store_motion(tobi_float4 *velocity, tobi_columns *affine, quad u, const quad gradient[3],
+                              quad home)
+{
+    u[3] = velocity->w > 0 ? -velocity->w : 0;
+    quad_store(velocity, u);
+    for (int c = 0; c < 3; c++) {
+        quad column = gradient[c];
+        column[3] = home[c];
+        quad_store(&affine->c[c], column);
+    }
 }
 
 /* Velocities, their gradients and new positions of a block's particles.
@@ -303,14 +318,7 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
             quad square = u*u;
             float speed2 = square[0] + square[1] + square[2];
             if (!(speed2 <= fast)) fast = speed2;          /* NaN stays */
-            /* The force of a contact in this step is kept for the next, and only that long. */
-            const float force = velocity[i + k].w;
-            u[3] = force > 0 ? -force : 0;
-            quad_store(&velocity[i + k], u);
-            for (int c = 0; c < 3; c++) {
-                gradient[c][3] = home[c];                  /* for mpm_grid_restore */
-                quad_store(&affine[i + k].c[c], gradient[c]);
-            }
+            mpm_store_motion(&velocity[i + k], &affine[i + k], u, gradient, home);
         }
     }
     if (!(fast <= totals[6])) totals[6] = fast;
