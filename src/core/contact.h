@@ -41,7 +41,7 @@ typedef struct tobi_contacts {
     struct tobi_contact_run *run;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
     double *partial;                 /* sums of parts of the list                                */
-    int64_t chunk_room, partial_room;
+    int64_t chunk_room;
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
 } tobi_contacts;
 

@@ -66,7 +66,8 @@ typedef struct tobi_method {
     void (*smoothing)(const void *def, int *shape, double *support);
     tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);
     tobi_status (*step)(tobi_simulation *s, void *state, double max_dt, tobi_error *err);
-    /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. */
+    /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. NULL:
+       nothing is kept that could be stale. */
     tobi_status (*refresh)(tobi_simulation *s, void *state, tobi_error *err);
     /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
        NULL: the fields of the SPH methods, from the particle arrays. */
@@ -77,7 +78,8 @@ typedef struct tobi_method {
     tobi_status (*nodes)(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err);
     /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */
     void (*measure)(tobi_simulation *s, const void *state);
-    /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". */
+    /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". NULL: the
+       method has neither. */
     void (*derive)(tobi_simulation *s, void *state, const char *field);
     /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
     int (*memory)(void *state, double **values);

@@ -12,8 +12,8 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_copy_tile(v->wave, b->around, tile, dim);
-    for (int n = 0; n < 8; n++) tile[nodes + n] = (tobi_float4){0, 0, 0, 0};
-    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    mpm_clear(tile + nodes, 8);
+    mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -51,7 +51,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
     const mpm_block *b = &v->block[number];
     const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, rows = dim == 3 ? 3 : 1, last = dim - 1;
     tobi_float4 *calm = v->calm + number*(nodes + 8);
-    for (int n = 0; n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;

@@ -22,7 +22,7 @@ tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_e
 void mpm_grid_free(mpm_grid *g)
 {
     free(g->block); free(g->patch); free(g->block_key); free(g->patch_key);
-    free(g->node); free(g->old); free(g->wave); free(g->scratch); free(g->histogram);
+    free(g->node); free(g->old); free(g->wave); free(g->scratch); free(g->histogram); free(g->begin);
     memset(g, 0, sizeof *g);
 }
 
@@ -49,6 +49,23 @@ static tobi_status reserve_scratch(mpm_grid *g, int64_t bytes, tobi_error *err)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for sorting: %lld bytes", (long long)bytes);
     }
     g->scratch_bytes = bytes;
+    return TOBI_OK;
+}
+
+/* Lists where runs of equal keys begin, in g->begin, and the end after them; returns how many in *count. */
+static tobi_status list_runs(mpm_grid *g, const uint32_t *keys, int64_t n, int bits, int64_t *count,
+                             tobi_exec *x, tobi_error *err)
+{
+    *count = tobi_find_runs(x, n, keys, bits, NULL);
+    if (*count + 1 > g->begin_room) {
+        g->begin_room = *count + *count/8 + 8;
+        if (!grow((void **)&g->begin, g->begin_room, sizeof *g->begin)) {
+            g->begin_room = 0;
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)*count);
+        }
+    }
+    tobi_find_runs(x, n, keys, bits, g->begin);
+    g->begin[*count] = n;
     return TOBI_OK;
 }
 
@@ -158,23 +175,19 @@ static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse
     }
 }
 
-/* Blocks of particles from their sorted keys. `begin` is scratch for the starts of the runs. */
+/* Blocks of particles from their sorted keys. */
 static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tobi_exec *x, tobi_error *err)
 {
-    int64_t count = tobi_find_runs(x, n, keys, KEY_BITS, NULL);
+    int64_t count;
+    TOBI_TRY(list_runs(g, keys, n, KEY_BITS, &count, x, err));
     TOBI_TRY(reserve_blocks(g, count, err));
-    int64_t *begin = malloc((size_t)(count + 1)*sizeof *begin);
-    if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
-    tobi_find_runs(x, n, keys, KEY_BITS, begin);
-    begin[count] = n;
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < count; k++) {
-        g->block_key[k] = keys[begin[k]] >> KEY_BITS;
-        g->block[k].begin = begin[k];
-        g->block[k].end = begin[k + 1];
+        g->block_key[k] = keys[g->begin[k]] >> KEY_BITS;
+        g->block[k].begin = g->begin[k];
+        g->block[k].end = g->begin[k + 1];
         corner_of(g, g->block_key[k], g->block[k].corner);
     }
-    free(begin);
     return TOBI_OK;
 }
 
@@ -211,13 +224,11 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
             if (is_offset(g, o)) keys[k*around + at++] = beside(g, g->block_key[k], o);
     uint32_t limit = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
     tobi_sort_by_key(x, n, limit, keys, order, key_scratch, order_scratch, g->histogram);
-    int64_t count = tobi_find_runs(x, n, keys, 0, NULL), *begin = malloc((size_t)(count + 1)*sizeof *begin);
-    if (!begin) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
-    tobi_find_runs(x, n, keys, 0, begin);
-    tobi_status status = reserve_patches(g, count, err);
-    for (int64_t k = 0; k < count && status == TOBI_OK; k++) g->patch_key[k] = keys[begin[k]];
-    free(begin);
-    TOBI_TRY(status);
+    int64_t count;
+    TOBI_TRY(list_runs(g, keys, n, 0, &count, x, err));
+    TOBI_TRY(reserve_patches(g, count, err));
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < count; k++) g->patch_key[k] = keys[g->begin[k]];
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < count; k++) {
         mpm_patch *p = &g->patch[k];

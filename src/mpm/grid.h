@@ -14,6 +14,7 @@ typedef struct mpm_grid {
     char *scratch;                     /* of the sort; the tiles in between                       */
     int64_t scratch_bytes;
     int64_t *histogram;
+    int64_t *begin, begin_room;        /* scratch: where runs of equal keys begin                 */
     int low[3], count[3];              /* box of blocks that holds all, with one more around      */
     int layers;                        /* of node arrays: 1 APIC, 2 FLIP, 3 XPIC                  */
 } mpm_grid;

@@ -415,17 +415,6 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     return TOBI_OK;
 }
 
-static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
-{
-    (void)s; (void)state; (void)err;
-    return TOBI_OK;
-}
-
-static void derive(tobi_simulation *s, void *state, const char *field)
-{
-    (void)s; (void)state; (void)field;
-}
-
 static void read_field(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out)
 {
     const mpm_view v = look_back(state);
@@ -485,8 +474,6 @@ const tobi_method tobi_mlsmpm = {
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,
-    .refresh = refresh,
-    .derive = derive,
     .read = read_field,
     .stable_dt = limit_dt,
     .nodes = find_nodes,

@@ -7,6 +7,11 @@
 #include "exec/rows.h"
 #include "mpm/particle.k.h"
 
+TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
+{
+    for (int n = 0; n < nodes; n++) tile[n] = (tobi_float4){0, 0, 0, 0};
+}
+
 TOBI_FN void mpm_add_rows(float *tile, int32_t first, row *sum, int dim)
 {
     const int rows = dim == 3 ? 9 : 3;
@@ -42,8 +47,8 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     const quad step = {0, 1, 2, 0};
     (void)totals;
     tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
-    for (int n = 0; n < 4*(nodes + 8); n++) tile[n] = 0;
-    for (int n = 0; calm && n < nodes + 8; n++) calm[n] = (tobi_float4){0, 0, 0, 0};
+    mpm_clear(v->tile + number*(nodes + 8), nodes + 8);
+    if (calm) mpm_clear(calm, nodes + 8);
     for (int r = 0; r < 9; r++) sum[r] = row_set(0);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;

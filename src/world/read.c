@@ -61,7 +61,7 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_start(w, err));
     if (w->fresh) return TOBI_OK;
     tobi_step_info kept = s->info;
-    if (!w->diverged) TOBI_TRY(w->method->refresh(s, w->method_state, err));
+    if (!w->diverged && w->method->refresh) TOBI_TRY(w->method->refresh(s, w->method_state, err));
     double mean = s->info.density_error_mean, max = s->info.density_error_max;
     s->info = kept;
     s->info.density_error_mean = mean;
@@ -159,7 +159,8 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
                          (long long)tobi_world_count(w, set), (long long)count);
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer);
     TOBI_TRY(tobi_world_refresh(w, err));
-    if (!w->diverged && (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")))
+    int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
+    if (!w->diverged && derived && w->method->derive)
         w->method->derive(&w->sim, w->method_state, field);
     #pragma omp parallel for num_threads(w->sim.exec.threads)
     for (int64_t r = 0; r < w->sim.particles.count; r++) {
