@@ -95,7 +95,7 @@ static void fill_curve(curve *c, const rows *r, int column, int plus, const pane
     }
 }
 
-/* Columns that older runs lack are left out. */
+/* Columns that older runs lack are left out, and panels of what the method does not have. */
 static int add_panel(picture *p, const rows *r, const panel_row *row, int dimension)
 {
     panel *a = &p->panel[p->panels];
@@ -112,7 +112,7 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
         c->colour = k->colour;
         fill_curve(c, r, column, plus, row);
     }
-    p->panels++;
+    if (a->curves > 0) p->panels++;
     return 0;
 }
 

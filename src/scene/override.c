@@ -1,6 +1,7 @@
 #define _GNU_SOURCE 1
 #include "scene/override.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,6 +53,18 @@ static int find_named(const json_t *list, const char *name)
     return -1;
 }
 
+/* "are a, b, c" or "is none", as many names as fit. */
+static void list_names(const json_t *list, char *text, size_t size)
+{
+    size_t i, used = (size_t)snprintf(text, size, "%s", json_array_size(list) ? "are" : "is none");
+    json_t *entry;
+    json_array_foreach(list, i, entry) {
+        const char *its = json_string_value(json_object_get(entry, "name"));
+        if (its && used + strlen(its) + 3 < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : " ", its);
+    }
+}
+
 /* Checks step `at` against the container `node` and makes it a number where node is a list. */
 static int settle_step(tobi_source *source, const char *text, json_t *node, json_t *steps,
                        size_t at)
@@ -72,8 +85,10 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
     if (json_is_string(step)) {
         index = find_named(node, json_string_value(step));
         if (index < 0) {
-            tobi_report_add(source->report, 0, "--set %s: no entry is named \"%s\"", text,
-                            json_string_value(step));
+            char names[160];
+            list_names(node, names, sizeof names);
+            tobi_report_add(source->report, 0, "--set %s: no entry is named \"%s\"; there %s", text,
+                            json_string_value(step), names);
             return 0;
         }
         json_array_set_new(steps, at, json_integer(index));

@@ -402,7 +402,7 @@ static void overrides_name_themselves(void **state)
     const expected lines[] = {
         { "--set nonsense: ", "must be path=value" },
         { "--set fluids[3].density=1: ", "there is no entry [3], the list has 1" },
-        { "--set fluids.oil.density=1: ", "no entry is named \"oil\"" },
+        { "--set fluids.oil.density=1: ", "no entry is named \"oil\"; there are water" },
         { "--set spacing.deep=1: ", "nothing below this value" },
         { "--set [0]=1: ", "stands where a key must stand" },
         { "--set a..b=1: ", "must be path=value" },
