@@ -207,6 +207,8 @@ typedef struct tobi_body_def {
     double air_resistance;      /* 1/s, c: velocities decay like exp(-c t)                           */
     double restitution;         /* 1, of collisions; of two bodies the larger one counts             */
     double friction_coefficient;/* 1, Coulomb; of two bodies the square root of the product counts   */
+    int    blade;               /* 1: its edge cuts solids of mlsmpm                                 */
+    double edge_resistance;     /* J/m2, to make new surface with the edge                           */
     const char *locked;         /* "x,y,z,turn_x,turn_y,turn_z,shift,turn", any of them, or NULL     */
     tobi_control_fn control;    /* of a controlled body                                              */
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */

@@ -338,6 +338,8 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     snprintf(b->name, sizeof b->name, "%s", def->name && def->name[0] ? def->name : "body");
     b->density = def->density;
     b->friction = def->friction;
+    b->blade = def->blade;
+    b->edge_resistance = def->edge_resistance;
     b->contact_cosine = cos(def->contact_angle*acos(-1)/180);
     b->visible = def->visible;
     memcpy(b->color, def->color, sizeof b->color);

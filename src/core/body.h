@@ -15,6 +15,8 @@ typedef struct tobi_body {
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
     tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
     double density;                  /* kg/m3                                                  */
+    int blade;                       /* 1: its edge cuts solids                                */
+    double edge_resistance;          /* J/m2 of new surface                                    */
     double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */

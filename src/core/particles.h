@@ -9,8 +9,8 @@
    fields are recomputed every step. */
 enum { TOBI_STATE, TOBI_SCRATCH };
 /* Who needs a field: every method, the SPH methods, those with surface tension, the material point
-   method. The fields of the others are NULL. */
-enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8 };
+   method, scenes with blades. The fields of the others are NULL. */
+enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8, TOBI_BLADES = 16 };
 
 /* Three columns of a 3x3 matrix; the w of each column is free for a number that goes with it. */
 typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
@@ -25,6 +25,7 @@ typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
     X(tobi_columns, strain,       TOBI_STATE,   TOBI_MPM,     "1",    "F - I; w: see mpm/view.h") \
     X(tobi_columns, affine,       TOBI_STATE,   TOBI_MPM,     "1/s",  "velocity gradient") \
     X(tobi_float4,  rest,         TOBI_STATE,   TOBI_MPM,     "m",    "position at the start") \
+    X(tobi_columns, cuts,         TOBI_STATE,   TOBI_BLADES,  "1",    "remembered cuts, core/cuts.h") \
     X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",    "fixed-point position, payload") \
     X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2", "acceleration of the pass") \
     X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",  "wall gradient G; w = G . v_wall") \

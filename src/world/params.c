@@ -306,6 +306,10 @@ static const tobi_param body_rows[] = {
       .unit = "1",
       .doc = "Coulomb friction; of two bodies the square root of the product counts, at a side of the domain "
              "the body's." },
+    { .key = "blade", BOOL, AT(tobi_body_def, blade),
+      .doc = "Whether the body's edge cuts solids of mlsmpm; what is cut stays cut." },
+    { .key = "edge_resistance", REAL, AT(tobi_body_def, edge_resistance), FROM(0), .unit = "J/m2",
+      .doc = "Energy that the edge of a blade takes for each square metre that it cuts; apple 250." },
     { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
       .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a "
              "free or controlled body does not move, with commas between: \"x,y,turn\"." },

@@ -204,6 +204,8 @@ static int needed_fields(const tobi_world *w)
     int owners = TOBI_ALL | w->method->fields;
     for (int f = 0; f < w->sim.fluid_count; f++)
         if (w->sim.fluid[f].tension > 0) owners |= TOBI_TENSION;
+    for (int k = 0; k < w->sim.body_count; k++)
+        if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
     return owners;
 }
 
