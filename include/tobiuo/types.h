@@ -209,6 +209,9 @@ typedef struct tobi_body_def {
     double friction_coefficient;/* 1, Coulomb; of two bodies the square root of the product counts   */
     int    blade;               /* 1: its edge cuts solids of mlsmpm                                 */
     double edge_resistance;     /* J/m2, to make new surface with the edge                           */
+    double edge_angle;          /* degrees, at most between the faces that meet at its edge          */
+    double edge_start[3], edge_end[3];  /* m, of a straight edge as the body starts; both 0 = found
+                                   in the mesh. In 2-D the edge is the point edge_start              */
     const char *locked;         /* "x,y,z,turn_x,turn_y,turn_z,shift,turn", any of them, or NULL     */
     tobi_control_fn control;    /* of a controlled body                                              */
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */

@@ -368,6 +368,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     if (status == TOBI_OK) drop_inner_pieces(b, point_spacing);
     if (status == TOBI_OK) status = group_pieces(b, point_spacing, err);
     if (status == TOBI_OK) status = tobi_body_place(b, 0, err);
+    if (status == TOBI_OK) status = tobi_body_find_edge(b, def, dimension, err);
     if (status != TOBI_OK) {
         tobi_body_free(b);
         return status;
@@ -390,6 +391,7 @@ void tobi_body_free(tobi_body *b)
     free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight);
     free(b->particle_rest); free(b->particle);
     free(b->rest_vertex);
+    free(b->edge);
     tobi_bvh_free(b->rest_bvh);
     memset(b, 0, sizeof *b);
 }

@@ -7,6 +7,7 @@
 #include "geom/massprops.h"
 #include "geom/mesh.h"
 #include "geom/sample.h"
+#include "geom/sharp.h"
 #include "geom/surface.h"
 #include "tobiuo/types.h"
 
@@ -17,6 +18,8 @@ typedef struct tobi_body {
     double density;                  /* kg/m3                                                  */
     int blade;                       /* 1: its edge cuts solids                                */
     double edge_resistance;          /* J/m2 of new surface                                    */
+    tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */
+    int64_t edge_count;
     double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */
@@ -60,6 +63,9 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
 void tobi_body_free(tobi_body *b);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
 tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err);
+/* Finds the edge of a blade, or takes the one that the definition gives; of other bodies nothing. The body
+   must be placed at time 0. TOBI_INVALID in words where there is none. */
+tobi_status tobi_body_find_edge(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
 /* Puts the body where its motion has it at time t; a free one where its state has it. */
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
 /* Moves the body's own particles to time t, for output. */

@@ -33,16 +33,29 @@ int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
     return count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
 }
 
-static int inside_body(const tobi_simulation *s, const double x[3])
+/* 1 if x is in the body, or nearer to it than `reach` (m). */
+static int meets(const tobi_simulation *s, const tobi_body *b, const double x[3], double reach)
 {
+    double lo[3], hi[3];
+    tobi_bvh_hit hit;
+    tobi_bvh_box(b->bvh, lo, hi);
+    for (int a = 0; a < s->box.dimension; a++)
+        if (x[a] < lo[a] - reach || x[a] > hi[a] + reach) return 0;
+    return tobi_bvh_inside(b->bvh, x) || (reach > 0 && tobi_bvh_closest(b->bvh, x, reach, &hit));
+}
+
+/* Counts the points that a blade would start in: it may be thinner than their distance. */
+static int inside_body(const tobi_simulation *s, tobi_region *r, const double x[3])
+{
+    int inside = 0;
     for (int k = 0; k < s->body_count; k++) {
-        double lo[3], hi[3];
-        int out = 0;
-        tobi_bvh_box(s->bodies[k].bvh, lo, hi);
-        for (int a = 0; a < s->box.dimension; a++) out |= x[a] < lo[a] || x[a] > hi[a];
-        if (!out && tobi_bvh_inside(s->bodies[k].bvh, x)) return 1;
+        const tobi_body *b = &s->bodies[k];
+        if (!meets(s, b, x, b->blade ? 0.25*s->smoothing.spacing : 0)) continue;
+        inside = 1;
+        if (b->blade && !r->blade) r->blade = k + 1;
+        r->cut += r->blade == k + 1;
     }
-    return 0;
+    return inside;
 }
 
 static void add_particle(tobi_simulation *s, const tobi_region *r, const double x[3])
@@ -140,7 +153,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
         }
         r->outside += out;
         if (out) continue;
-        if (inside_body(s, x)) r->covered++;
+        if (inside_body(s, r, x)) r->covered++;
         else add_particle(s, r, x);
     }
     set_volumes(s, r, first, count);
@@ -151,7 +164,8 @@ tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err
 {
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
-    r->outside = r->covered = 0;
+    r->outside = r->covered = r->cut = 0;
+    r->blade = 0;
     if (m->triangle_count)
         TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
                                 (const int32_t (*)[3])m->triangles, &tree, err));

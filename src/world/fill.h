@@ -13,6 +13,8 @@ typedef struct tobi_region {
     double volume;                 /* m3, exact; 2-D: m2 */
     double velocity[3], spin[3];   /* m/s, rad/s about the middle of the box */
     int64_t outside, covered;      /* points left out beyond the domain, inside bodies */
+    int blade;                     /* 1 + number of a blade that stands in it, 0 = none */
+    int64_t cut;                   /* points in that blade, or nearer than a quarter spacing */
 } tobi_region;
 
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */

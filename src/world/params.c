@@ -310,6 +310,15 @@ static const tobi_param body_rows[] = {
       .doc = "Whether the body's edge cuts solids of mlsmpm; what is cut stays cut." },
     { .key = "edge_resistance", REAL, AT(tobi_body_def, edge_resistance), FROM(0), .unit = "J/m2",
       .doc = "Energy that the edge of a blade takes for each square metre that it cuts; apple 250." },
+    { .key = "edge_angle", REAL, AT(tobi_body_def, edge_angle), .def = { 60 }, RANGE(1, 120),
+      .unit = "degrees",
+      .doc = "The edge of a blade is where its faces meet at this angle or a sharper one; a rounding or flat "
+             "up to a quarter of the blade's mean thickness counts as the edge." },
+    { .key = "edge_start", VEC3, AT(tobi_body_def, edge_start), ANY, .unit = "m",
+      .doc = "One end of a straight edge that cuts in every direction, as the body starts, instead of the "
+             "edge found in the mesh: for a wire. In 2-D the edge is this point." },
+    { .key = "edge_end", VEC3, AT(tobi_body_def, edge_end), ANY, .unit = "m",
+      .doc = "The other end of that edge." },
     { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
       .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a "
              "free or controlled body does not move, with commas between: \"x,y,turn\"." },

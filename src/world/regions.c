@@ -149,10 +149,24 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     return TOBI_OK;
 }
 
+static tobi_status check_blades(const tobi_world *w, tobi_error *err)
+{
+    for (int k = 0; k < w->region_count; k++) {
+        const tobi_region *r = &w->regions[k];
+        if (!r->blade) continue;
+        return tobi_fail(err, TOBI_INVALID,
+                         "body '%s' is a blade and starts inside solid '%s': %lld particles lie in it or "
+                         "within a quarter of a spacing; a blade starts outside of all solids",
+                         w->sim.bodies[r->blade - 1].name, w->sim.solids[r->owner].name, (long long)r->cut);
+    }
+    return TOBI_OK;
+}
+
 /* One line per solid or fluid: what was cut off at the domain and by bodies. */
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
+    TOBI_TRY(check_blades(w, err));
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
     for (int k = 0; k < owners; k++) {
         long long outside = 0, covered = 0;

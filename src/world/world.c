@@ -184,6 +184,11 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
+    if (def->blade && !(w->method->fields & TOBI_MPM))
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s' is a blade, which the method %s does not know; "
+                         "blades cut solids of mlsmpm",
+                         def->name ? def->name : "", w->method->name);
     if (s->body_count == TOBI_BODY_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
     tobi_body *more = realloc(s->bodies, (size_t)(s->body_count + 1)*sizeof *more);
