@@ -116,6 +116,7 @@ typedef struct tobi_solid_def {
     double critical_compression;      /* 1, snow                                                      */
     double critical_stretch;          /* 1, snow                                                      */
     double friction_angle;            /* degrees, sand                                                */
+    double cut_friction;              /* 1, Coulomb, between the faces of a cut                            */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */

@@ -1,12 +1,13 @@
 #include "core/contact.h"
 #include "base/error.h"
+#include "core/cuts.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 14 };
+enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 16 };
 
 /* Contacts that one chunk of particles has with a body. */
 struct tobi_contact_run { int64_t chunk, first, count; };
@@ -76,8 +77,8 @@ static void find_box(pose *at)
             middle += 0.5*at->matrix[a][k]*(low[k] + high[k]);
             half += 0.5*fabs(at->matrix[a][k])*(high[k] - low[k]);
         }
-        at->low[a] = (b->deforms ? low[a] : middle - half) - at->step->radius - at->step->margin;
-        at->high[a] = (b->deforms ? high[a] : middle + half) + at->step->radius + at->step->margin;
+        at->low[a] = (b->deforms ? low[a] : middle - half) - 2*at->step->radius - at->step->margin;
+        at->high[a] = (b->deforms ? high[a] : middle + half) + 2*at->step->radius + at->step->margin;
     }
 }
 
@@ -94,12 +95,49 @@ static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_con
     }
 }
 
+/* The side of the cut that blade b is making on which the particle is: -1, 1, or 0 = not cut by it. *depth:
+   m, how far from the cut it was in the material at rest. */
+static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth)
+{
+    for (int k = 0; k < TOBI_CUTS_EACH; k++) {
+        const tobi_float4 *c = &cuts->c[k];
+        if (c->w == 0 || fabs(c->w) != b->rigid.cut) continue;
+        *depth = sqrt((double)c->x*c->x + (double)c->y*c->y + (double)c->z*c->z);
+        return c->w < 0 ? -1 : 1;
+    }
+    return 0;
+}
+
+/* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
+   face of its own side, however thin the blade. What fills the place to the cut is the outermost layer of
+   particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
+   contact. */
+static int touch_blade(const pose *at, const double x[3], const tobi_columns *cuts, tobi_contact *out)
+{
+    const double radius = at->step->radius, reach = at->step->reach;
+    tobi_blade_place place;
+    double depth = radius;
+    int side = find_side(at->body, cuts, &depth);
+    if (!tobi_blade_locate(at->body, at->step->dimension, x, &place)) return out->gap < at->step->margin;
+    int near = place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
+    if (!side) return !near && out->gap < at->step->margin;
+    if (depth > 2*radius) depth = radius;
+    if (near && side*vec3_dot(place.normal, out->normal) < 0.2) {
+        if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
+        out->gap = side*place.aside - radius;
+        for (int a = 0; a < 3; a++) out->normal[a] = side*place.normal[a];
+    }
+    out->gap += radius - depth;
+    return out->gap < at->step->margin;
+}
+
 /* Nearest point of the body to x (from the domain's corner). */
 static int touch(const pose *at, const double x[3], tobi_contact *out)
 {
     const tobi_body *b = at->body;
     tobi_bvh_hit hit;
-    double local[3], far = fmax(at->step->radius + at->step->margin, at->step->reach);
+    const double reach = (b->blade ? 2 : 1)*at->step->radius + at->step->margin;
+    double local[3], far = fmax(reach, at->step->reach);
     vec3_sub(out->arm, x, b->rigid.position);
     for (int a = 0; a < 3; a++)
         local[a] = at->matrix[0][a]*out->arm[0] + at->matrix[1][a]*out->arm[1] + at->matrix[2][a]*out->arm[2];
@@ -107,7 +145,7 @@ static int touch(const pose *at, const double x[3], tobi_contact *out)
                            : tobi_bvh_closest(b->rest_bvh, local, far, &hit);
     if (!found) return 0;
     out->gap = hit.signed_distance - at->step->radius;
-    if (!(out->gap < at->step->margin)) return 0;
+    if (!(hit.signed_distance < reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
     find_deforming(b, &hit, out);
@@ -125,6 +163,7 @@ static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chu
         for (int a = 0; a < at->step->dimension; a++) out |= x[a] < at->low[a] || x[a] > at->high[a];
         found[n] = (tobi_contact){ .particle = (int32_t)i };
         if (out || !touch(at, x, &found[n])) continue;
+        if (at->body->blade && p->cuts && !touch_blade(at, x, &p->cuts[i], &found[n])) continue;
         double start = fmax(0, -p->velocity[i].w)*at->step->dt;
         for (int a = 0; a < 3; a++) found[n].change[a] = start*found[n].normal[a];
         n++;
@@ -213,12 +252,47 @@ static void find_relative(const tobi_contact *k, const double velocity[3], const
     for (int a = 0; a < 3; a++) out[a] = k->velocity[a] - velocity[a] - turning[a] - k->deforming[a];
 }
 
+static tobi_status make_room(tobi_contacts *c, tobi_error *err)
+{
+    if (c->count < c->room) return TOBI_OK;
+    int64_t room = c->count + c->count/4 + 1024, parts = count_chunks(room);
+    tobi_contact *list = realloc(c->list, (size_t)room*sizeof *list);
+    if (list) c->list = list;
+    tobi_contact *found = realloc(c->found, (size_t)room*sizeof *found);
+    if (found) c->found = found;
+    double *partial = realloc(c->partial, (size_t)parts*SUMS*sizeof *partial);
+    if (partial) c->partial = partial;
+    if (!list || !found || !partial) return fail_memory(room, err);
+    c->room = room;
+    return TOBI_OK;
+}
+
+tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const tobi_blade_piece *piece,
+                                  double full, const tobi_contact_step *step, tobi_error *err)
+{
+    tobi_bvh_hit hit;
+    double local[3], turn[3][3];
+    TOBI_TRY(make_room(c, err));
+    tobi_contact *k = &c->list[c->count++];
+    *k = (tobi_contact){ .particle = -1, .limit = full*b->edge_resistance*piece->length*step->dt };
+    memcpy(k->normal, piece->normal, sizeof k->normal);
+    memcpy(k->ahead, piece->ahead, sizeof k->ahead);
+    vec3_sub(k->arm, piece->middle, b->rigid.position);
+    if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
+    tobi_quaternion_matrix(b->rigid.orientation, turn);
+    for (int a = 0; a < 3; a++)
+        local[a] = turn[0][a]*k->arm[0] + turn[1][a]*k->arm[1] + turn[2][a]*k->arm[2];
+    if (tobi_bvh_closest(b->rest_bvh, local, INFINITY, &hit)) find_deforming(b, &hit, k);
+    return TOBI_OK;
+}
+
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x)
 {
     #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
     for (int64_t n = 0; n < c->count; n++) {
         tobi_contact *k = &c->list[n];
         double relative[3];
+        if (k->particle < 0) continue;
         find_relative(k, c->velocity, c->spin, relative);
         double along = vec3_dot(relative, k->normal);
         int hits = -along > step->rest_speed && k->gap < -along*step->dt;
@@ -251,6 +325,21 @@ static void find_change(tobi_contact *k, const tobi_contacts *c, double friction
         k->change[a] = normal*k->normal[a] + (k->sliding ? slide[a]*grip/size : slide[a]) - k->impulse[a];
 }
 
+/* The same of an edge: it holds the material within the plane of the cut as long as the force, which then
+   points where the edge goes, is not enough to cut. */
+static void find_edge_change(tobi_contact *k, const tobi_contacts *c)
+{
+    double relative[3], wanted[3];
+    find_relative(k, c->velocity, c->spin, relative);
+    vec3_add_scaled(relative, relative, -vec3_dot(relative, k->normal), k->normal);
+    vec3_add_scaled(wanted, k->impulse, -1/k->mobility, relative);
+    double size = vec3_length(wanted);
+    double most = size > 0 ? k->limit*fmax(0, vec3_dot(wanted, k->ahead)/size) : 0;
+    k->sliding = size > most;
+    for (int a = 0; a < 3; a++)
+        k->change[a] = (k->sliding && size > 0 ? wanted[a]*most/size : wanted[a]) - k->impulse[a];
+}
+
 /* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact
    and P keeps what of them its impulse answers: the normal part if it pushes, the rest if it does not
    slide. */
@@ -258,12 +347,13 @@ static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt
 {
     double relative[3], p[3][3], g[3][6] = {{0}}, pg[3][6], aim[3];
     find_relative(k, c->velocity, c->spin, relative);
-    double lack = find_lack(k, vec3_dot(relative, k->normal), dt), stick = !k->sliding;
-    if (vec3_dot(k->impulse, k->normal) + lack/k->mobility <= 0) return;
-    double allowed = k->bounce > 0 ? k->bounce : -fmax(k->gap, 0)/dt;
+    const int edge = k->particle < 0, stick = !k->sliding;
+    double lack = find_lack(k, vec3_dot(relative, k->normal), dt);
+    if (edge ? !stick : vec3_dot(k->impulse, k->normal) + lack/k->mobility <= 0) return;
+    double allowed = k->bounce > 0 || edge ? k->bounce : -fmax(k->gap, 0)/dt;
     for (int r = 0; r < 3; r++)
         for (int n = 0; n < 3; n++)
-            p[r][n] = ((1 - stick)*k->normal[r]*k->normal[n] + (r == n ? stick : 0))/k->mobility;
+            p[r][n] = ((edge ? -1 : !stick)*k->normal[r]*k->normal[n] + (r == n && stick))/k->mobility;
     for (int a = 0; a < 3; a++) {
         g[a][a] = 1;
         aim[a] = k->velocity[a] - k->deforming[a] - allowed*k->normal[a];
@@ -359,7 +449,8 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
     #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
     for (int64_t n = 0; n < c->count; n++) {
         tobi_contact *k = &c->list[n];
-        if (!first) find_change(k, c, r->friction, step->dt);
+        if (!first && k->particle < 0) find_edge_change(k, c);
+        else if (!first) find_change(k, c, r->friction, step->dt);
         for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
     }
     if (!moves) return;
@@ -387,7 +478,7 @@ void tobi_contact_shift(tobi_contacts *c, tobi_particles *p)
 }
 
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
-                            double *far, tobi_exec *x)
+                            double *far, tobi_contact_work *work, tobi_exec *x)
 {
     int64_t parts = count_chunks(c->count);
     double total[IMPULSES] = {0}, dt = step->dt;
@@ -397,15 +488,19 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         memset(sum, 0, IMPULSES*sizeof *sum);
         for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
             const tobi_contact *k = &c->list[n];
-            double part[2][3], twist[3], normal = vec3_dot(k->impulse, k->normal);
+            const int edge = k->particle < 0;
+            double part[2][3], twist[3], relative[3], normal = vec3_dot(k->impulse, k->normal);
             for (int a = 0; a < 3; a++) {
-                part[0][a] = -normal*k->normal[a];
+                part[0][a] = edge ? -k->impulse[a] : -normal*k->normal[a];
                 part[1][a] = -k->impulse[a] - part[0][a];
             }
+            find_relative(k, c->velocity, c->spin, relative);
+            sum[edge ? 14 : 15] -= vec3_dot(k->impulse, relative);
             for (int m = 0; m < 2; m++) {
                 vec3_cross(twist, k->arm, part[m]);
                 for (int a = 0; a < 3; a++) { sum[6*m + a] += part[m][a]; sum[6*m + 3 + a] += twist[a]; }
             }
+            if (edge) continue;
             sum[12] += normal > 0;
             p->velocity[k->particle].w = (float)(normal/dt);
             sum[13] = fmax(sum[13], find_push(k, step));
@@ -413,15 +508,17 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     }
     for (int64_t n = 0; n < c->count; n++) {
         const tobi_contact *k = &c->list[n];
-        if (!(k->gap < 0)) continue;
+        if (!(k->gap < 0) || k->particle < 0) continue;
         tobi_shift *shift = &c->shift[c->shift_count++];
         *shift = (tobi_shift){ .particle = k->particle };
         for (int a = 0; a < step->dimension; a++) shift->by[a] = find_push(k, step)*k->normal[a];
     }
     for (int64_t q = 0; q < parts; q++) {
-        for (int n = 0; n < IMPULSES - 1; n++) total[n] += c->partial[q*SUMS + n];
+        for (int n = 0; n < IMPULSES; n++) total[n] += c->partial[q*SUMS + n];
         *far = fmax(*far, c->partial[q*SUMS + 13]);
     }
+    work->fracture += total[14];
+    work->friction += total[15];
     for (int a = 0; a < 3; a++) {
         b->rigid.impulse[a] += total[a] + total[6 + a];
         b->rigid.twist[a] += total[3 + a] + total[9 + a];

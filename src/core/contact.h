@@ -10,15 +10,17 @@
    alternates: the method gives velocities at the contacts, a sweep answers with impulses, the method puts
    them on its grid. Impulses add up over the sweeps, and only their sums must push and obey friction. */
 #pragma once
-#include "core/body.h"
+#include "core/blade.h"
 #include "core/particles.h"
 #include "exec/exec.h"
 
-/* One particle at one body. */
+/* One particle at one body, or a piece of a blade's edge in the material: that is held by an impulse within
+   the plane of the cut, of at most limit times the share of it that points ahead (docs/theory/cutting.md). */
 typedef struct tobi_contact {
-    int32_t particle;
+    int32_t particle;                /* -1: a piece of an edge                                   */
     int32_t sliding;                 /* 1: friction was not enough in the last sweep             */
-    double  normal[3];               /* outward from the body                                    */
+    double  normal[3];               /* outward from the body; of an edge that of the cut        */
+    double  ahead[3], limit;         /* of an edge: direction of cutting, and N s                */
     double  arm[3];                  /* m, from the body's centre to the particle                */
     double  deforming[3];            /* m/s, what the surface moves besides the rigid motion     */
     double  gap;                     /* m, between the particle's edge and the surface           */
@@ -45,6 +47,9 @@ typedef struct tobi_contacts {
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
 } tobi_contacts;
 
+/* What contacts have taken from the energy. */
+typedef struct tobi_contact_work { double fracture, friction; } tobi_contact_work;
+
 typedef struct tobi_contact_step {
     double dt;                       /* s                                                        */
     double radius;                   /* m, half a particle spacing                               */
@@ -60,6 +65,9 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_e
    normal part is kept in velocity.w, -N, by whoever moves the particles. */
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err);
+/* Adds a piece of a blade's edge to the list; full: the share of it that lies in material. */
+tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const tobi_blade_piece *piece,
+                                  double full, const tobi_contact_step *step, tobi_error *err);
 /* Whether and how fast contacts shall bounce, from the velocities as they are. */
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
 /* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to
@@ -69,9 +77,9 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
 /* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its forces: normal parts as
    pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that
    still overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m.
-   Returns how many contacts push. */
+   work is added to. Returns how many contacts push. */
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
-                            double *far, tobi_exec *x);
+                            double *far, tobi_contact_work *work, tobi_exec *x);
 /* Shifts the particles that overlapped. To be called when the grid has moved them: shifted before, they would
    take other velocities from it than they gave, and momentum would be lost. */
 void tobi_contact_shift(tobi_contacts *c, tobi_particles *p);

@@ -2,9 +2,9 @@
    material; every particle near it keeps for good on which side of it it lies: the blade may leave, the
    halves may part and touch again, and they never become one. docs/theory/cutting.md.
 
-   A particle's cuts are three columns: c[k].xyz is the normal of a cut in the material at rest, from its -
-   to its + side; c[k].w the number of the cut, 1 to 2^24, with the sign of the particle's side. 0 = none,
-   and none after it. */
+   A particle's cuts are three columns: c[k].xyz is the way from the cut to the particle, square to the cut,
+   m, in the material at rest; c[k].w the number of the cut, 1 to 2^24, with the sign of the particle's side.
+   0 = none, and none after it. */
 #pragma once
 #include "core/particles.h"
 

@@ -29,6 +29,7 @@ typedef struct tobi_rigid {
     double impulse[3], twist[3];     /* N s, N m s about the centre: of particles in this step          */
     double contact_force[3], contact_torque[3];   /* N, N m: mean over the last step                    */
     double phase, phase_start;       /* of the control program; s                                       */
+    double cut;                      /* number of the cut that a blade is making, 0 = none              */
     double hold;                     /* bits like `locked`, asked for by the control program            */
 
     double next_position[3];         /* at the end of the step that is being made                       */

@@ -8,22 +8,28 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     const mpm_block *b = &v->block[number];
     const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
     tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
+    tobi_float4 twin[MPM_TILE_3D + 8], *calm_twin = mpm_twin_tile(b, v->calm, nodes);
+    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     row g[9];
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_copy_tile(v->wave, b->around, tile, dim);
     mpm_clear(tile + nodes, 8);
+    if (calm_twin) mpm_copy_tile(v->wave, v->block[b->twin].around, twin, dim);
     mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
-            quad u, unused[3];
-            mpm_load_rows(tile, s.first[k], g, dim);
+            const uint32_t hidden = calm_twin ? v->hidden[i + k] : 0;
+            quad u, unused[3], mass = quad_set(v->strain[i + k].c[2].w);
+            if (hidden) mpm_load_split(tile, twin, s.first[k], hidden, g, dim);
+            else mpm_load_rows(tile, s.first[k], g, dim);
             mpm_interpolate(g, &s, k, 0, dim, &u, unused);
             u[3] = 1;
-            mpm_add_calm(calm, &s, k, u*quad_set(v->strain[i + k].c[2].w), dim);
+            if (hidden) mpm_add_split(calm, calm_twin, &s, k, hidden, u*mass, zero, dim);
+            else mpm_add_calm(calm, &s, k, u*mass, dim);
         }
     }
 }
@@ -50,7 +56,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
 {
     const mpm_block *b = &v->block[number];
     const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, rows = dim == 3 ? 3 : 1, last = dim - 1;
-    tobi_float4 *calm = v->calm + number*(nodes + 8);
+    tobi_float4 *calm = v->calm + number*(nodes + 8), *calm_twin = mpm_twin_tile(b, v->calm, nodes);
     mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
@@ -78,7 +84,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
                     for (int c = 0; c < dim*v->affine_momentum; c++)
                         u[a] += (&v->affine[i + k].c[c].x)[a]*((float)at[c] - s.offset[c][k])*v->cell;
                 }
-                tobi_float4 *node = calm + s.first[k] +
+                tobi_float4 *node = (calm_twin && v->hidden[i + k] >> n & 1 ? calm_twin : calm) + s.first[k] +
                     (dim == 3 ? 64*at[0] + 8*at[1] + at[2] : 8*at[0] + at[1]);
                 node->x += w*mass*keep*u[0];
                 node->y += w*mass*keep*u[1];

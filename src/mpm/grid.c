@@ -71,8 +71,9 @@ static tobi_status list_runs(mpm_grid *g, const uint32_t *keys, int64_t n, int b
 
 static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
 {
-    if (count > g->block_room) {
-        g->block_room = count + count/8 + 8;
+    const int64_t need = count*(1 + g->twins);
+    if (need > g->block_room) {
+        g->block_room = need + need/8 + 8;
         if (!grow((void **)&g->block, g->block_room, sizeof *g->block) ||
             !grow((void **)&g->block_key, g->block_room, sizeof *g->block_key)) {
             g->block_room = 0;
@@ -80,13 +81,15 @@ static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
         }
     }
     g->block_count = count;
+    g->block_twins = 0;
     return TOBI_OK;
 }
 
 static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
 {
-    if (count > g->patch_room) {
-        g->patch_room = count + count/8 + 8;
+    const int64_t need = count*(1 + g->twins);
+    if (need > g->patch_room) {
+        g->patch_room = need + need/8 + 8;
         int64_t nodes = g->patch_room*block_nodes(g);
         if (!grow((void **)&g->patch, g->patch_room, sizeof *g->patch) ||
             !grow((void **)&g->patch_key, g->patch_room, sizeof *g->patch_key) ||
@@ -98,6 +101,7 @@ static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
         }
     }
     g->patch_count = count;
+    g->patch_twins = 0;
     return TOBI_OK;
 }
 
@@ -186,6 +190,7 @@ static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tob
         g->block_key[k] = keys[g->begin[k]] >> KEY_BITS;
         g->block[k].begin = g->begin[k];
         g->block[k].end = g->begin[k + 1];
+        g->block[k].twin = -1;
         corner_of(g, g->block_key[k], g->block[k].corner);
     }
     return TOBI_OK;
@@ -233,6 +238,7 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
     for (int64_t k = 0; k < count; k++) {
         mpm_patch *p = &g->patch[k];
         corner_of(g, g->patch_key[k], p->corner);
+        p->twin = -1;
         for (int o = 0; o < 27; o++)
             p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count,
                                                      beside(g, g->patch_key[k], o)) : -1;
@@ -247,9 +253,9 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
 
 static tobi_status reserve_rest(mpm_grid *g, tobi_exec *x, tobi_error *err)
 {
-    int64_t most = g->patch_count > g->block_count ? g->patch_count : g->block_count;
+    int64_t most = (g->patch_count > g->block_count ? g->patch_count : g->block_count)*(1 + g->twins);
     TOBI_TRY(tobi_exec_reserve(x, most*TOBI_BLOCK, err));
-    int64_t tiles = g->block_count*(g->layers > 1 ? 2 : 1);
+    int64_t tiles = g->block_count*(g->layers > 1 ? 2 : 1)*(1 + g->twins);
     return reserve_scratch(g, tiles*tile_nodes(g)*(int64_t)sizeof(tobi_float4), err);
 }
 
@@ -282,6 +288,16 @@ tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_
     return reserve_rest(g, x, err);
 }
 
+int64_t mpm_grid_find_patch(const mpm_grid *g, const int at[3])
+{
+    int b[3];
+    for (int a = 0; a < 3; a++) {
+        b[a] = a < g->dimension ? (at[a] + BLOCK)/BLOCK : 0;
+        if (at[a] < -BLOCK || b[a] < g->low[a] || b[a] >= g->low[a] + g->count[a]) return -1;
+    }
+    return find_key(g->patch_key, g->patch_count, block_key(g, b));
+}
+
 void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
 {
     v->block = g->block;
@@ -290,5 +306,5 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
     v->old = g->layers > 1 ? g->old : NULL;
     v->wave = g->layers > 2 ? g->wave : NULL;
     v->tile = (tobi_float4 *)(void *)g->scratch;
-    v->calm = g->layers > 1 ? v->tile + g->block_count*tile_nodes(g) : NULL;
+    v->calm = g->layers > 1 ? v->tile + g->block_count*(1 + g->twins)*tile_nodes(g) : NULL;
 }

@@ -10,6 +10,8 @@ typedef struct mpm_grid {
     mpm_patch *patch;
     uint32_t *block_key, *patch_key;   /* in rising order, for finding neighbours                */
     int64_t block_count, patch_count, block_room, patch_room;
+    int64_t block_twins, patch_twins;  /* behind the others                                       */
+    int     twins;                     /* 1: there is room for a twin of each                      */
     tobi_float4 *node, *old, *wave;    /* [patch_room][nodes]; see view.h                         */
     char *scratch;                     /* of the sort; the tiles in between                       */
     int64_t scratch_bytes;
@@ -27,5 +29,7 @@ int64_t mpm_grid_bytes(const mpm_grid *g);
 tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err);
 /* Builds the blocks of particles that are sorted: affine[i].c[a].w holds the corner of the block of each. */
 tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_error *err);
+/* The block of nodes that has node `at` (cells from the domain's corner), -1 = none. */
+int64_t mpm_grid_find_patch(const mpm_grid *g, const int at[3]);
 /* Points the view at the blocks, nodes and tiles. */
 void mpm_grid_bind(const mpm_grid *g, mpm_view *v);

@@ -3,6 +3,7 @@
    numbers: docs/theory/mlsmpm.md. */
 #include "mpm/mlsmpm.h"
 #include "base/error.h"
+#include "mpm/cut.h"
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
@@ -14,7 +15,8 @@
 #include <string.h>
 
 /* What a restart needs besides the particles. */
-enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, MEMORY };
+enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, CUTS, FRACTURE,
+       FRICTION, MEMORY };
 
 #define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
@@ -25,6 +27,7 @@ typedef struct mlsmpm {
     mpm_view view;
     mpm_grid grid;
     mpm_touch touch;
+    mpm_cut cut;
     const mpm_kernels *kernels;
     mpm_material material[TOBI_SOLID_LIMIT + 1];
     double damping[TOBI_SOLID_LIMIT + 1];
@@ -33,6 +36,7 @@ typedef struct mlsmpm {
     double cell;                       /* m                                                        */
     double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
     int built;                         /* blocks fit the particles                                 */
+    int blades;                        /* 1: material may be cut                                   */
 } mlsmpm;
 
 static void choose_smoothing(const void *def, int *shape, double *support)
@@ -62,7 +66,7 @@ static mpm_material describe_material(const tobi_solid_def *d, int dimension, do
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)find_cone(d, dimension), .keep = 1 };
+        .friction = (float)find_cone(d, dimension), .cut_friction = (float)d->cut_friction, .keep = 1 };
 }
 
 static double viscous_limit(const tobi_solid_def *d, double cell)
@@ -99,6 +103,8 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->strain = p->strain;
     v->affine = p->affine;
     v->solid = p->fluid;
+    v->cuts = p->cuts;
+    m->blades = m->grid.twins = p->cuts != NULL;
     v->material = m->material;
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
@@ -150,9 +156,11 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         *state = NULL;
         return status;
     }
+    m->touch.cell_mass = INFINITY;
     for (int k = 0; k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
+        m->touch.cell_mass = fmin(m->touch.cell_mass, d->density*pow(m->cell, s->box.dimension));
         m->material[k] = describe_material(d, s->box.dimension, &sound);
         m->damping[k] = d->damping;
         m->sound = fmax(m->sound, sound);
@@ -189,6 +197,15 @@ static int is_stale(const mlsmpm *m)
     return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
 }
 
+static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, tobi_error *err)
+{
+    mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
+    TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
+    m->view.side = m->cut.side;
+    m->view.hidden = m->cut.hidden;
+    return TOBI_OK;
+}
+
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
@@ -199,7 +216,8 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     } else if (!m->built) {
         TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->exec, err));
     }
-    if (stale || !m->built)
+    const int anew = stale || !m->built;
+    if (anew)
         for (int64_t k = 0; k < m->grid.patch_count; k++) {
             mpm_patch *p = &m->grid.patch[k];
             p->planes = 0;
@@ -209,6 +227,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
+    if (m->blades && (anew || m->cut.moved > 0.05*m->cell)) TOBI_TRY(find_cuts(s, m, err));
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }
@@ -229,6 +248,9 @@ static void use_dt(const tobi_simulation *s, mlsmpm *m)
     for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);
 }
 
+/* Blocks of nodes, those of second velocities included. */
+static int64_t count_patches(const mlsmpm *m) { return m->grid.patch_count + m->grid.patch_twins; }
+
 static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, NULL);
@@ -242,7 +264,7 @@ static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
     double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
     tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
-    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, m->grid.patch_count, arrived);
+    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, count_patches(m), arrived);
     if (s->step > 0) m->memory[TRANSFER] += m->memory[NODE_ENERGY] - came[0];
     m->memory[TRANSFER] += came[1] - arrived[0];
 }
@@ -251,7 +273,7 @@ static void measure_nodes(tobi_simulation *s, mlsmpm *m)
 {
     double t[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, m->grid.patch_count, t);
+    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, count_patches(m), t);
     m->memory[NODE_ENERGY] = t[0];
 }
 
@@ -264,7 +286,7 @@ static void filter_velocity(tobi_simulation *s, mlsmpm *m)
         share *= -(m->def.xpic_order - k + 1.0)/k;
         m->view.order = (float)share;
         tobi_launch_each(&s->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
-        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, m->grid.patch_count, NULL);
+        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, count_patches(m), NULL);
     }
 }
 
@@ -272,8 +294,9 @@ static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
     m->view.order = (float)m->def.xpic_order;
-    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, m->grid.patch_count, t);
+    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, count_patches(m), t);
     filter_velocity(s, m);
+    if (m->blades) m->memory[FRICTION] += mpm_cut_meet(&m->cut, s, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
     tobi_stage_end(&s->stages, "grid", clock);
 }
@@ -285,6 +308,7 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     s->info.contacts += (int64_t)t[0];
     s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
     m->memory[DRIFT] += t[7];
+    m->cut.moved += t[7] + s->body_speed*s->dt;
     m->memory[STRAIN_DT] = s->dt;
     tobi_stage_end(&s->stages, "to particles", clock);
 }
@@ -309,6 +333,8 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
     TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, err));
     m->memory[DRIFT] += m->touch.far;
+    m->memory[FRACTURE] += m->touch.work.fracture;
+    m->memory[FRICTION] += m->touch.work.friction;
     for (int k = 0; k < s->body_count; k++) m->memory[BODY_WORK] += find_work(&s->bodies[k])*s->dt;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;
@@ -462,6 +488,7 @@ static void free_state(void *state)
     if (!m) return;
     mpm_grid_free(&m->grid);
     mpm_touch_free(&m->touch);
+    mpm_cut_free(&m->cut);
     free(m);
 }
 

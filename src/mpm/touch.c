@@ -20,10 +20,31 @@ void mpm_touch_free(mpm_touch *t)
     free_entries(t);
     free(t->crowd);
     free(t->histogram);
+    free(t->piece);
+    free(t->full);
     memset(t, 0, sizeof *t);
 }
 
 static int nodes_each(const mpm_grid *g) { return g->dimension == 3 ? 27 : 9; }
+
+/* Places of all nodes, second velocities included. */
+static int64_t count_nodes(const mpm_grid *g)
+{
+    return (g->patch_count + g->patch_twins)*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
+}
+
+/* Entries of contact k begin here: one for each node that a particle feels; for an edge two, of both
+   velocities. */
+static int64_t entry_of(const mpm_touch *t, int64_t k, int64_t each)
+{
+    return k < t->edge_first ? k*each : (2*k - t->edge_first)*each;
+}
+
+static int64_t contact_of(const mpm_touch *t, int64_t entry, int64_t each)
+{
+    int64_t k = entry/each;
+    return k < t->edge_first ? k : t->edge_first + (k - t->edge_first)/2;
+}
 
 static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
 {
@@ -52,8 +73,8 @@ static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
 static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, const tobi_exec *x,
                            tobi_error *err)
 {
-    int64_t nodes = g->patch_count*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
-    t->count = contacts*nodes_each(g);
+    int64_t nodes = count_nodes(g);
+    t->count = entry_of(t, contacts, nodes_each(g));
     TOBI_TRY(reserve_entries(t, t->count, err));
     if (!t->histogram) t->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *t->histogram);
     if (nodes > t->node_room) {
@@ -95,24 +116,124 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
 {
     const int dim = g->dimension, each = nodes_each(g);
     #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < c->count; k++) {
-        const mpm_block *b = block_of(g, c->list[k].particle);
+    for (int64_t k = 0; k < t->edge_first; k++) {
+        const int64_t particle = c->list[k].particle;
+        const mpm_block *b = block_of(g, particle), *twin = b->twin < 0 ? NULL : &g->block[b->twin];
         mpm_stencil s;
-        mpm_find_stencil(v, b, c->list[k].particle, dim, &s);
+        mpm_find_stencil(v, b, particle, dim, &s);
         for (int n = 0; n < each; n++) {
             int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = n%3;
             float w = s.weight[0][i][0]*s.weight[1][j][0];
-            t->node[k*each + n] = (uint32_t)place_of(b, dim, s.first[0] +
+            const mpm_block *from = twin && v->hidden[particle] >> n & 1 ? twin : b;
+            t->node[k*each + n] = (uint32_t)place_of(from, dim, s.first[0] +
                                                      (dim == 3 ? i*64 + j*8 + l : i*8 + j));
             t->weight[k*each + n] = dim == 3 ? w*s.weight[2][l][0] : w;
         }
     }
 }
 
+/* The nodes around a place: of both velocities, with their weights. */
+typedef struct surroundings {
+    int64_t place[2][27];
+    double weight[27];
+    double full;                       /* mass over that of a full cell                            */
+} surroundings;
+
+/* 0 if no material is near. */
+static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, double cell_mass,
+                       surroundings *s)
+{
+    const int dim = g->dimension, each = nodes_each(g), nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    int first[3] = {0, 0, -1};
+    int64_t patch[8];
+    for (int a = 0; a < dim; a++) {
+        double at = x[a]*inverse_cell, base = floor(at - 0.5), f = at - base;
+        first[a] = (int)base;
+        w[a][0] = 0.5*(1.5 - f)*(1.5 - f);
+        w[a][1] = 0.75 - (f - 1)*(f - 1);
+        w[a][2] = 0.5*(f - 0.5)*(f - 0.5);
+    }
+    for (int n = 0; n < 8; n++) {
+        const int at[3] = {first[0] + 2*(n >> 2), first[1] + 2*(n >> 1 & 1),
+                           dim == 3 ? first[2] + 2*(n & 1) : 0};
+        patch[n] = mpm_grid_find_patch(g, at);
+        if (patch[n] < 0) return 0;
+    }
+    s->full = 0;
+    for (int n = 0; n < each; n++) {
+        const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
+        const int at[3] = {first[0] + i, first[1] + j, first[2] + l};
+        const int far[3] = {at[0] >> 2 != first[0] >> 2, at[1] >> 2 != first[1] >> 2,
+                            dim == 3 && at[2] >> 2 != first[2] >> 2};
+        const int inner = ((at[0] & 3)*4 + (at[1] & 3))*(dim == 3 ? 4 : 1) + (dim == 3 ? at[2] & 3 : 0);
+        const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]], twin = g->patch[p].twin;
+        s->place[0][n] = p*nodes + inner;
+        s->place[1][n] = twin < 0 ? -1 : twin*nodes + inner;
+        s->weight[n] = w[0][i]*w[1][j]*w[2][l];
+        s->full += s->weight[n]*g->node[s->place[0][n]].w/cell_mass;
+        if (twin >= 0) s->full += s->weight[n]*g->node[s->place[1][n]].w/cell_mass;
+    }
+    return 1;
+}
+
+/* Lists the pieces of a blade's edge that lie in material. The share rises from 0 to 1 within half a cell
+   across the surface. */
+static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
+                              const mpm_view *v, const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
+{
+    const double size = 2*step->radius;
+    int64_t count = tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
+    if (count > t->piece_room) {
+        free(t->piece);
+        free(t->full);
+        t->piece = malloc((size_t)count*sizeof *t->piece);
+        t->full = malloc((size_t)count*sizeof *t->full);
+        t->piece_room = t->piece && t->full ? count : 0;
+        if (!t->piece_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
+        tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
+    }
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < count; k++) {
+        surroundings s;
+        int near = look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, &s);
+        t->full[k] = near ? fmin(1, 2*s.full - 0.5) : 0;
+    }
+    for (int64_t k = 0; k < count; k++)
+        if (t->full[k] > 0) TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], t->full[k], step, err));
+    return TOBI_OK;
+}
+
+/* Each velocity of a node moves a piece of an edge by its share of the mass. */
+static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
+                            const mpm_view *v, tobi_exec *x)
+{
+    const int each = nodes_each(g);
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = t->edge_first; k < c->count; k++) {
+        const int64_t entry = entry_of(t, k, each);
+        double at[3], sum = 0;
+        surroundings s;
+        for (int a = 0; a < 3; a++) at[a] = b->rigid.position[a] + c->list[k].arm[a];
+        look_around(g, at, v->inverse_cell, t->cell_mass, &s);
+        for (int n = 0; n < each; n++) {
+            double mass[2], both;
+            for (int m = 0; m < 2; m++) mass[m] = s.place[m][n] < 0 ? 0 : g->node[s.place[m][n]].w;
+            both = mass[0] + mass[1];
+            for (int m = 0; m < 2; m++) {
+                t->node[entry + 2*n + m] = (uint32_t)s.place[mass[m] > 0 ? m : 0][n];
+                t->weight[entry + 2*n + m] = mass[m] > 0 ? (float)(s.weight[n]*mass[m]/both) : 0;
+            }
+            if (both > 0) sum += s.weight[n];
+        }
+        for (int n = 0; n < 2*each; n++) t->weight[entry + n] /= (float)sum;
+    }
+}
+
 /* Lists the entries of every node. */
 static void sort_by_node(mpm_touch *t, const mpm_grid *g, tobi_exec *x)
 {
-    int64_t nodes = g->patch_count*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
+    int64_t nodes = count_nodes(g);
     memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
     tobi_sort_by_key(x, t->count, (uint32_t)nodes, t->key, t->order, t->key_scratch, t->order_scratch,
                      t->histogram);
@@ -134,7 +255,7 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < c->count; k++) {
         double sum = 0;
-        for (int64_t n = k*each; n < (k + 1)*each; n++)
+        for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
             if (g->node[t->node[n]].w > 0) sum += t->weight[n]*t->crowd[t->node[n]]/g->node[t->node[n]].w;
         c->list[k].mobility = sum;
     }
@@ -146,7 +267,7 @@ static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < c->count; k++) {
         double u[3] = {0, 0, 0};
-        for (int64_t n = k*each; n < (k + 1)*each; n++)
+        for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
             for (int a = 0; a < 3; a++) u[a] += t->weight[n]*(&g->node[t->node[n]].x)[a];
         memcpy(c->list[k].velocity, u, sizeof u);
     }
@@ -161,7 +282,7 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
         double sum[3] = {0, 0, 0};
         if (!(node->w > 0)) continue;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
-            const tobi_contact *k = &c->list[t->order[e]/each];
+            const tobi_contact *k = &c->list[contact_of(t, t->order[e], each)];
             for (int a = 0; a < 3; a++) sum[a] += t->weight[t->order[e]]*k->change[a];
         }
         for (int a = 0; a < 3; a++) (&node->x)[a] += (float)(sum[a]/node->w);
@@ -173,9 +294,13 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
 {
     tobi_contacts *c = &s->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
+    t->edge_first = c->count;
+    if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
+        TOBI_TRY(list_edges(t, c, b, g, v, step, &s->exec, err));
     if (c->count == 0) return TOBI_OK;
     TOBI_TRY(reserve(t, g, c->count, &s->exec, err));
     find_nodes(t, c, g, v, &s->exec);
+    find_edge_nodes(t, c, b, g, v, &s->exec);
     sort_by_node(t, g, &s->exec);
     find_mobility(t, c, g, &s->exec);
     read_velocities(t, c, g, &s->exec);
@@ -192,13 +317,14 @@ tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g
                              const tobi_contact_step *step, tobi_error *err)
 {
     t->far = 0;
+    t->work = (tobi_contact_work){0, 0};
     s->info.contacts = 0;
     if (s->body_count == 0) return TOBI_OK;
     TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, &s->exec, err));
     for (int k = 0; k < s->body_count; k++) {
         TOBI_TRY(touch_body(t, s, &s->bodies[k], g, v, step, err));
         s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->bodies[k], step, &t->far,
-                                                &s->exec);
+                                                &t->work, &s->exec);
     }
     return TOBI_OK;
 }

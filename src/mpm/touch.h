@@ -15,6 +15,12 @@ typedef struct mpm_touch {
     int64_t touched, room;
     float *crowd;                      /* [nodes] sum of the contacts' weights                    */
     int64_t node_room;
+    tobi_blade_piece *piece;           /* of the present blade's edge                             */
+    double *full;                      /* [pieces] share in material                              */
+    int64_t piece_room;
+    double cell_mass;                  /* kg of a full cell: the caller's to set                  */
+    int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
+    tobi_contact_work work;            /* J, of the last step                                     */
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;
 

@@ -4,8 +4,7 @@
    same base node. Particles need not be in the order of their base nodes; that is only faster.
    Axes are (x, y, z), rows run along z; in 2-D they are (x, nothing, y). */
 #pragma once
-#include "exec/rows.h"
-#include "mpm/particle.k.h"
+#include "mpm/split.k.h"
 
 TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
 {
@@ -36,6 +35,15 @@ TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad m
         }
 }
 
+/* The cleared tile of a block's twin, NULL = no twin. */
+TOBI_FN tobi_float4 *mpm_twin_tile(const mpm_block *b, tobi_float4 *tiles, int nodes)
+{
+    if (b->twin < 0) return NULL;
+    tobi_float4 *tile = tiles + (int64_t)b->twin*(nodes + 8);
+    mpm_clear(tile, nodes + 8);
+    return tile;
+}
+
 /* Momentum and mass of a block's particles into its tile. */
 TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
@@ -44,11 +52,15 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     float *tile = (float *)(v->tile + number*(nodes + 8));
     row sum[9];
     int32_t cell = -1;
-    const quad step = {0, 1, 2, 0};
+    const quad step = {0, 1, 2, 0}, zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     (void)totals;
     tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
+    tobi_float4 *twin = mpm_twin_tile(b, v->tile, nodes);
+    tobi_float4 *calm_twin = calm ? mpm_twin_tile(b, v->calm, nodes) : NULL;
+    float side[MPM_TILE_3D];
     mpm_clear(v->tile + number*(nodes + 8), nodes + 8);
     if (calm) mpm_clear(calm, nodes + 8);
+    if (twin) mpm_copy_sides(v, b, side, dim);
     for (int r = 0; r < 9; r++) sum[r] = row_set(0);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
@@ -57,17 +69,27 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
         mpm_find_stencil(v, b, i, dim, &s);
         mpm_find_load(v, i, count, &load);
         for (int k = 0; k < count; k++) {
-            if (calm) mpm_add_calm(calm, &s, k, quad_load(&load.momentum[k]), dim);
-            if (s.first[k] != cell) {
-                if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
-                cell = s.first[k];
-            }
+            uint32_t hidden = twin ? mpm_find_hidden(&v->cuts[i + k], side, s.first[k], dim) : 0;
+            if (twin) v->hidden[i + k] = hidden;
+            if (calm && hidden)
+                mpm_add_split(calm, calm_twin, &s, k, hidden, quad_load(&load.momentum[k]), zero, dim);
+            else if (calm)
+                mpm_add_calm(calm, &s, k, quad_load(&load.momentum[k]), dim);
             const quad unit = quad_set(v->cell);
             quad a0 = quad_load(&load.matrix[0][k])*unit, a1 = quad_load(&load.matrix[1][k])*unit,
                  a2 = quad_load(&load.matrix[last][k])*unit, base = quad_load(&load.momentum[k]);
             base = base - a0*quad_set(s.offset[0][k]);
             if (dim == 3) base = base - a1*quad_set(s.offset[1][k]);
             base = base - a2*quad_set(s.offset[last][k]);
+            if (hidden) {
+                const quad columns[3] = {a0, a1, a2};
+                mpm_add_split((tobi_float4 *)(void *)tile, twin, &s, k, hidden, base, columns, dim);
+                continue;
+            }
+            if (s.first[k] != cell) {
+                if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
+                cell = s.first[k];
+            }
             quad along = {s.weight[last][0][k], s.weight[last][1][k], s.weight[last][2][k], 0};
             row w = row_spread(along), d0 = row_mul(row_repeat(a0), w), d1 = row_mul(row_repeat(a1), w);
             row x = row_mul(row_fma(row_repeat(a2), row_spread(step), row_repeat(base)), w);
@@ -87,10 +109,6 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     }
     if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
 }
-
-/* Nodes of a tile that belong to the node block at offset -1, 0 or 1 along an axis. */
-TOBI_FN int mpm_span_first(int offset) { return offset < 0 ? 0 : offset == 0 ? 1 : 5; }
-TOBI_FN int mpm_span_last(int offset) { return offset < 0 ? 0 : offset == 0 ? 4 : 7; }
 
 /* Coulomb contact of a node with a plane, eq. (13); v becomes the velocity after. */
 TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
@@ -284,7 +302,8 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
     tobi_float4 *const velocity = v->velocity;
     tobi_columns *const affine = v->affine;
     tobi_double3 *const position = v->position;
-    tobi_float4 tile[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8];
+    tobi_float4 tile[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8], twin[MPM_TILE_3D + 8], old_twin[MPM_TILE_3D + 8];
+    const int split = b->twin >= 0;
     row g[9], h[9];
     quad far = quad_set(0);
     for (int r = 0; r < 9; r++) g[r] = h[r] = row_set(0);
@@ -294,6 +313,8 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
     for (int a = 0; a < dim; a++) edge |= b->corner[a] < 2 || (b->corner[a] + 8)*(double)v->cell > v->size[a];
     mpm_copy_tile(v->node, b->around, tile, dim);
     if (flip) mpm_copy_tile(v->old, b->around, old, dim);
+    if (split) mpm_copy_tile(v->node, v->block[b->twin].around, twin, dim);
+    if (split && flip) mpm_copy_tile(v->old, v->block[b->twin].around, old_twin, dim);
     for (int n = beyond; n < beyond + 8; n++)              /* what the last rows read beyond the tile */
         tile[n] = old[n] = (tobi_float4){0, 0, 0, 0};
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
@@ -304,7 +325,11 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
             const mpm_material *material = &v->material[v->solid[i + k]];
             quad u, gradient[3];
             if (material->model == TOBI_STATIONARY) continue;
-            if (s.first[k] != cell) {
+            if (split && v->hidden[i + k]) {
+                cell = -1;
+                mpm_load_split(tile, twin, s.first[k], v->hidden[i + k], g, dim);
+                if (flip) mpm_load_split(old, old_twin, s.first[k], v->hidden[i + k], h, dim);
+            } else if (s.first[k] != cell) {
                 cell = s.first[k];
                 mpm_load_rows(tile, cell, g, dim);
                 if (flip) mpm_load_rows(old, cell, h, dim);

@@ -19,21 +19,27 @@ typedef struct mpm_material {
     float yield, hardening;            /* Pa, and Pa or 1                                         */
     float compression, stretch;        /* 1, limits of snow                                       */
     float friction;                    /* 1, alpha of Drucker and Prager                          */
+    float cut_friction;                /* 1, Coulomb, between the faces of a cut                  */
     float keep;                        /* share of the velocity kept in this step, by damping     */
 } mpm_material;
 
-/* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. */
+/* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. Where cuts are, a node has two
+   velocities (docs/theory/cutting.md): blocks of particles and of nodes have twins for the second, behind all
+   others. A twin block has the tile of the second velocity, no particles, and around it twins of node blocks
+   where there are any. */
 typedef struct mpm_block {
     int32_t corner[3];                 /* cells from the domain's lower corner                    */
     int64_t begin, end;                /* particles                                               */
     int32_t around[27];                /* index of the node block at offset (x + 1)*9 + (y + 1)*3 + z + 1 */
+    int32_t twin;                      /* index of the twin block, -1 = none                      */
 } mpm_block;
 
-/* Nodes of one block, and the particle blocks whose tiles reach it, -1 = none. */
+/* Nodes of one block, and the particle blocks (of a twin: twins) whose tiles reach it, -1 = none. */
 typedef struct mpm_patch {
     int32_t corner[3];
     int32_t planes;                    /* 1: a plane may reach it                                 */
     int32_t cover[27];
+    int32_t twin;                      /* index of the twin, -1 = none                            */
 } mpm_patch;
 
 /* A half space that material may not enter: n . x < offset. x from the domain's lower corner. */
@@ -52,6 +58,11 @@ typedef struct mpm_view {
     const mpm_material *TOBI_RESTRICT material;
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
+    const tobi_columns *TOBI_RESTRICT cuts;   /* core/cuts.h; NULL in scenes without blades        */
+    const float *TOBI_RESTRICT side;   /* [patches][nodes] number of the cut at a node, with the sign of
+                                          the side its first velocity belongs to; 0 = one velocity  */
+    uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
+                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it  */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */

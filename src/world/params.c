@@ -191,6 +191,8 @@ static const tobi_param solid_rows[] = {
       RANGE(0, 0.5), .unit = "1", .doc = "Stretch at which snow breaks." },
     { .key = "friction_angle", REAL, AT(tobi_solid_def, friction_angle), .def = { 30 }, RANGE(0, 60),
       .unit = "degrees", .doc = "Angle of internal friction of sand." },
+    { .key = "cut_friction", REAL, AT(tobi_solid_def, cut_friction), .def = { 0.3 }, FROM(0), .unit = "1",
+      .doc = "Coulomb friction between the faces of what a blade has cut." },
     { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
       .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),
@@ -470,6 +472,7 @@ static const struct { const char *key; uint32_t models; } constants[] = {
     { "yield_stress", OF(TOBI_VON_MISES) }, { "hardening", OF(TOBI_VON_MISES) | OF(TOBI_SNOW) },
     { "critical_compression", OF(TOBI_SNOW) }, { "critical_stretch", OF(TOBI_SNOW) },
     { "friction_angle", OF(TOBI_SAND) },    { "damping", ~OF(TOBI_STATIONARY) },
+    { "cut_friction", ~(OF(TOBI_STATIONARY) | OF(TOBI_LIQUID) | OF(TOBI_SAND)) },
 #undef ELASTIC
 };
 enum { CONSTANT_COUNT = sizeof constants/sizeof constants[0] };

@@ -1,0 +1,27 @@
+/* Blades: bodies whose edge cuts. Where a point lies relative to the edge, in the present pose. */
+#pragma once
+#include "core/body.h"
+
+/* Seen from the nearest point of the edge. */
+typedef struct tobi_blade_place {
+    double beyond;                     /* m, past an end of the edge; 0 beside it                 */
+    double ahead;                      /* m, in the direction of cutting: > 0 is not cut yet      */
+    double aside;                      /* m, along the cut's normal                               */
+    double normal[3];                  /* of the cut, world axes                                  */
+} tobi_blade_place;
+
+/* A piece of the edge in world axes. */
+typedef struct tobi_blade_piece {
+    double middle[3];                  /* m, from the domain's corner                             */
+    double length;                     /* m; in 2-D 1, per metre of depth                         */
+    double ahead[3], normal[3];        /* direction of cutting, normal of the cut                 */
+} tobi_blade_piece;
+
+/* x: m, from the domain's corner. 0 if the edge has no direction: it is tagged and stands still. */
+int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);
+/* The box around the edge, m, grown by `reach`. */
+void tobi_blade_box(const tobi_body *b, double reach, double low[3], double high[3]);
+/* Cuts the edge into pieces of at most `size` (m), in the order of the edges; returns how many there are and
+   writes the first `room` of them. */
+int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_blade_piece *out,
+                          int64_t room);

@@ -1,0 +1,354 @@
+#include "mpm/cut.h"
+#include "base/error.h"
+#include "core/blade.h"
+#include "core/cuts.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { VOTES = 2 };                    /* cuts that one node looks at                             */
+
+void mpm_cut_free(mpm_cut *c)
+{
+    free(c->side);
+    free(c->seam);
+    free(c->face);
+    free(c->hidden);
+    free(c->marked);
+    memset(c, 0, sizeof *c);
+}
+
+static int nodes_of(const mpm_grid *g) { return g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D; }
+
+static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tobi_error *err)
+{
+    int64_t nodes = g->patch_room*nodes_of(g);
+    if (nodes > c->node_room) {
+        free(c->side);
+        free(c->seam);
+        c->side = malloc((size_t)nodes*sizeof *c->side);
+        c->seam = malloc((size_t)nodes*sizeof *c->seam);
+        c->node_room = c->side && c->seam ? nodes : 0;
+    }
+    if (particles > c->particle_room) {
+        free(c->face);
+        free(c->hidden);
+        c->face = malloc((size_t)particles*sizeof *c->face);
+        c->hidden = calloc((size_t)particles, sizeof *c->hidden);
+        c->particle_room = c->face && c->hidden ? particles : 0;
+    }
+    if (g->block_room > c->block_room) {
+        free(c->marked);
+        c->marked = malloc((size_t)g->block_room);
+        c->block_room = c->marked ? g->block_room : 0;
+    }
+    if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
+        return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the cuts of %lld particles", (long long)particles);
+}
+
+/* F of a particle now, what the last step left to do included. */
+static void find_deformation(const mpm_view *v, int64_t i, double f[3][3])
+{
+    const tobi_columns *e = &v->strain[i], *l = &v->affine[i];
+    double was[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) was[r][c] = (&e->c[c].x)[r] + (r == c);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            f[r][c] = was[r][c];
+            for (int k = 0; k < 3; k++) f[r][c] += v->strain_dt*(&l->c[k].x)[r]*was[k][c];
+        }
+}
+
+/* How far from a cut a particle still feels nodes beyond it, m. */
+static double find_band(const double normal[3], double cell)
+{
+    return (1.5*(fabs(normal[0]) + fabs(normal[1]) + fabs(normal[2])) + 0.25)*cell;
+}
+
+/* The particle remembers the cut. A full memory forgets the farthest. */
+static void remember(tobi_columns *cuts, const double f[3][3], double number, const tobi_blade_place *at,
+                     double least)
+{
+    double back[3], square, side = at->aside < 0 ? -1 : 1, size = fmax(fabs(at->aside), least);
+    int k = 0;
+    for (; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
+        if (fabs(cuts->c[k].w) == number) return;
+    for (int a = 0; a < 3; a++)
+        back[a] = side*(f[0][a]*at->normal[0] + f[1][a]*at->normal[1] + f[2][a]*at->normal[2]);
+    square = vec3_dot(back, back);
+    if (!(square > 0)) return;
+    tobi_float4 mark = {(float)(back[0]*size/square), (float)(back[1]*size/square),
+                        (float)(back[2]*size/square), (float)(side*number)};
+    if (k == TOBI_CUTS_EACH) {
+        double far = mark.x*mark.x + mark.y*mark.y + mark.z*mark.z;
+        for (int n = 0; n < TOBI_CUTS_EACH; n++) {
+            const tobi_float4 *c = &cuts->c[n];
+            double d = c->x*c->x + c->y*c->y + c->z*c->z;
+            if (d > far) { far = d; k = n; }
+        }
+        if (k == TOBI_CUTS_EACH) return;
+    }
+    cuts->c[k] = mark;
+}
+
+static int can_be_cut(int model) { return model != TOBI_LIQUID && model != TOBI_SAND; }
+
+/* One blade. A blade that meets no material ends its cut; the next one it makes has a new number. */
+static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, double *number)
+{
+    const double cell = v->cell, most = 3*cell, least = 1e-3*s->smoothing.spacing;
+    const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
+    double low[3], high[3];
+    int met = 0, dim = s->box.dimension;
+    tobi_blade_box(b, most, low, high);
+    #pragma omp parallel for num_threads(s->exec.threads) reduction(|: met)
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
+        tobi_blade_place at;
+        double f[3][3];
+        int out = !can_be_cut(v->material[v->solid[i]].model);
+        for (int a = 0; a < dim; a++) out |= x[a] < low[a] || x[a] > high[a];
+        if (out || !tobi_blade_locate(b, dim, x, &at)) continue;
+        if (at.beyond > 0.25*cell || fabs(at.aside) > find_band(at.normal, cell) || fabs(at.ahead) > cell)
+            continue;
+        met = 1;
+        if (at.ahead > 0) continue;
+        find_deformation(v, i, f);
+        remember(&s->particles.cuts[i], f, mine, &at, least);
+    }
+    b->rigid.cut = met ? mine : 0;
+    if (met) *number = fmax(*number, mine);
+}
+
+void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number)
+{
+    for (int k = 0; k < s->body_count; k++)
+        if (s->bodies[k].blade) mark_blade(s, &s->bodies[k], v, number);
+}
+
+/* Inverse transpose of F times n. */
+static void turn_normal(const double f[3][3], const double n[3], double out[3])
+{
+    double c[3][3], det = 0;
+    for (int a = 0; a < 3; a++)
+        vec3_cross(c[a], f[(a + 1)%3], f[(a + 2)%3]);      /* rows of the cofactor matrix */
+    det = vec3_dot(f[0], c[0]);
+    for (int a = 0; a < 3; a++) out[a] = vec3_dot(c[a], n)/det;
+}
+
+/* Where the cuts a particle remembers are now. */
+static void find_faces(mpm_cut *c, const tobi_simulation *s, const mpm_view *v)
+{
+    #pragma omp parallel for num_threads(s->exec.threads)
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const tobi_columns *cuts = &v->cuts[i];
+        double f[3][3];
+        if (cuts->c[0].w == 0) continue;
+        find_deformation(v, i, f);
+        for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
+            double rest[3] = {cuts->c[k].x, cuts->c[k].y, cuts->c[k].z}, now[3];
+            double far = vec3_length(rest);
+            vec3_normalize(rest);
+            turn_normal(f, rest, now);
+            double stretch = vec3_length(now);
+            vec3_normalize(now);
+            c->face[i].c[k] = (tobi_float4){(float)now[0], (float)now[1], (float)now[2],
+                                            (float)(far/stretch)};
+        }
+    }
+}
+
+/* What the particles on the two sides of one cut say at one node. Index 0: the + side. */
+typedef struct vote {
+    double number, weight[2];
+    double place[2][3], far[2], normal[3], friction;
+} vote;
+
+static void add_vote(vote votes[VOTES], const mpm_view *v, int64_t i, const tobi_float4 *face, double mark,
+                     double w, const double x[3])
+{
+    const int side = mark < 0;
+    int k = 0;
+    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabs(mark)) k++;
+    if (k == VOTES) return;
+    vote *to = &votes[k];
+    to->number = fabs(mark);
+    to->weight[side] += w;
+    to->far[side] += w*face->w;
+    to->friction += w*v->material[v->solid[i]].cut_friction;
+    for (int a = 0; a < 3; a++) {
+        to->place[side][a] += w*x[a];
+        to->normal[a] += (side ? -w : w)*(&face->x)[a];
+    }
+}
+
+/* Adds the votes of one particle to the nodes of a block that feel it. */
+static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
+                          int64_t i, vote votes[][VOTES])
+{
+    const int dim = g->dimension;
+    const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
+    const double mass = v->strain[i].c[2].w;
+    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    int first[3] = {0, 0, -1};
+    for (int a = 0; a < dim; a++) {
+        double at = x[a]*v->inverse_cell, base = floor(at - 0.5), f = at - base;
+        first[a] = (int)base - p->corner[a];
+        if (first[a] > 3 || first[a] < -2) return;
+        w[a][0] = 0.5*(1.5 - f)*(1.5 - f);
+        w[a][1] = 0.75 - (f - 1)*(f - 1);
+        w[a][2] = 0.5*(f - 0.5)*(f - 0.5);
+    }
+    for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
+        const tobi_float4 *face = &c->face[i].c[k];
+        if (face->w > 2.6*v->cell) continue;
+        for (int n = 0; n < 27; n++) {
+            const int at[3] = {first[0] + n/9, first[1] + n/3%3, first[2] + n%3};
+            if (at[0] < 0 || at[0] > 3 || at[1] < 0 || at[1] > 3 || at[2] < 0 || at[2] > 3) continue;
+            if (dim == 2 && n%3 != 1) continue;
+            int node = dim == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
+            double weight = mass*w[0][n/9]*w[1][n/3%3]*w[2][n%3];
+            add_vote(votes[node], v, i, face, v->cuts[i].c[k].w, weight, x);
+        }
+    }
+}
+
+/* The node's side and seam by its votes; returns whether it has two velocities. */
+static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
+{
+    const vote *best = NULL;
+    double most = 0;
+    for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
+        double least = fmin(votes[k].weight[0], votes[k].weight[1]);
+        if (least > most) { most = least; best = &votes[k]; }
+    }
+    *side = 0;
+    if (!best) return 0;
+    const int own = best->weight[1] > best->weight[0], other = !own;
+    double n[3], gap = 0;
+    memcpy(n, best->normal, sizeof n);
+    vec3_normalize(n);
+    for (int a = 0; a < 3; a++) {
+        n[a] = own ? n[a] : -n[a];             /* votes point to the + side, seams to the second */
+        gap += n[a]*(best->place[other][a]/best->weight[other] - best->place[own][a]/best->weight[own]);
+        seam->normal[a] = (float)n[a];
+    }
+    gap -= best->far[0]/best->weight[0] + best->far[1]/best->weight[1];
+    seam->gap = (float)gap;
+    seam->friction = (float)(best->friction/(best->weight[0] + best->weight[1]));
+    *side = (float)(own ? -best->number : best->number);
+    return 1;
+}
+
+static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
+{
+    const mpm_patch *p = &g->patch[patch];
+    const int nodes = nodes_of(g);
+    vote votes[MPM_NODES_3D][VOTES];
+    int any = 0, two = 0;
+    for (int o = 0; o < 27; o++) any |= p->cover[o] >= 0 && c->marked[p->cover[o]];
+    memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
+    if (!any) return 0;
+    memset(votes, 0, sizeof votes);
+    for (int o = 0; o < 27; o++) {
+        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
+        const mpm_block *b = &g->block[p->cover[o]];
+        for (int64_t i = b->begin; i < b->end; i++)
+            if (v->cuts[i].c[0].w != 0) vote_particle(c, g, v, p, i, votes);
+    }
+    for (int n = 0; n < nodes; n++)
+        two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
+    return two;
+}
+
+/* Twins of the node blocks with two velocities and of the particle blocks that reach them. */
+static void make_twins(mpm_grid *g, const char *marked)
+{
+    g->patch_twins = g->block_twins = 0;
+    for (int64_t k = 0; k < g->patch_count; k++)
+        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+    for (int64_t k = 0; k < g->block_count; k++) {
+        mpm_block *b = &g->block[k];
+        int reaches = 0;
+        for (int o = 0; o < 27 && marked[k]; o++)
+            reaches |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
+        b->twin = reaches ? (int32_t)(g->block_count + g->block_twins++) : -1;
+        if (!reaches) continue;
+        mpm_block *t = &g->block[b->twin];
+        *t = *b;
+        t->begin = t->end = 0;
+        t->twin = -1;
+        for (int o = 0; o < 27; o++) {
+            const int32_t twin = b->around[o] >= 0 ? g->patch[b->around[o]].twin : -1;
+            if (twin >= 0) t->around[o] = twin;
+        }
+    }
+    for (int64_t k = 0; k < g->patch_count; k++) {
+        const mpm_patch *p = &g->patch[k];
+        if (p->twin < 0) continue;
+        mpm_patch *t = &g->patch[p->twin];
+        *t = *p;
+        t->twin = -1;
+        for (int o = 0; o < 27; o++) t->cover[o] = p->cover[o] >= 0 ? g->block[p->cover[o]].twin : -1;
+    }
+}
+
+tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+{
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
+    find_faces(c, s, v);
+    #pragma omp parallel for num_threads(s->exec.threads)
+    for (int64_t k = 0; k < g->block_count; k++) {
+        c->marked[k] = 0;
+        for (int64_t i = g->block[k].begin; i < g->block[k].end; i++) c->marked[k] |= v->cuts[i].c[0].w != 0;
+    }
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
+    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = find_sides(c, g, v, k);
+    make_twins(g, c->marked);
+    c->moved = 0;
+    return TOBI_OK;
+}
+
+/* Contact of the two velocities of a node: momentum is kept, the lost energy is returned. */
+static double meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
+{
+    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]}, before, lost = 0;
+    double mass = (double)first->w*second->w/((double)first->w + second->w);
+    for (int a = 0; a < 3; a++) u[a] = (double)(&second->x)[a] - (&first->x)[a];
+    double along = vec3_dot(u, n), lack = -fmax(seam->gap, 0)/dt - along;
+    if (lack > 0) {
+        before = vec3_dot(u, u);
+        vec3_add_scaled(slide, u, -along, n);
+        double size = vec3_length(slide), grip = fmin(seam->friction*lack, size);
+        for (int a = 0; a < 3; a++) {
+            double change = lack*n[a] - (size > 0 ? grip/size*slide[a] : 0);
+            (&first->x)[a] -= (float)(change*mass/first->w);
+            (&second->x)[a] += (float)(change*mass/second->w);
+            u[a] += change;
+        }
+        lost = 0.5*mass*(before - vec3_dot(u, u));
+        along += lack;
+    }
+    seam->gap += (float)(along*dt);
+    return lost;
+}
+
+double mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
+{
+    const int nodes = nodes_of(g);
+    double *part = s->exec.partial, lost = 0;
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
+    for (int64_t k = 0; k < g->patch_count; k++) {
+        part[k] = 0;
+        for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
+            tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
+            if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
+            part[k] += meet(&c->seam[k*nodes + n], first, second, dt);
+        }
+    }
+    for (int64_t k = 0; k < g->patch_count; k++) lost += part[k];
+    return lost;
+}

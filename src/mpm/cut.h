@@ -1,0 +1,32 @@
+/* Cuts in the material, on the grid: which particles an edge has passed, which nodes have two velocities and
+   how far apart the faces of the cut are there. docs/theory/cutting.md. */
+#pragma once
+#include "core/simulation.h"
+#include "mpm/grid.h"
+
+/* A node with two velocities. */
+typedef struct mpm_seam {
+    float normal[3];                   /* from the face of the first to that of the second        */
+    float gap;                         /* m, between the faces                                     */
+    float friction;                    /* 1, Coulomb                                               */
+} mpm_seam;
+
+typedef struct mpm_cut {
+    float *side;                       /* [patches][nodes], see mpm_view.side                     */
+    mpm_seam *seam;                    /* [patches][nodes], of those with a side                  */
+    tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
+                                          particle's side now, w: distance from the cut now, m    */
+    uint32_t *hidden;                  /* [particles], see mpm_view.hidden                        */
+    char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
+    int64_t node_room, particle_room, block_room;
+    double moved;                      /* m, since sides and gaps were found                      */
+} mpm_cut;
+
+/* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
+   made, counted up. */
+void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
+/* Finds the nodes with two velocities and makes their twins. The grid's view must be bound anew. */
+tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
+/* Faces that meet push and rub; gaps are brought to the end of the step. Returns the energy lost, J. */
+double mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt);
+void mpm_cut_free(mpm_cut *c);
