@@ -30,10 +30,13 @@ static tobi_status fail_memory(int64_t contacts, tobi_error *err)
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts of %lld particles", (long long)contacts);
 }
 
-tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err)
+tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double drift, tobi_exec *x,
+                               tobi_error *err)
 {
     int64_t chunks = count_chunks(p->count);
     c->shift_count = 0;
+    c->drift = drift;
+    if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
     if (chunks > c->chunk_room) {
         free(c->run);
         free(c->chunk_box);
@@ -108,29 +111,6 @@ static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth
     return 0;
 }
 
-/* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
-   face of its own side, however thin the blade. What fills the place to the cut is the outermost layer of
-   particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
-   contact. */
-static int touch_blade(const pose *at, const double x[3], const tobi_columns *cuts, tobi_contact *out)
-{
-    const double radius = at->step->radius, reach = at->step->reach;
-    tobi_blade_place place;
-    double depth = radius;
-    int side = find_side(at->body, cuts, &depth);
-    if (!tobi_blade_locate(at->body, at->step->dimension, x, &place)) return out->gap < at->step->margin;
-    int near = place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
-    if (!side) return !near && out->gap < at->step->margin;
-    if (depth > 2*radius) depth = radius;
-    if (near && side*vec3_dot(place.normal, out->normal) < 0.2) {
-        if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
-        out->gap = side*place.aside - radius;
-        for (int a = 0; a < 3; a++) out->normal[a] = side*place.normal[a];
-    }
-    out->gap += radius - depth;
-    return out->gap < at->step->margin;
-}
-
 /* Nearest point of the body to x (from the domain's corner). */
 static int touch(const pose *at, const double x[3], tobi_contact *out)
 {
@@ -152,6 +132,30 @@ static int touch(const pose *at, const double x[3], tobi_contact *out)
     return 1;
 }
 
+/* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
+   face of its own side, however thin the blade. What fills the place to the cut is the outermost layer of
+   particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
+   contact. */
+static int touch_blade(const pose *at, const double x[3], const tobi_columns *cuts, tobi_contact *out)
+{
+    const double radius = at->step->radius, reach = at->step->reach;
+    tobi_blade_place place;
+    double depth = radius;
+    int side = find_side(at->body, cuts, &depth);
+    if (depth > 2*radius) return 0;
+    int known = tobi_blade_locate(at->body, at->step->dimension, x, &place);
+    int near = known && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
+    if (!side && near) return 0;
+    if (!touch(at, x, out)) return 0;
+    if (near && side*vec3_dot(place.normal, out->normal) < 0.2) {
+        if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
+        out->gap = side*place.aside - radius;
+        for (int a = 0; a < 3; a++) out->normal[a] = side*place.normal[a];
+    }
+    out->gap += radius - depth;
+    return out->gap < at->step->margin;
+}
+
 /* Contacts of one chunk into `found`; returns how many. */
 static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chunk,
                             tobi_contact found[TOBI_BLOCK])
@@ -162,8 +166,9 @@ static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chu
         int out = 0;
         for (int a = 0; a < at->step->dimension; a++) out |= x[a] < at->low[a] || x[a] > at->high[a];
         found[n] = (tobi_contact){ .particle = (int32_t)i };
-        if (out || !touch(at, x, &found[n])) continue;
-        if (at->body->blade && p->cuts && !touch_blade(at, x, &p->cuts[i], &found[n])) continue;
+        if (out) continue;
+        if (!(p->cuts && at->body->blade ? touch_blade(at, x, &p->cuts[i], &found[n])
+                                         : touch(at, x, &found[n]))) continue;
         double start = fmax(0, -p->velocity[i].w)*at->step->dt;
         for (int a = 0; a < 3; a++) found[n].change[a] = start*found[n].normal[a];
         n++;
@@ -171,10 +176,11 @@ static int64_t search_chunk(const pose *at, const tobi_particles *p, int64_t chu
     return n;
 }
 
-static int boxes_meet(const double box[6], const double low[3], const double high[3], int dimension)
+static int boxes_meet(const double box[6], const pose *at, double drift)
 {
     int apart = 0;
-    for (int a = 0; a < dimension; a++) apart |= box[a] > high[a] || box[3 + a] < low[a];
+    for (int a = 0; a < at->step->dimension; a++)
+        apart |= box[a] > at->high[a] + drift || box[3 + a] < at->low[a] - drift;
     return !apart;
 }
 
@@ -184,7 +190,7 @@ static int64_t search(tobi_contacts *c, const pose *at, const tobi_particles *p,
     int64_t used = 0;
     *runs = 0;
     for (int64_t k = 0; k < count_chunks(p->count); k++)
-        if (boxes_meet(c->chunk_box[k], at->low, at->high, at->step->dimension))
+        if (boxes_meet(c->chunk_box[k], at, c->drift))
             c->run[(*runs)++] = (struct tobi_contact_run){k, 0, 0};
     #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (*runs > 1)
     for (int64_t k = 0; k < *runs; k++) {
@@ -437,23 +443,27 @@ static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec 
     memcpy(c->spin, b + 3, sizeof c->spin);
 }
 
-void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
-                        tobi_exec *x)
+double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
+                          tobi_exec *x)
 {
     const tobi_rigid *r = &b->rigid;
+    double most = 0, largest = 0;
     int moves = r->kind != TOBI_PRESCRIBED;
     double velocity[3], spin[3], total[6];
     memcpy(velocity, c->velocity, sizeof velocity);
     memcpy(spin, c->spin, sizeof spin);
     if (moves && !first) foresee(c, r, step->dt, x);
-    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
+    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK) reduction(max: most, largest)
     for (int64_t n = 0; n < c->count; n++) {
         tobi_contact *k = &c->list[n];
         if (!first && k->particle < 0) find_edge_change(k, c);
         else if (!first) find_change(k, c, r->friction, step->dt);
         for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
+        most = fmax(most, vec3_dot(k->change, k->change));
+        largest = fmax(largest, vec3_dot(k->impulse, k->impulse));
     }
-    if (!moves) return;
+    const double moved = most > 0 ? sqrt(most/fmax(largest, 1e-300)) : 0;
+    if (!moves) return moved;
     /* What the impulses really were. */
     double shift[3], turn[3][3];
     tobi_rigid_inverse(r, shift, turn);
@@ -462,6 +472,7 @@ void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step 
         c->velocity[a] = velocity[a] - shift[a]*total[a];
         c->spin[a] = spin[a] - vec3_dot(turn[a], total + 3);
     }
+    return moved;
 }
 
 /* The part of an overlap that is mended in one step, m. */

@@ -42,6 +42,7 @@ typedef struct tobi_contacts {
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
+    double drift;                    /* m, how far they may be out of it                         */
     double *partial;                 /* sums of parts of the list                                */
     int64_t chunk_room;
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
@@ -59,8 +60,10 @@ typedef struct tobi_contact_step {
     int dimension;
 } tobi_contact_step;
 
-/* Before a step: boxes around the particles' chunks, for finding. */
-tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, tobi_exec *x, tobi_error *err);
+/* Before a step. drift: m, how far particles have moved at most along an axis since they were last sorted; 0
+   makes the boxes around their chunks anew, for finding. */
+tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double drift, tobi_exec *x,
+                               tobi_error *err);
 /* Lists the particles near a body at its present pose. The particle's impulse of the last step starts it: its
    normal part is kept in velocity.w, -N, by whoever moves the particles. */
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
@@ -71,9 +74,10 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
 /* Whether and how fast contacts shall bounce, from the velocities as they are. */
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
 /* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to
-   impulse and to the body's foreseen velocities. first: 1 takes the starting impulses as the change. */
-void tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
-                        tobi_exec *x);
+   impulse and to the body's foreseen velocities. first: 1 takes the starting impulses as the change. Returns
+   the largest change over the largest impulse. */
+double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
+                          tobi_exec *x);
 /* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its forces: normal parts as
    pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that
    still overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m.

@@ -15,6 +15,7 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_copy_tile(v->wave, b->around, tile, dim);
     mpm_clear(tile + nodes, 8);
+    mpm_clear(twin + nodes, 8);
     if (calm_twin) mpm_copy_tile(v->wave, v->block[b->twin].around, twin, dim);
     mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {

@@ -36,6 +36,7 @@ typedef struct mlsmpm {
     double cell;                       /* m                                                        */
     double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
     int built;                         /* blocks fit the particles                                 */
+    int fresh;                         /* 1: they were built in this step                          */
     int blades;                        /* 1: material may be cut                                   */
 } mlsmpm;
 
@@ -216,8 +217,8 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     } else if (!m->built) {
         TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->exec, err));
     }
-    const int anew = stale || !m->built;
-    if (anew)
+    m->fresh = stale || !m->built;
+    if (m->fresh)
         for (int64_t k = 0; k < m->grid.patch_count; k++) {
             mpm_patch *p = &m->grid.patch[k];
             p->planes = 0;
@@ -227,7 +228,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
-    if (m->blades && (anew || m->cut.moved > 0.05*m->cell)) TOBI_TRY(find_cuts(s, m, err));
+    if (m->blades && (m->fresh || m->cut.moved > 0.1*m->cell)) TOBI_TRY(find_cuts(s, m, err));
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }
@@ -331,7 +332,8 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
     const tobi_contact_step contact = {
         .dt = s->dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
-    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, err));
+    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory[DRIFT],
+                              err));
     m->memory[DRIFT] += m->touch.far;
     m->memory[FRACTURE] += m->touch.work.fracture;
     m->memory[FRICTION] += m->touch.work.friction;

@@ -26,15 +26,26 @@ TOBI_FN void mpm_copy_sides(const mpm_view *v, const mpm_block *b, float *tile, 
     }
 }
 
+/* 1 for each of the three nodes of a row that the bits name, and for the fourth that carries nothing. */
+TOBI_FN quad mpm_take(uint32_t bits)
+{
+    return (quad){(float)(bits & 1), (float)(bits >> 1 & 1), (float)(bits >> 2 & 1), 1};
+}
+
 /* The nodes across a cut from a particle whose lowest node is `first`: see mpm_view.hidden. */
 TOBI_FN uint32_t mpm_find_hidden(const tobi_columns *cuts, const float *side, int32_t first, int dim)
 {
+    const int rows = dim == 3 ? 9 : 3;
     uint32_t hidden = 0;
-    for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
-        for (int n = 0; n < (dim == 3 ? 27 : 9); n++) {
-            const float *at = side + first + (dim == 3 ? 64*(n/9) + 8*(n/3%3) + n%3 : 8*(n/3) + n%3);
-            hidden |= (uint32_t)(*at == -cuts->c[k].w) << n;
+    for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
+        const float other = -cuts->c[k].w;
+        for (int r = 0; r < rows; r++) {
+            const float *at = side + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
+            uint32_t bits = (uint32_t)(at[0] == other) | (uint32_t)(at[1] == other) << 1 |
+                            (uint32_t)(at[2] == other) << 2;
+            hidden |= bits << 3*r;
         }
+    }
     return hidden;
 }
 
@@ -44,18 +55,25 @@ TOBI_FN void mpm_add_split(tobi_float4 *tile, tobi_float4 *twin, const mpm_stenc
                            quad base, const quad column[3], const int dim)
 {
     const int last = dim - 1, rows = dim == 3 ? 3 : 1;
-    for (int x = 0, bit = 0; x < 3; x++)
-        for (int y = 0; y < rows; y++) {
-            const int32_t row = s->first[k] + (dim == 3 ? 64*x + 8*y : 8*x);
-            const float w = dim == 3 ? s->weight[0][x][k]*s->weight[1][y][k] : s->weight[0][x][k];
-            quad value = base + column[0]*quad_set((float)x);
-            if (dim == 3) value = value + column[1]*quad_set((float)y);
-            for (int z = 0; z < 3; z++, bit++) {
-                tobi_float4 *to = (hidden >> bit & 1 ? twin : tile) + row + z;
-                quad_store(to, quad_load(to) + value*quad_set(w*s->weight[last][z][k]));
-                value = value + column[last];
-            }
+    const quad step = {0, 1, 2, 0}, along = {s->weight[last][0][k], s->weight[last][1][k],
+                                             s->weight[last][2][k], 0};
+    const row w = row_spread(along), d0 = row_mul(row_repeat(column[0]), w),
+              d1 = row_mul(row_repeat(column[1]), w);
+    row x = row_mul(row_fma(row_repeat(column[last]), row_spread(step), row_repeat(base)), w);
+    for (int n = 0; n < 3; n++) {
+        row y = row_mul(x, row_set(s->weight[0][n][k]));
+        const row turn = row_mul(d1, row_set(s->weight[0][n][k]));
+        for (int r = 0; r < rows; r++) {
+            const int32_t at = s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
+            const uint32_t bits = hidden >> 3*(n*rows + r) & 7;
+            const row value = dim == 3 ? row_mul(y, row_set(s->weight[1][r][k])) : y;
+            const row first = row_spread(mpm_take(~bits)), second = row_spread(mpm_take(bits));
+            row_store(tile + at, row_fma(value, first, row_load(tile + at)));
+            if (bits) row_store(twin + at, row_fma(value, second, row_load(twin + at)));
+            y = row_add(y, turn);
         }
+        x = row_add(x, d0);
+    }
 }
 
 /* The rows of nodes of one particle, those hidden from the twin's tile. */
@@ -65,9 +83,10 @@ TOBI_FN void mpm_load_split(const tobi_float4 *tile, const tobi_float4 *twin, in
     const int rows = dim == 3 ? 9 : 3;
     for (int r = 0; r < rows; r++) {
         const int32_t at = first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
-        tobi_float4 mixed[4];
-        for (int z = 0; z < 3; z++) mixed[z] = (hidden >> (3*r + z) & 1 ? twin : tile)[at + z];
-        mixed[3] = (tobi_float4){0, 0, 0, 0};
-        g[r] = row_load(mixed);
+        const uint32_t bits = hidden >> 3*r & 7;
+        g[r] = row_load(tile + at);
+        if (bits)
+            g[r] = row_fma(row_load(twin + at), row_spread(mpm_take(bits)),
+                           row_mul(g[r], row_spread(mpm_take(~bits))));
     }
 }

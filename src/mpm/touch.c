@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { SWEEPS = 8 };
+static const double ENOUGH = 1e-3;     /* of the largest impulse may still change                 */
 
 static void free_entries(mpm_touch *t)
 {
@@ -22,6 +23,7 @@ void mpm_touch_free(mpm_touch *t)
     free(t->histogram);
     free(t->piece);
     free(t->full);
+    free(t->push);
     memset(t, 0, sizeof *t);
 }
 
@@ -82,7 +84,13 @@ static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, co
         t->node_room = nodes + nodes/8;
         t->crowd = malloc((size_t)t->node_room*sizeof *t->crowd);
     }
-    if (t->crowd && t->histogram) return TOBI_OK;
+    if (contacts > t->push_room) {
+        free(t->push);
+        t->push_room = contacts + contacts/4 + 64;
+        t->push = malloc((size_t)t->push_room*sizeof *t->push);
+        if (!t->push) t->push_room = 0;
+    }
+    if (t->crowd && t->histogram && t->push) return TOBI_OK;
     t->node_room = 0;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
 }
@@ -277,13 +285,15 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
 {
     const int64_t each = nodes_each(g);
     #pragma omp parallel for num_threads(x->threads)
+    for (int64_t k = 0; k < c->count; k++) memcpy(t->push[k], c->list[k].change, sizeof t->push[k]);
+    #pragma omp parallel for num_threads(x->threads)
     for (int64_t n = 0; n < t->touched; n++) {
         tobi_float4 *node = &g->node[t->key[t->begin[n]]];
         double sum[3] = {0, 0, 0};
         if (!(node->w > 0)) continue;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
-            const tobi_contact *k = &c->list[contact_of(t, t->order[e], each)];
-            for (int a = 0; a < 3; a++) sum[a] += t->weight[t->order[e]]*k->change[a];
+            const double *push = t->push[contact_of(t, t->order[e], each)];
+            for (int a = 0; a < 3; a++) sum[a] += t->weight[t->order[e]]*push[a];
         }
         for (int a = 0; a < 3; a++) (&node->x)[a] += (float)(sum[a]/node->w);
     }
@@ -306,21 +316,22 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     read_velocities(t, c, g, &s->exec);
     tobi_contact_aim(c, b, step, &s->exec);
     for (int sweep = 0; sweep <= SWEEPS; sweep++) {
-        tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
+        double moved = tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
         add_impulses(t, c, g, &s->exec);
         read_velocities(t, c, g, &s->exec);
+        if (sweep > 0 && moved < ENOUGH) break;
     }
     return TOBI_OK;
 }
 
 tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
-                             const tobi_contact_step *step, tobi_error *err)
+                             const tobi_contact_step *step, double drift, tobi_error *err)
 {
     t->far = 0;
     t->work = (tobi_contact_work){0, 0};
     s->info.contacts = 0;
     if (s->body_count == 0) return TOBI_OK;
-    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, &s->exec, err));
+    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, drift, &s->exec, err));
     for (int k = 0; k < s->body_count; k++) {
         TOBI_TRY(touch_body(t, s, &s->bodies[k], g, v, step, err));
         s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->bodies[k], step, &t->far,

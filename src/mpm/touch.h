@@ -21,11 +21,13 @@ typedef struct mpm_touch {
     double cell_mass;                  /* kg of a full cell: the caller's to set                  */
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
     tobi_contact_work work;            /* J, of the last step                                     */
+    double (*push)[3];                 /* N s, what each contact changed last, close together     */
+    int64_t push_room;
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;
 
 /* Changes the nodes' velocities, and particles' positions where they overlap a body. s->info.contacts: those
-   that push; t->far: the largest shift, m. */
+   that push; t->far: the largest shift, m. drift: as tobi_contact_begin wants it. */
 tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
-                             const tobi_contact_step *step, tobi_error *err);
+                             const tobi_contact_step *step, double drift, tobi_error *err);
 void mpm_touch_free(mpm_touch *t);

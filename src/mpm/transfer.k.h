@@ -316,7 +316,7 @@ TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const
     if (split) mpm_copy_tile(v->node, v->block[b->twin].around, twin, dim);
     if (split && flip) mpm_copy_tile(v->old, v->block[b->twin].around, old_twin, dim);
     for (int n = beyond; n < beyond + 8; n++)              /* what the last rows read beyond the tile */
-        tile[n] = old[n] = (tobi_float4){0, 0, 0, 0};
+        tile[n] = old[n] = twin[n] = old_twin[n] = (tobi_float4){0, 0, 0, 0};
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;

@@ -195,7 +195,11 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a body");
     s->bodies = more;
     tobi_body *b = &s->bodies[s->body_count];
-    TOBI_TRY(tobi_body_create(b, def, &s->box, 0.5*s->smoothing.spacing, err));
+    /* Only SPH methods integrate over surfaces. */
+    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->smoothing.spacing;
+    tobi_body_def placed = *def;
+    if (!(def->spacing > 0)) placed.spacing = s->smoothing.spacing;
+    TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = check_body(w, b, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
