@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the project's own meshes as OBJ files: a flying fish and the test solids.
+"""Makes the project's own meshes as OBJ files: those of the scenes and the test solids.
 
 usage: make_meshes.py [--root DIR]                 writes the committed set below DIR (the repository)
        make_meshes.py SHAPE FILE [key=value]...    writes one shape; the sizes are the keys
@@ -11,8 +11,13 @@ shapes and keys (metres):
   cylinder  radius=0.5 length=1 sides=48 edge=0.25       axis z, centred
   torus     major=0.35 minor=0.15 sides=48 tube=24       axis z
   wedge     x=1 y=0.5 z=0.5                              right-angled ramp rising to +x, corner at the origin
+  apple     radius=0.04 height=0.072 stem=0.0015 sides=36   axis z, stands on z = -0.035; the stem is a tube
+                                                         that is open at its upper end
+  blade     length=0.24 height=0.1 thickness=0.003 bevel=0.008 x=0   edge along y, cuts towards -z; the
+                                                         origin is the middle of its back, or x away from it
+  wire      radius=0.0005 length=0.2 sides=16            axis y, centred
 
-Every mesh is one closed surface, triangles counter-clockwise seen from outside.
+Every mesh but the apple is one closed surface; triangles counter-clockwise seen from outside.
 """
 import math
 import os
@@ -152,6 +157,60 @@ def wedge(x=1.0, y=0.5, z=0.5):
     mesh.quad(a[0], a[1], b[1], b[0])
     mesh.quad(b[0], b[1], c[1], c[0])
     mesh.quad(c[0], c[1], a[1], a[0])
+    return mesh
+
+
+def revolve(rings, sides, mesh):
+    """A surface of revolution about z through rings (r, z) from below upwards; r = 0 is a point."""
+    def point(i, r, z):
+        angle = 2 * math.pi * (i % sides) / sides
+        return mesh.vertex(r * math.cos(angle), r * math.sin(angle), z)
+
+    for (r0, z0), (r1, z1) in zip(rings, rings[1:]):
+        for i in range(sides):
+            mesh.quad(point(i, r0, z0), point(i + 1, r0, z0), point(i + 1, r1, z1), point(i, r1, z1))
+
+
+def apple(radius=0.04, height=0.072, stem=0.0015, sides=36):
+    """Dimples at both ends; where the upper one is as narrow as the stem, a tube goes up from it."""
+    mesh, sides, half = Mesh(), int(sides), height / 2
+    rings = []
+    for k in range(45):
+        angle = math.pi * (k / 44 - 0.5)                  # from the bottom up
+        top, bottom = math.pi / 2 - angle, math.pi / 2 + angle
+        z = half * math.sin(angle) - 0.4 * half * math.exp(-(top / 0.36) ** 2) \
+            + 0.22 * half * math.exp(-(bottom / 0.3) ** 2)
+        rings.append((radius * math.cos(angle) * (1 + 0.07 * math.sin(angle)) / 1.0024, z))
+    rings[0] = (0.0, rings[0][1])
+    foot = min(z for _, z in rings) + 0.035
+    rings = [(r, z - foot) for r, z in rings if r > 1.3 * stem or z < 0]
+    start = rings[-1][1]
+    rings += [(stem * (1 + 0.3 * k / 6), start + 0.3 * height * k / 6) for k in range(7)]
+    revolve(rings, sides, mesh)
+    return mesh
+
+
+def blade(length=0.24, height=0.1, thickness=0.003, bevel=0.008, x=0.0):
+    """A prism along y: a plate that narrows to its edge over the bevel; a wedge if that is all of it."""
+    mesh, t = Mesh(), thickness / 2
+    section = [(0, -height), (t, bevel - height), (t, 0), (-t, 0), (-t, bevel - height)]
+    if bevel >= height:
+        section = [(0, -height), (t, 0), (-t, 0)]
+    front, back = ([mesh.vertex(px + x, s * length / 2, pz) for px, pz in section] for s in (-1, 1))
+    n = len(section)
+    for i in range(n):
+        mesh.quad(front[i], back[i], back[(i + 1) % n], front[(i + 1) % n])
+    for i in range(1, n - 1):
+        mesh.triangle(front[0], front[i], front[i + 1])
+        mesh.triangle(back[0], back[i + 1], back[i])
+    return mesh
+
+
+def wire(radius=0.0005, length=0.2, sides=16):
+    mesh, upright = Mesh(), cylinder(radius, length, sides, length)
+    ids = [mesh.vertex(x, -z, y) for x, y, z in upright.vertices]
+    for t in upright.triangles:
+        mesh.triangle(*(ids[i] for i in t))
     return mesh
 
 
@@ -312,14 +371,28 @@ def fish():
     return half.mirrored()
 
 
-SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "torus": torus, "wedge": wedge}
+SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "torus": torus, "wedge": wedge,
+          "apple": apple, "blade": blade, "wire": wire}
+
+# file below scenes: shape, its keys, title
+OF_SCENES = {
+    "flying_fish/meshes/fish.obj": ("fish", {}, "flying fish, 0.2 m"),
+    "apple_cut/meshes/apple.obj": ("apple", {}, "apple, 0.08 m, open at the end of its stem"),
+    "apple_cut/meshes/blade.obj": ("blade", {}, "blade, 240 x 100 x 3 mm"),
+    "apple_cut_seed/apple.obj": ("apple", {}, "apple, 0.08 m, open at the end of its stem"),
+    "apple_cut_seed/knife2.obj": ("blade", {"x": -0.1}, "blade, 240 x 100 x 3 mm, 0.1 m beside its origin"),
+    "wedge_split/meshes/wedge.obj": ("blade", {"length": 0.1, "height": 0.1, "thickness": 0.03, "bevel": 0.1},
+                                     "wedge, 100 x 100 x 30 mm"),
+    "cheese_wire/meshes/wire.obj": ("wire", {}, "wire, 200 mm, 1 mm across"),
+}
 
 
 def main(arguments):
     if not arguments or arguments[0] == "--root":
         here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
         root = arguments[1] if len(arguments) > 1 else here
-        fish().write(os.path.join(root, "scenes/flying_fish/meshes/fish.obj"), "flying fish, 0.2 m")
+        for file, (shape, keys, title) in OF_SCENES.items():
+            SHAPES[shape](**keys).write(os.path.join(root, "scenes", file), title)
         for name in ("box", "sphere", "cylinder", "torus", "wedge"):
             SHAPES[name]().write(os.path.join(root, "test/meshes", name + ".obj"), name)
         return 0

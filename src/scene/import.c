@@ -370,7 +370,9 @@ static void check_top(tobi_import *im)
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
                                   char **table)
 {
-    tobi_import im = { .source = source, .binder = { source, texts, directory, 3 } };
+    tobi_import im = { .source = source, .binder = { source, texts, directory, 3 }, .closing =
+        "The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
+        "Walls and bodies are slip, as they were; water starts where the scene says.\n" };
     *table = NULL;
     im.native = json_object();
     int64_t before = tobi_report_total(source->report);

@@ -56,6 +56,7 @@ typedef struct tobi_import {
     uint64_t given;           /* keys of Configuration: bits of its table                */
     tobi_old_row *rows;
     int row_count, row_room;
+    const char *closing;      /* lines below the table                                   */
     int no_memory;
 } tobi_import;
 
@@ -65,6 +66,10 @@ int tobi_import_applies(const json_t *root);
    what became of each key, for people; owned by the caller. TOBI_INVALID with the mistakes in the report. */
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
                                   char **table);
+
+/* import_cut.c: the same for the parameter file of the program that cuts an apple (parameters.py). */
+tobi_status tobi_import_translate_cut(tobi_source *source, tobi_texts *texts, const char *directory,
+                                      char **table);
 
 /* Puts value, which it takes over, into an object of the native scene and returns it; NULL without memory,
    which is remembered. A NULL object is fine. */
@@ -93,6 +98,8 @@ void tobi_import_clear(tobi_import *im);
 /* import_objects.c */
 void tobi_import_fluids(tobi_import *im);
 void tobi_import_bodies(tobi_import *im);
+/* The absolute path of a mesh that an old scene names; NULL if it is nowhere. Owned by the caller. */
+char *tobi_import_find_mesh(const tobi_import *im, const char *path);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);
 

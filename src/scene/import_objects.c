@@ -176,7 +176,7 @@ static char *existing_file(const char *directory, const char *path)
 
 /* Beside the scene; where the program was started, as the old one did; in the folders above the scene, since
    old scenes lie in data/scenes and name data/models. NULL if it is nowhere. */
-static char *find_geometry(const tobi_import *im, const char *path)
+char *tobi_import_find_mesh(const tobi_import *im, const char *path)
 {
     char above[PATH_MAX];
     if (path[0] == '/') return access(path, F_OK) == 0 ? strdup(path) : NULL;
@@ -266,7 +266,7 @@ static void correct_turn(tobi_import *im, const tobi_old_body *b, const char *fi
 /* The file of a body and, for a fish without one, the shipped fish; owned by the caller. */
 static char *choose_mesh(const tobi_import *im, const char *given, int fish, const char **remark)
 {
-    char *file = find_geometry(im, given);
+    char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
     if (!file && fish && (file = tobi_shipped_scene_file("flying_fish/meshes/fish.obj")))
         *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "

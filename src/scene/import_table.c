@@ -132,8 +132,7 @@ static char *write_table(const tobi_import *im)
         if (value > width[1]) width[1] = value;
     }
     for (int i = 0; i < im->row_count; i++) write_row(out, im, &im->rows[i], width);
-    fprintf(out, "The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
-                 "Walls and bodies are slip, as they were; water starts where the scene says.\n");
+    fputs(im->closing, out);
     return fclose(out) == 0 ? text : NULL;
 }
 

@@ -24,6 +24,11 @@ static void shorten_paths(json_t *root, const char *directory)
     json_array_foreach(json_object_get(root, "bodies"), i, body) {
         shorten(body, "mesh", directory);
         shorten(json_object_get(body, "motion"), "script", directory);
+        shorten(json_object_get(body, "control"), "script", directory);
+    }
+    json_array_foreach(json_object_get(root, "solids"), i, body) {
+        json_t *fill = json_array_get(json_object_get(body, "fill"), 0);
+        shorten(fill, "mesh", directory);
     }
 }
 

@@ -247,7 +247,9 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
                                 const char *const *overrides, tobi_error *err)
 {
     tobi_status status = TOBI_OK;
-    if (tobi_import_applies(source->root))
+    if (source->python)
+        status = tobi_import_translate_cut(source, &scene->texts, scene->directory, &scene->import_table);
+    else if (tobi_import_applies(source->root))
         status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table);
     scene->root = json_incref(source->root);
     if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE 1
 #include "scene/source.h"
+#include "scene/python.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -430,18 +431,32 @@ static size_t find_duplicates(tobi_source *source, const tobi_place *place, size
     return at + (text[at] == '}');
 }
 
+/* The text as plain JSON. */
+static tobi_status take_text(tobi_source *source, const char *text, size_t size, tobi_error *err)
+{
+    if (source->python) {
+        TOBI_TRY(tobi_python_to_json(source->name, text, size, &source->text, source->report, err));
+        source->size = strlen(source->text);
+        return TOBI_OK;
+    }
+    source->text = malloc(size + 1);
+    if (!source->text) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    memcpy(source->text, text, size);
+    source->text[size] = '\0';
+    source->size = size;
+    blank_wrapped_tails(source->text, size);
+    blank_comments(source->text, size);
+    return TOBI_OK;
+}
+
 tobi_status tobi_source_parse(tobi_source *source, const char *name, const char *text, size_t size,
                               tobi_report *report, tobi_error *err)
 {
-    *source = (tobi_source){ .report = report, .size = size };
+    *source = (tobi_source){ .report = report, .python = tobi_python_applies(name) };
     source->name = strdup(name);
-    source->text = malloc(size + 1);
-    if (!source->name || !source->text)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
-    memcpy(source->text, text, size);
-    source->text[size] = '\0';
-    blank_wrapped_tails(source->text, size);
-    blank_comments(source->text, size);
+    if (!source->name) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    TOBI_TRY(take_text(source, text, size, err));
+    size = source->size;
 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);

@@ -31,6 +31,7 @@ typedef struct tobi_source {
     char *name;                    /* path as given, for messages     */
     char *text;                    /* comments blanked, NUL at end    */
     size_t size;
+    int python;                    /* it was a parameter file of Python */
     json_t *root;                  /* an object                       */
     tobi_override *overrides;      /* those that were applied         */
     int override_count;

@@ -190,6 +190,13 @@ check "a mesh above the scene" grep -q "deep/data/models/it.obj" out.txt
 expect 0 "" import deep/data/scenes/it.json --out deep/it.json --quiet
 check "a mesh below the new scene has a relative path" grep -q '"data/models/it.obj"' deep/it.json
 
+expect 0 "" import "$old/parameters.py" --out cut.json
+check "import tells what Python numbers became" grep -q "output.interval = 0.002 s" out.txt
+expect 0 "" check cut.json
+check "the blade has an edge" grep -q "cuts with an edge of 0.24 m" out.txt
+sed 's/^dt = 1e-4/dt = 1e-4 + ms/' "$old/parameters.py" > bad.py
+expect 1 'bad.py:7:13: the name "ms" is given nowhere above' check bad.py
+
 # --- the same bits ----------------------------------------------------------------------------------
 expect 0 "" run tank.json --quiet --out one --threads 1
 expect 0 "" run tank.json --quiet --out two --threads 2

@@ -211,12 +211,38 @@ static void test_section(void **state)
     tobi_mesh_free(&mesh);
 }
 
+/* The meshes of the scenes: the blade and the wedge have one straight edge, the wire has none. */
+static void test_shipped(void **state)
+{
+    (void)state;
+    static const struct { const char *file; double length, thickness; } meshes[] = {
+        { "apple_cut/meshes/blade.obj", 0.24, 0.003 }, { "apple_cut_seed/knife2.obj", 0.24, 0.003 },
+        { "wedge_split/meshes/wedge.obj", 0.1, 0.012 }, { "cheese_wire/meshes/wire.obj", 0, 0.0005 },
+    };
+    for (size_t k = 0; k < sizeof meshes/sizeof *meshes; k++) {
+        tobi_mesh mesh;
+        tobi_sharp s;
+        char path[300];
+        snprintf(path, sizeof path, "%s/scenes/%s", TOBI_SOURCE_DIR, meshes[k].file);
+        OK(tobi_mesh_read(path, &mesh, err));
+        OK(tobi_mesh_orient(&mesh, path, err));
+        assert_string_equal(mesh.notes, "");
+        OK(tobi_sharp_find(&mesh, 60, 0.25*meshes[k].thickness, 0, &s, err));
+        assert_int_equal(s.count, meshes[k].length > 0);
+        WITHIN(length_of(&s), meshes[k].length, 1e-9);
+        if (s.count) WITHIN(s.edge[0].ahead[2], -1, 1e-9);
+        free(s.edge);
+        tobi_mesh_free(&mesh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_wedge_edge), cmocka_unit_test(test_blunt_edge),
         cmocka_unit_test(test_round_edge), cmocka_unit_test(test_no_edge),
         cmocka_unit_test(test_closed_edge), cmocka_unit_test(test_section),
+        cmocka_unit_test(test_shipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
