@@ -296,6 +296,24 @@ typedef struct tobi_solid_info {
     double time_step;             /* s, the longest that its stiffness and viscosity allow at rest    */
 } tobi_solid_info;
 
+/* A connected piece of a solid. Particles are linked within 1.5 spacings unless a cut lies between them. */
+typedef struct tobi_piece {
+    int     solid;                /* number of the solid                                              */
+    int     fragment;             /* 1: fewer particles than a grid cell holds (8; 2-D: 4): debris    */
+    int64_t particles;
+    int64_t first_id;             /* smallest id of its particles                                     */
+    double  mass, volume;         /* kg, m3 as it is deformed; 2-D: kg/m, m2                          */
+    double  centre[3];            /* m, centre of mass                                                */
+} tobi_piece;
+
+/* All pieces of all solids: `count` pieces by falling mass, then `fragments` of them that are debris, by
+   falling mass; of equal ones that with the smaller first_id comes first. */
+typedef struct tobi_pieces {
+    int64_t count, fragments;
+    double  mass, volume;         /* sums over `piece`, in its order                                  */
+    const tobi_piece *piece;      /* [count + fragments]                                              */
+} tobi_pieces;
+
 /* What a body is doing. Pressure and viscous parts apart; torque about `position`. */
 typedef struct tobi_body_info {
     double position[3];           /* m, centre of mass                                                */
