@@ -120,6 +120,7 @@ typedef struct tobi_solid_def {
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
+    double core_color[3];             /* RGB of what was below the surface at the start; all -1 = color */
     int    visible;                   /* 0: left out of pictures                                      */
 } tobi_solid_def;
 

@@ -411,6 +411,130 @@ static void files_tell(void **state)
     assert_int_equal(system(command), 0);
 }
 
+/* --- pictures --------------------------------------------------------------------------------------- */
+
+static tobi_world *color_world(const tobi_fill_def *fill, const double core[3], int threads)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_world *world;
+    tobi_error err = { 0 };
+    w.method = "mlsmpm";
+    w.spacing = D;
+    w.threads = threads;
+    for (int a = 0; a < 3; a++) {
+        w.domain_min[a] = -1;
+        w.domain_max[a] = 3;
+        solid.color[a] = a == 0 ? 200 : 30;
+    }
+    memcpy(solid.core_color, core, sizeof solid.core_color);
+    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, fill, 1, &err) ||
+        tobi_world_start(world, &err))
+        fail_msg("%s", err.text);
+    return world;
+}
+
+static const double cream[3] = { 250, 240, 200 }, red[3] = { 200, 30, 30 }, none[3] = { -1, -1, -1 };
+
+static int count_core(tobi_world *world)
+{
+    int count = 0;
+    for (int64_t i = 0; i < world->sim.particles.count; i++) count += world->sim.particles.rest[i].w == 1;
+    return count;
+}
+
+static void the_core_is_below_the_skin(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/tobiuo_core_XXXXXX";
+    tobi_fill_def fill = tobi_default_fill_def();
+    for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
+    tobi_world *world = color_world(&fill, cream, 2), *plain = color_world(&fill, none, 2);
+    assert_true(world->sim.particles.count == 1000 && count_core(world) == 216 && count_core(plain) == 0);
+    for (int64_t i = 0; i < 1000; i++) {
+        const tobi_float4 *x = &world->sim.particles.rest[i];
+        int core = 1;
+        for (int a = 0; a < 3; a++) core &= (&x->x)[a] > 1.175f && (&x->x)[a] < 1.825f;
+        assert_int_equal(x->w == 1, core);
+    }
+    /* It survives steps and a restart. */
+    close(mkstemp(path));
+    for (int n = 0; n < 50; n++) assert_int_equal(tobi_world_step(world, 0, NULL, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_save(world, path, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_load(plain, path, NULL), TOBI_OK);
+    assert_true(count_core(world) == 216 && count_core(plain) == 216);
+    unlink(path);
+    tobi_world_destroy(world);
+    tobi_world_destroy(plain);
+
+    fill.radius = 0.6;                  /* the core of a ball: 4/3 pi 0.425^3/D^3 particles */
+    world = color_world(&fill, cream, 1);
+    assert_true(abs(count_core(world) - 321) < 20);
+    tobi_world_destroy(world);
+
+    char cube[] = "/tmp/tobiuo_cube_XXXXXX.stl";       /* a mesh: the same as the box */
+    int file = mkstemps(cube, 4);
+    static const int corner[12][3] = { {0,3,1}, {0,2,3}, {4,5,7}, {4,7,6}, {0,1,5}, {0,5,4},
+                                       {2,7,3}, {2,6,7}, {0,6,2}, {0,4,6}, {1,3,7}, {1,7,5} };
+    FILE *stl = fdopen(file, "w");
+    fprintf(stl, "solid cube\n");
+    for (int t = 0; t < 12; t++) {
+        fprintf(stl, "facet normal 0 0 0\nouter loop\n");
+        for (int c = 0; c < 3; c++)
+            fprintf(stl, "vertex %d %d %d\n", corner[t][c] & 1, corner[t][c] >> 1 & 1, corner[t][c] >> 2);
+        fprintf(stl, "endloop\nendfacet\n");
+    }
+    fprintf(stl, "endsolid cube\n");
+    fclose(stl);
+    fill.radius = 0;
+    fill.mesh = cube;
+    world = color_world(&fill, cream, 1);
+    assert_true(world->sim.particles.count == 1000 && count_core(world) == 216);
+    tobi_world_destroy(world);
+    unlink(cube);
+}
+
+/* The picture of a block; with `gap` its halves have been parted. The caller frees. */
+static char *picture(const double core[3], double gap, size_t *size)
+{
+    char folder[] = "/tmp/tobiuo_core_XXXXXX", path[100], *bytes = malloc(1 << 22);
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_output_def output = tobi_default_output_def();
+    tobi_run *run;
+    tobi_error err = { 0 };
+    for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
+    tobi_world *world = color_world(&fill, core, 1);
+    for (int64_t i = 0; i < 1000; i++)
+        if (world->sim.particles.rest[i].x > 1.5f) world->sim.particles.position[i].x += gap;
+    assert_non_null(mkdtemp(folder));
+    output.frames = 1;
+    if (tobi_run_create(world, &output, folder, 1, NULL, &run, &err)) fail_msg("%s", err.text);
+    snprintf(path, sizeof path, "%s/frames/frame_000000.png", folder);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    *size = fread(bytes, 1, 1 << 22, file);
+    fclose(file);
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+    snprintf(path, sizeof path, "rm -r %s", folder);
+    assert_int_equal(system(path), 0);
+    return bytes;
+}
+
+static void a_cut_shows_the_core(void **state)
+{
+    (void)state;
+    size_t size[4];
+    char *whole = picture(cream, 0, &size[0]), *skin = picture(none, 0, &size[1]);
+    char *parted = picture(cream, 1, &size[2]), *plain = picture(red, 1, &size[3]);
+    assert_true(size[0] == size[1] && memcmp(whole, skin, size[0]) == 0);      /* nothing shines through */
+    assert_true(size[2] != size[3] || memcmp(parted, plain, size[2]) != 0);
+    free(whole);
+    free(skin);
+    free(parted);
+    free(plain);
+}
+
 static void other_methods_have_no_pieces(void **state)
 {
     (void)state;
@@ -437,6 +561,8 @@ int main(void)
         cmocka_unit_test(pieces_are_those_of_all_pairs),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(files_tell),
+        cmocka_unit_test(the_core_is_below_the_skin),
+        cmocka_unit_test(a_cut_shows_the_core),
         cmocka_unit_test(other_methods_have_no_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
