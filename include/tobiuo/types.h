@@ -272,6 +272,13 @@ typedef struct tobi_step_info {
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
     double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
     double  transfer_dissipation; /* J, of that by transfers, if mlsmpm measures it                   */
+    double  fracture_work;        /* J, of that by the edges of blades, for new surface               */
+    double  friction_work;        /* J, of that by friction at bodies and between faces of cuts       */
+    double  damping_work;         /* J, of that by the damping of solids                              */
+    double  side_work;            /* J, of that by sides of the domain: friction; < 0: they drive     */
+    double  step_work;            /* J, of that by the length of time steps, if measured              */
+    double  plastic_work;         /* J, of that by plastic flow and viscosity, if measured            */
+    double  work_bodies;          /* J, done by bodies on the solids                                  */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

@@ -34,6 +34,13 @@
     H("elastic_energy",             real, i->elastic_energy)                        \
     H("energy_lost",                real, i->energy_lost)                           \
     H("transfer_dissipation",       real, i->transfer_dissipation)                  \
+    H("fracture_work",              real, i->fracture_work)                         \
+    H("friction_work",              real, i->friction_work)                         \
+    H("damping_work",               real, i->damping_work)                          \
+    H("side_work",                  real, i->side_work)                             \
+    H("step_work",                  real, i->step_work)                             \
+    H("plastic_work",               real, i->plastic_work)                          \
+    H("work_bodies",                real, i->work_bodies)                           \
     H("momentum_x",                 real, i->momentum[0])                           \
     H("momentum_y",                 real, i->momentum[1])                           \
     H("momentum_z",                 real, i->momentum[2])                           \
