@@ -110,6 +110,12 @@ typedef struct tobi_grid {
 } tobi_grid;
 TOBI_API tobi_status tobi_world_grid(tobi_world *world, const tobi_grid **grid, tobi_error *err);
 
+/* The connected pieces of the solids at the present time; liquids have none. Costs about as much as a few
+   steps; later calls and the field "piece" (a piece's index here, liquids -1) are free until the world steps.
+   Owned by the world, valid until the next call that changes it. TOBI_UNSUPPORTED for methods without
+   solids. */
+TOBI_API tobi_status tobi_world_pieces(tobi_world *world, const tobi_pieces **pieces, tobi_error *err);
+
 /* Hash of the whole state (positions, velocities, pressures in id order): equal for any thread count. */
 TOBI_API uint64_t tobi_world_hash(tobi_world *world);
 /* Bytes the world has allocated. */

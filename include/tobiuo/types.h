@@ -120,6 +120,7 @@ typedef struct tobi_solid_def {
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
+    double core_color[3];             /* RGB of what was below the surface at the start; all -1 = color */
     int    visible;                   /* 0: left out of pictures                                      */
 } tobi_solid_def;
 
@@ -271,6 +272,13 @@ typedef struct tobi_step_info {
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
     double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
     double  transfer_dissipation; /* J, of that by transfers, if mlsmpm measures it                   */
+    double  fracture_work;        /* J, of that by the edges of blades, for new surface               */
+    double  friction_work;        /* J, of that by friction at bodies and between faces of cuts       */
+    double  damping_work;         /* J, of that by the damping of solids                              */
+    double  side_work;            /* J, of that by sides of the domain: friction; < 0: they drive     */
+    double  step_work;            /* J, of that by the length of time steps, if measured              */
+    double  plastic_work;         /* J, of that by plastic flow and viscosity, if measured            */
+    double  work_bodies;          /* J, done by bodies on the solids                                  */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */
@@ -295,6 +303,24 @@ typedef struct tobi_solid_info {
     double density, volume, mass; /* kg/m3, m3, kg of the regions at the start; 2-D: m2, kg/m         */
     double time_step;             /* s, the longest that its stiffness and viscosity allow at rest    */
 } tobi_solid_info;
+
+/* A connected piece of a solid. Particles are linked within 1.5 spacings unless a cut lies between them. */
+typedef struct tobi_piece {
+    int     solid;                /* number of the solid                                              */
+    int     fragment;             /* 1: fewer particles than a grid cell holds (8; 2-D: 4): debris    */
+    int64_t particles;
+    int64_t first_id;             /* smallest id of its particles                                     */
+    double  mass, volume;         /* kg, m3 as it is deformed; 2-D: kg/m, m2                          */
+    double  centre[3];            /* m, centre of mass                                                */
+} tobi_piece;
+
+/* All pieces of all solids: `count` pieces by falling mass, then `fragments` of them that are debris, by
+   falling mass; of equal ones that with the smaller first_id comes first. */
+typedef struct tobi_pieces {
+    int64_t count, fragments;
+    double  mass, volume;         /* sums over `piece`, in its order                                  */
+    const tobi_piece *piece;      /* [count + fragments]                                              */
+} tobi_pieces;
 
 /* What a body is doing. Pressure and viscous parts apart; torque about `position`. */
 typedef struct tobi_body_info {

@@ -24,7 +24,7 @@ typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
     X(uint8_t,      fluid,        TOBI_STATE,   TOBI_ALL,     "1",    "number of the fluid or solid") \
     X(tobi_columns, strain,       TOBI_STATE,   TOBI_MPM,     "1",    "F - I; w: see mpm/view.h") \
     X(tobi_columns, affine,       TOBI_STATE,   TOBI_MPM,     "1/s",  "velocity gradient") \
-    X(tobi_float4,  rest,         TOBI_STATE,   TOBI_MPM,     "m",    "position at the start") \
+    X(tobi_float4,  rest,         TOBI_STATE,   TOBI_MPM,     "m",    "at the start; w: 1 in the core") \
     X(tobi_columns, cuts,         TOBI_STATE,   TOBI_BLADES,  "1",    "remembered cuts, core/cuts.h") \
     X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",    "fixed-point position, payload") \
     X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2", "acceleration of the pass") \

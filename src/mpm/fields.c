@@ -71,6 +71,65 @@ mpm_sight mpm_look(const mpm_view *v, int64_t i)
     return s;
 }
 
+double mpm_kinetic(const mpm_view *v, int64_t i)
+{
+    double square = 0, affine = 0;
+    for (int a = 0; a < 3; a++) {
+        const tobi_float4 *c = &v->affine[i].c[a];
+        affine += (double)c->x*c->x + (double)c->y*c->y + (double)c->z*c->z;
+        square += (double)(&v->velocity[i].x)[a]*(&v->velocity[i].x)[a];
+    }
+    if (v->affine_momentum) square += 0.25*(double)v->cell*v->cell*affine;
+    return 0.5*v->strain[i].c[2].w*square;
+}
+
+void mpm_sum_damping(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const mpm_view *v = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double keep = v->material[v->solid[i]].keep;
+        if (keep < 1) totals[0] += (1 - keep*keep)*mpm_kinetic(v, i);
+    }
+}
+
+/* Power of a symmetric stress along a velocity gradient. */
+static double stress_power(const float tau[6], const float c[9])
+{
+    return (double)tau[MPM_XX]*c[0] + (double)tau[MPM_YY]*c[4] + (double)tau[MPM_ZZ]*c[8] +
+           (double)tau[MPM_XY]*(c[1] + c[3]) + (double)tau[MPM_YZ]*(c[5] + c[7]) +
+           (double)tau[MPM_ZX]*(c[2] + c[6]);
+}
+
+/* Work of the stress, mean of before and after, less what is stored. */
+static double flow_work(const mpm_view *v, int64_t i)
+{
+    const mpm_material *m = &v->material[v->solid[i]];
+    mpm_parameters parameters;
+    float gradient[9], e[9], other[3], unused[3], before[6], after[6], keep;
+    int32_t model;
+    uint32_t present;
+    mpm_load_columns(v->affine + i, gradient, unused);
+    mpm_load_columns(v->strain + i, e, other);
+    mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
+    const double stored = energy_density(m, e, other[1]);
+    mpm_find_stress(&parameters, model, present, gradient, e, &other[1], before);
+    mpm_load_columns(v->strain + i, e, other);
+    mpm_deform(v->strain_dt, gradient, e);
+    mpm_find_stress(&parameters, model, present, gradient, e, &other[1], after);
+    const double power = 0.5*(stress_power(before, gradient) + stress_power(after, gradient));
+    return other[0]*(v->strain_dt*power - (energy_density(m, e, other[1]) - stored));
+}
+
+void mpm_sum_flow(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const mpm_view *v = view;
+    for (int64_t i = begin; i < end; i++) {
+        const int model = v->material[v->solid[i]].model;
+        if (model != TOBI_NEO_HOOKEAN && model != TOBI_COROTATED && model != TOBI_STATIONARY)
+            totals[0] += flow_work(v, i);
+    }
+}
+
 static double von_mises(const double s[6])
 {
     double x = s[MPM_XX] - s[MPM_YY], y = s[MPM_YY] - s[MPM_ZZ], z = s[MPM_ZZ] - s[MPM_XX];

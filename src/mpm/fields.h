@@ -13,5 +13,12 @@ typedef struct mpm_sight {
 
 /* v->strain_dt: the gradients that strain lacks, s. */
 mpm_sight mpm_look(const mpm_view *v, int64_t i);
+/* Kinetic energy of one particle, J, that of the affine motion of APIC included. */
+double mpm_kinetic(const mpm_view *v, int64_t i);
+/* totals[0]: what damping takes from the kinetic energy in this step, J, over particles. */
+void mpm_sum_damping(const void *view, int64_t begin, int64_t end, double *totals);
+/* totals[0]: what plastic flow and viscosity take from the energy when the gradient that strain lacks is put
+   into it, J, over particles. */
+void mpm_sum_flow(const void *view, int64_t begin, int64_t end, double *totals);
 /* One of the fields of world/read.c that the stress or the strain makes; density: at the start, kg/m3. */
 void mpm_show_field(const mpm_view *v, double density, const char *field, int64_t i, double *out);

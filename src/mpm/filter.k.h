@@ -107,12 +107,20 @@ TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, 
     }
 }
 
-/* and of the nodes as they are. */
+/* and of the nodes as they are. totals[1]: the sums of eq. (18). */
 TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    for (int64_t n = number*nodes; n < (number + 1)*nodes; n++) {
-        quad u = quad_load(&v->node[n]), square = u*u;
+    quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D];
+    mpm_sum_tiles(&v->patch[number], v->tile, pushed, dim);
+    mpm_sum_tiles(&v->patch[number], v->calm, calm, dim);
+    for (int n = 0; n < nodes; n++) {
+        quad u = quad_load(&v->node[number*nodes + n]), square = u*u;
+        if (!(u[3] > 0)) continue;
+        quad change = u - calm[n]*quad_set(1/u[3]), stress = u*(pushed[n] - calm[n]);
         totals[0] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
+        square = change*change;
+        totals[1] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
+        totals[1] -= (double)stress[0] + stress[1] + stress[2];
     }
 }

@@ -16,7 +16,7 @@
 
 /* What a restart needs besides the particles. */
 enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, CUTS, FRACTURE,
-       FRICTION, MEMORY };
+       FRICTION, DAMPING, SIDES, STEPS, FLOW, MEMORY };
 
 #define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
@@ -258,6 +258,17 @@ static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_stage_end(&s->stages, "to grid", clock);
 }
 
+/* Before the way to the grid, which damps. */
+static void measure_damping(tobi_simulation *s, mlsmpm *m)
+{
+    double t[TOBI_TOTALS];
+    int damped = 0;
+    for (int k = 0; k < s->solid_count; k++) damped |= m->damping[k] > 0;
+    if (!damped) return;
+    tobi_launch(&s->exec, mpm_sum_damping, &m->view, 0, s->particles.count, t);
+    m->memory[DAMPING] += t[0];
+}
+
 /* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last
    step took: nodes have what they have, particles what arrives. */
 static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
@@ -276,6 +287,7 @@ static void measure_nodes(tobi_simulation *s, mlsmpm *m)
     if (!m->def.measure_transfer) return;
     tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, count_patches(m), t);
     m->memory[NODE_ENERGY] = t[0];
+    m->memory[STEPS] += t[1];
 }
 
 /* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
@@ -289,6 +301,8 @@ static void filter_velocity(tobi_simulation *s, mlsmpm *m)
         tobi_launch_each(&s->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
         tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, count_patches(m), NULL);
     }
+    if (m->def.measure_transfer)           /* the filter has used the tiles that measure_nodes reads */
+        tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, NULL);
 }
 
 static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
@@ -299,6 +313,7 @@ static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     filter_velocity(s, m);
     if (m->blades) m->memory[FRICTION] += mpm_cut_meet(&m->cut, s, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
+    m->memory[SIDES] += t[3];
     tobi_stage_end(&s->stages, "grid", clock);
 }
 
@@ -358,33 +373,36 @@ static mpm_view look_back(const mlsmpm *m)
     return v;
 }
 
-/* totals: elastic energy; kinetic, that of the affine motion of APIC included; potential. */
+/* totals: elastic energy, kinetic, potential. */
 static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const mpm_view *v = view;
     for (int64_t i = begin; i < end; i++) {
         const double mass = v->strain[i].c[2].w;
-        double square = 0, affine = 0;
         totals[0] += mpm_look(v, i).energy;
-        for (int a = 0; a < 3; a++) {
-            const tobi_float4 *c = &v->affine[i].c[a];
-            affine += (double)c->x*c->x + (double)c->y*c->y + (double)c->z*c->z;
-            square += (double)(&v->velocity[i].x)[a]*(&v->velocity[i].x)[a];
-            totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
-        }
-        if (v->affine_momentum) square += 0.25*(double)v->cell*v->cell*affine;
-        totals[1] += 0.5*mass*square;
+        totals[1] += mpm_kinetic(v, i);
+        for (int a = 0; a < 3; a++) totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
     }
 }
 
-/* The energy of all solids, J; *elastic is a part of it. */
-static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic)
+/* The energy of all solids, J; elastic and kinetic are parts of it. */
+static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic, double *kinetic)
 {
     const mpm_view v = look_back(m);
     double t[TOBI_TOTALS];
     tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
     *elastic = t[0];
+    *kinetic = t[1];
     return t[0] + t[1] + t[2];
+}
+
+static void measure_flow(tobi_simulation *s, mlsmpm *m)
+{
+    const mpm_view v = look_back(m);
+    double t[TOBI_TOTALS];
+    if (!m->def.measure_transfer) return;
+    tobi_launch(&s->exec, mpm_sum_flow, &v, 0, s->particles.count, t);
+    m->memory[FLOW] += t[0];
 }
 
 static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
@@ -407,6 +425,7 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
             double t[3] = {0, 0, 0};
             sum_energy(&v, i, i + 1, t);
             m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
+            m->memory[STEPS] -= t[0];
             continue;
         }
         if (kept < i) tobi_particles_copy(p, i, kept);
@@ -419,20 +438,23 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
-    double clock = tobi_clock(), elastic;
+    double clock = tobi_clock(), elastic, kinetic;
     s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
-    if (s->particles.count > 0 && m->memory[AGE] < 0) m->memory[START_ENERGY] = find_energy(s, m, &elastic);
+    if (s->particles.count > 0 && m->memory[AGE] < 0)
+        m->memory[START_ENERGY] = find_energy(s, m, &elastic, &kinetic);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
         TOBI_TRY(sort_particles(s, m, &clock, err));
+        measure_damping(s, m);
         particles_to_grid(s, m, &clock);
         measure_way_to_grid(s, m);
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
         measure_nodes(s, m);
         grid_to_particles(s, m, &clock);
+        measure_flow(s, m);
         tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
     }
@@ -468,9 +490,17 @@ static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_
 static void measure(tobi_simulation *s, const void *state)
 {
     const mlsmpm *m = state;
-    double energy = find_energy(s, m, &s->info.elastic_energy);
+    double kinetic, energy = find_energy(s, m, &s->info.elastic_energy, &kinetic);
     s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
-    s->info.transfer_dissipation = m->memory[TRANSFER];
+    s->info.work_bodies = m->memory[BODY_WORK];
+    s->info.fracture_work = m->memory[FRACTURE];
+    s->info.friction_work = m->memory[FRICTION];
+    s->info.damping_work = m->memory[DAMPING];
+    s->info.side_work = m->memory[SIDES];
+    s->info.plastic_work = m->memory[FLOW];
+    if (!m->def.measure_transfer || s->step == 0) return;
+    s->info.transfer_dissipation = m->memory[TRANSFER] + m->memory[NODE_ENERGY] - kinetic;
+    s->info.step_work = m->memory[STEPS] - m->memory[FLOW] - s->info.elastic_energy;
 }
 
 /* After a load the blocks are built anew. */

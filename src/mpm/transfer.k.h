@@ -171,7 +171,7 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
 }
 
 /* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change.
-   totals: 0..2 momentum given to the planes. */
+   totals: 0..2 momentum given to the planes, 3 work done on them. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_patch *g = &v->patch[number];
@@ -196,6 +196,7 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
             quad change = {u[0] - after[0], u[1] - after[1], u[2] - after[2], 0};
             given = given + change*quad_set(mass);
             u = u - change;
+            totals[3] += (double)mass*(change[0]*u[0] + change[1]*u[1] + change[2]*u[2]);
         }
         u[3] = mass;
         quad_store(&node[n], u);

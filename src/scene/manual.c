@@ -235,7 +235,9 @@ static void write_fields(FILE *out)
           "at the start, `density` the density at the start over J. `deformation_gradient` is the elastic\n"
           "part where a model flows, and of a liquid only its determinant means something. `plastic` is the\n"
           "plastic strain of von-mises, the plastic part of J less 1 of snow, and the logarithm of the\n"
-          "volume that loose sand has gained. `material` is the number of the solid, from 0.\n", out);
+          "volume that loose sand has gained. `material` is the number of the solid, from 0.\n"
+          "`piece` is the number of the connected piece of a solid, 0 = the heaviest, -1 in a liquid;\n"
+          "`cut_side` the number of the latest cut near a particle, negative on one side, 0 = none.\n", out);
 }
 
 /* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */

@@ -93,6 +93,38 @@ static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first,
     }
 }
 
+/* Spacings: three layers of a lattice that is cut across its diagonal. With less the core shows through. */
+#define SKIN 1.75
+
+/* How deep a point of a region lies below its surface, m, at most `most`. */
+static double find_depth(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension,
+                         double most)
+{
+    double depth = most, square = 0;
+    tobi_bvh_hit hit;
+    if (tree) return tobi_bvh_closest(tree, x, most, &hit) ? hit.distance : most;
+    for (int a = 0; a < dimension; a++) {
+        double from_middle = x[a] - 0.5*(r->lower[a] + r->upper[a]);
+        depth = fmin(depth, fmin(x[a] - r->lower[a], r->upper[a] - x[a]));
+        square += from_middle*from_middle;
+    }
+    return r->radius > 0 ? fmin(most, r->radius - sqrt(square)) : depth;
+}
+
+/* Marks the particles below the skin, of solids that show them in pictures. */
+static void mark_core(tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree, int64_t first)
+{
+    tobi_particles *p = &s->particles;
+    const double skin = SKIN*s->smoothing.spacing;
+    if (!p->rest || s->solids[r->owner].def.core_color[0] < 0) return;
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    for (int64_t i = first; i < p->count; i++) {
+        double x[3];
+        for (int a = 0; a < 3; a++) x[a] = (&p->position[i].x)[a] + s->box.lower[a];
+        p->rest[i].w = find_depth(r, tree, x, s->box.dimension, 2*skin) > skin;
+    }
+}
+
 static int inside_region(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension)
 {
     double d2 = 0;
@@ -157,6 +189,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
         else add_particle(s, r, x);
     }
     set_volumes(s, r, first, count);
+    mark_core(s, r, tree, first);
     return TOBI_OK;
 }
 

@@ -199,6 +199,9 @@ static const tobi_param solid_rows[] = {
       .doc = "Whether its particles start on a lattice, or scattered at even distances." },
     { .key = "color", COLOR, AT(tobi_solid_def, color), .text = "speed",
       .doc = "Colour in pictures, red, green and blue; speed shows how fast the solid is." },
+    { .key = "core_color", COLOR, AT(tobi_solid_def, core_color), .text = "color",
+      .doc = "Colour in pictures of what lay deeper than 1.75 spacings below the surface of its region "
+             "at the start: an apple is red outside and cream where it is cut." },
     { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },
       .doc = "Whether pictures show the solid." },
     { 0 }
@@ -350,7 +353,8 @@ static const tobi_param output_rows[] = {
     { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
       .text = "usual",
       .doc = "Fields to write for every particle. usual, alone or among others, stands for velocity, "
-             "pressure, density, object_id and particle_id, and for mlsmpm von_mises and material too." },
+             "pressure, density, object_id and particle_id, for mlsmpm von_mises and material too, and "
+             "where there is a blade piece and cut_side." },
     { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
       .doc = "Write the moving surface of each body as VTP and STL." },
     { .key = "frames", BOOL, AT(tobi_output_def, frames),

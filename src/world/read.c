@@ -1,5 +1,6 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
+#include "core/cuts.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@ static const struct { const char *name; int components; const char *unit; int ow
     {"von_mises", 1, "Pa", TOBI_MPM},         {"stress", 6, "Pa", TOBI_MPM},
     {"J", 1, "1", TOBI_MPM},                  {"deformation_gradient", 9, "1", TOBI_MPM},
     {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
+    {"piece", 1, "1", TOBI_MPM},              {"cut_side", 1, "1", TOBI_MPM},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
 
@@ -60,6 +62,7 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     tobi_simulation *s = &w->sim;
     TOBI_TRY(tobi_world_start(w, err));
     if (w->fresh) return TOBI_OK;
+    tobi_pieces_free(&w->pieces);
     tobi_step_info kept = s->info;
     if (!w->diverged && w->method->refresh) TOBI_TRY(w->method->refresh(s, w->method_state, err));
     double mean = s->info.density_error_mean, max = s->info.density_error_max;
@@ -71,7 +74,15 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* A field that every method has; 0 if it is none of them. */
+/* The latest cut that a particle remembers, with the sign of its side. */
+static double latest_cut(const tobi_particles *p, int64_t i)
+{
+    double cut = 0;
+    for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[i].c[k].w != 0; k++) cut = p->cuts[i].c[k].w;
+    return cut;
+}
+
+/* A field that every method has, or that no method knows more of; 0 if it is none of them. */
 static int read_plain(const tobi_simulation *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
@@ -86,6 +97,8 @@ static int read_plain(const tobi_simulation *s, const char *field, int64_t i, do
         out[0] = (double)p->id[i];
     } else if (!strcmp(field, "object_id")) {
         out[0] = 0;      /* of every fluid and solid; bodies count from 1 */
+    } else if (!strcmp(field, "cut_side")) {
+        out[0] = latest_cut(p, i);
     } else return 0;
     return 1;
 }
@@ -135,9 +148,9 @@ static tobi_status read_bodies(tobi_world *w, const char *field, int components,
             memcpy(out, b->particle, (size_t)b->particle_count*sizeof *b->particle);
         } else {
             int number = !strcmp(field, "particle_id"), object = !strcmp(field, "object_id");
-            double rho = !strcmp(field, "density") ? b->density : 0;
+            double all = !strcmp(field, "density") ? b->density : !strcmp(field, "piece") ? -1 : 0;
             for (int64_t i = 0; i < b->particle_count*components; i++)
-                out[i] = number ? (double)(id + row + i) : object ? k + 1 : rho;
+                out[i] = number ? (double)(id + row + i) : object ? k + 1 : all;
         }
         row += b->particle_count;
     }
@@ -159,12 +172,19 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
                          (long long)tobi_world_count(w, set), (long long)count);
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer);
     TOBI_TRY(tobi_world_refresh(w, err));
+    const tobi_pieces *unused;
+    const int piece = !strcmp(field, "piece");
+    if (piece) TOBI_TRY(tobi_world_pieces(w, &unused, err));
     int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
     if (!w->diverged && derived && w->method->derive)
         w->method->derive(&w->sim, w->method_state, field);
     #pragma omp parallel for num_threads(w->sim.exec.threads)
     for (int64_t r = 0; r < w->sim.particles.count; r++) {
         double *out = buffer + r*components;
+        if (piece) {
+            out[0] = w->pieces.of[w->row_of[r]];
+            continue;
+        }
         if (read_plain(&w->sim, field, w->row_of[r], out)) continue;
         if (w->method->read) w->method->read(&w->sim, w->method_state, field, w->row_of[r], out);
         else read_fluid(&w->sim, field, w->row_of[r], out);

@@ -14,10 +14,10 @@ enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
 typedef struct drawing {
     double *positions, *velocities;    /* n x 3        */
-    float *values;                     /* n, speeds; with a palette the material's number */
+    float *values;                     /* n, speeds; with a palette the colour's number */
     int64_t count;                     /* particles that are shown                      */
-    float palette[TOBI_SOLID_LIMIT][3];
-    int materials;                     /* fluids or solids                              */
+    float palette[2*TOBI_SOLID_LIMIT][3];
+    int colors;                        /* one per fluid or solid, or its skin's and its core's */
     int has_palette;
     uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
     int mesh_count;
@@ -51,28 +51,47 @@ static tobi_status read_fluid(tobi_run *run, int64_t n, drawing *d, tobi_error *
 }
 
 /* A fluid or solid as pictures see it. */
-typedef struct material { const double *color; int visible, liquid; } material;
+typedef struct material { const double *color, *core; int visible, liquid; } material;
 
 static material material_at(const tobi_simulation *s, int k)
 {
-    if (!s->solid_count) return (material){ s->fluid[k].color, s->fluid[k].visible, 1 };
+    if (!s->solid_count)
+        return (material){ s->fluid[k].color, s->fluid[k].color, s->fluid[k].visible, 1 };
     const tobi_solid_def *def = &s->solids[k].def;
-    return (material){ def->color, def->visible, def->model == TOBI_LIQUID };
+    const double *core = def->core_color[0] < 0 ? def->color : def->core_color;
+    return (material){ def->color, core, def->visible, def->model == TOBI_LIQUID };
 }
 
-/* Materials with colours: the value becomes the material's number, the palette their colours; hidden ones
-   are left out. */
-static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *err)
+static void set_color(const double *color, float out[3])
 {
     static const float plain[3] = { 0.04f, 0.36f, 0.70f };
-    const tobi_simulation *s = &run->world->sim;
-    int hidden = 0, solids = 0;
-    d->materials = s->solid_count ? s->solid_count : s->fluid_count;
-    for (int m = 0; m < d->materials; m++) {
+    for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
+}
+
+/* The palette: a colour per material or, if any shows its core, two. */
+static void make_palette(const tobi_simulation *s, int materials, drawing *d)
+{
+    int cores = 0;
+    for (int m = 0; m < materials; m++) {
         const material look = material_at(s, m);
-        for (int k = 0; k < 3; k++)
-            d->palette[m][k] = look.color[0] < 0 ? plain[k] : (float)(look.color[k] / 255.0);
-        d->has_palette |= look.color[0] >= 0;
+        cores |= look.core != look.color;
+        d->has_palette |= look.core[0] >= 0;
+    }
+    d->colors = materials * (1 + cores);
+    for (int c = 0; c < d->colors; c++) {
+        const material look = material_at(s, c / (1 + cores));
+        set_color(cores && c % 2 ? look.core : look.color, d->palette[c]);
+    }
+}
+
+/* Materials with colours: the value becomes the colour's number; hidden materials are left out. */
+static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *err)
+{
+    const tobi_simulation *s = &run->world->sim;
+    int hidden = 0, solids = 0, materials = s->solid_count ? s->solid_count : s->fluid_count;
+    make_palette(s, materials, d);
+    for (int m = 0; m < materials; m++) {
+        const material look = material_at(s, m);
         hidden |= !look.visible;
         solids |= !look.liquid;
     }
@@ -81,12 +100,14 @@ static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *
     if (solids && !d->opaque) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     int64_t n = d->count, kept = 0;
     for (int64_t i = 0; i < n; i++) {
-        int m = s->particles.fluid[run->world->row_of[i]];      /* rows are fresh: just read */
+        const int32_t row = run->world->row_of[i];              /* rows are fresh: just read */
+        const int m = s->particles.fluid[row], core = s->particles.rest && s->particles.rest[row].w > 0;
         const material look = material_at(s, m);
         if (!look.visible) continue;
         memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
         if (d->opaque) d->opaque[kept] = !look.liquid;
-        d->values[kept++] = d->has_palette ? (float)m : d->values[i];
+        d->values[kept++] = !d->has_palette ? d->values[i]
+                            : d->colors > materials ? (float)(2 * m + core) : (float)m;
     }
     d->count = kept;
     return TOBI_OK;
@@ -138,10 +159,10 @@ static tobi_status draw(tobi_run *run, const char *path, drawing *d, tobi_error 
     frame.values = d->values;
     frame.radius = 0.5 * def->spacing;
     frame.opaque = d->opaque;
-    frame.value_max = d->has_palette ? d->materials - 1 : color_speed(def);
+    frame.value_max = d->has_palette ? d->colors - 1 : color_speed(def);
     if (d->has_palette) {
         frame.palette = (const float (*)[3])d->palette;
-        frame.palette_count = d->materials;
+        frame.palette_count = d->colors;
     }
     frame.has_camera = run->output.camera_angle > 0 && def->dimension == 3;
     memcpy(frame.eye, run->output.camera_position, sizeof frame.eye);

@@ -9,14 +9,22 @@
 
 /* --- names ----------------------------------------------------------------------------- */
 
+/* Fields that are small whole numbers. */
+static bool is_number(const char *field)
+{
+    static const char *const names[] = { "object_id", "material", "piece", "cut_side" };
+    for (size_t k = 0; k < sizeof names/sizeof *names; k++)
+        if (strcmp(field, names[k]) == 0) return true;
+    return false;
+}
+
 static tobi_status find_field(const char *name, size_t length, tobi_record_field *field)
 {
     const char *known, *unit;
     for (int k = 0; (known = tobi_world_field_name(k, &field->components, &unit)); k++) {
         if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
         field->name = known;
-        field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64
-                    : strcmp(known, "object_id") == 0 || strcmp(known, "material") == 0 ? TOBI_I32 : TOBI_F32;
+        field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64 : is_number(known) ? TOBI_I32 : TOBI_F32;
         return TOBI_OK;
     }
     return TOBI_NOT_FOUND;
@@ -45,8 +53,11 @@ static tobi_status add_field(tobi_run *run, const char *name, size_t length, tob
 static tobi_status add_usual(tobi_run *run, tobi_error *err)
 {
     static const char *const usual[] = { "velocity", "pressure", "density", "object_id", "particle_id",
-                                         "von_mises", "material" };
+                                         "von_mises", "material", "piece", "cut_side" };
+    const tobi_simulation *s = &run->world->sim;
     int count = run->world->method->fields & TOBI_MPM ? 7 : 5;
+    for (int k = 0; k < s->body_count && count == 7; k++)
+        if (s->bodies[k].blade) count = 9;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
     return TOBI_OK;
 }

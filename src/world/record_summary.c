@@ -32,6 +32,46 @@ static json_t *make_stages(const tobi_run *run)
     return stages;
 }
 
+enum { PIECES_LISTED = 64 };
+
+/* Pieces [begin, end) as one entry. */
+static json_t *sum_up(const tobi_pieces *p, int64_t begin, int64_t end)
+{
+    int64_t particles = 0;
+    double mass = 0, volume = 0;
+    for (int64_t k = begin; k < end; k++) {
+        particles += p->piece[k].particles;
+        mass += p->piece[k].mass;
+        volume += p->piece[k].volume;
+    }
+    return json_pack("{s:I, s:I, s:o, s:o}", "count", (json_int_t)(end - begin), "particles",
+                     (json_int_t)particles, "mass", number(mass), "volume", number(volume));
+}
+
+/* pieces: those that a person would count. piece_list: the heaviest of them; piece_rest: the others,
+   fragments: debris of a few particles, both summed up. piece_mass: the sum of all three. */
+static tobi_status add_pieces(const tobi_run *run, json_t *json, tobi_error *err)
+{
+    const tobi_pieces *p;
+    if (run->world->sim.solid_count == 0) return TOBI_OK;
+    TOBI_TRY(tobi_world_pieces(run->world, &p, err));
+    int64_t listed = p->count < PIECES_LISTED ? p->count : PIECES_LISTED;
+    json_t *list = json_array();
+    for (int64_t k = 0; k < listed; k++) {
+        const tobi_piece *a = &p->piece[k];
+        json_array_append_new(list, json_pack("{s:s, s:I, s:o, s:o, s:[o,o,o]}",
+            "solid", run->world->sim.solids[a->solid].name, "particles", (json_int_t)a->particles,
+            "mass", number(a->mass), "volume", number(a->volume),
+            "centre", number(a->centre[0]), number(a->centre[1]), number(a->centre[2])));
+    }
+    json_object_set_new(json, "pieces", json_integer((json_int_t)p->count));
+    json_object_set_new(json, "piece_mass", number(p->mass));
+    json_object_set_new(json, "piece_list", list);
+    json_object_set_new(json, "piece_rest", sum_up(p, listed, p->count));
+    json_object_set_new(json, "fragments", sum_up(p, p->count, p->count + p->fragments));
+    return TOBI_OK;
+}
+
 /* density_error_mean: mean over steps and particles; density_error_max: largest of any step.
    particle_steps_per_s counts the time in steps, wall_s everything including files. */
 static json_t *make_summary(const tobi_run *run, const char *outcome)
@@ -67,10 +107,11 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
 tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err)
 {
     json_t *json = make_summary(run, outcome);
+    tobi_status status = json ? add_pieces(run, json, err) : TOBI_OK;
     char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) : NULL;
     char *path = tobi_record_path(run->dir, "summary.json");
-    tobi_status status =
-        text && path ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "summary: out of memory");
+    if (status == TOBI_OK && !(text && path))
+        status = tobi_fail(err, TOBI_NO_MEMORY, "summary: out of memory");
     tobi_file file;
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {

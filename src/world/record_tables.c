@@ -9,7 +9,7 @@
 /* H(column, kind, value): one line per column of history.csv. `i` is the last step's info, `s` the
    sums since the last output. Means are over the steps since the last output; other values are of
    the last step. wall_force_ratio: force of the fluid on the walls along gravity / its weight; 1 in a
-   settled tank. */
+   settled tank. pieces and fragments: of solids, see tobi_pieces. */
 #define HISTORY(H)                                                                  \
     H("time",                       real, i->time)                                  \
     H("step",                       int,  i->step)                                  \
@@ -34,6 +34,13 @@
     H("elastic_energy",             real, i->elastic_energy)                        \
     H("energy_lost",                real, i->energy_lost)                           \
     H("transfer_dissipation",       real, i->transfer_dissipation)                  \
+    H("fracture_work",              real, i->fracture_work)                         \
+    H("friction_work",              real, i->friction_work)                         \
+    H("damping_work",               real, i->damping_work)                          \
+    H("side_work",                  real, i->side_work)                             \
+    H("step_work",                  real, i->step_work)                             \
+    H("plastic_work",               real, i->plastic_work)                          \
+    H("work_bodies",                real, i->work_bodies)                           \
     H("momentum_x",                 real, i->momentum[0])                           \
     H("momentum_y",                 real, i->momentum[1])                           \
     H("momentum_z",                 real, i->momentum[2])                           \
@@ -42,7 +49,9 @@
     H("fluid_particles",            int,  i->fluid_particles)                       \
     H("particles_lost",             int,  i->particles_lost)                        \
     H("capped",                     int,  i->capped)                 \
-    H("contacts",                   int,  i->contacts)
+    H("contacts",                   int,  i->contacts)                              \
+    H("pieces",                     int,  pieces->count)                            \
+    H("fragments",                  int,  pieces->fragments)
 
 /* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those of the
    fluid on the body, torques about its position (centre of mass): of the last step, and as means over the
@@ -224,6 +233,8 @@ tobi_status tobi_tables_write(tobi_run *run, tobi_error *err)
 {
     const tobi_step_info *i = tobi_world_info(run->world);
     const tobi_tally *s = &run->since;
+    const tobi_pieces none = { 0 }, *pieces = &none;
+    if (run->world->sim.solid_count > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
     TOBI_TRY(write_bodies(run, err));
 #define H(column, kind, value) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)

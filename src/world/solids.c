@@ -59,3 +59,13 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
              "each is cut into %.0f or more\n", wish, stable, ceil(wish/stable*(1 - 1e-9)));
     return tobi_world_add_notes(w, "world", "time_step", text, err);
 }
+
+tobi_status tobi_world_pieces(tobi_world *w, const tobi_pieces **pieces, tobi_error *err)
+{
+    *pieces = &w->pieces.found;
+    if (!(w->method->fields & TOBI_MPM))
+        return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no solids, so no pieces", w->method->name);
+    TOBI_TRY(tobi_world_refresh(w, err));
+    return w->pieces.of ? TOBI_OK
+                        : tobi_pieces_find(&w->sim, w->method, w->method_state, w->row_of, &w->pieces, err);
+}

@@ -132,6 +132,7 @@ void tobi_world_destroy(tobi_world *w)
     free(w->notes);
     free(w->row_of);
     tobi_world_free_grid(w);
+    tobi_pieces_free(&w->pieces);
     free(w->method_def);
     tobi_near_free(&w->sim.near);
     tobi_contact_free(&w->sim.contacts);

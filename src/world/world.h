@@ -1,5 +1,6 @@
 /* The inside of a tobi_world. */
 #pragma once
+#include "core/pieces.h"
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"
@@ -23,6 +24,7 @@ struct tobi_world {
     int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
+    tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
