@@ -166,7 +166,7 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
         for (int k = 0; k < PANEL_LIMIT && row->panels[k].y_label && code == 0; k++)
             code = add_panel(&p, r, &row->panels[k], plot->dimension);
         for (int k = 0; k < p.panels; k++) drawn += panel_has_values(&p, &p.panel[k]);
-        if (!drawn && code == 0)
+        if (!drawn && !row->optional && code == 0)
             fprintf(stderr, "tobiuo: note: %s has no values for the picture \"%s\"\n",
                     r->table->path, p.title);
         if (drawn && code == 0) code = finish_picture(plot, &p, name);

@@ -22,6 +22,7 @@ typedef struct panel_row {
 
 typedef struct picture_row {
     const char *file, *title;
+    int optional;                   /* nothing is said of a picture without values  */
     panel_row panels[PANEL_LIMIT];  /* ended by a row without y_label               */
 } picture_row;
 

@@ -9,7 +9,7 @@
       { "z", column "_z", NULL, CURVE_LINE, 0, NULL } }
 
 const picture_row plot_history[] = {
-    { "energies", "Energy of the fluid or solids", {
+    { "energies", "Energy of the fluid or solids", 0, {
         { "kinetic energy, J", 0, 1, 0, 0, 0,
           { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL } } },
         { "change since the start, J", 0, 1, 0, 1, 0,
@@ -18,18 +18,18 @@ const picture_row plot_history[] = {
             { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy" },
             { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy" },
             { "kinetic + potential", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL } } } } },
-    { "walls", "Force of the fluid on the walls of the domain", {
+    { "walls", "Force of the fluid on the walls of the domain", 0, {
         { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
         { "force along gravity / weight", 0, 0, 0, 0, 1,
           { { "1 = at rest", "wall_force_ratio", NULL, CURVE_LINE, 0, NULL } } } } },
-    { "incompressibility", "How incompressible the fluid stays", {
+    { "incompressibility", "How incompressible the fluid stays", 0, {
         { "density error, %", 100, 0, 1, 0, 0,
           { { "largest", "density_error_max", NULL, CURVE_LINE, 1, "density_error_max" },
             { "mean", "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean" } } },
         { "|divergence|, 1/s", 0, 0, 1, 0, 1,
           { { "largest", "divergence_max", NULL, CURVE_LINE, 1, "divergence_max" },
             { "mean", "divergence_mean", NULL, CURVE_LINE, 0, "divergence_mean" } } } } },
-    { "solver", "Work of the solver", {
+    { "solver", "Work of the solver", 0, {
         { "iterations per step", 0, 0, 0, 0, 1,
           { { "density solve, mean", "density_iterations_mean", NULL, CURVE_LINE, 0,
              "density_iterations_mean" },
@@ -56,15 +56,25 @@ const picture_row plot_history[] = {
         PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
         PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1) } }
 
+/* One panel of what bodies and sides that touch a body do. */
+#define TOUCH(noun, axis, unit)                                                                  \
+    { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
+      { { "last step", "contact_" noun "_" axis, NULL, CURVE_THIN, 6, "mean_contact_" noun "_" axis }, \
+        { "mean", "mean_contact_" noun "_" axis, NULL, CURVE_LINE, 7, "mean_contact_" noun "_" axis } } }
+
 const picture_row plot_body[] = {
-    { "motion", "Motion of", {
+    { "motion", "Motion of", 0, {
         { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
         { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
         { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
-    { "force", "Force of the fluid on", {
+    { "force", "Force of the fluid on", 0, {
         PARTS("force", "x", "N"), PARTS("force", "y", "N"), PARTS("force", "z", "N") } },
-    { "torque", "Torque of the fluid about the centre of mass of", {
+    { "torque", "Torque of the fluid about the centre of mass of", 0, {
         PARTS("torque", "x", "N m"), PARTS("torque", "y", "N m"), PARTS("torque", "z", "N m") } },
+    { "contact_force", "Force of bodies and sides on", 1, {
+        TOUCH("force", "x", "N"), TOUCH("force", "y", "N"), TOUCH("force", "z", "N") } },
+    { "contact_torque", "Torque of bodies and sides about the centre of mass of", 1, {
+        TOUCH("torque", "x", "N m"), TOUCH("torque", "y", "N m"), TOUCH("torque", "z", "N m") } },
     { 0 }
 };
 

@@ -362,8 +362,12 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
-    for (int k = 0; k < d->count; k++)
+    for (int k = 0; k < d->count; k++) {
+        tobi_body_info *info = &d->bodies[k].info;
+        memset(info->contact_force, 0, sizeof info->contact_force);
+        memset(info->contact_torque, 0, sizeof info->contact_torque);
         if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(kick(d, &d->bodies[k], t, dt, err));
+    }
     TOBI_TRY(find_contacts(d, dt, err));
     keep_impulses(d);
     TOBI_TRY(tobi_solve(&d->solver, d->bodies, d->count, &d->contacts, dt,

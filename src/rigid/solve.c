@@ -246,9 +246,13 @@ static void finish(tobi_solve_row *r, tobi_body *bodies, double dt)
         int body = side ? c->b : c->a;
         if (body < 0) continue;
         tobi_rigid *b = &bodies[body].rigid;
+        tobi_body_info *info = &bodies[body].info;
         for (int k = 0; k < 3; k++) {
             double p = side ? -r->sum[k] : r->sum[k];
             const double *lever = side ? r->lever_b[k] : r->lever_a[k];
+            vec3_add_scaled(info->contact_force, info->contact_force, p/dt, r->axis[k]);
+            vec3_add_scaled(info->contact_torque, info->contact_torque, p/dt, lever);
+            if (b->kind == TOBI_PRESCRIBED) continue;
             vec3_add_scaled(b->momentum, b->momentum, p, lever);
             vec3_add_scaled(b->contact_force, b->contact_force, p/dt, r->axis[k]);
             vec3_add_scaled(b->contact_torque, b->contact_torque, p/dt, lever);
