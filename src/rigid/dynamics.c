@@ -234,17 +234,37 @@ static int compare_contacts(const void *p, const void *q)
     return x->key < y->key ? -1 : x->key > y->key;
 }
 
-static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *out)
+/* A side as a plane with the body's own friction; 0 if there is none. */
+static int make_side(const tobi_rigid_world *w, int side, double friction, tobi_fixed_plane *p)
 {
-    double margin = tobi_broad_margin(&d->broad, k);
+    int axis = side/2, upper = side%2;
+    if (axis >= w->dimension || !(w->wall[axis] >> upper & 1)) return 0;
+    *p = (tobi_fixed_plane){ .offset = upper ? -w->size[axis] : 0, .friction = friction };
+    p->normal[axis] = upper ? -1 : 1;
+    return 1;
+}
+
+/* A plane of the scene, with the friction that it and the body have together. */
+static void make_plane(const tobi_rigid_world *w, int plane, double friction, tobi_fixed_plane *p)
+{
+    *p = w->planes[plane];
+    p->friction = p->kind == TOBI_PLANE_SEPARATE ? sqrt(friction*p->friction) :
+                  p->kind == TOBI_PLANE_SLIP     ? 0 : friction;
+}
+
+static void touch_planes(const tobi_dynamics_state *d, int k, double margin, tobi_touch_list *out)
+{
+    double friction = d->bodies[k].rigid.friction;
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
-    for (int side = 0; side < 2*d->world.dimension; side++) {
+    for (int number = 0; number < TOBI_SIDES + d->world.plane_count; number++) {
         int64_t first = out->count;
-        if (!(d->world.wall[side/2] >> side%2 & 1)) continue;
-        tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin, out);
+        tobi_fixed_plane p;
+        if (number >= TOBI_SIDES) make_plane(&d->world, number - TOBI_SIDES, friction, &p);
+        else if (!make_side(&d->world, number, friction, &p)) continue;
+        tobi_touch_plane(&d->bodies[k], &d->shapes[k], &p, number, margin, out);
         for (int64_t i = first; i < out->count; i++) {
             out->at[i].a = k;
-            out->at[i].b = -1 - side;
+            out->at[i].b = -1 - number;
         }
     }
 }
@@ -292,7 +312,7 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
         tobi_touch_list *out = &d->part[omp_get_thread_num()];
         out->count = 0;
 #pragma omp for schedule(dynamic, 4) nowait
-        for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
+        for (int k = 0; k < d->count; k++) touch_planes(d, k, tobi_broad_margin(&d->broad, k), out);
 #pragma omp for schedule(dynamic, 4)
         for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], dt, out);
     }
@@ -385,6 +405,25 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
     return TOBI_OK;
 }
 
+static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
+{
+    for (int k = 0; k < d->count; k++) {
+        char line[300];
+        double deepest = 0;
+        d->contacts.count = 0;
+        if (d->shapes[k].solid) touch_planes(d, k, 0, &d->contacts);
+        for (int64_t i = 0; i < d->contacts.count; i++)
+            if (-d->contacts.at[i].gap > 2*d->contacts.at[i].slop)
+                deepest = fmax(deepest, -d->contacts.at[i].gap);
+        if (deepest == 0) continue;
+        snprintf(line, sizeof line,
+                 "'%s' reaches %.3g m behind a side or plane at the start; contact pushes it back",
+                 d->bodies[k].name, deepest);
+        note(notes, room, line);
+    }
+    d->contacts.count = 0;
+}
+
 /* Before the first step, which has no kick behind it. */
 static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
 {
@@ -424,6 +463,7 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
         if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
     if (status == TOBI_OK) note_shapes(d, notes, room);
     if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
+    if (status == TOBI_OK) note_planes(d, notes, room);
     if (status == TOBI_OK) status = begin_pull(d, err);
     if (status == TOBI_OK) *out = d;
     else tobi_rigid_free(d);
@@ -465,7 +505,8 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
             if (!isfinite(row[i]) || fabs(row[i]) > 1e18)
                 return tobi_fail(err, TOBI_DAMAGED, "the contact %lld of the bodies is no number",
                                  (long long)k);
-        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES || row[1] >= d->count)
+        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES - d->world.plane_count ||
+            row[1] >= d->count)
             return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
         tobi_touch *c = tobi_touch_add(&d->contacts);
         if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
