@@ -81,14 +81,16 @@ static int has_values(const rows *r, int column)
     return 0;
 }
 
-static void fill_curve(curve *c, const rows *r, int column, int plus, const panel_row *row)
+/* The sum of up to three columns, those of -1 left out. */
+static void fill_curve(curve *c, const rows *r, const int columns[3], const panel_row *row)
 {
     int time = table_column(r->table, "time");
     double first = NAN, scale = row && row->scale != 0 ? row->scale : 1;
     for (size_t i = 0; i < r->table->rows; i++) {
         if (!is_row(r, i) || (row && row->of_steps && table_number(r->table, i, time) == 0)) continue;
-        double y = table_number(r->table, i, column);
-        if (plus >= 0) y += table_number(r->table, i, plus);
+        double y = 0;
+        for (int k = 0; k < 3; k++)
+            if (columns[k] >= 0) y += table_number(r->table, i, columns[k]);
         if (isnan(first)) first = y;
         c->x[c->count] = table_number(r->table, i, time);
         c->y[c->count++] = scale*(row && row->from_start ? y - first : y);
@@ -103,14 +105,16 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
              dimension == 2 && row->per_depth ? " per m" : "");
     a->logarithmic = row->logarithmic;
     for (const curve_row *k = row->curves; k < row->curves + 5 && k->column; k++) {
-        int column = table_column(r->table, k->column), plus = -1;
-        if (column < 0 || (k->plus && (plus = table_column(r->table, k->plus)) < 0)) continue;
+        const int columns[3] = { table_column(r->table, k->column),
+                                 k->plus ? table_column(r->table, k->plus) : -1,
+                                 k->too ? table_column(r->table, k->too) : -1 };
+        if (columns[0] < 0 || (k->plus && columns[1] < 0)) continue;
         if (k->needs && !has_values(r, table_column(r->table, k->needs))) continue;
         curve *c = add_curve(a, k->label, r->table->rows);
         if (!c) return complain("out of memory");
         c->style = k->style;
         c->colour = k->colour;
-        fill_curve(c, r, column, plus, row);
+        fill_curve(c, r, columns, row);
     }
     if (a->curves > 0) p->panels++;
     return 0;
@@ -166,7 +170,7 @@ static int draw_rows(plotter *plot, const rows *r, const picture_row *list)
         for (int k = 0; k < PANEL_LIMIT && row->panels[k].y_label && code == 0; k++)
             code = add_panel(&p, r, &row->panels[k], plot->dimension);
         for (int k = 0; k < p.panels; k++) drawn += panel_has_values(&p, &p.panel[k]);
-        if (!drawn && code == 0)
+        if (!drawn && !row->optional && code == 0)
             fprintf(stderr, "tobiuo: note: %s has no values for the picture \"%s\"\n",
                     r->table->path, p.title);
         if (drawn && code == 0) code = finish_picture(plot, &p, name);
@@ -211,7 +215,7 @@ static int draw_probes(plotter *plot, const char *what, const char *title)
         curve *c = add_curve(&p.panel[0], t->names[k], t->rows);
         rows all = { t, NULL };
         code = c ? 0 : complain("out of memory");
-        if (c) fill_curve(c, &all, k, -1, NULL);
+        if (c) fill_curve(c, &all, (const int[3]){ k, -1, -1 }, NULL);
         if (c) c->colour = p.panel[0].curves - 1;
     }
     if (left_out)
@@ -302,7 +306,7 @@ static int draw_comparison(plotter *plot, int index)
     set_time_axis(&p, r.table);
     curve *c = add_curve(&p.panel[0], "this run", r.table->rows);
     int code = c ? 0 : complain("out of memory");
-    if (c) fill_curve(c, &r, column, -1, NULL);
+    if (c) fill_curve(c, &r, (const int[3]){ column, -1, -1 }, NULL);
     for (int k = index; code == 0 && (other = tobi_scene_reference(plot->scene, k)); k++)
         if (is_same_column(other, def)) code = add_reference(&p, other);
     if (code == 0) code = finish_picture(plot, &p, name);

@@ -8,6 +8,7 @@ typedef struct curve_row {
     curve_style style;
     int colour;
     const char *needs;              /* drawn only if this column has a value other than 0, or NULL */
+    const char *too;                /* one more to add, where the table has it      */
 } curve_row;
 
 typedef struct panel_row {
@@ -22,6 +23,7 @@ typedef struct panel_row {
 
 typedef struct picture_row {
     const char *file, *title;
+    int optional;                   /* nothing is said of a picture without values  */
     panel_row panels[PANEL_LIMIT];  /* ended by a row without y_label               */
 } picture_row;
 

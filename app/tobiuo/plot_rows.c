@@ -4,51 +4,52 @@
 
 /* Three curves of a vector's parts. */
 #define XYZ(column)                                   \
-    { { "x", column "_x", NULL, CURVE_LINE, 1, NULL },  \
-      { "y", column "_y", NULL, CURVE_LINE, 2, NULL },  \
-      { "z", column "_z", NULL, CURVE_LINE, 0, NULL } }
+    { { "x", column "_x", NULL, CURVE_LINE, 1, NULL, NULL },  \
+      { "y", column "_y", NULL, CURVE_LINE, 2, NULL, NULL },  \
+      { "z", column "_z", NULL, CURVE_LINE, 0, NULL, NULL } }
 
 const picture_row plot_history[] = {
-    { "energies", "Energy of the fluid or solids", {
+    { "energies", "Energy of the fluid or solids", 0, {
         { "kinetic energy, J", 0, 1, 0, 0, 0,
-          { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL } } },
+          { { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL } } },
         { "change since the start, J", 0, 1, 0, 1, 0,
-          { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL },
-            { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL },
-            { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy" },
-            { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy" },
-            { "kinetic + potential", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL } } } } },
-    { "walls", "Force of the fluid on the walls of the domain", {
+          { { "potential", "potential_energy", NULL, CURVE_LINE, 2, NULL, NULL },
+            { "kinetic", "kinetic_energy", NULL, CURVE_LINE, 0, NULL, NULL },
+            { "elastic", "elastic_energy", NULL, CURVE_LINE, 1, "elastic_energy", NULL },
+            { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
+            { "kinetic + potential (+ elastic)", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
+              "elastic_energy" } } } } },
+    { "walls", "Force of the fluid on the walls of the domain", 0, {
         { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
         { "force along gravity / weight", 0, 0, 0, 0, 1,
-          { { "1 = at rest", "wall_force_ratio", NULL, CURVE_LINE, 0, NULL } } } } },
-    { "incompressibility", "How incompressible the fluid stays", {
+          { { "1 = at rest", "wall_force_ratio", NULL, CURVE_LINE, 0, NULL, NULL } } } } },
+    { "incompressibility", "How incompressible the fluid stays", 0, {
         { "density error, %", 100, 0, 1, 0, 0,
-          { { "largest", "density_error_max", NULL, CURVE_LINE, 1, "density_error_max" },
-            { "mean", "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean" } } },
+          { { "largest", "density_error_max", NULL, CURVE_LINE, 1, "density_error_max", NULL },
+            { "mean", "density_error_mean", NULL, CURVE_LINE, 0, "density_error_mean", NULL } } },
         { "|divergence|, 1/s", 0, 0, 1, 0, 1,
-          { { "largest", "divergence_max", NULL, CURVE_LINE, 1, "divergence_max" },
-            { "mean", "divergence_mean", NULL, CURVE_LINE, 0, "divergence_mean" } } } } },
-    { "solver", "Work of the solver", {
+          { { "largest", "divergence_max", NULL, CURVE_LINE, 1, "divergence_max", NULL },
+            { "mean", "divergence_mean", NULL, CURVE_LINE, 0, "divergence_mean", NULL } } } } },
+    { "solver", "Work of the solver", 0, {
         { "iterations per step", 0, 0, 0, 0, 1,
           { { "density solve, mean", "density_iterations_mean", NULL, CURVE_LINE, 0,
-             "density_iterations_mean" },
+             "density_iterations_mean", NULL },
             { "divergence solve, mean", "divergence_iterations_mean", NULL, CURVE_LINE, 1,
-             "divergence_iterations_mean" },
+             "divergence_iterations_mean", NULL },
             { "steps not converged", "unconverged_steps", NULL, CURVE_DASHED, 7,
-              "unconverged_steps" } } },
-        { "time step, ms", 1e3, 0, 0, 0, 1, { { "time step", "dt", NULL, CURVE_LINE, 2, NULL } } },
+              "unconverged_steps", NULL } } },
+        { "time step, ms", 1e3, 0, 0, 0, 1, { { "time step", "dt", NULL, CURVE_LINE, 2, NULL, NULL } } },
         { "speed, m/s", 0, 0, 0, 0, 0,
-          { { "fastest particle", "speed_max", NULL, CURVE_LINE, 3, NULL } } } } },
+          { { "fastest particle", "speed_max", NULL, CURVE_LINE, 3, NULL, NULL } } } } },
     { 0 }
 };
 
 /* One panel of a force or torque: its mean since the last output, its parts (unless the viscous one is
    0: then the sum is the pressure), and the last step's. */
 #define SUM(label, when, noun, axis, style, colour)                                              \
-    { label, when "pressure_" noun "_" axis, when "viscous_" noun "_" axis, style, colour, NULL }
+    { label, when "pressure_" noun "_" axis, when "viscous_" noun "_" axis, style, colour, NULL, NULL }
 #define PART(label, part, noun, axis, style, colour)                                             \
-    { label, "mean_" part "_" noun "_" axis, NULL, style, colour, "mean_viscous_" noun "_" axis }
+    { label, "mean_" part "_" noun "_" axis, NULL, style, colour, "mean_viscous_" noun "_" axis, NULL }
 #define PARTS(noun, axis, unit)                                                                  \
     { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
       { SUM("sum, last step", "", noun, axis, CURVE_THIN, 6),                                    \
@@ -56,15 +57,27 @@ const picture_row plot_history[] = {
         PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
         PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1) } }
 
+/* One panel of what bodies and sides that touch a body do. */
+#define MET(label, when, noun, axis, style, colour)                                              \
+    { label, when "contact_" noun "_" axis, NULL, style, colour, "mean_contact_" noun "_" axis, NULL }
+#define TOUCH(noun, axis, unit)                                                                  \
+    { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
+      { MET("last step", "", noun, axis, CURVE_THIN, 6),                                         \
+        MET("mean", "mean_", noun, axis, CURVE_LINE, 7) } }
+
 const picture_row plot_body[] = {
-    { "motion", "Motion of", {
+    { "motion", "Motion of", 0, {
         { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
         { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
         { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
-    { "force", "Force of the fluid on", {
+    { "force", "Force of the fluid on", 0, {
         PARTS("force", "x", "N"), PARTS("force", "y", "N"), PARTS("force", "z", "N") } },
-    { "torque", "Torque of the fluid about the centre of mass of", {
+    { "torque", "Torque of the fluid about the centre of mass of", 0, {
         PARTS("torque", "x", "N m"), PARTS("torque", "y", "N m"), PARTS("torque", "z", "N m") } },
+    { "contact_force", "Force of bodies and sides on", 1, {
+        TOUCH("force", "x", "N"), TOUCH("force", "y", "N"), TOUCH("force", "z", "N") } },
+    { "contact_torque", "Torque of bodies and sides about the centre of mass of", 1, {
+        TOUCH("torque", "x", "N m"), TOUCH("torque", "y", "N m"), TOUCH("torque", "z", "N m") } },
     { 0 }
 };
 

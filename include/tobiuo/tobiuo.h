@@ -26,6 +26,7 @@ TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
 TOBI_API tobi_solid_def  tobi_default_solid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
+TOBI_API tobi_plane_def  tobi_default_plane_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
@@ -47,6 +48,10 @@ TOBI_API tobi_status tobi_world_add_solid(tobi_world *world, const tobi_solid_de
 /* Adds a body. Its mesh is closed and oriented outwards if the file leaves no doubt how; what was
    repaired is in the notes. */
 TOBI_API tobi_status tobi_world_add_body(tobi_world *world, const tobi_body_def *def, tobi_error *err);
+
+/* Adds a plane, for methods that know them (mlsmpm); others are TOBI_UNSUPPORTED. TOBI_INVALID if its point
+   lies outside the domain or its normal has no direction. */
+TOBI_API tobi_status tobi_world_add_plane(tobi_world *world, const tobi_plane_def *def, tobi_error *err);
 
 /* Adds a probe, at any time. TOBI_INVALID if it sits outside the domain. */
 TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_def *def, tobi_error *err);

@@ -219,6 +219,15 @@ typedef struct tobi_body_def {
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */
 } tobi_body_def;
 
+/* A fixed plane in the domain; solids of mlsmpm and bodies stay on the side that its normal points to. */
+typedef enum tobi_plane_kind { TOBI_PLANE_SEPARATE, TOBI_PLANE_SLIP, TOBI_PLANE_NO_SLIP } tobi_plane_kind;
+typedef struct tobi_plane_def {
+    double point[3];            /* m, one of its points, in the domain                               */
+    double normal[3];           /* of any length above 0, out of the plane; in 2-D without z         */
+    int    kind;                /* tobi_plane_kind                                                   */
+    double friction;            /* 1, Coulomb, where solids and bodies may separate from it          */
+} tobi_plane_def;
+
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the
    fluid stands on the plumb line through the position (its coordinate along gravity does not matter). */
 typedef enum tobi_probe_kind { TOBI_PROBE_POINT, TOBI_PROBE_LEVEL } tobi_probe_kind;
@@ -330,6 +339,7 @@ typedef struct tobi_body_info {
     double angular_velocity[3];   /* rad/s                                                            */
     double pressure_force[3], viscous_force[3];      /* N, of the fluid on the body                   */
     double pressure_torque[3], viscous_torque[3];    /* N m                                           */
+    double contact_force[3], contact_torque[3];      /* N, N m: of bodies and sides that touch it     */
     double mass, volume;          /* kg, m3 by exact integrals of the mesh                            */
     double inertia[9];            /* kg m2 about the centre of mass, row-major                        */
     int64_t particles;            /* body particles                                                   */

@@ -408,6 +408,7 @@ void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin
 {
     tobi_rigid *r = &b->rigid;
     double turn[3];
+    tobi_rigid_coast(r, dt);
     for (int a = 0; a < 3; a++) {
         r->next_position[a] += (velocity[a] - r->velocity[a])*dt;
         turn[a] = (spin[a] - r->angular_velocity[a])*dt;

@@ -71,11 +71,11 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in
-   double: the central difference at its middle. A free body drifts by its present velocities instead.
+   double: the central difference at its middle. A free body drifts by its velocities and pull instead.
    *speed is raised to the fastest point. */
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err);
-/* Between the two calls, for a free body: it drifts by these velocities (m/s, rad/s) instead of the present
-   ones, because contact has changed them. */
+/* Between the two calls, for a free body: it drifts by these velocities (m/s, rad/s) and no pull instead,
+   because contact has changed them. */
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3]);

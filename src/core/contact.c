@@ -538,7 +538,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         b->info.viscous_force[a] = total[6 + a]/dt;
         b->info.viscous_torque[a] = total[9 + a]/dt;
     }
-    /* It moves as it will, or a resting body would fall into the material by g dt^2 in every step. */
-    if (b->rigid.kind != TOBI_PRESCRIBED && c->count > 0) tobi_body_correct(b, c->velocity, c->spin, dt);
+    /* Touched, it moves as it will, or a resting body would fall into the material in every step. */
+    if (b->rigid.kind != TOBI_PRESCRIBED && total[12] > 0) tobi_body_correct(b, c->velocity, c->spin, dt);
     return (int64_t)total[12];
 }

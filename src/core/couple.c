@@ -143,7 +143,7 @@ void tobi_couple_correct(tobi_simulation *s)
     for (int k = 0; k < s->body_count; k++) {
         tobi_body *b = &s->bodies[k];
         double f[6];
-        if (!moves(b)) continue;
+        if (!moves(b) || first_entry(&s->near, k) == first_entry(&s->near, k + 1)) continue;
         collect_forces(b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);

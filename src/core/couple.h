@@ -13,7 +13,7 @@ void tobi_couple_begin(struct tobi_simulation *s);
    [0] and [1] receive what this adds to record.w times product and to the sum of products. */
 void tobi_couple_product(struct tobi_simulation *s, double *totals);
 /* Lets the bodies drift by the velocities that the forces in their `info` make, not by those of the step's
-   start: the liquid was solved for these. */
+   start: the liquid was solved for these. Bodies that no particle sees fall freely. */
 void tobi_couple_correct(struct tobi_simulation *s);
 /* Impulse and twist of this step for tobi_rigid_step, from the forces in the bodies' `info`. */
 void tobi_couple_finish(struct tobi_simulation *s);

@@ -213,7 +213,7 @@ static void turn_free(const tobi_rigid *r, double q[4], double dt, int depth)
     normalize(q);
 }
 
-void tobi_rigid_drift(tobi_rigid *r, double dt)
+void tobi_rigid_coast(tobi_rigid *r, double dt)
 {
     double *q = r->next_orientation, w[3];
     int turns = bits_of(r) & ALL_TURNS;
@@ -231,6 +231,21 @@ void tobi_rigid_drift(tobi_rigid *r, double dt)
             }
     memcpy(w, r->turn, sizeof w);
     if (vec3_dot(w, w) > 0) tobi_quaternion_turn(q, w);
+}
+
+/* Coasts by the mean of the velocities before and after the kick (R.15). */
+void tobi_rigid_drift(tobi_rigid *r, double dt)
+{
+    double keep = exp(-r->air_resistance*dt);
+    tobi_rigid mean = *r;
+    for (int a = 0; a < 3; a++) {
+        mean.velocity[a] = 0.5*(r->velocity[a] + keep*(r->velocity[a] + dt*r->pull[a]));
+        mean.momentum[a] = 0.5*(r->momentum[a] + keep*(r->momentum[a] + dt*r->pull_torque[a]));
+    }
+    tobi_rigid_settle(&mean);
+    tobi_rigid_coast(&mean, dt);
+    memcpy(r->next_position, mean.next_position, sizeof r->next_position);
+    memcpy(r->next_orientation, mean.next_orientation, sizeof r->next_orientation);
 }
 
 /* --- velocities ----------------------------------------------------------------------------- */

@@ -1,4 +1,4 @@
-/* The state of a rigid body and how it drifts without forces. Doubles throughout.
+/* The state of a rigid body and how it drifts. Doubles throughout.
 
    The orientation is a unit quaternion w x y z that takes the rest pose's axes to the world's. The angular
    momentum is kept in world axes: without torque it is a constant, so that a spinning body keeps it to the
@@ -28,6 +28,7 @@ typedef struct tobi_rigid {
     double push[3], turn[3];         /* m, rad: takes out overlaps with the next drift, no momentum     */
     double impulse[3], twist[3];     /* N s, N m s about the centre: of particles in this step          */
     double contact_force[3], contact_torque[3];   /* N, N m: mean over the last step                    */
+    double pull[3], pull_torque[3];  /* m/s2, N m: constant over the next drift; 0 where contact holds  */
     double phase, phase_start;       /* of the control program; s                                       */
     double cut;                      /* number of the cut that a blade is making, 0 = none              */
     double hold;                     /* bits like `locked`, asked for by the control program            */
@@ -56,8 +57,11 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
    is none of them, which is copied to unknown. */
 int tobi_rigid_axes(const char *words, char unknown[32]);
 
-/* The pose after dt without forces, into next_position and next_orientation. */
+/* The pose after dt under the pull and the air resistance, of second order and without air exact for the
+   position, into next_position and next_orientation. The velocities are left to the kick. */
 void tobi_rigid_drift(tobi_rigid *r, double dt);
+/* The same by the present velocities alone. */
+void tobi_rigid_coast(tobi_rigid *r, double dt);
 
 /* Inverse of mass times the unit matrix, as a diagonal, and of inertia in world axes at the present
    orientation; locked degrees of freedom give 0. */

@@ -5,6 +5,7 @@
 #include "core/contact.h"
 #include "core/near.h"
 #include "core/particles.h"
+#include "core/plane.h"
 #include "core/smoothing.h"
 #include "tobiuo/tobiuo.h"
 
@@ -42,6 +43,8 @@ typedef struct tobi_simulation {
     int solid_count;
     tobi_body *bodies;
     int body_count;
+    tobi_fixed_plane plane[TOBI_PLANE_LIMIT];
+    int plane_count;
     tobi_near_bodies near;          /* fluid particles that see a body                       */
     tobi_contacts contacts;         /* particles of solids that touch bodies                 */
     double time, dt;                /* s; dt of the last step                                */
@@ -62,6 +65,7 @@ typedef struct tobi_method {
     size_t def_size;                                             /* of the parameter struct        */
     int fields;                                                  /* particle fields besides TOBI_ALL */
     int free_bodies;                                             /* 1: bodies may move by forces   */
+    int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius the parameters ask for. */
     void (*smoothing)(const void *def, int *shape, double *support);
     tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);

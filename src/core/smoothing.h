@@ -7,10 +7,10 @@ enum { TOBI_PLANE_SAMPLES = 512 };
 /* Functions of the distance s to a plane wall, tabulated over 0 <= s <= h.
      lambda(s)  kernel integral over the half space behind the plane
      sigma(s)   kernel integral over the plane = -dlambda/ds, 1/m */
-typedef struct tobi_plane_table {
+typedef struct tobi_wall_table {
     float lambda[TOBI_PLANE_SAMPLES + 2];
     float sigma[TOBI_PLANE_SAMPLES + 2];
-} tobi_plane_table;
+} tobi_wall_table;
 
 typedef struct tobi_smoothing_constants {
     int    shape;          /* TOBI_SHAPE_*                                                       */
@@ -23,7 +23,7 @@ typedef struct tobi_smoothing_constants {
     double rate;           /* lattice sum of V F, 1/m2: the scale of particle-wise differences   */
     double weight_correction, slope_correction; /* against the integral norm */
     double plane_scale;    /* sigma over the plain integral; also scales W at body points          */
-    tobi_plane_table plane;
+    tobi_wall_table plane;
 } tobi_smoothing_constants;
 
 /* kernel: TOBI_SHAPE_*; support in spacings, 2 to 4. */

@@ -76,6 +76,20 @@ static double viscous_limit(const tobi_solid_def *d, double cell)
     return viscous ? 0.1*cell*cell*d->density/d->viscosity : INFINITY;
 }
 
+static void add_fixed_planes(const tobi_simulation *s, mpm_view *v)
+{
+    static const int kinds[] = { [TOBI_PLANE_SEPARATE] = TOBI_WALL_SEPARATE,
+                                 [TOBI_PLANE_SLIP] = TOBI_WALL_SLIP,
+                                 [TOBI_PLANE_NO_SLIP] = TOBI_WALL_NO_SLIP };
+    _Static_assert(6 + TOBI_PLANE_LIMIT <= MPM_PLANES, "six sides and all planes of a scene");
+    for (int k = 0; k < s->plane_count; k++) {
+        const tobi_fixed_plane *f = &s->plane[k];
+        mpm_plane *p = &v->plane[v->plane_count++];
+        *p = (mpm_plane){ .offset = f->offset, .kind = kinds[f->kind], .friction = (float)f->friction };
+        memcpy(p->normal, f->normal, sizeof p->normal);
+    }
+}
+
 static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
 {
     v->plane_count = v->held = 0;
@@ -93,6 +107,7 @@ static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
             p->friction = (float)s->def.friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }
+    add_fixed_planes(s, v);
 }
 
 static void bind_particles(const tobi_simulation *s, mlsmpm *m)
@@ -207,6 +222,21 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Whether a node of the patch may lie at a side or behind a plane. */
+static int meets_planes(const tobi_simulation *s, const mlsmpm *m, const mpm_patch *p)
+{
+    int meets = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        meets |= p->corner[a] <= 0 || (p->corner[a] + 3)*m->cell >= s->box.size[a]*(1 - 1e-12);
+    for (int k = 0; k < s->plane_count; k++) {
+        double lowest[3] = { 0, 0, 0 };
+        for (int a = 0; a < s->box.dimension; a++)
+            lowest[a] = (p->corner[a] + (s->plane[k].normal[a] < 0 ? 3 : 0))*m->cell;
+        meets |= tobi_plane_height(&s->plane[k], lowest) < 1e-5*m->cell;
+    }
+    return meets;
+}
+
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
 static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
@@ -219,12 +249,8 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     }
     m->fresh = stale || !m->built;
     if (m->fresh)
-        for (int64_t k = 0; k < m->grid.patch_count; k++) {
-            mpm_patch *p = &m->grid.patch[k];
-            p->planes = 0;
-            for (int a = 0; a < s->box.dimension; a++)
-                p->planes |= p->corner[a] <= 0 || (p->corner[a] + 3)*m->cell >= s->box.size[a]*(1 - 1e-12);
-        }
+        for (int64_t k = 0; k < m->grid.patch_count; k++)
+            m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
@@ -530,6 +556,7 @@ const tobi_method tobi_mlsmpm = {
     .def_size = sizeof(tobi_mlsmpm_def),
     .fields = TOBI_MPM,
     .free_bodies = 1,
+    .planes = 1,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

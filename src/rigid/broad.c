@@ -28,7 +28,7 @@ static void box_body(tobi_broad *b, int k, const tobi_body *body, const tobi_sha
     tobi_broad_entry *e = &b->entries[k];
     double m[3][3], min[3], max[3];
     double speed = vec3_length(r->velocity) + vec3_length(r->angular_velocity)*shape->facets.reach;
-    b->margin[k] = REST_MARGIN*shape->thickness + 1.2*speed*dt;
+    b->margin[k] = REST_MARGIN*shape->thickness + 1.2*dt*(speed + 0.5*dt*vec3_length(r->pull));
     e->body = k;
     e->moves = r->kind != TOBI_PRESCRIBED;
     if (!shape->solid) return;

@@ -138,34 +138,6 @@ static void note_shapes(const tobi_dynamics_state *d, char *notes, size_t room)
     }
 }
 
-tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
-                             size_t room, tobi_dynamics_state **out, tobi_error *err)
-{
-    tobi_dynamics_state *d = calloc(1, sizeof *d);
-    *out = NULL;
-    notes[0] = '\0';
-    if (d) d->shapes = calloc((size_t)count + 1, sizeof *d->shapes);
-    if (d) d->part = calloc((size_t)world->threads + 1, sizeof *d->part);
-    if (!d || !d->shapes || !d->part) {
-        tobi_rigid_free(d);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", count);
-    }
-    d->bodies = bodies;
-    d->count = count;
-    d->world = *world;
-    d->thinnest = INFINITY;
-    tobi_status status = TOBI_OK;
-    for (int k = 0; k < count && status == TOBI_OK; k++)
-        status = make_shape(&bodies[k], &d->shapes[k], world->dimension, err);
-    for (int k = 0; k < count; k++)
-        if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
-    if (status == TOBI_OK) note_shapes(d, notes, room);
-    if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
-    if (status == TOBI_OK) *out = d;
-    else tobi_rigid_free(d);
-    return status;
-}
-
 double tobi_rigid_step_limit(const tobi_dynamics_state *d)
 {
     double g = vec3_length(d->world.gravity), limit = 1.0/60;
@@ -245,6 +217,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
         r->contact_force[a] = r->impulse[a]/dt;
         r->contact_torque[a] = r->twist[a]/dt;
         r->impulse[a] = r->twist[a] = 0;
+        r->pull[a] = d->world.gravity[a] + force[a]/r->mass;
+        r->pull_torque[a] = torque[a];
     }
     tobi_rigid_settle(r);
     return TOBI_OK;
@@ -260,17 +234,37 @@ static int compare_contacts(const void *p, const void *q)
     return x->key < y->key ? -1 : x->key > y->key;
 }
 
-static void touch_sides(const tobi_dynamics_state *d, int k, tobi_touch_list *out)
+/* A side as a plane with the body's own friction; 0 if there is none. */
+static int make_side(const tobi_rigid_world *w, int side, double friction, tobi_fixed_plane *p)
 {
-    double margin = tobi_broad_margin(&d->broad, k);
+    int axis = side/2, upper = side%2;
+    if (axis >= w->dimension || !(w->wall[axis] >> upper & 1)) return 0;
+    *p = (tobi_fixed_plane){ .offset = upper ? -w->size[axis] : 0, .friction = friction };
+    p->normal[axis] = upper ? -1 : 1;
+    return 1;
+}
+
+/* A plane of the scene, with the friction that it and the body have together. */
+static void make_plane(const tobi_rigid_world *w, int plane, double friction, tobi_fixed_plane *p)
+{
+    *p = w->planes[plane];
+    p->friction = p->kind == TOBI_PLANE_SEPARATE ? sqrt(friction*p->friction) :
+                  p->kind == TOBI_PLANE_SLIP     ? 0 : friction;
+}
+
+static void touch_planes(const tobi_dynamics_state *d, int k, double margin, tobi_touch_list *out)
+{
+    double friction = d->bodies[k].rigid.friction;
     if (d->bodies[k].rigid.kind == TOBI_PRESCRIBED) return;
-    for (int side = 0; side < 2*d->world.dimension; side++) {
+    for (int number = 0; number < TOBI_SIDES + d->world.plane_count; number++) {
         int64_t first = out->count;
-        if (!(d->world.wall[side/2] >> side%2 & 1)) continue;
-        tobi_touch_side(&d->bodies[k], &d->shapes[k], side, side%2 ? d->world.size[side/2] : 0, margin, out);
+        tobi_fixed_plane p;
+        if (number >= TOBI_SIDES) make_plane(&d->world, number - TOBI_SIDES, friction, &p);
+        else if (!make_side(&d->world, number, friction, &p)) continue;
+        tobi_touch_plane(&d->bodies[k], &d->shapes[k], &p, number, margin, out);
         for (int64_t i = first; i < out->count; i++) {
             out->at[i].a = k;
-            out->at[i].b = -1 - side;
+            out->at[i].b = -1 - number;
         }
     }
 }
@@ -318,7 +312,7 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
         tobi_touch_list *out = &d->part[omp_get_thread_num()];
         out->count = 0;
 #pragma omp for schedule(dynamic, 4) nowait
-        for (int k = 0; k < d->count; k++) touch_sides(d, k, out);
+        for (int k = 0; k < d->count; k++) touch_planes(d, k, tobi_broad_margin(&d->broad, k), out);
 #pragma omp for schedule(dynamic, 4)
         for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], dt, out);
     }
@@ -338,15 +332,67 @@ static void keep_impulses(tobi_dynamics_state *d)
     }
 }
 
+/* Adds to sum[0] by how much the next drift opens the contact without the pull, m, to sum[1] what the pull
+   adds; sign: 1 for the body a, -1 for b. */
+static void foresee(const tobi_rigid *r, const tobi_touch *c, int sign, double dt, double sum[2])
+{
+    double arm[3], lever[3], shift[3], turn[3][3];
+    vec3_sub(arm, c->point, r->position);
+    vec3_cross(lever, arm, c->normal);
+    tobi_rigid_inverse(r, shift, turn);
+    for (int a = 0; a < 3; a++) {
+        sum[0] += sign*(c->normal[a]*(dt*r->velocity[a] + r->push[a]) +
+                        lever[a]*(dt*r->angular_velocity[a] + r->turn[a]));
+        if (r->kind == TOBI_PRESCRIBED) continue;
+        sum[1] += sign*0.5*dt*dt*((shift[a] > 0)*c->normal[a]*r->pull[a] +
+                                  lever[a]*vec3_dot(turn[a], r->pull_torque));
+    }
+}
+
+static int drop_pull(tobi_rigid *r)
+{
+    double before = vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque);
+    memset(r->pull, 0, sizeof r->pull);
+    memset(r->pull_torque, 0, sizeof r->pull_torque);
+    return before > 0;
+}
+
+/* The velocities are such that nothing comes nearer than touching, the pull is not yet answered: a body that
+   it would draw into another one, or a side, drifts by its velocities alone (R.16), or a stack would creep
+   by half of g dt^2 in every step. A body held may hold others, hence the rounds. */
+static void hold_bodies(tobi_dynamics_state *d, double dt)
+{
+    const double level = 1e-9;       /* of dt^2 pull: what rounding leaves of a pull along a surface */
+    for (int again = 1; again;) {
+        again = 0;
+        for (int64_t k = 0; k < d->contacts.count; k++) {
+            const tobi_touch *c = &d->contacts.at[k];
+            tobi_rigid *a = &d->bodies[c->a].rigid, *b = c->b >= 0 ? &d->bodies[c->b].rigid : NULL;
+            double sum[2] = { c->gap, 0 };
+            foresee(a, c, 1, dt, sum);
+            if (b) foresee(b, c, -1, dt, sum);
+            double size = vec3_length(a->pull) + (b ? vec3_length(b->pull) : 0);
+            if (sum[1] >= -level*dt*dt*size || sum[0] + sum[1] >= 0) continue;
+            again |= drop_pull(a);
+            if (b) again |= drop_pull(b);
+        }
+    }
+}
+
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
-    for (int k = 0; k < d->count; k++)
+    for (int k = 0; k < d->count; k++) {
+        tobi_body_info *info = &d->bodies[k].info;
+        memset(info->contact_force, 0, sizeof info->contact_force);
+        memset(info->contact_torque, 0, sizeof info->contact_torque);
         if (d->bodies[k].rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(kick(d, &d->bodies[k], t, dt, err));
+    }
     TOBI_TRY(find_contacts(d, dt, err));
     keep_impulses(d);
     TOBI_TRY(tobi_solve(&d->solver, d->bodies, d->count, &d->contacts, dt,
                         fmax(PLASTIC*g*dt, PLASTIC_LEAST), err));
+    hold_bodies(d, dt);
     for (int k = 0; k < d->count; k++) {
         tobi_body *b = &d->bodies[k];
         const tobi_rigid *r = &b->rigid;
@@ -357,6 +403,71 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
         tobi_body_report(b);
     }
     return TOBI_OK;
+}
+
+static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
+{
+    for (int k = 0; k < d->count; k++) {
+        char line[300];
+        double deepest = 0;
+        d->contacts.count = 0;
+        if (d->shapes[k].solid) touch_planes(d, k, 0, &d->contacts);
+        for (int64_t i = 0; i < d->contacts.count; i++)
+            if (-d->contacts.at[i].gap > 2*d->contacts.at[i].slop)
+                deepest = fmax(deepest, -d->contacts.at[i].gap);
+        if (deepest == 0) continue;
+        snprintf(line, sizeof line,
+                 "'%s' reaches %.3g m behind a side or plane at the start; contact pushes it back",
+                 d->bodies[k].name, deepest);
+        note(notes, room, line);
+    }
+    d->contacts.count = 0;
+}
+
+/* Before the first step, which has no kick behind it. */
+static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
+{
+    double dt = tobi_rigid_step_limit(d);
+    for (int k = 0; k < d->count; k++) {
+        tobi_rigid *r = &d->bodies[k].rigid;
+        if (r->kind == TOBI_PRESCRIBED) continue;
+        vec3_add_scaled(r->pull, d->world.gravity, 1/r->mass, r->force);
+        memcpy(r->pull_torque, r->torque, sizeof r->torque);
+    }
+    TOBI_TRY(find_contacts(d, dt, err));
+    hold_bodies(d, dt);
+    d->contacts.count = 0;
+    return TOBI_OK;
+}
+
+tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_world *world, char *notes,
+                             size_t room, tobi_dynamics_state **out, tobi_error *err)
+{
+    tobi_dynamics_state *d = calloc(1, sizeof *d);
+    *out = NULL;
+    notes[0] = '\0';
+    if (d) d->shapes = calloc((size_t)count + 1, sizeof *d->shapes);
+    if (d) d->part = calloc((size_t)world->threads + 1, sizeof *d->part);
+    if (!d || !d->shapes || !d->part) {
+        tobi_rigid_free(d);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", count);
+    }
+    d->bodies = bodies;
+    d->count = count;
+    d->world = *world;
+    d->thinnest = INFINITY;
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < count && status == TOBI_OK; k++)
+        status = make_shape(&bodies[k], &d->shapes[k], world->dimension, err);
+    for (int k = 0; k < count; k++)
+        if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
+    if (status == TOBI_OK) note_shapes(d, notes, room);
+    if (status == TOBI_OK) status = note_overlaps(d, notes, room, err);
+    if (status == TOBI_OK) note_planes(d, notes, room);
+    if (status == TOBI_OK) status = begin_pull(d, err);
+    if (status == TOBI_OK) *out = d;
+    else tobi_rigid_free(d);
+    return status;
 }
 
 void tobi_rigid_count(const tobi_dynamics_state *d, int64_t *touching, int *sweeps)
@@ -394,7 +505,8 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
             if (!isfinite(row[i]) || fabs(row[i]) > 1e18)
                 return tobi_fail(err, TOBI_DAMAGED, "the contact %lld of the bodies is no number",
                                  (long long)k);
-        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES || row[1] >= d->count)
+        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES - d->world.plane_count ||
+            row[1] >= d->count)
             return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
         tobi_touch *c = tobi_touch_add(&d->contacts);
         if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");

@@ -10,6 +10,8 @@ typedef struct tobi_rigid_world {
     double size[3];              /* m, of the domain; its sides are at 0 and size               */
     int dimension;
     int wall[3];                 /* sides along this axis: 1 the lower, 2 the upper, 3 both     */
+    const tobi_fixed_plane *planes;   /* owned by the caller, must outlive the state             */
+    int plane_count;
     int threads;                 /* that look for contacts; they do not change the result       */
 } tobi_rigid_world;
 

@@ -123,7 +123,7 @@ static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi
     r->contact = c;
     r->a = &s->bodies[1 + c->a];
     r->b = b ? &s->bodies[1 + c->b] : &s->bodies[0];
-    r->friction = b ? sqrt(a->friction*b->friction) : a->friction;
+    r->friction = b ? sqrt(a->friction*b->friction) : c->friction;
     vec3_sub(arm_a, c->point, a->position);
     if (b) vec3_sub(arm_b, c->point, b->position);
     memcpy(r->axis[0], c->normal, sizeof r->axis[0]);
@@ -246,9 +246,13 @@ static void finish(tobi_solve_row *r, tobi_body *bodies, double dt)
         int body = side ? c->b : c->a;
         if (body < 0) continue;
         tobi_rigid *b = &bodies[body].rigid;
+        tobi_body_info *info = &bodies[body].info;
         for (int k = 0; k < 3; k++) {
             double p = side ? -r->sum[k] : r->sum[k];
             const double *lever = side ? r->lever_b[k] : r->lever_a[k];
+            vec3_add_scaled(info->contact_force, info->contact_force, p/dt, r->axis[k]);
+            vec3_add_scaled(info->contact_torque, info->contact_torque, p/dt, lever);
+            if (b->kind == TOBI_PRESCRIBED) continue;
             vec3_add_scaled(b->momentum, b->momentum, p, lever);
             vec3_add_scaled(b->contact_force, b->contact_force, p/dt, r->axis[k]);
             vec3_add_scaled(b->contact_torque, b->contact_torque, p/dt, lever);

@@ -459,31 +459,31 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
         for (int i = 0; i < 3; i++) out->at[k].normal[i] *= -1;
 }
 
-void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,
-                     tobi_touch_list *out)
+void tobi_touch_plane(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane, int number,
+                      double margin, tobi_touch_list *out)
 {
     const tobi_rigid *r = &a->rigid;
     const tobi_facets *f = &sa->facets;
-    int axis = side/2, sign = side%2 ? -1 : 1;
+    const double *n = plane->normal;
     int64_t first = out->count;
-    double m[3][3], height = sign*(r->position[axis] - at);
+    double m[3][3], height = tobi_plane_height(plane, r->position);
     if (height > f->reach + margin) return;
     tobi_quaternion_matrix(r->orientation, m);
     for (int64_t k = 0; k < (f->ball > 0 ? 1 : f->corner_count); k++) {
-        double arm[3] = { 0, 0, 0 };
-        if (f->ball > 0) arm[axis] = -sign*f->ball;
-        else
-            for (int i = 0; i < 3; i++) arm[i] = vec3_dot(m[i], f->vertex[f->corner[k]]);
-        double gap = height + sign*arm[axis];
+        double arm[3];
+        for (int i = 0; i < 3; i++)
+            arm[i] = f->ball > 0 ? -f->ball*n[i] : vec3_dot(m[i], f->vertex[f->corner[k]]);
+        double gap = height + vec3_dot(n, arm);
         if (gap > margin) continue;
         tobi_touch *c = tobi_touch_add(out);
         if (!c) return;
-        c->key = key_of(SIDE, side, f->ball > 0 ? 0 : f->corner[k]);
+        c->key = key_of(SIDE, number, f->ball > 0 ? 0 : f->corner[k]);
         c->gap = gap;
         c->slop = SLOP*sa->thickness;
+        c->friction = plane->friction;
         vec3_add_scaled(c->point, r->position, 1, arm);
-        c->point[axis] = at + 0.5*sign*gap;
-        c->normal[axis] = sign;
+        vec3_add_scaled(c->point, c->point, -0.5*gap, n);
+        memcpy(c->normal, n, sizeof c->normal);
     }
     tobi_touch_thin(out, first);
 }

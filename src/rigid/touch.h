@@ -3,15 +3,17 @@
    corner meets a face or two edges cross, and a ball where its surface is nearest (decision 0014). */
 #pragma once
 #include "core/body.h"
+#include "core/plane.h"
 #include "geom/facets.h"
 
 typedef struct tobi_touch {
-    int32_t a, b;                /* bodies, a < b; a side of the domain is b = -1 - side                */
+    int32_t a, b;                /* bodies, a < b; a side of the domain or a plane is b = -1 - number   */
     int64_t key;                 /* which features meet: the same from step to step                     */
     double point[3];             /* m, from the domain's lower corner                                   */
     double normal[3];            /* unit, pushes a away from b                                          */
     double gap;                  /* m, negative where the surfaces overlap                              */
     double slop;                 /* m, an overlap that is left alone                                    */
+    double friction;             /* 1, of a side or plane with the body                                 */
     double impulse;              /* N s along the normal, in this step                                  */
     double slide[3];             /* N s, of friction                                                    */
 } tobi_touch;
@@ -29,7 +31,7 @@ typedef struct tobi_shape {
     int solid;                   /* 0: nothing touches it, since it deforms                             */
 } tobi_shape;
 
-/* Sides: 0 lower x, 1 upper x, 2 lower y, ... */
+/* Sides: 0 lower x, 1 upper x, 2 lower y, ...; then the planes of the scene. */
 enum { TOBI_SIDES = 6 };
 
 /* What may happen until the next look. */
@@ -41,10 +43,9 @@ typedef struct tobi_touch_look {
 /* Adds the contacts of two bodies, a < b by number. */
 void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
                        tobi_touch_look look, tobi_touch_list *out);
-/* Adds those of a body with a side of the domain: the plane x[axis] = at, whose inside is at larger x if
-   sign is 1, at smaller if -1. */
-void tobi_touch_side(const tobi_body *a, const tobi_shape *sa, int side, double at, double margin,
-                     tobi_touch_list *out);
+/* Adds those of a body with a side of the domain or a plane, by its number. */
+void tobi_touch_plane(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane, int number,
+                      double margin, tobi_touch_list *out);
 
 /* Room for one more; NULL and out->failed when memory is short. */
 tobi_touch *tobi_touch_add(tobi_touch_list *out);

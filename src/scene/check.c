@@ -159,8 +159,11 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_method *method = tobi_method_find(scene->world.method);
     tobi_place fluids = { &root, "fluids", 0 }, solids = { &root, "solids", 0 };
-    tobi_place probes = { &root, "probes", 0 };
+    tobi_place probes = { &root, "probes", 0 }, planes = { &root, "planes", 0 };
     if (!method) return;
+    if (!method->planes && !is_empty(scene, "planes"))
+        tobi_source_mistake(source, &planes, "are for solids and bodies of mlsmpm; %s knows sides of the "
+                            "domain and bodies", method->name);
     if (method->fields & TOBI_SPH) {
         if (!is_empty(scene, "solids"))
             tobi_source_mistake(source, &solids, "%s takes fluids; solids need \"method\": \"mlsmpm\"",
@@ -280,6 +283,29 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
     }
 }
 
+static void check_planes(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_world_def *w = &scene->world;
+    tobi_place planes = { &root, "planes", 0 };
+    for (int i = 0; i < scene->plane_count && !tobi_report_full(source->report); i++) {
+        const tobi_plane_def *plane = &scene->planes[i];
+        const uint64_t good = scene->planes_bound[i].good;
+        tobi_place entry = { &planes, NULL, (size_t)i }, point = { &entry, "point", 0 },
+                   normal = { &entry, "normal", 0 };
+        const double *n = plane->normal;
+        if (tobi_bind_has(&tobi_plane_table, good, "normal") && w->dimension == 2 && n[2] != 0)
+            tobi_source_mistake(source, &normal, "is %.10g in z, must be 0 in a 2-D scene", n[2]);
+        else if (tobi_bind_has(&tobi_plane_table, good, "normal") && is_zero(n))
+            tobi_source_mistake(source, &normal, "is zero, must have a direction");
+        if (!tobi_check_has_domain(scene) || !tobi_bind_has(&tobi_plane_table, good, "point")) continue;
+        for (int a = 0; a < w->dimension; a++)
+            if (plane->point[a] < w->domain_min[a] || plane->point[a] > w->domain_max[a])
+                tobi_source_mistake(source, &point, "is %.10g m in %c, the domain reaches from %.10g to "
+                                    "%.10g m", plane->point[a], axis_name[a], w->domain_min[a],
+                                    w->domain_max[a]);
+    }
+}
+
 static void check_probes(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
@@ -354,6 +380,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_solids(scene, source);
     tobi_check_overlaps(scene, source);
     check_bodies(scene, source);
+    check_planes(scene, source);
     check_probes(scene, source);
     check_output(scene, source);
     tobi_references_check(scene, source);

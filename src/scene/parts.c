@@ -12,6 +12,8 @@ static const tobi_part parts[] = {
       "The solids, sands, snows and liquids of the method mlsmpm." },
     { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,
       "The bodies, if any." },
+    { "world", "planes", TOBI_PART_LIST, &tobi_plane_table, 0, TOBI_PLANE_LIMIT,
+      "Fixed planes in the domain of mlsmpm, beside its sides, if any." },
     { "world", "probes", TOBI_PART_LIST, &tobi_probe_table, 0, TOBI_PROBE_LIMIT,
       "The sensors, if any." },
     { "world", "references", TOBI_PART_LIST, &tobi_reference_table, 0, 64,

@@ -132,6 +132,24 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
     return TOBI_OK;
 }
 
+static tobi_status read_planes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
+{
+    tobi_place place = { root, "planes", 0 };
+    json_t *list = open_list(binder, scene->root, &place, "world");
+    if (!list) return TOBI_OK;
+    scene->planes = calloc(json_array_size(list) + 1, sizeof *scene->planes);
+    scene->planes_bound = calloc(json_array_size(list) + 1, sizeof *scene->planes_bound);
+    if (!scene->planes || !scene->planes_bound) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        tobi_plane_def *plane = &scene->planes[scene->plane_count];
+        *plane = tobi_default_plane_def();
+        scene->planes_bound[scene->plane_count++] =
+            tobi_bind(binder, &tobi_plane_table, json_array_get(list, i), &entry, NULL, plane);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "probes", 0 };
@@ -211,6 +229,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_fluids(scene, &binder, &root));
     TOBI_TRY(read_solids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
+    TOBI_TRY(read_planes(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
     scene->output = tobi_default_output_def();
     json_t *value = json_object_get(scene->root, "output");
@@ -312,6 +331,8 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->fluids);
     free(scene->solids);
     free(scene->bodies);
+    free(scene->planes);
+    free(scene->planes_bound);
     free(scene->probes);
     free(scene->references);
     free(scene->method_def);
@@ -361,6 +382,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = add_fluid(world, &scene->fluids[i], err);
     for (int i = 0; i < scene->solid_count && status == TOBI_OK; i++)
         status = add_solid(world, &scene->solids[i], err);
+    for (int i = 0; i < scene->plane_count && status == TOBI_OK; i++)
+        status = tobi_world_add_plane(world, &scene->planes[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) status = tobi_world_note_time_step(world, err);
@@ -430,8 +453,8 @@ static json_t *write_body(const tobi_scene_body *body)
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
-    json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *probes = json_array(),
-           *references = json_array();
+    json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
+           *probes = json_array(), *references = json_array();
     int failed = json_object_set_new(root, scene->method->name,
                                      tobi_write_def(scene->method, scene->method_def));
     for (int i = 0; i < scene->fluid_count; i++)
@@ -440,6 +463,8 @@ char *tobi_scene_resolved(const tobi_scene *scene)
         failed |= json_array_append_new(solids, write_solid(&scene->solids[i]));
     for (int i = 0; i < scene->body_count; i++)
         failed |= json_array_append_new(bodies, write_body(&scene->bodies[i]));
+    for (int i = 0; i < scene->plane_count; i++)
+        failed |= json_array_append_new(planes, tobi_write_def(&tobi_plane_table, &scene->planes[i]));
     for (int i = 0; i < scene->probe_count; i++)
         failed |= json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
     for (int i = 0; i < scene->reference_count; i++)
@@ -448,11 +473,13 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     if (scene->fluid_count) failed |= json_object_set(root, "fluids", fluids);
     if (scene->solid_count) failed |= json_object_set(root, "solids", solids);
     failed |= json_object_set_new(root, "bodies", bodies);
+    if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
     failed |= json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);
     json_decref(fluids);
     json_decref(solids);
+    json_decref(planes);
     json_decref(probes);
     json_decref(references);
     root = whole(root, failed);

@@ -45,6 +45,9 @@ struct tobi_scene {
     int solid_count;
     tobi_scene_body *bodies;
     int body_count;
+    tobi_plane_def *planes;
+    tobi_bound *planes_bound;      /* which of their keys were good               */
+    int plane_count;
     tobi_probe_def *probes;
     int probe_count;
     tobi_output_def output;

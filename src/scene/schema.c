@@ -286,8 +286,9 @@ static void require_matter(json_t *schema)
                         json_pack("{s:{s:O,s:O},s:[{s:[s],s:{s:O}},{s:[s],s:{s:O}}]}", "properties", "fluids",
                                   none, "probes", none, "anyOf", "required", "solids", "properties", "solids",
                                   some, "required", "bodies", "properties", "bodies", some));
-    json_object_set_new(schema, "else", json_pack("{s:[s],s:{s:O,s:O}}", "required", "fluids", "properties",
-                                                  "fluids", some, "solids", none));
+    json_object_set_new(schema, "else",
+                        json_pack("{s:[s],s:{s:O,s:O,s:O}}", "required", "fluids", "properties", "fluids",
+                                  some, "solids", none, "planes", none));
     json_decref(none);
     json_decref(some);
 }

@@ -42,7 +42,7 @@ typedef struct sph_view {
     /* walls */
     int plane_count;
     tobi_plane plane[6];
-    const tobi_plane_table *TOBI_RESTRICT table;
+    const tobi_wall_table *TOBI_RESTRICT table;
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];

@@ -7,7 +7,8 @@
 
 static void describe_world(const tobi_simulation *s, tobi_rigid_world *r)
 {
-    *r = (tobi_rigid_world){ .dimension = s->box.dimension, .threads = s->exec.threads };
+    *r = (tobi_rigid_world){ .dimension = s->box.dimension, .threads = s->exec.threads,
+                             .planes = s->plane, .plane_count = s->plane_count };
     for (int a = 0; a < s->box.dimension; a++) {
         r->gravity[a] = s->def.gravity[a];
         r->size[a] = s->box.size[a];

@@ -58,6 +58,13 @@ static int inside_body(const tobi_simulation *s, tobi_region *r, const double x[
     return inside;
 }
 
+static int behind_plane(const tobi_simulation *s, const double x[3])
+{
+    for (int k = 0; k < s->plane_count; k++)
+        if (tobi_plane_height(&s->plane[k], x) < 0) return 1;
+    return 0;
+}
+
 static void add_particle(tobi_simulation *s, const tobi_region *r, const double x[3])
 {
     tobi_particles *p = &s->particles;
@@ -170,7 +177,7 @@ static tobi_status scatter(const tobi_simulation *s, const tobi_region *r, const
                              count, points, s->exec.threads, err);
 }
 
-/* Places the points of a region and keeps those in the domain and outside of bodies. */
+/* Places the points of a region and keeps those in the domain, outside of bodies and before planes. */
 static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
                         tobi_error *err)
 {
@@ -186,6 +193,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
         r->outside += out;
         if (out) continue;
         if (inside_body(s, r, x)) r->covered++;
+        else if (behind_plane(s, x)) r->behind++;
         else add_particle(s, r, x);
     }
     set_volumes(s, r, first, count);
@@ -197,7 +205,7 @@ tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err
 {
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
-    r->outside = r->covered = r->cut = 0;
+    r->outside = r->covered = r->behind = r->cut = 0;
     r->blade = 0;
     if (m->triangle_count)
         TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,

@@ -330,6 +330,19 @@ static const tobi_param body_rows[] = {
     { 0 }
 };
 
+static const tobi_param plane_rows[] = {
+    { .key = "point", VEC3, AT(tobi_plane_def, point), ANY, .unit = "m", .required = true,
+      .doc = "Any point of the plane, in the domain." },
+    { .key = "normal", VEC3, AT(tobi_plane_def, normal), ANY, .unit = "1", .required = true,
+      .doc = "Direction out of the plane, of any length; what lies behind is closed to solids and bodies." },
+    { .key = "kind", CHOICE("separate|slip|no-slip", 3), AT(tobi_plane_def, kind),
+      .doc = "What solids may do at it: separate and slide with friction, slip along it, stick to it. Bodies "
+             "always separate; slip is without friction for them, no-slip has theirs." },
+    { .key = "friction", REAL, AT(tobi_plane_def, friction), FROM(0), .unit = "1", .text = "none",
+      .doc = "Coulomb friction of a \"separate\" plane; with a body the square root of the product counts." },
+    { 0 }
+};
+
 static const tobi_param probe_rows[] = {
     { .key = "name", TEXT, AT(tobi_probe_def, name), .unit = "name", .text = "probe", .required = true,
       .doc = "Name of the probe, used once in a scene and in the columns of probes.csv." },
@@ -422,6 +435,9 @@ const tobi_param_table tobi_fill_table = {
 const tobi_param_table tobi_body_table = {
     "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
     sizeof(tobi_body_def), body_rows };
+const tobi_param_table tobi_plane_table = {
+    "plane", "An entry of planes: a fixed plane in the domain, for solids of mlsmpm and for bodies.",
+    sizeof(tobi_plane_def), plane_rows };
 const tobi_param_table tobi_probe_table = {
     "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 const tobi_param_table tobi_output_table = {
@@ -439,7 +455,7 @@ const tobi_param_table *tobi_param_table_at(int index)
     static const tobi_param_table *const tables[] = {
         &tobi_world_table, &tobi_dfsph_table,  &tobi_wcsph_table, &tobi_mlsmpm_table,
         &tobi_fluid_table, &tobi_solid_table,  &tobi_fill_table,  &tobi_body_table,
-        &tobi_probe_table, &tobi_output_table, &tobi_reference_table
+        &tobi_plane_table, &tobi_probe_table,  &tobi_output_table, &tobi_reference_table
     };
     return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
 }
@@ -519,6 +535,7 @@ DEFAULT(fluid)
 DEFAULT(solid)
 DEFAULT(fill)
 DEFAULT(body)
+DEFAULT(plane)
 DEFAULT(probe)
 DEFAULT(output)
 DEFAULT(reference)

@@ -22,6 +22,7 @@ extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_solid_table;
 extern const tobi_param_table tobi_fill_table;
 extern const tobi_param_table tobi_body_table;
+extern const tobi_param_table tobi_plane_table;
 extern const tobi_param_table tobi_probe_table;
 extern const tobi_param_table tobi_output_table;
 extern const tobi_param_table tobi_reference_table;

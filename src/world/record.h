@@ -21,7 +21,8 @@ typedef struct tobi_tally {
 
 /* Impulses of the fluid on one body since the last output: pressure force, viscous force, pressure torque,
    viscous torque, each times time, N s and N m s. */
-typedef struct tobi_body_tally { double time, impulse[4][3]; } tobi_body_tally;
+enum { TOBI_BODY_FORCES = 6 };
+typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 
 /* One field to write. */
 typedef struct tobi_record_field {

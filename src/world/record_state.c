@@ -46,7 +46,8 @@ static json_t *bodies_to_json(const tobi_run *run)
         const tobi_body_tally *t = &run->body_since[k];
         json_t *row = json_array();
         json_array_append_new(row, json_real(t->time));
-        for (int v = 0; v < 12; v++) json_array_append_new(row, json_real(t->impulse[v/3][v%3]));
+        for (int v = 0; v < 3*TOBI_BODY_FORCES; v++)
+            json_array_append_new(row, json_real(t->impulse[v/3][v%3]));
         json_array_append_new(list, row);
     }
     return list;
@@ -58,9 +59,9 @@ static bool bodies_from_json(json_t *list, tobi_run *run)
     if ((int)json_array_size(list) != bodies) return false;
     for (int k = 0; k < bodies; k++) {
         json_t *row = json_array_get(list, (size_t)k);
-        if (json_array_size(row) != 13) return false;
+        if (json_array_size(row) != 1 + 3*TOBI_BODY_FORCES) return false;
         run->body_since[k].time = json_number_value(json_array_get(row, 0));
-        for (int v = 0; v < 12; v++)
+        for (int v = 0; v < 3*TOBI_BODY_FORCES; v++)
             run->body_since[k].impulse[v/3][v%3] = json_number_value(json_array_get(row, (size_t)v + 1));
     }
     return true;

@@ -53,9 +53,9 @@
     H("pieces",                     int,  pieces->count)                            \
     H("fragments",                  int,  pieces->fragments)
 
-/* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those of the
-   fluid on the body, torques about its position (centre of mass): of the last step, and as means over the
-   time since the last output. */
+/* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those on the body, of
+   the particles along normals and surfaces, and of bodies and sides that touch it; torques about its position
+   (centre of mass): of the last step, and as means over the time since the last output. */
 #define V3(B, name, v) B(name "_x", v[0]) B(name "_y", v[1]) B(name "_z", v[2])
 #define BODY(B)                                             \
     V3(B, "position", b.position)                           \
@@ -72,7 +72,11 @@
     V3(B, "mean_pressure_force", m.impulse[0])              \
     V3(B, "mean_viscous_force", m.impulse[1])               \
     V3(B, "mean_pressure_torque", m.impulse[2])             \
-    V3(B, "mean_viscous_torque", m.impulse[3])
+    V3(B, "mean_viscous_torque", m.impulse[3])              \
+    V3(B, "contact_force", b.contact_force)                 \
+    V3(B, "contact_torque", b.contact_torque)               \
+    V3(B, "mean_contact_force", m.impulse[4])               \
+    V3(B, "mean_contact_torque", m.impulse[5])
 
 static double mean(double sum, const tobi_tally *s)
 {
@@ -103,9 +107,9 @@ void tobi_tally_bodies(tobi_run *run, double dt)
         tobi_body_tally *t = &run->body_since[k];
         const tobi_body_info *b = &run->world->sim.bodies[k].info;
         const double *value[] = { b->pressure_force, b->viscous_force, b->pressure_torque,
-                                  b->viscous_torque };
+                                  b->viscous_torque, b->contact_force, b->contact_torque };
         t->time += dt;
-        for (int v = 0; v < 4; v++)
+        for (int v = 0; v < TOBI_BODY_FORCES; v++)
             for (int a = 0; a < 3; a++) t->impulse[v][a] += dt*value[v][a];
     }
 }
@@ -113,7 +117,7 @@ void tobi_tally_bodies(tobi_run *run, double dt)
 static tobi_body_tally mean_of_body(const tobi_body_tally *t)
 {
     tobi_body_tally m = *t;
-    for (int v = 0; v < 4; v++)
+    for (int v = 0; v < TOBI_BODY_FORCES; v++)
         for (int a = 0; a < 3; a++) m.impulse[v][a] /= t->time > 0 ? t->time : 1;
     return m;
 }

@@ -162,26 +162,28 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* One line per solid or fluid: what was cut off at the domain and by bodies. */
+/* A line per solid or fluid and cause: what was cut off at the domain, by bodies and by planes. */
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
     TOBI_TRY(check_blades(w, err));
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
     for (int k = 0; k < owners; k++) {
-        long long outside = 0, covered = 0;
-        char text[200];
+        int64_t lost[3] = { 0, 0, 0 };
+        static const char *const what[3] = { "inside bodies were cut out", "behind planes were cut out",
+                                             "outside the domain were left out" };
         for (int r = 0; r < w->region_count; r++) {
             if (w->regions[r].owner != k) continue;
-            outside += w->regions[r].outside;
-            covered += w->regions[r].covered;
+            lost[0] += w->regions[r].covered;
+            lost[1] += w->regions[r].behind;
+            lost[2] += w->regions[r].outside;
         }
         const char *name = solids ? s->solids[k].name : s->fluid[k].name;
-        snprintf(text, sizeof text, "%lld particles that would start inside bodies were cut out\n", covered);
-        if (covered > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
-        snprintf(text, sizeof text, "%lld particles that would start outside the domain were left out\n",
-                 outside);
-        if (outside > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
+        for (int c = 0; c < 3; c++) {
+            char text[200];
+            snprintf(text, sizeof text, "%lld particles that would start %s\n", (long long)lost[c], what[c]);
+            if (lost[c] > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
+        }
     }
     return TOBI_OK;
 }

@@ -139,6 +139,18 @@ check "one row is enough" has made/plots/energies.svg "kinetic energy, J"
 check "a name is no path" test -e "made/plots/.._a_ _b_ \`touch pwned\` _; system(_touch pwned_); __motion.svg"
 check "nothing above the folder" test -z "$(find . -maxdepth 1 -name '*motion*')"
 check "no name was run as a command either" test ! -e pwned -a ! -e made/plots/pwned
+# Of solids the sum has the elastic energy: 2 J and 3 J change into 1 J and 2 J, 1.5 J are elastic, 0.5 J are lost.
+printf 'time,step,kinetic_energy,potential_energy,elastic_energy,energy_lost\n0,0,2,3,0,0\n1,1,1,2,1.5,0.5\n' > made/history.csv
+expect 0 "no values for the picture" plot made
+check "the sum of energies" has made/plots/energies.svg "kinetic + potential (+ elastic)"
+check "has the elastic one" grep -qx "1 -0.5" made/plots/plots.gnuplot
+check "and no picture of contact" test -z "$(find made/plots -name '*contact*')"
+printf 'time,name,mean_contact_force_x,contact_force_x,mean_contact_force_z,contact_force_z\n' > made/bodies.csv
+printf '%s,box,0,0,9.8,10\n' 0 1 >> made/bodies.csv
+expect 0 "no values for the picture" plot made
+check "the contact with bodies and sides" has made/plots/box_contact_force.svg "Force of bodies and sides on box"
+check "where there is one" has made/plots/box_contact_force.svg "z, N"
+check "and not where there is none" test "$(grep -c 'x, N' made/plots/box_contact_force.svg)" = 0
 echo "step,name" > made/bodies.csv
 expect 1 'no column "time"' plot made
 mkdir -p blocked && cp made/history.csv blocked && : > blocked/plots

@@ -53,6 +53,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_output_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_mlsmpm_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_solid_table), 3*hole);
+    assert_int_equal(count_uncovered(&tobi_plane_table), hole);
     assert_int_equal(count_uncovered(&tobi_reference_table), 0);
 }
 
@@ -86,7 +87,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 11);
+    assert_int_equal(tables, 12);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }
@@ -127,6 +128,9 @@ static void words_follow_the_enums(void **state)
                 word_is(models, TOBI_LIQUID, "liquid") && word_is(models, TOBI_STATIONARY, "stationary"));
     assert_true(word_is(walls, TOBI_WALL_SEPARATE, "separate"));
     assert_true(word_is(walls, TOBI_WALL_OPEN, "open"));
+    const char *planes = find_row(&tobi_plane_table, "kind")->choices;
+    assert_true(word_is(planes, TOBI_PLANE_SEPARATE, "separate") &&
+                word_is(planes, TOBI_PLANE_SLIP, "slip") && word_is(planes, TOBI_PLANE_NO_SLIP, "no-slip"));
     int length;
     assert_null(tobi_choice_word(forms, 4, &length));
 }

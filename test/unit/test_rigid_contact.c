@@ -113,6 +113,34 @@ static void test_stack(void **state)
     rig_close(&g);
 }
 
+/* A box half on a fixed plate that carries a smaller one: every force of contact is a weight, and the plate,
+   which moves by no force, is told its load, too. */
+static void test_loads(void **state)
+{
+    (void)state;
+    rig g;
+    rig_open(&g, 10, DOWN);
+    tobi_body_def fixed = rig_def();
+    fixed.dynamics = TOBI_PRESCRIBED;
+    rig_box(&g, fixed, (double[3]){ 2, 2, 0.1 }, (double[3]){ 5, 5, 2 });
+    rig_box(&g, rig_def(), (double[3]){ 0.4, 0.4, 0.4 }, (double[3]){ 5.3, 5, 2.25 });
+    rig_box(&g, rig_def(), (double[3]){ 0.2, 0.2, 0.2 }, (double[3]){ 5.3, 5, 2.55 });
+    rig_start(&g);
+    rig_step(&g, 0.01);
+    for (int i = 0; i < 100; i++) rig_step(&g, 0.01);
+    double weight[2];
+    for (int k = 0; k < 2; k++) weight[k] = 9.81*g.bodies[1 + k].rigid.mass;
+    const tobi_body_info *plate = &g.bodies[0].info;
+    print_message("loads: %.6f N of %.6f N, %.6f N of %.6f N; plate %.6f N, %.6f N m\n",
+                  g.bodies[1].info.contact_force[2], weight[0], g.bodies[2].info.contact_force[2], weight[1],
+                  plate->contact_force[2], plate->contact_torque[1]);
+    for (int k = 0; k < 2; k++)
+        assert_true(fabs(g.bodies[1 + k].info.contact_force[2]/weight[k] - 1) < 0.01);
+    assert_true(fabs(plate->contact_force[2]/-(weight[0] + weight[1]) - 1) < 0.01);
+    assert_true(fabs(plate->contact_torque[1]/(0.3*(weight[0] + weight[1])) - 1) < 0.01);
+    rig_close(&g);
+}
+
 /* Every box turned against the one below: only edges cross, no corner lies over a face. */
 static void test_turned_stack(void **state)
 {
@@ -206,7 +234,7 @@ int main(void)
         cmocka_unit_test(test_bounce),    cmocka_unit_test(test_incline),
         cmocka_unit_test(test_box_on_slope), cmocka_unit_test(test_stack),
         cmocka_unit_test(test_turned_stack), cmocka_unit_test(test_collision),
-        cmocka_unit_test(test_balls),
+        cmocka_unit_test(test_balls),     cmocka_unit_test(test_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

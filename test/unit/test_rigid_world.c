@@ -347,6 +347,91 @@ static void test_plane(void **state)
     tobi_world_destroy(w);
 }
 
+/* Thrown, pushed and turned by constants for a second: errors of place, m, and turn, rad. */
+static void throw_body(int steps, double air, double error[2])
+{
+    rig g;
+    const double force[3] = { 30, -20, 10 }, v[3] = { 3, 2, 8 }, down[3] = { 0, 0, -9.81 };
+    const double rate = 0.4, spin = 0.5;      /* rad/s2 and rad/s about z */
+    rig_open(&g, 100, down);
+    tobi_body_def def = rig_def();
+    def.air_resistance = air;
+    if (air == 0) memcpy(def.force, force, sizeof force);
+    memcpy(def.velocity, v, sizeof v);
+    memcpy(def.inertia, (double[3]){ 20, 30, 40 }, sizeof def.inertia);
+    def.angular_velocity[2] = spin;
+    def.torque[2] = 40*rate;
+    tobi_rigid *r = &rig_box(&g, def, (double[3]){ 1, 1, 1 }, (double[3]){ 50, 50, 50 })->rigid;
+    if (air > 0) memset(g.world.gravity, 0, sizeof down);
+    rig_start(&g);
+    for (int k = 0; k < steps; k++) rig_step(&g, 1.0/steps);
+    error[0] = 0;
+    for (int a = 0; a < 3; a++) {
+        double way = air > 0 ? v[a]*(1 - exp(-air))/air : v[a] + 0.5*(down[a] + force[a]/r->mass);
+        error[0] = fmax(error[0], fabs(r->position[a] - 50 - way));
+    }
+    error[1] = fabs(2*atan2(r->orientation[3], r->orientation[0]) - spin - 0.5*rate);
+    rig_close(&g);
+}
+
+/* docs/theory/rigid.md (R.15): the parabola to round-off, turn and air resistance to second order. */
+static void test_projectile(void **state)
+{
+    (void)state;
+    double coarse[2], fine[2], slow[2], slower[2];
+    throw_body(20, 0, coarse);
+    throw_body(40, 0, fine);
+    throw_body(20, 0.5, slow);
+    throw_body(40, 0.5, slower);
+    print_message("projectile: off by %.2g m and %.2g m at half the step; turn %.3g rad, order %.3f; in air "
+                  "%.3g m, order %.3f\n", coarse[0], fine[0], coarse[1], log2(coarse[1]/fine[1]), slow[0],
+                  log2(slow[0]/slower[0]));
+    assert_true(coarse[0] < 1e-12 && fine[0] < 1e-12);
+    assert_true(coarse[1] < 1e-3 && fabs(log2(coarse[1]/fine[1]) - 2) < 0.1);
+    assert_true(slow[0] < 1e-3 && fabs(log2(slow[0]/slower[0]) - 2) < 0.1);
+}
+
+/* The same fall beside a liquid, and on the floor for as long: the way, m, of two boxes. */
+static void fall(const char *method, double dt, double way[2])
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_error err = { 0 };
+    tobi_world *w;
+    def.method = method;
+    def.spacing = 0.1;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 4;
+    memcpy(def.gravity, (double[3]){ 0, 0, -9.81 }, sizeof def.gravity);
+    def.time_step = dt;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    for (int k = 0; k < 2; k++) {
+        tobi_body_def b = tobi_default_body_def();
+        b.name = k ? "resting" : "falling";
+        b.dynamics = TOBI_FREE;
+        for (int a = 0; a < 3; a++) b.box_max[a] = 0.5;
+        memcpy(b.translation, (double[3]){ 1 + k, 1, k ? 0 : 3 }, sizeof b.translation);
+        if (tobi_world_add_body(w, &b, &err) != TOBI_OK) fail_msg("%s", err.text);
+    }
+    if (tobi_world_advance(w, 0.6, NULL, &err) != TOBI_OK) fail_msg("%s", err.text);
+    for (int k = 0; k < 2; k++) {
+        tobi_body_info info;
+        tobi_world_body(w, k, &info);
+        way[k] = (k ? 0.25 : 3.25) - info.position[2];
+    }
+    tobi_world_destroy(w);
+}
+
+static void test_free_fall(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const char *method = k%2 ? "dfsph" : "mlsmpm";
+        double way[2], exact = 0.5*9.81*0.36;
+        fall(method, k/2 ? 0.005 : 0.01, way);
+        print_message("%s: fell %.12f m of %.12f m, the resting box %.2g m\n", method, way[0], exact, way[1]);
+        assert_true(fabs(way[0] - exact) < 1e-11 && fabs(way[1]) < 1e-9);
+    }
+}
+
 int main(void)
 {
     char folder[] = "/tmp/tobiuo_rigid_XXXXXX";
@@ -354,6 +439,7 @@ int main(void)
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_projectile), cmocka_unit_test(test_free_fall),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

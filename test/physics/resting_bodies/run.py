@@ -26,6 +26,7 @@ def drift(table):
 
 
 END = case.pick(2, 10)
+WEIGHT = 1000*0.1**3*9.81
 fine = read_table(case.run("fine", "--until", END) / "bodies.csv")
 for k, e in enumerate((0.3, 0.6, 0.9)):
     z, v = (column(fine, f"ball{k}", name) for name in ("position_z", "velocity_z"))
@@ -46,6 +47,11 @@ for label, table, dt in (("steps of 1 ms", fine, 1e-3), ("60 steps a second", co
     case.figure(f"tower after {END} s, {label}: energy of a box over that of one step's fall", energy, "<= 1e-6",
                 energy <= 1e-6)
     case.hold(f"{label}: the tower stays and rests", worst <= 0.001 and energy <= 1e-6)
+    # what bodies and sides do to each box carries it: the one below less the ones above
+    load = max(abs(column(table, f"box{k}", "mean_contact_force_z")[-1]/WEIGHT - 1) for k in range(10))
+    case.figure(f"tower after {END} s, {label}: contact force on a box over its weight, minus 1", load, "within 0.01",
+                load <= 0.01)
+    case.hold(f"{label}: contact carries every box", load <= 0.01)
 case.plot("Balls on the floor", "t, s", "height, m",
           [(f"e = {e}", column(fine, f"ball{k}", "time"), [z - 0.05 for z in column(fine, f"ball{k}", "position_z")],
             False) for k, e in enumerate((0.3, 0.6, 0.9))])
