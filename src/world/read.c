@@ -15,6 +15,7 @@ static const struct { const char *name; int components; const char *unit; int ow
     {"von_mises", 1, "Pa", TOBI_MPM},         {"stress", 6, "Pa", TOBI_MPM},
     {"J", 1, "1", TOBI_MPM},                  {"deformation_gradient", 9, "1", TOBI_MPM},
     {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
+    {"damage", 1, "1", TOBI_MPM},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
 
