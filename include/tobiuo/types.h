@@ -115,8 +115,10 @@ typedef struct tobi_solid_def {
     double hardening;                 /* Pa for von Mises (d yield/d strain), 1 for snow (exponent)   */
     double critical_compression;      /* 1, snow                                                      */
     double critical_stretch;          /* 1, snow                                                      */
-    double friction_angle;            /* degrees, sand                                                */
-    double cut_friction;              /* 1, Coulomb, between the faces of a cut                            */
+    double friction_angle;            /* degrees, sand, and solids where they are broken              */
+    double strength;                  /* Pa, tension per area at the start that breaks it; 0 = never  */
+    double fracture_energy;           /* J/m2, of a crack, per area at the start                      */
+    double cut_friction;              /* 1, Coulomb, between the faces of a cut                       */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */

@@ -49,6 +49,27 @@ static double energy_density(const mpm_material *m, const float e[9], double pla
     }
 }
 
+/* Elastic energy of principal stretches 1 + s, eqs. (6) and (8). */
+static double breakable_energy(const mpm_parameters *m, int model, const float s[3])
+{
+    const double x = s[0], y = s[1], z = s[2], sum = x + y + z, squares = x*x + y*y + z*z;
+    const double dilation = sum + (x*y + y*z + z*x + x*y*z), log_j = log1p(fmax(dilation, -0.999));
+    if (model == TOBI_COROTATED) return m->mu*squares + 0.5*m->lambda*dilation*dilation;
+    return m->mu*(sum + 0.5*squares - log_j) + 0.5*m->lambda*log_j*log_j;
+}
+
+/* The same of a breakable particle, eq. (17); what is cracked and apart holds none. */
+static double cracked_energy(const mpm_parameters *m, int32_t model, const float e[9], double damage)
+{
+    float a[6], v[3][3];
+    mpm_crack c;
+    mpm_finger(e, a);
+    mpm_eigen(a, v);
+    mpm_find_crack(m, model, a, &c);
+    const int pressed = c.log[0] + c.log[1] + c.log[2] < 0;
+    return (1 - damage)*breakable_energy(m, model, c.s) + (pressed ? damage*breakable_energy(m, model, c.loose) : 0);
+}
+
 mpm_sight mpm_look(const mpm_view *v, int64_t i)
 {
     mpm_parameters parameters;
@@ -61,13 +82,15 @@ mpm_sight mpm_look(const mpm_view *v, int64_t i)
     mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
     mpm_deform(v->strain_dt, gradient, e);
     mpm_find_stress(&parameters, model, present, gradient, e, &other[1], tau);
-    s.plastic = other[1];
+    if (present & MPM_BREAKS) s.damage = other[1];
+    else s.plastic = other[1];
     s.ratio = 1 + (double)mpm_dilation(e);
     if (model == TOBI_SNOW) s.ratio *= 1 + s.plastic;
     if (model == TOBI_SAND) s.ratio *= exp(s.plastic);
     for (int k = 0; k < 9; k++) s.strain[k] = e[k];
     for (int k = 0; k < 6; k++) s.stress[k] = tau[k]/s.ratio;
-    s.energy = other[0]*energy_density(&v->material[v->solid[i]], e, s.plastic);
+    s.energy = other[0]*(present & MPM_BREAKS ? cracked_energy(&parameters, model, e, s.damage) :
+                                                energy_density(&v->material[v->solid[i]], e, s.plastic));
     return s;
 }
 
@@ -150,6 +173,8 @@ void mpm_show_field(const mpm_view *v, double density, const char *field, int64_
         out[0] = von_mises(s.stress);
     } else if (!strcmp(field, "plastic")) {
         out[0] = s.plastic;
+    } else if (!strcmp(field, "damage")) {
+        out[0] = s.damage;
     } else if (!strcmp(field, "stress")) {
         memcpy(out, s.stress, sizeof s.stress);
     } else {

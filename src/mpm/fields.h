@@ -8,6 +8,7 @@ typedef struct mpm_sight {
     double stress[6];                  /* Pa, Cauchy: xx, yy, zz, xy, yz, zx                        */
     double ratio;                      /* J: volume over that at the start, plastic part included  */
     double plastic;                    /* materials.k.h: plastic strain, J - 1 or expansion         */
+    double damage;                     /* D of a solid that breaks                                  */
     double energy;                     /* J, elastic                                                */
 } mpm_sight;
 

@@ -114,7 +114,7 @@ TOBI_FN void mpm_stretch(lane e[9], const lane g[3], lane v[3][3])
 
 /* The parameters of eight particles. */
 typedef struct mpm_parameters {
-    lane mu, lambda, bulk, viscosity, yield, hardening, compression, stretch, friction;
+    lane mu, lambda, bulk, viscosity, yield, hardening, compression, stretch, friction, strength, brittleness;
 } mpm_parameters;
 
 /* Kirchhoff stress of the neo-Hookean solid, eq. (6): mu (b - I) + lambda ln J I. */

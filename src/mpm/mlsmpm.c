@@ -4,6 +4,7 @@
 #include "mpm/mlsmpm.h"
 #include "base/error.h"
 #include "mpm/cut.h"
+#include "mpm/damage.h"
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
@@ -178,6 +179,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         double sound;
         m->touch.cell_mass = fmin(m->touch.cell_mass, d->density*pow(m->cell, s->box.dimension));
         m->material[k] = describe_material(d, s->box.dimension, &sound);
+        mpm_damage_describe(d, m->cell, &m->material[k]);
         m->damping[k] = d->damping;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
@@ -206,6 +208,14 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid)
     double cell = m->cell*s->smoothing.spacing, sound;
     describe_material(d, s->box.dimension, &sound);
     return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
+}
+
+static tobi_status accept_solid(const tobi_simulation *s, const void *def, int solid, char note[200],
+                                tobi_error *err)
+{
+    const tobi_solid *d = &s->solids[solid];
+    return mpm_damage_check(&d->def, d->name, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing, note,
+                            err);
 }
 
 static int is_stale(const mlsmpm *m)
@@ -561,6 +571,7 @@ const tobi_method tobi_mlsmpm = {
     .create = create,
     .step = step,
     .read = read_field,
+    .accept = accept_solid,
     .stable_dt = limit_dt,
     .nodes = find_nodes,
     .measure = measure,

@@ -1,8 +1,16 @@
 /* Eight particles side by side: their weights, their stress, what they give to the grid. */
 #pragma once
-#include "mpm/materials.k.h"
+#include "mpm/damage.k.h"
 
 enum { MPM_WIDE = TOBI_LANES };
+
+/* Beside the bits of the models in `present`: some solid breaks. Its model's own bit is not set for it. */
+enum { MPM_BREAKS = 1 << 30 };
+
+TOBI_FN uint32_t mpm_bit_of(const mpm_material *m)
+{
+    return m->strength > 0 ? (uint32_t)MPM_BREAKS : 1u << m->model;
+}
 
 /* Eight particles: where they stand in the tile and their weights. */
 typedef struct mpm_stencil {
@@ -61,15 +69,16 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
                                    lane_int *model, uint32_t *present)
 {
     const mpm_material *one = &v->material[v->solid[i]];
-    float p[10][MPM_WIDE];
+    float p[12][MPM_WIDE];
     int32_t number[MPM_WIDE];
     if (mpm_is_uniform(v->solid + i)) {
         *m = (mpm_parameters){lane_set(one->mu), lane_set(one->lambda), lane_set(one->bulk),
                               lane_set(one->viscosity), lane_set(one->yield), lane_set(one->hardening),
-                              lane_set(one->compression), lane_set(one->stretch), lane_set(one->friction)};
+                              lane_set(one->compression), lane_set(one->stretch), lane_set(one->friction),
+                              lane_set(one->strength), lane_set(one->brittleness)};
         *keep = lane_set(one->keep);
         *model = lane_set_int(one->model);
-        *present = 1u << one->model;
+        *present = mpm_bit_of(one);
         return;
     }
     *present = 0;
@@ -77,12 +86,13 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
         const mpm_material *a = k < count ? &v->material[v->solid[i + k]] : one;
         p[0][k] = a->mu; p[1][k] = a->lambda; p[2][k] = a->bulk; p[3][k] = a->viscosity;
         p[4][k] = a->yield; p[5][k] = a->hardening; p[6][k] = a->compression; p[7][k] = a->stretch;
-        p[8][k] = a->friction; p[9][k] = a->keep;
+        p[8][k] = a->friction; p[9][k] = a->keep; p[10][k] = a->strength; p[11][k] = a->brittleness;
         number[k] = a->model;
-        *present |= 1u << a->model;
+        *present |= mpm_bit_of(a);
     }
     *m = (mpm_parameters){lane_load(p[0]), lane_load(p[1]), lane_load(p[2]), lane_load(p[3]), lane_load(p[4]),
-                          lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8])};
+                          lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8]), lane_load(p[10]),
+                          lane_load(p[11])};
     *keep = lane_load(p[9]);
     *model = lane_load_index(number);
 }
@@ -104,7 +114,7 @@ TOBI_FN void mpm_deform(float dt, const lane gradient[9], lane e[9])
 TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t present,
                              const lane gradient[9], lane e[9], lane *state, lane tau[6])
 {
-    const uint32_t simple = 1u << TOBI_NEO_HOOKEAN | 1u << TOBI_LIQUID | 1u << TOBI_STATIONARY;
+    const uint32_t simple = 1u << TOBI_NEO_HOOKEAN | 1u << TOBI_LIQUID | 1u << TOBI_STATIONARY | MPM_BREAKS;
     for (int k = 0; k < 6; k++) tau[k] = lane_set(0);
     if (present == 1u << TOBI_NEO_HOOKEAN) {
         mpm_neo_hookean(e, m, tau);
@@ -134,6 +144,14 @@ TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t p
             for (int k = 0; k < 9; k++) e[k] = lane_where_equal(model, is, kept[k], e[k]);
             *state = lane_where_equal(model, is, plastic, *state);
         }
+    }
+    if (present & MPM_BREAKS) {
+        lane damage = *state, zero = lane_set(0);
+        for (int k = 0; k < 9; k++) kept[k] = e[k];
+        mpm_break(m, model, kept, &damage, part);
+        for (int k = 0; k < 6; k++) tau[k] = lane_where_less(zero, m->strength, part[k], tau[k]);
+        for (int k = 0; k < 9; k++) e[k] = lane_where_less(zero, m->strength, kept[k], e[k]);
+        *state = lane_where_less(zero, m->strength, damage, *state);
     }
 }
 

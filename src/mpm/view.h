@@ -4,7 +4,8 @@
    nodes -1 .. 6 of its own counting: its tile of 8x8x8 nodes.
 
    Fields of a particle beside those of every method (core/particles.h):
-     strain   columns of F - I;  w: volume at the start (m3), plastic state (materials.k.h), mass (kg)
+     strain   columns of F - I;  w: volume at the start (m3), plastic state or damage (materials.k.h,
+              damage.k.h), mass (kg)
      affine   columns of the velocity gradient, 1/s
    F lags behind: the gradient of the last step is put into it by the next one (docs/theory/mlsmpm.md). */
 #pragma once
@@ -20,6 +21,7 @@ typedef struct mpm_material {
     float compression, stretch;        /* 1, limits of snow                                       */
     float friction;                    /* 1, alpha of Drucker and Prager                          */
     float cut_friction;                /* 1, Coulomb, between the faces of a cut                  */
+    float strength, brittleness;       /* Pa, 0: never breaks; 1/(crack strain at which nothing is left) */
     float keep;                        /* share of the velocity kept in this step, by damping     */
 } mpm_material;
 

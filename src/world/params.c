@@ -190,7 +190,15 @@ static const tobi_param solid_rows[] = {
     { .key = "critical_stretch", REAL, AT(tobi_solid_def, critical_stretch), .def = { 0.0075 },
       RANGE(0, 0.5), .unit = "1", .doc = "Stretch at which snow breaks." },
     { .key = "friction_angle", REAL, AT(tobi_solid_def, friction_angle), .def = { 30 }, RANGE(0, 60),
-      .unit = "degrees", .doc = "Angle of internal friction of sand." },
+      .unit = "degrees",
+      .doc = "Angle of internal friction of sand, and of a neo-hookean or corotated solid where it is broken." },
+    { .key = "strength", REAL, AT(tobi_solid_def, strength), FROM(0), .unit = "Pa", .text = "none",
+      .doc = "Tension at which a neo-hookean or corotated solid begins to crack, force over area at the "
+             "start; it needs a fracture_energy." },
+    { .key = "fracture_energy", REAL, AT(tobi_solid_def, fracture_energy), FROM(0), .unit = "J/m2",
+      .text = "none",
+      .doc = "Energy that a crack takes per area; cells must be smaller than 4/3 youngs_modulus x "
+             "fracture_energy/strength^2, and at least 1.2 fracture_energy/strength for all of it." },
     { .key = "cut_friction", REAL, AT(tobi_solid_def, cut_friction), .def = { 0.3 }, FROM(0), .unit = "1",
       .doc = "Coulomb friction between the faces of what a blade has cut." },
     { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
@@ -487,12 +495,15 @@ const char *tobi_choice_word(const char *choices, int i, int *length)
 static const struct { const char *key; uint32_t models; } constants[] = {
 #define OF(model) (UINT32_C(1) << (model))
 #define ELASTIC ~(OF(TOBI_LIQUID) | OF(TOBI_STATIONARY))
+#define BREAKABLE (OF(TOBI_NEO_HOOKEAN) | OF(TOBI_COROTATED))
     { "youngs_modulus", ELASTIC },          { "poissons_ratio", ELASTIC },
     { "bulk_modulus", OF(TOBI_LIQUID) },    { "viscosity", OF(TOBI_LIQUID) },
     { "yield_stress", OF(TOBI_VON_MISES) }, { "hardening", OF(TOBI_VON_MISES) | OF(TOBI_SNOW) },
     { "critical_compression", OF(TOBI_SNOW) }, { "critical_stretch", OF(TOBI_SNOW) },
-    { "friction_angle", OF(TOBI_SAND) },    { "damping", ~OF(TOBI_STATIONARY) },
+    { "friction_angle", OF(TOBI_SAND) | BREAKABLE }, { "strength", BREAKABLE },
+    { "fracture_energy", BREAKABLE },       { "damping", ~OF(TOBI_STATIONARY) },
     { "cut_friction", ~(OF(TOBI_STATIONARY) | OF(TOBI_LIQUID) | OF(TOBI_SAND)) },
+#undef BREAKABLE
 #undef ELASTIC
 };
 enum { CONSTANT_COUNT = sizeof constants/sizeof constants[0] };

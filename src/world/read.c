@@ -17,6 +17,7 @@ static const struct { const char *name; int components; const char *unit; int ow
     {"J", 1, "1", TOBI_MPM},                  {"deformation_gradient", 9, "1", TOBI_MPM},
     {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
     {"piece", 1, "1", TOBI_MPM},              {"cut_side", 1, "1", TOBI_MPM},
+    {"damage", 1, "1", TOBI_MPM},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
 

@@ -146,7 +146,9 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     solid->def = *def;
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
-    return TOBI_OK;
+    char note[200] = "";
+    if (w->method->accept) TOBI_TRY(w->method->accept(s, w->method_def, s->solid_count - 1, note, err));
+    return note[0] ? tobi_world_add_notes(w, "solid", solid->name, note, err) : TOBI_OK;
 }
 
 static tobi_status check_blades(const tobi_world *w, tobi_error *err)

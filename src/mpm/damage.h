@@ -1,0 +1,16 @@
+/* Strength and fracture energy of solids on a grid: the crack band of Bazant and Oh (1983). Equation numbers:
+   docs/theory/mlsmpm.md. */
+#pragma once
+#include "base/error.h"
+#include "core/simulation.h"
+#include "mpm/view.h"
+
+/* TOBI_INVALID in words if strength and fracture energy do not belong together, or if cells of this size (m)
+   are too large for them, eq. (21). name: of the solid. note: at least 200 characters; empty, or what the
+   user should know of such cells. */
+tobi_status mpm_damage_check(const tobi_solid_def *def, const char *name, double cell, char note[200],
+                             tobi_error *err);
+/* Writes strength and brittleness of a solid on cells of this size (m), eq. (20). */
+void mpm_damage_describe(const tobi_solid_def *def, double cell, mpm_material *material);
+/* Energy that cracks have taken from one particle so far, J, from its damage alone, eq. (19). */
+double mpm_damage_spent(const mpm_view *v, int64_t i);
