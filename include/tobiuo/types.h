@@ -281,15 +281,15 @@ typedef struct tobi_step_info {
     double  weight;               /* N, |m g| of all fluid                                            */
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */
     double  elastic_energy;       /* J, stored in solids and compressed liquids of mlsmpm             */
-    double  energy_lost;          /* J, of the solids: gone by transfers, friction, plastic flow, damping  */
-    double  transfer_dissipation; /* J, of that by transfers, if mlsmpm measures it                   */
-    double  fracture_work;        /* J, of that by the edges of blades, for new surface               */
-    double  friction_work;        /* J, of that by friction at bodies and between faces of cuts       */
-    double  damping_work;         /* J, of that by the damping of solids                              */
-    double  side_work;            /* J, of that by sides of the domain: friction; < 0: they drive     */
-    double  step_work;            /* J, of that by the length of time steps, if measured              */
-    double  plastic_work;         /* J, of that by plastic flow and viscosity, if measured            */
-    double  work_bodies;          /* J, done by bodies on the solids                                  */
+    double  work_bodies;          /* J, done by bodies on the solids of mlsmpm so far                 */
+    double  energy_lost;          /* J, gone from the solids so far; the next seven are its parts     */
+    double  transfer_dissipation; /* J, by the way to the grid and back; if mlsmpm measures it        */
+    double  plastic_work;         /* J, by plastic flow and viscosity; if measured                    */
+    double  step_work;            /* J, by the length of time steps, impact included; if measured     */
+    double  damping_work;         /* J, by the damping of solids                                      */
+    double  friction_work;        /* J, by friction and impact at bodies and at faces of cuts         */
+    double  fracture_work;        /* J, by the edges of blades, for new surface                       */
+    double  side_work;            /* J, by friction at sides of the domain; < 0: they drive           */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */

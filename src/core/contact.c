@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 16 };
+enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 17 };
 
 /* Contacts that one chunk of particles has with a body. */
 struct tobi_contact_run { int64_t chunk, first, count; };
@@ -507,6 +507,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
             }
             find_relative(k, c->velocity, c->spin, relative);
             sum[edge ? 14 : 15] -= vec3_dot(k->impulse, relative);
+            sum[16] += vec3_dot(k->impulse, k->velocity);
             for (int m = 0; m < 2; m++) {
                 vec3_cross(twist, k->arm, part[m]);
                 for (int a = 0; a < 3; a++) { sum[6*m + a] += part[m][a]; sum[6*m + 3 + a] += twist[a]; }
@@ -530,6 +531,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     }
     work->fracture += total[14];
     work->friction += total[15];
+    work->bodies += total[14] + total[15] + total[16];
     for (int a = 0; a < 3; a++) {
         b->rigid.impulse[a] += total[a] + total[6 + a];
         b->rigid.twist[a] += total[3 + a] + total[9 + a];

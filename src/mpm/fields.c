@@ -106,15 +106,6 @@ double mpm_kinetic(const mpm_view *v, int64_t i)
     return 0.5*v->strain[i].c[2].w*square;
 }
 
-void mpm_sum_damping(const void *view, int64_t begin, int64_t end, double *totals)
-{
-    const mpm_view *v = view;
-    for (int64_t i = begin; i < end; i++) {
-        const double keep = v->material[v->solid[i]].keep;
-        if (keep < 1) totals[0] += (1 - keep*keep)*mpm_kinetic(v, i);
-    }
-}
-
 /* Power of a symmetric stress along a velocity gradient. */
 static double stress_power(const float tau[6], const float c[9])
 {

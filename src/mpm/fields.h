@@ -16,8 +16,6 @@ typedef struct mpm_sight {
 mpm_sight mpm_look(const mpm_view *v, int64_t i);
 /* Kinetic energy of one particle, J, that of the affine motion of APIC included. */
 double mpm_kinetic(const mpm_view *v, int64_t i);
-/* totals[0]: what damping takes from the kinetic energy in this step, J, over particles. */
-void mpm_sum_damping(const void *view, int64_t begin, int64_t end, double *totals);
 /* totals[0]: what plastic flow and viscosity take from the energy when the gradient that strain lacks is put
    into it, J, over particles. */
 void mpm_sum_flow(const void *view, int64_t begin, int64_t end, double *totals);

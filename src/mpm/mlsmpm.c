@@ -181,6 +181,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         m->material[k] = describe_material(d, s->box.dimension, &sound);
         mpm_damage_describe(d, m->cell, &m->material[k]);
         m->damping[k] = d->damping;
+        m->view.damped |= d->damping > 0;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
     }
@@ -290,19 +291,10 @@ static int64_t count_patches(const mlsmpm *m) { return m->grid.patch_count + m->
 
 static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
-    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, NULL);
-    tobi_stage_end(&s->stages, "to grid", clock);
-}
-
-/* Before the way to the grid, which damps. */
-static void measure_damping(tobi_simulation *s, mlsmpm *m)
-{
     double t[TOBI_TOTALS];
-    int damped = 0;
-    for (int k = 0; k < s->solid_count; k++) damped |= m->damping[k] > 0;
-    if (!damped) return;
-    tobi_launch(&s->exec, mpm_sum_damping, &m->view, 0, s->particles.count, t);
+    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
     m->memory[DAMPING] += t[0];
+    tobi_stage_end(&s->stages, "to grid", clock);
 }
 
 /* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last
@@ -365,16 +357,6 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_stage_end(&s->stages, "to particles", clock);
 }
 
-/* What a body does to the material, W, by its rigid motion over the step. */
-static double find_work(const tobi_body *b)
-{
-    double work = 0;
-    for (int a = 0; a < 3; a++)
-        work -= (b->info.pressure_force[a] + b->info.viscous_force[a])*b->rigid.velocity[a] +
-                (b->info.pressure_torque[a] + b->info.viscous_torque[a])*b->rigid.angular_velocity[a];
-    return work;
-}
-
 static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
 {
     double g = 0;
@@ -388,7 +370,7 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
     m->memory[DRIFT] += m->touch.far;
     m->memory[FRACTURE] += m->touch.work.fracture;
     m->memory[FRICTION] += m->touch.work.friction;
-    for (int k = 0; k < s->body_count; k++) m->memory[BODY_WORK] += find_work(&s->bodies[k])*s->dt;
+    m->memory[BODY_WORK] += m->touch.work.bodies;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;
 }
@@ -462,6 +444,7 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
             sum_energy(&v, i, i + 1, t);
             m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
             m->memory[STEPS] -= t[0];
+            m->memory[NODE_ENERGY] -= t[1];
             continue;
         }
         if (kept < i) tobi_particles_copy(p, i, kept);
@@ -483,7 +466,6 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
         TOBI_TRY(sort_particles(s, m, &clock, err));
-        measure_damping(s, m);
         particles_to_grid(s, m, &clock);
         measure_way_to_grid(s, m);
         solve_grid(s, m, &clock);

@@ -161,7 +161,23 @@ typedef struct mpm_load {
     tobi_float4 matrix[3][8];          /* kg/s, columns                                           */
 } mpm_load;
 
-TOBI_FN void mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *load)
+/* What damping takes from the kinetic energy of the first `count` particles in this step, J. */
+TOBI_FN double mpm_find_damping(const mpm_view *v, int count, const lane velocity[4], const lane c[9],
+                                lane mass, lane keep)
+{
+    const float affine = v->affine_momentum ? 0.25f*v->cell*v->cell : 0;
+    lane square = velocity[0]*velocity[0] + velocity[1]*velocity[1] + velocity[2]*velocity[2];
+    float lost[MPM_WIDE];
+    double sum = 0;
+    for (int k = 0; k < 9; k++) square = square + affine*(c[k]*c[k]);
+    square = 0.5f*mass*((1.0f - keep)*(1.0f + keep))*square;
+    __builtin_memcpy(lost, &square, sizeof square);
+    for (int k = 0; k < count; k++) sum += lost[k];
+    return sum;
+}
+
+/* Returns the kinetic energy that damping takes, J. */
+TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *load)
 {
     const int32_t next[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     lane velocity[4], gradient[9], e[9], other[3], unused[3], tau[6], keep;
@@ -185,4 +201,5 @@ TOBI_FN void mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *lo
     }
     lane moving = mass*keep;
     lane_store_float4(load->momentum, 1, 8, moving*velocity[0], moving*velocity[1], moving*velocity[2], mass);
+    return v->damped ? mpm_find_damping(v, count, velocity, gradient, mass, keep) : 0;
 }

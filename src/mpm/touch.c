@@ -328,7 +328,7 @@ tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g
                              const tobi_contact_step *step, double drift, tobi_error *err)
 {
     t->far = 0;
-    t->work = (tobi_contact_work){0, 0};
+    t->work = (tobi_contact_work){ 0 };
     s->info.contacts = 0;
     if (s->body_count == 0) return TOBI_OK;
     TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, drift, &s->exec, err));

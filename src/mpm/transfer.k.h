@@ -44,7 +44,7 @@ TOBI_FN tobi_float4 *mpm_twin_tile(const mpm_block *b, tobi_float4 *tiles, int n
     return tile;
 }
 
-/* Momentum and mass of a block's particles into its tile. */
+/* Momentum and mass of a block's particles into its tile. totals: 0 energy taken by damping, J. */
 TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
@@ -53,7 +53,6 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     row sum[9];
     int32_t cell = -1;
     const quad step = {0, 1, 2, 0}, zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
-    (void)totals;
     tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
     tobi_float4 *twin = mpm_twin_tile(b, v->tile, nodes);
     tobi_float4 *calm_twin = calm ? mpm_twin_tile(b, v->calm, nodes) : NULL;
@@ -67,7 +66,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
         mpm_stencil s;
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
-        mpm_find_load(v, i, count, &load);
+        totals[0] += mpm_find_load(v, i, count, &load);
         for (int k = 0; k < count; k++) {
             uint32_t hidden = twin ? mpm_find_hidden(&v->cuts[i + k], side, s.first[k], dim) : 0;
             if (twin) v->hidden[i + k] = hidden;

@@ -73,6 +73,7 @@ typedef struct mpm_view {
     double inverse_cell;               /* 1/m                                                      */
     float  cell;                       /* m                                                        */
     float  dt, strain_dt;              /* s, of this step and of the gradients that strain lacks    */
+    int    damped;                     /* 1: a material is damped                                  */
     int    affine_momentum;            /* 1: APIC                                                  */
     float  flip;                       /* share of FLIP; 1 with XPIC                               */
     float  own;                        /* 1 if the particle's own velocity goes on: FLIP           */

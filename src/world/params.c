@@ -153,8 +153,9 @@ static const tobi_param mlsmpm_rows[] = {
       .positive = true, .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
     { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
-      .doc = "Sum up in every step what the way to the grid and back costs, for transfer_dissipation in "
-             "history.csv; takes half as long again." },
+      .doc = "Sum up in every step what the way to the grid and back, time steps and plastic flow cost, for "
+             "transfer_dissipation, step_work and plastic_work in history.csv; takes half as long again, and "
+             "twice as long where material flows." },
     { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
       .doc = "What becomes of particles that get past a side; those past an open side are removed." },
     { 0 }

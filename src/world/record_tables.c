@@ -9,7 +9,8 @@
 /* H(column, kind, value): one line per column of history.csv. `i` is the last step's info, `s` the
    sums since the last output. Means are over the steps since the last output; other values are of
    the last step. wall_force_ratio: force of the fluid on the walls along gravity / its weight; 1 in a
-   settled tank. pieces and fragments: of solids, see tobi_pieces. */
+   settled tank. Work and energies of solids are sums since the
+   start, see tobi_step_info. pieces and fragments: see tobi_pieces. */
 #define HISTORY(H)                                                                  \
     H("time",                       real, i->time)                                  \
     H("step",                       int,  i->step)                                  \
@@ -32,15 +33,15 @@
     H("kinetic_energy",             real, i->kinetic_energy)                        \
     H("potential_energy",           real, i->potential_energy)                      \
     H("elastic_energy",             real, i->elastic_energy)                        \
+    H("work_bodies",                real, i->work_bodies)                           \
     H("energy_lost",                real, i->energy_lost)                           \
     H("transfer_dissipation",       real, i->transfer_dissipation)                  \
-    H("fracture_work",              real, i->fracture_work)                         \
-    H("friction_work",              real, i->friction_work)                         \
-    H("damping_work",               real, i->damping_work)                          \
-    H("side_work",                  real, i->side_work)                             \
-    H("step_work",                  real, i->step_work)                             \
     H("plastic_work",               real, i->plastic_work)                          \
-    H("work_bodies",                real, i->work_bodies)                           \
+    H("step_work",                  real, i->step_work)                             \
+    H("damping_work",               real, i->damping_work)                          \
+    H("friction_work",              real, i->friction_work)                         \
+    H("fracture_work",              real, i->fracture_work)                         \
+    H("side_work",                  real, i->side_work)                             \
     H("momentum_x",                 real, i->momentum[0])                           \
     H("momentum_y",                 real, i->momentum[1])                           \
     H("momentum_z",                 real, i->momentum[2])                           \
