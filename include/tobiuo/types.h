@@ -342,6 +342,7 @@ typedef struct tobi_body_info {
     double pressure_force[3], viscous_force[3];      /* N, of the fluid on the body                   */
     double pressure_torque[3], viscous_torque[3];    /* N m                                           */
     double contact_force[3], contact_torque[3];      /* N, N m: of bodies and sides that touch it     */
+    double edge_force[3];         /* N, the part of pressure_force that a blade's edge takes to cut   */
     double mass, volume;          /* kg, m3 by exact integrals of the mesh                            */
     double inertia[9];            /* kg m2 about the centre of mass, row-major                        */
     int64_t particles;            /* body particles                                                   */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 17 };
+enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 20 };
 
 /* Contacts that one chunk of particles has with a body. */
 struct tobi_contact_run { int64_t chunk, first, count; };
@@ -512,6 +512,8 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
                 vec3_cross(twist, k->arm, part[m]);
                 for (int a = 0; a < 3; a++) { sum[6*m + a] += part[m][a]; sum[6*m + 3 + a] += twist[a]; }
             }
+            for (int a = 0; a < 3 && edge; a++) sum[17 + a] -= k->impulse[a];
+            if (edge) sum[12] += vec3_dot(k->impulse, k->impulse) > 0;
             if (edge) continue;
             sum[12] += normal > 0;
             p->velocity[k->particle].w = (float)(normal/dt);
@@ -536,6 +538,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         b->rigid.impulse[a] += total[a] + total[6 + a];
         b->rigid.twist[a] += total[3 + a] + total[9 + a];
         b->info.pressure_force[a] = total[a]/dt;
+        b->info.edge_force[a] = total[17 + a]/dt;
         b->info.pressure_torque[a] = total[3 + a]/dt;
         b->info.viscous_force[a] = total[6 + a]/dt;
         b->info.viscous_torque[a] = total[9 + a]/dt;

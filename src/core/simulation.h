@@ -78,7 +78,8 @@ typedef struct tobi_method {
     void (*read)(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out);
     /* Refuses, in words, a solid that it cannot compute at this spacing, or leaves a note for the user; NULL:
        it takes all. */
-    tobi_status (*accept)(const tobi_simulation *s, const void *def, int solid, char note[200], tobi_error *err);
+    tobi_status (*accept)(const tobi_simulation *s, const void *def, int solid, char note[200],
+                          tobi_error *err);
     /* The longest step that a solid's material allows at rest, s; NULL: there are no solids. */
     double (*stable_dt)(const tobi_simulation *s, const void *def, int solid);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */

@@ -20,8 +20,8 @@ static tobi_status check_keys(const tobi_solid_def *def, const char *name, tobi_
         return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s': strength is for the models neo-hookean and "
                          "corotated", name);
     if (breaks && !costs)
-        return tobi_fail(err, TOBI_INVALID, "solid '%s': strength needs a fracture_energy greater than 0 J/m2",
-                         name);
+        return tobi_fail(err, TOBI_INVALID, "solid '%s': strength needs a fracture_energy greater than 0 "
+                         "J/m2", name);
     if (costs && !breaks)
         return tobi_fail(err, TOBI_INVALID, "solid '%s': fracture_energy needs a strength greater than 0 Pa",
                          name);
@@ -41,9 +41,9 @@ tobi_status mpm_damage_check(const tobi_solid_def *def, const char *name, double
                          "than %.4g m, they have %.4g m; larger ones hold more elastic energy than a crack "
                          "takes", name, most, cell);
     if (opening > MOST_CELLS*cell)
-        snprintf(note, 200, "cracks open by %.3g m until they are through; cells of %.3g m lose sight of their "
-                 "faces before, and the energy stays below fracture_energy; cells larger than %.3g m follow "
-                 "them\n", opening, cell, opening/MOST_CELLS);
+        snprintf(note, 200, "cracks open by %.3g m until they are through; cells of %.3g m lose sight of "
+                 "their faces before, and the energy stays below fracture_energy; cells larger than %.3g m "
+                 "follow them\n", opening, cell, opening/MOST_CELLS);
     return TOBI_OK;
 }
 
@@ -70,7 +70,7 @@ double mpm_damage_spent(const mpm_view *v, int64_t i)
     const double strength = m->strength, damage = v->strain[i].c[1].w;
     if (!(strength > 0 && damage > 0)) return 0;
     double strain = strength/(2.0*m->mu + m->lambda);
-    for (int k = 0; k < 40; k++) {                   /* e(D) of eq. (18); each round gains half a digit or more */
+    for (int k = 0; k < 40; k++) {                   /* e of eq. (18) for this D */
         const double onset = strength/find_secant(m, strain);
         strain = onset/(1 - damage*(1 - onset*m->brittleness));
     }

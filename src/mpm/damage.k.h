@@ -15,7 +15,7 @@ TOBI_FN lane mpm_expm1(lane x)
     return scale*p + (scale - 1.0f);
 }
 
-/* Principal Kirchhoff stresses of the elastic models at stretches 1 + s, eqs. (6) and (8); log_ratio = ln J. */
+/* Principal stresses tau of the elastic models at stretches 1 + s, eqs. (6) and (8). log_ratio: ln J. */
 TOBI_FN void mpm_elastic(const mpm_parameters *m, lane_int model, const lane s[3], lane log_ratio,
                          lane value[3])
 {
@@ -74,7 +74,7 @@ TOBI_FN void mpm_find_crack(const mpm_parameters *m, lane_int model, const lane 
     for (int k = 0; k < 3; k++) c->cracked[k] = lane_where_less(ratio, zero, c->cracked[k], zero);
 }
 
-/* Kirchhoff stress of breakable particles, eqs. (17) to (19). state: D. Only what is broken for good flows. */
+/* Kirchhoff stress of breakable particles, eqs. (17), (18). state: D. Only what is broken for good flows. */
 TOBI_FN void mpm_break(const mpm_parameters *m, lane_int model, lane e[9], lane *state, lane tau[6])
 {
     lane a[6], v[3][3], g[3], value[3], one = lane_set(1), zero = lane_set(0);

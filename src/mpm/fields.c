@@ -67,7 +67,8 @@ static double cracked_energy(const mpm_parameters *m, int32_t model, const float
     mpm_eigen(a, v);
     mpm_find_crack(m, model, a, &c);
     const int pressed = c.log[0] + c.log[1] + c.log[2] < 0;
-    return (1 - damage)*breakable_energy(m, model, c.s) + (pressed ? damage*breakable_energy(m, model, c.loose) : 0);
+    const double cracked = pressed ? breakable_energy(m, model, c.loose) : 0;
+    return (1 - damage)*breakable_energy(m, model, c.s) + damage*cracked;
 }
 
 mpm_sight mpm_look(const mpm_view *v, int64_t i)

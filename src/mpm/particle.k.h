@@ -86,13 +86,14 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
         const mpm_material *a = k < count ? &v->material[v->solid[i + k]] : one;
         p[0][k] = a->mu; p[1][k] = a->lambda; p[2][k] = a->bulk; p[3][k] = a->viscosity;
         p[4][k] = a->yield; p[5][k] = a->hardening; p[6][k] = a->compression; p[7][k] = a->stretch;
-        p[8][k] = a->friction; p[9][k] = a->keep; p[10][k] = a->strength; p[11][k] = a->brittleness;
+        p[8][k] = a->friction; p[9][k] = a->keep; p[10][k] = a->strength;
+        p[11][k] = a->brittleness;
         number[k] = a->model;
         *present |= mpm_bit_of(a);
     }
     *m = (mpm_parameters){lane_load(p[0]), lane_load(p[1]), lane_load(p[2]), lane_load(p[3]), lane_load(p[4]),
-                          lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8]), lane_load(p[10]),
-                          lane_load(p[11])};
+                          lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8]),
+                          lane_load(p[10]), lane_load(p[11])};
     *keep = lane_load(p[9]);
     *model = lane_load_index(number);
 }

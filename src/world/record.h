@@ -21,7 +21,7 @@ typedef struct tobi_tally {
 
 /* Impulses of the fluid on one body since the last output: pressure force, viscous force, pressure torque,
    viscous torque, each times time, N s and N m s. */
-enum { TOBI_BODY_FORCES = 6 };
+enum { TOBI_BODY_FORCES = 7 };
 typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } tobi_body_tally;
 
 /* One field to write. */

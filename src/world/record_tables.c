@@ -77,7 +77,9 @@
     V3(B, "contact_force", b.contact_force)                 \
     V3(B, "contact_torque", b.contact_torque)               \
     V3(B, "mean_contact_force", m.impulse[4])               \
-    V3(B, "mean_contact_torque", m.impulse[5])
+    V3(B, "mean_contact_torque", m.impulse[5])              \
+    V3(B, "edge_force", b.edge_force)                       \
+    V3(B, "mean_edge_force", m.impulse[6])
 
 static double mean(double sum, const tobi_tally *s)
 {
@@ -108,7 +110,8 @@ void tobi_tally_bodies(tobi_run *run, double dt)
         tobi_body_tally *t = &run->body_since[k];
         const tobi_body_info *b = &run->world->sim.bodies[k].info;
         const double *value[] = { b->pressure_force, b->viscous_force, b->pressure_torque,
-                                  b->viscous_torque, b->contact_force, b->contact_torque };
+                                  b->viscous_torque, b->contact_force, b->contact_torque,
+                                  b->edge_force };
         t->time += dt;
         for (int v = 0; v < TOBI_BODY_FORCES; v++)
             for (int a = 0; a < 3; a++) t->impulse[v][a] += dt*value[v][a];

@@ -10,6 +10,7 @@ enum { ORACLE_NODES = 18 };                  /* per axis, from node -4 */
 typedef struct oracle_solid {
     int model;                               /* tobi_model */
     double E, nu, bulk, viscosity, yield, hardening, compression, stretch, cone, keep;
+    double strength, last;                   /* 0: never breaks; crack strain at which nothing is left */
 } oracle_solid;
 
 typedef struct oracle_particle {
@@ -152,6 +153,37 @@ static void oracle_hencky(const oracle_solid *m, int sand, double mu, double lam
     oracle_compose(U, value, U, tau);
 }
 
+static double oracle_elastic(int corotated, double mu, double lambda, double s, double J)
+{
+    return corotated ? 2*mu*(s*s - s) + lambda*(J - 1)*J : mu*(s*s - 1) + lambda*log(J);
+}
+
+/* Damage of an elastic solid: D from the largest stretch, a cracked share like sand without memory. */
+static void oracle_break(const oracle_solid *m, double mu, double lambda, oracle_particle *p, double tau[3][3])
+{
+    double U[3][3], V[3][3], s[3], h[3], loose[3], value[3], J = oracle_det(p->F), norm = 0, trace = log(J);
+    int top = 0;
+    oracle_svd(p->F, U, s, V);
+    for (int k = 0; k < 3; k++) {
+        if (s[k] > s[top]) top = k;
+        h[k] = log(s[k]) - trace/3;
+        norm += h[k]*h[k];
+    }
+    double pull = oracle_elastic(m->model, mu, lambda, s[top], J)/s[top], strain = s[top] - 1;
+    if (pull > m->strength)
+        p->state = fmax(p->state, strain >= m->last ? 1 :
+                        (pull - m->strength)/(pull - m->strength*strain/m->last));
+    norm = sqrt(norm);
+    double most = -(3*lambda + 2*mu)/(2*mu)*trace*m->cone;
+    for (int k = 0; k < 3; k++) {
+        loose[k] = exp(trace < 0 ? trace/3 + h[k]*(norm > most ? most/norm : 1) : fmin(trace, 2)/3);
+        value[k] = (1 - p->state)*oracle_elastic(m->model, mu, lambda, s[k], J);
+        if (trace < 0) value[k] += p->state*oracle_elastic(m->model, mu, lambda, loose[k], J);
+    }
+    if (p->state >= 1) oracle_compose(U, loose, V, p->F);
+    oracle_compose(U, value, U, tau);
+}
+
 static void oracle_liquid(const oracle_solid *m, oracle_particle *p, double tau[3][3])
 {
     double J = oracle_det(p->F), trace = p->C[0][0] + p->C[1][1] + p->C[2][2];
@@ -176,6 +208,10 @@ static void oracle_stress(const oracle_solid *m, double strain_dt, oracle_partic
             tau[i][j] = 0;
         }
     oracle_multiply(G, p->F, p->F);
+    if (m->strength > 0) {
+        oracle_break(m, mu, lambda, p, tau);
+        return;
+    }
     if (m->model == 0) {
         double J = oracle_det(p->F);
         for (int i = 0; i < 3; i++)
