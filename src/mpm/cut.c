@@ -62,11 +62,9 @@ static void find_deformation(const mpm_view *v, int64_t i, double f[3][3])
         }
 }
 
-/* How far from a cut a particle still feels nodes beyond it, m. */
-static double find_band(const double normal[3], double cell)
-{
-    return (1.5*(fabs(normal[0]) + fabs(normal[1]) + fabs(normal[2])) + 0.25)*cell;
-}
+/* How far from a cut a particle may feel nodes beyond it, however the material turns, m; a quarter more for its
+   being compressed. */
+static double find_band(int dimension, double cell) { return (1.5*sqrt(dimension) + 0.25)*cell; }
 
 /* The particle remembers the cut. A full memory forgets the farthest. */
 static void remember(tobi_columns *cuts, const double f[3][3], double number, const tobi_blade_place *at,
@@ -99,11 +97,11 @@ static int can_be_cut(int model) { return model != TOBI_LIQUID && model != TOBI_
 /* One blade. A blade that meets no material ends its cut; the next one it makes has a new number. */
 static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, double *number)
 {
-    const double cell = v->cell, most = 3*cell, least = 1e-3*s->smoothing.spacing;
+    const double cell = v->cell, band = find_band(s->box.dimension, cell), least = 1e-3*s->smoothing.spacing;
     const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
     double low[3], high[3];
     int met = 0, dim = s->box.dimension;
-    tobi_blade_box(b, most, low, high);
+    tobi_blade_box(b, band, low, high);
     #pragma omp parallel for num_threads(s->exec.threads) reduction(|: met)
     for (int64_t i = 0; i < s->particles.count; i++) {
         const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
@@ -112,7 +110,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
         int out = !can_be_cut(v->material[v->solid[i]].model);
         for (int a = 0; a < dim; a++) out |= x[a] < low[a] || x[a] > high[a];
         if (out || !tobi_blade_locate(b, dim, x, &at)) continue;
-        if (at.beyond > 0.25*cell || fabs(at.aside) > find_band(at.normal, cell) || fabs(at.ahead) > cell)
+        if (at.beyond > 0.25*cell || fabs(at.aside) > band || fabs(at.ahead) > cell)
             continue;
         met = 1;
         if (at.ahead > 0) continue;

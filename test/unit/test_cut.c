@@ -1,0 +1,247 @@
+/* Cuts that stay: a blade thinner than a cell parts a block at every place in the grid, no particle lands on the
+   wrong side, and what is cut is pulled apart without force once the blade has left (plane strain). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "base/param.h"
+#include "world/params.h"
+#include "world/world.h"
+
+#define CELL (0.6/128)
+#define SPACING (CELL/2)
+enum { ACROSS = 26, COUNT = ACROSS*ACROSS };
+static const double LEFT = 0.12, TOP = 0.07, LOW = 3e-4, DOWN = 2, UP = 4;
+
+#define OK(call)                                                          \
+    do {                                                                  \
+        tobi_error err = { 0 };                                           \
+        if ((call) != TOBI_OK) fail_msg("%s: %s", #call, err.text);       \
+    } while (0)
+
+/* A blade with a wedge of 8 mm, its edge at the origin, along z. */
+static void write_blade(const char *path, double thickness)
+{
+    const double half = 0.5*thickness;
+    const double p[5][2] = {{0, 0}, {half, 8e-3}, {half, 0.1}, {-half, 0.1}, {-half, 8e-3}};
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    for (int z = 0; z < 2; z++)
+        for (int i = 0; i < 5; i++) fprintf(f, "v %.9g %.9g %g\n", p[i][0], p[i][1], z - 0.5);
+    for (int i = 0; i < 5; i++) {
+        int j = (i + 1)%5;
+        fprintf(f, "f %d %d %d\nf %d %d %d\n", i + 1, j + 1, j + 6, i + 1, j + 6, i + 6);
+    }
+    for (int i = 1; i < 4; i++) fprintf(f, "f 1 %d %d\nf 6 %d %d\n", i + 2, i + 1, i + 6, i + 7);
+    fclose(f);
+}
+
+/* Down through the block, and out again faster. */
+static tobi_status move(void *user, double t, int64_t count, const double (*rest)[3], double (*out)[3],
+                        tobi_error *err)
+{
+    const double bottom = (TOP - LOW)/DOWN;
+    double y = t < bottom ? TOP - DOWN*t : fmin(LOW + UP*(t - bottom), TOP + 0.01);
+    (void)user;
+    (void)err;
+    for (int64_t i = 0; i < count; i++) {
+        memcpy(out[i], rest[i], sizeof out[i]);
+        out[i][1] += y;
+    }
+    return TOBI_OK;
+}
+
+static tobi_world *make_world(const char *mesh, double x, int threads, int transfer)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def blade = tobi_default_body_def();
+    tobi_mlsmpm_def method;
+    tobi_param_defaults(tobi_method_table("mlsmpm"), &method);
+    tobi_world *world;
+    w.method = "mlsmpm";
+    w.dimension = 2;
+    w.domain_max[0] = 0.3;
+    w.domain_max[1] = 0.3;
+    w.gravity[2] = 0;
+    w.spacing = SPACING;
+    w.threads = threads;
+    w.friction = 0;
+    for (int a = 0; a < 2; a++) w.wall_min[a] = w.wall_max[a] = TOBI_WALL_SEPARATE;
+    method.transfer = transfer;
+    solid.density = 800;
+    solid.youngs_modulus = 3e6;
+    solid.poissons_ratio = 0.3;
+    fill.box_min[0] = LEFT;
+    fill.box_max[0] = LEFT + ACROSS*SPACING;
+    fill.box_max[1] = ACROSS*SPACING;
+    blade.name = "knife";
+    blade.mesh = mesh;
+    blade.translation[0] = x;
+    blade.blade = 1;
+    blade.edge_resistance = 250;
+    blade.friction_coefficient = 0.3;
+    blade.motion = move;
+    blade.motion_rigid = 1;
+    OK(tobi_world_create(&w, &method, &world, &err));
+    OK(tobi_world_add_solid(world, &solid, &fill, 1, &err));
+    OK(tobi_world_add_body(world, &blade, &err));
+    OK(tobi_world_start(world, &err));
+    assert_int_equal(tobi_world_count(world, TOBI_FLUID), COUNT);
+    return world;
+}
+
+static void read_field(tobi_world *world, const char *field, double *out, int components)
+{
+    OK(tobi_world_read(world, TOBI_FLUID, field, out, COUNT, &err));
+    for (int i = 0; i < COUNT*components; i++) assert_true(isfinite(out[i]));
+}
+
+/* Number of particles that lie on another side of the blade than they remember. */
+static int count_wrong(tobi_world *world, double x)
+{
+    static double place[COUNT][3], side[COUNT];
+    int same = 0, cut = 0;
+    read_field(world, "position", place[0], 3);
+    read_field(world, "cut_side", side, 1);
+    for (int i = 0; i < COUNT; i++) {
+        cut += side[i] != 0;
+        same += side[i] != 0 && (place[i][0] > x) == (side[i] > 0);
+    }
+    assert_true(cut > 4*ACROSS);
+    return same < cut - same ? same : cut - same;      /* the signs of the sides are the blade's choice */
+}
+
+/* Which half a particle is of: 0 left, 1 right. */
+static void find_halves(tobi_world *world, int half[COUNT])
+{
+    static double piece[COUNT], rest[COUNT][3];
+    int right = 0;
+    read_field(world, "piece", piece, 1);
+    read_field(world, "rest_position", rest[0], 3);
+    for (int i = 0; i < COUNT; i++) right += rest[i][0] > LEFT + 25*SPACING ? piece[i] > 0 ? 1 : -1 : 0;
+    for (int i = 0; i < COUNT; i++) half[i] = (piece[i] > 0) == (right > 0);
+}
+
+static void set_speed(tobi_world *world, const int half[COUNT], double speed)
+{
+    static double u[COUNT][3];
+    for (int i = 0; i < COUNT; i++) u[i][0] = half[i] ? speed : -speed;
+    OK(tobi_world_write(world, "velocity", u[0], COUNT, &err));
+}
+
+static double speed_of(tobi_world *world, const int half[COUNT], int which)
+{
+    static double u[COUNT][3];
+    double sum = 0;
+    int count = 0;
+    read_field(world, "velocity", u[0], 3);
+    for (int i = 0; i < COUNT; i++)
+        if (half[i] == which) { sum += u[i][0]; count++; }
+    return sum/count;
+}
+
+/* m, between the faces where they are nearest: particles of both fill a spacing. */
+static double find_gap(tobi_world *world, const int half[COUNT])
+{
+    static double place[COUNT][3];
+    double least = 1;
+    read_field(world, "position", place[0], 3);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < COUNT; k++)
+            if (half[i] < half[k])
+                least = fmin(least, hypot(place[i][0] - place[k][0], place[i][1] - place[k][1]));
+    return least - SPACING;
+}
+
+static void wait(tobi_world *world, double seconds)
+{
+    OK(tobi_world_advance(world, tobi_world_time(world) + seconds, NULL, &err));
+}
+
+/* Brings the halves together until they all but touch, and pulls: returns the share of the speed that one has
+   lost after 2 ms; below 0, what still rings pushed them on. */
+static double pull(tobi_world *world, const int half[COUNT])
+{
+    const double speed = 0.2;
+    for (int k = 0; k < 500 && find_gap(world, half) > 3e-4; k++) {
+        set_speed(world, half, -speed);
+        wait(world, 2.5e-4);
+    }
+    assert_true(find_gap(world, half) < 3e-4);
+    set_speed(world, half, speed);
+    wait(world, 2e-3);
+    return fmax(1 - speed_of(world, half, 1)/speed, 1 + speed_of(world, half, 0)/speed);
+}
+
+/* Lets the halves run into each other: they push each other back. Returns how far they overlapped, m. */
+static double collide(tobi_world *world, const int half[COUNT])
+{
+    double least = 1;
+    set_speed(world, half, -0.5);
+    for (int k = 0; k < 400 && speed_of(world, half, 1) - speed_of(world, half, 0) < 0.1; k++) {
+        wait(world, 2.5e-4);
+        least = fmin(least, find_gap(world, half));
+    }
+    assert_true(speed_of(world, half, 1) > 0);
+    assert_true(speed_of(world, half, 0) < 0);
+    return fmax(0, -least);
+}
+
+static void cut_once(double thickness, double offset, int transfer)
+{
+    static int half[COUNT];
+    char path[] = "/tmp/tobiuo_blade_XXXXXX.obj";
+    const double x = LEFT + 12.8*SPACING + offset*CELL, bottom = (TOP - LOW)/DOWN;
+    close(mkstemps(path, 4));
+    write_blade(path, thickness);
+    tobi_world *world = make_world(path, x, 1, transfer);
+    unlink(path);
+    OK(tobi_world_advance(world, bottom, NULL, &err));
+    const int wrong = count_wrong(world, x);
+    OK(tobi_world_advance(world, bottom + (TOP + 0.01 - LOW)/UP, NULL, &err));
+    find_halves(world, half);
+    /* With transfers that keep more motion the halves tumble, and meet with other faces than those cut. */
+    const double lost = pull(world, half), overlap = transfer == TOBI_APIC ? collide(world, half) : 0;
+    const tobi_pieces *pieces;
+    OK(tobi_world_pieces(world, &pieces, &err));
+    printf("blade %.0f mm, %.2f cells into the grid: %d pieces, %d fragments, %d on the wrong side, %.1e of the "
+           "speed lost in pulling, overlap %.2f mm in colliding\n", thickness*1e3, offset, (int)pieces->count,
+           (int)pieces->fragments, wrong, lost, overlap*1e3);
+    assert_int_equal(pieces->count, 2);
+    assert_int_equal(pieces->fragments, 0);
+    assert_int_equal(wrong, 0);
+    assert_true(lost < 1e-5);
+    assert_true(overlap < 0.25*SPACING);
+    tobi_world_destroy(world);
+}
+
+static void every_blade_at_every_place(void **state)
+{
+    (void)state;
+    for (int t = 1; t <= 4; t++)
+        for (int o = 0; o < 4; o++) cut_once(1e-3*t, 0.25*o, TOBI_APIC);
+}
+
+static void other_transfers(void **state)
+{
+    (void)state;
+    cut_once(3e-3, 0.25, TOBI_FLIP);
+    cut_once(3e-3, 0.25, TOBI_XPIC);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_blade_at_every_place),
+        cmocka_unit_test(other_transfers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
