@@ -5,6 +5,7 @@
    that meet keeps its exact position, so the result depends only on the order of the input. */
 #include "geom/mesh.h"
 #include "geom/mesh_mend.h"
+#include "geom/texture.h"
 #include "geom/vec3.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -28,6 +29,7 @@ void tobi_mesh_free(tobi_mesh *mesh)
     if (!mesh) return;
     free(mesh->vertices);
     free(mesh->triangles);
+    tobi_texture_free(mesh->texture);
     *mesh = (tobi_mesh){0};
 }
 
@@ -291,6 +293,15 @@ static void make_rotation(const double axis[3], double degrees, double r[3][3])
     r[2][1] += axis[0]*s;
 }
 
+static void place_points(int64_t count, double (*points)[3], const double scale[3], const double r[3][3],
+                         const double translation[3])
+{
+    for (int64_t i = 0; i < count; i++) {
+        double *x = points[i], s[3] = {scale[0]*x[0], scale[1]*x[1], scale[2]*x[2]};
+        for (int k = 0; k < 3; k++) x[k] = vec3_dot(r[k], s) + translation[k];
+    }
+}
+
 tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const double axis[3],
                                 double degrees, const double translation[3], tobi_error *err)
 {
@@ -314,10 +325,10 @@ tobi_status tobi_mesh_transform(tobi_mesh *mesh, const double scale[3], const do
                          "further than %g m away", scale[0], scale[1], scale[2], translation[0],
                          translation[1], translation[2], LARGEST);
     make_rotation(unit, degrees, r);
-    for (int64_t i = 0; i < mesh->vertex_count; i++) {
-        double *x = mesh->vertices[i], s[3] = {scale[0]*x[0], scale[1]*x[1], scale[2]*x[2]};
-        for (int k = 0; k < 3; k++) x[k] = vec3_dot(r[k], s) + translation[k];
-    }
+    place_points(mesh->vertex_count, mesh->vertices, scale, (const double (*)[3])r, translation);
+    if (mesh->texture)
+        place_points(3*mesh->texture->count, mesh->texture->corner[0], scale, (const double (*)[3])r,
+                     translation);
     for (int64_t t = 0; volume < 0 && t < mesh->triangle_count; t++) {
         int32_t swap = mesh->triangles[t][1];
         mesh->triangles[t][1] = mesh->triangles[t][2];

@@ -1,6 +1,6 @@
 /* Triangle surfaces: reading, placing, checking, refining.
 
-   A tobi_mesh owns its two arrays (malloc); tobi_mesh_free releases them. Coordinates in metres.
+   A tobi_mesh owns its arrays and its texture (malloc); tobi_mesh_free releases them. Coordinates in metres.
    A triangle's vertices run counter-clockwise seen from outside once tobi_mesh_orient has passed.
    Every function that fails leaves its output empty or its mesh as it was, if it does not say
    otherwise. */
@@ -16,6 +16,7 @@ typedef struct tobi_mesh {
     int     overlapping;               /* parts of the surface lie inside others: inside is where the
                                           winding number is above 0, see bvh.h                      */
     char    notes[TOBI_MESH_NOTES];    /* what was repaired, a line each, with a newline            */
+    struct tobi_texture *texture;      /* owned: coordinates that the file has (texture.h), or NULL */
 } tobi_mesh;
 
 /* Reads an OBJ, STL (ASCII or binary) or PLY file; all its groups become one surface, duplicate
@@ -33,6 +34,7 @@ tobi_status tobi_mesh_build(const char *name, int64_t vertex_count, const double
                             int64_t triangle_count, const int32_t (*triangles)[3],
                             tobi_mesh *out, tobi_error *err);
 
+/* All but the texture. */
 tobi_status tobi_mesh_copy(const tobi_mesh *mesh, tobi_mesh *out, tobi_error *err);
 /* NULL and an empty mesh are fine; the mesh is empty after. */
 void tobi_mesh_free(tobi_mesh *mesh);

@@ -50,6 +50,8 @@ static tobi_status try_weld(tobi_mesh *mesh, double tolerance, const char *mark,
     if (status == TOBI_OK) status = count_faults(&copy, &opposite, &after);
     if (status == TOBI_OK && copy.triangle_count && after.open < report->open &&
         after.open + after.crowded < report->open + report->crowded) {
+        copy.texture = mesh->texture;
+        mesh->texture = NULL;
         swap_meshes(mesh, &copy);
         *report = after;
         *used = tolerance;

@@ -14,6 +14,7 @@
 #include "geom/file_checks.h"
 #include "geom/mesh.h"
 #include "geom/obj_scan.h"
+#include "geom/texture.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -48,6 +49,7 @@ typedef struct allowance {
 typedef struct import_header {
     char magic[8];
     int64_t vertex_count, triangle_count;
+    int64_t textured;                     /* 1: coordinates of all corners follow, NAN where there are none */
     char text[1024];                      /* the importer's complaint, empty if none */
 } import_header;
 
@@ -56,10 +58,22 @@ typedef struct collector {
     int64_t vertex_count, triangle_count; /* counted first, then written           */
     double  (*vertices)[3];
     int32_t (*triangles)[3];
-    int fill, depth;
+    float   (*uv)[3][2];                  /* per triangle; NULL if no part has a texture */
+    int fill, depth, textured;
 } collector;
 
 /* --- in the child ------------------------------------------------------------------------- */
+
+static void collect_texture(collector *c, const struct aiMesh *m, const unsigned *corners)
+{
+    const struct aiVector3D *given = m->mTextureCoords[0];
+    c->textured |= given != NULL;
+    for (int k = 0; c->fill && c->uv && k < 3; k++) {
+        int has = given && corners[k] < m->mNumVertices;
+        c->uv[c->triangle_count][k][0] = has ? given[corners[k]].x : NAN;
+        c->uv[c->triangle_count][k][1] = has ? given[corners[k]].y : NAN;
+    }
+}
 
 static void collect_mesh(collector *c, const struct aiMesh *m, const struct aiMatrix4x4 *x)
 {
@@ -77,6 +91,7 @@ static void collect_mesh(collector *c, const struct aiMesh *m, const struct aiMa
     c->vertex_count += m->mNumVertices;
     for (unsigned i = 0; i < m->mNumFaces; i++) {
         if (m->mFaces[i].mNumIndices != 3) continue;
+        collect_texture(c, m, m->mFaces[i].mIndices);
         for (int k = 0; c->fill && k < 3; k++) {
             unsigned index = m->mFaces[i].mIndices[k];
             /* an index outside its own part must not land in the next part */
@@ -169,7 +184,8 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     collect_node(&c, c.scene->mRootNode, &identity);
     c.vertices = malloc((size_t)(c.vertex_count + 1)*sizeof *c.vertices);
     c.triangles = malloc((size_t)(c.triangle_count + 1)*sizeof *c.triangles);
-    if (!c.vertices || !c.triangles || c.vertex_count > INT32_MAX - 1) {
+    if (c.textured) c.uv = malloc((size_t)(c.triangle_count + 1)*sizeof *c.uv);
+    if (!c.vertices || !c.triangles || (c.textured && !c.uv) || c.vertex_count > INT32_MAX - 1) {
         strcpy(header.text, "too large to import");
         write_all(fd, &header, sizeof header);
         _exit(0);
@@ -179,9 +195,11 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     collect_node(&c, c.scene->mRootNode, &identity);
     header.vertex_count = c.vertex_count;
     header.triangle_count = c.triangle_count;
+    header.textured = c.textured;
     _exit(!(write_all(fd, &header, sizeof header) &&
             write_all(fd, c.vertices, (size_t)c.vertex_count*sizeof *c.vertices) &&
-            write_all(fd, c.triangles, (size_t)c.triangle_count*sizeof *c.triangles)));
+            write_all(fd, c.triangles, (size_t)c.triangle_count*sizeof *c.triangles) &&
+            (!c.uv || write_all(fd, c.uv, (size_t)c.triangle_count*sizeof *c.uv))));
 }
 
 /* --- in the parent ------------------------------------------------------------------------ */
@@ -242,18 +260,27 @@ static tobi_status receive_mesh(const char *path, int fd, double deadline, tobi_
     if (header.text[0]) return fail_refused(path, header.text, err);
     raw.vertices = malloc((size_t)(header.vertex_count + 1)*sizeof *raw.vertices);
     raw.triangles = malloc((size_t)(header.triangle_count + 1)*sizeof *raw.triangles);
+    float (*uv)[3][2] = header.textured ? malloc((size_t)(header.triangle_count + 1)*sizeof *uv) : NULL;
     tobi_status status;
-    if (!raw.vertices || !raw.triangles)
+    if (!raw.vertices || !raw.triangles || (header.textured && !uv))
         status = tobi_fail(err, TOBI_NO_MEMORY, "mesh '%s': no memory for %lld triangles", path,
                            (long long)header.triangle_count);
     else if ((*finished = read_all(fd, raw.vertices, (size_t)header.vertex_count*sizeof *raw.vertices,
                                    deadline)) != 1 ||
              (*finished = read_all(fd, raw.triangles,
-                                   (size_t)header.triangle_count*sizeof *raw.triangles, deadline)) != 1)
+                                   (size_t)header.triangle_count*sizeof *raw.triangles, deadline)) != 1 ||
+             (uv && (*finished = read_all(fd, uv, (size_t)header.triangle_count*sizeof *uv, deadline)) != 1))
         status = TOBI_INVALID;
     else
         status = tobi_mesh_build(path, header.vertex_count, (const double (*)[3])raw.vertices,
                                  header.triangle_count, (const int32_t (*)[3])raw.triangles, out, err);
+    raw.vertex_count = header.vertex_count;
+    raw.triangle_count = header.triangle_count;
+    if (status == TOBI_OK && uv) {
+        status = tobi_texture_create(&raw, (const float (*)[3][2])uv, &out->texture, err);
+        if (status != TOBI_OK) tobi_mesh_free(out);
+    }
+    free(uv);
     tobi_mesh_free(&raw);
     return status;
 }

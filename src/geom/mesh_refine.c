@@ -158,6 +158,8 @@ tobi_status tobi_mesh_refine(tobi_mesh *mesh, double max_edge, tobi_error *err)
         tobi_mesh_free(&r.mesh);
         return status;
     }
+    r.mesh.texture = mesh->texture;
+    mesh->texture = NULL;
     tobi_mesh_free(mesh);
     *mesh = r.mesh;
     return TOBI_OK;

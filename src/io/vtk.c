@@ -309,12 +309,21 @@ static tobi_status write_vertex_cells(document *doc, int64_t n, tobi_error *err)
     return TOBI_OK;
 }
 
+static void begin_point_data(tobi_file *file, const tobi_vtk_array *arrays, int count)
+{
+    const char *mark = "";
+    for (int i = 0; i < count; i++)
+        if (arrays[i].components == 2 && strcmp(arrays[i].name, "texture_coordinates") == 0)
+            mark = " TCoords=\"texture_coordinates\"";
+    tobi_file_print(file, "<PointData%s>\n", mark);
+}
+
 static tobi_status write_particles(document *doc, int64_t n, const double (*points)[3],
                                    const tobi_vtk_array *arrays, int array_count, tobi_error *err)
 {
     tobi_file_print(&doc->file,
-                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<PointData>\n",
-                    n, n);
+                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n", n, n);
+    begin_point_data(&doc->file, arrays, array_count);
     TOBI_TRY(add_arrays(doc, arrays, array_count, n, err));
     tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
     TOBI_TRY(write_points(doc, n, points, err));
@@ -337,8 +346,9 @@ static tobi_status write_surface(document *doc, const tobi_vtk_surface *s, tobi_
 {
     tobi_file_print(&doc->file,
                     "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
-                    "NumberOfStrips=\"0\" NumberOfPolys=\"%" PRId64 "\">\n<PointData>\n",
+                    "NumberOfStrips=\"0\" NumberOfPolys=\"%" PRId64 "\">\n",
                     s->vertex_count, s->triangle_count);
+    begin_point_data(&doc->file, s->point_arrays, s->point_array_count);
     TOBI_TRY(add_arrays(doc, s->point_arrays, s->point_array_count, s->vertex_count, err));
     tobi_file_print(&doc->file, "</PointData>\n<CellData>\n");
     TOBI_TRY(add_arrays(doc, s->cell_arrays, s->cell_array_count, s->triangle_count, err));

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "io/type.h"
 
+/* Point data of 2 components named "texture_coordinates" are marked as those that pictures are put on by. */
 typedef struct tobi_vtk_array {
     const char   *name;
     tobi_vtk_type type;

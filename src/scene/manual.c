@@ -237,7 +237,9 @@ static void write_fields(FILE *out)
           "plastic strain of von-mises, the plastic part of J less 1 of snow, and the logarithm of the\n"
           "volume that loose sand has gained. `material` is the number of the solid, from 0.\n"
           "`piece` is the number of the connected piece of a solid, 0 = the heaviest, -1 in a liquid;\n"
-          "`cut_side` the number of the latest cut near a particle, negative on one side, 0 = none.\n", out);
+          "`cut_side` the number of the latest cut near a particle, negative on one side, 0 = none.\n"
+          "`texture_coordinates` are those that the mesh of the solid has (`vt` of an OBJ file) nearest to\n"
+          "where the particle started, 0 without; a body's `.vtp` has those of its mesh.\n", out);
 }
 
 /* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */

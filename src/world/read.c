@@ -18,6 +18,7 @@ static const struct { const char *name; int components; const char *unit; int ow
     {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
     {"piece", 1, "1", TOBI_MPM},              {"cut_side", 1, "1", TOBI_MPM},
     {"damage", 1, "1", TOBI_MPM},
+    {"texture_coordinates", 2, "1", TOBI_MPM},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
 
@@ -104,6 +105,12 @@ static int read_plain(const tobi_simulation *s, const char *field, int64_t i, do
     return 1;
 }
 
+/* 0 where no mesh has any. */
+static void read_texture(const tobi_world *w, int64_t i, double *out)
+{
+    for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[w->sim.particles.id[i]][c] : 0;
+}
+
 static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
@@ -179,13 +186,14 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
     if (!w->diverged && derived && w->method->derive)
         w->method->derive(&w->sim, w->method_state, field);
+    int textures = !strcmp(field, "texture_coordinates");
+    if (textures) TOBI_TRY(tobi_world_find_texture(w, err));
     #pragma omp parallel for num_threads(w->sim.exec.threads)
     for (int64_t r = 0; r < w->sim.particles.count; r++) {
         double *out = buffer + r*components;
-        if (piece) {
-            out[0] = w->pieces.of[w->row_of[r]];
-            continue;
-        }
+        if (piece) out[0] = w->pieces.of[w->row_of[r]];
+        else if (textures) read_texture(w, w->row_of[r], out);
+        if (piece || textures) continue;
         if (read_plain(&w->sim, field, w->row_of[r], out)) continue;
         if (w->method->read) w->method->read(&w->sim, w->method_state, field, w->row_of[r], out);
         else read_fluid(&w->sim, field, w->row_of[r], out);

@@ -216,6 +216,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->bodies);
     tobi_csv_close(run->probes);
     if (run->lock >= 0) close(run->lock);
+    tobi_series_free(run);
     free(run->body_file);
     free(run->body_since);
     free(run->dir);

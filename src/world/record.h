@@ -42,6 +42,8 @@ struct tobi_run {
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
     char (*body_file)[80];                /* names of the bodies' surface files      */
+    struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
+    int skin_count;
 
     tobi_csv *history, *bodies, *probes;  /* NULL without bodies, without probes     */
     int64_t outputs;                      /* written so far = index of the next      */
@@ -88,6 +90,8 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
 /* The files of output run->outputs, then the lists including it. */
 tobi_status tobi_series_write(tobi_run *run, tobi_error *err);
+/* What the surfaces needed. */
+void tobi_series_free(tobi_run *run);
 /* The lists of outputs 0 .. run->outputs - 1. */
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
 

@@ -1,4 +1,5 @@
 /* The files per output: particles, surfaces, and the lists that give them their times. */
+#include "geom/texture.h"
 #include "io/exchange.h"
 #include "io/vtk.h"
 #include "world/record.h"
@@ -59,7 +60,8 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
     for (int k = 0; k < s->body_count && count == 7; k++)
         if (s->bodies[k].blade) count = 9;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
-    return TOBI_OK;
+    const char *texture = "texture_coordinates";
+    return tobi_world_has_textures(run->world) ? add_field(run, texture, strlen(texture), err) : TOBI_OK;
 }
 
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
@@ -208,6 +210,55 @@ static tobi_status write_grid(tobi_run *run, tobi_error *err)
 
 /* --- surfaces -------------------------------------------------------------------------- */
 
+/* The skin of a body whose mesh has a texture, made at the first output. */
+static tobi_status find_skin(tobi_run *run, int body, tobi_error *err)
+{
+    tobi_mesh *mesh = &run->world->sim.bodies[body].mesh;
+    if (!run->skin)
+        run->skin = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->skin);
+    if (!run->skin) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    run->skin_count = tobi_world_body_count(run->world);
+    if (run->skin[body].vertex_count > 0) return TOBI_OK;
+    TOBI_TRY(tobi_texture_prepare(mesh->texture, err));
+    return tobi_skin_build(mesh, &run->skin[body], err);
+}
+
+/* The same surface with its vertices doubled along seams of the texture; *vertices is the caller's. */
+static tobi_status put_on_skin(const tobi_skin *skin, tobi_vtk_surface *s, tobi_vtk_array *uv,
+                               double (**vertices)[3], tobi_error *err)
+{
+    *vertices = malloc((size_t)skin->vertex_count * sizeof **vertices);
+    if (!*vertices) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    for (int64_t i = 0; i < skin->vertex_count; i++)
+        memcpy((*vertices)[i], s->vertices[skin->vertex[i]], sizeof **vertices);
+    *uv = (tobi_vtk_array){ "texture_coordinates", TOBI_F32, 2, skin->uv };
+    s->vertex_count = skin->vertex_count;
+    s->vertices = (const double (*)[3])*vertices;
+    s->triangles = (const int32_t (*)[3])skin->triangles;
+    s->point_arrays = uv;
+    s->point_array_count = 1;
+    return TOBI_OK;
+}
+
+void tobi_series_free(tobi_run *run)
+{
+    for (int k = 0; k < run->skin_count; k++) tobi_skin_free(&run->skin[k]);
+    free(run->skin);
+}
+
+static tobi_status write_vtp(tobi_run *run, int body, const char *path, tobi_vtk_surface s, tobi_error *err)
+{
+    tobi_compression form = (tobi_compression)run->output.compression;
+    tobi_vtk_array uv;
+    double (*vertices)[3] = NULL;
+    if (!run->world->sim.bodies[body].mesh.texture) return tobi_vtp_write(path, form, &s, err);
+    TOBI_TRY(find_skin(run, body, err));
+    tobi_status status = put_on_skin(&run->skin[body], &s, &uv, &vertices, err);
+    if (status == TOBI_OK) status = tobi_vtp_write(path, form, &s, err);
+    free(vertices);
+    return status;
+}
+
 static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
 {
     tobi_vtk_surface s = { 0 };
@@ -219,7 +270,7 @@ static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
     tobi_status status =
         vtp && stl ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     if (status == TOBI_OK)
-        status = tobi_vtp_write(vtp, (tobi_compression)run->output.compression, &s, err);
+        status = write_vtp(run, body, vtp, s, err);
     if (status == TOBI_OK)
         status =
             tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);

@@ -130,6 +130,7 @@ void tobi_world_destroy(tobi_world *w)
     free(w->probes);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
+    free(w->texture);
     free(w->row_of);
     tobi_world_free_grid(w);
     tobi_pieces_free(&w->pieces);

@@ -25,6 +25,7 @@ struct tobi_world {
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
+    float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
@@ -48,6 +49,10 @@ enum { TOBI_WORLD_FIELDS = 32 };
 int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
 
 void tobi_world_free_grid(tobi_world *w);
+
+/* textures.c: whether a mesh with texture coordinates fills a solid; finds those of all particles, once. */
+int tobi_world_has_textures(const tobi_world *w);
+tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err);
 
 /* Reads a probe of a world that has just stepped. */
 void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *info);

@@ -1,7 +1,7 @@
 /* Mesh files through the importer's child process; the content decides the format's name. Slow under
    libFuzzer (a process per input), so its corpus is written by hand. */
 #include "target.h"
-#include "geom/mesh.h"
+#include "geom/texture.h"
 
 static const char *choose_format(const uint8_t *data, size_t size)
 {
@@ -20,7 +20,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     tobi_error err = { 0 };
     if (passed(tobi_mesh_read(path, &mesh, &err), &err)) {
         PROMISE(mesh.vertex_count > 0 && mesh.triangle_count > 0);
-        passed(tobi_mesh_orient(&mesh, path, &err), &err);
+        tobi_skin skin;
+        if (passed(tobi_mesh_orient(&mesh, path, &err), &err) && mesh.texture &&
+            passed(tobi_texture_prepare(mesh.texture, &err), &err) &&
+            passed(tobi_skin_build(&mesh, &skin, &err), &err)) {
+            PROMISE(skin.vertex_count > 0 && skin.vertex_count <= 3*mesh.triangle_count);
+            tobi_skin_free(&skin);
+        }
         tobi_mesh_free(&mesh);
     }
     unlink(path);

@@ -1,0 +1,155 @@
+#include "geom/texture.h"
+#include "geom/vec3.h"
+#include <stdlib.h>
+#include <string.h>
+
+static int is_finite(const float uv[3][2])
+{
+    float sum = 0;
+    for (int k = 0; k < 3; k++) sum += 0*uv[k][0] + 0*uv[k][1];      /* 0 times a number is 0 */
+    return sum == 0;
+}
+
+tobi_status tobi_texture_create(const tobi_mesh *raw, const float (*uv)[3][2], tobi_texture **out,
+                                tobi_error *err)
+{
+    int64_t count = 0;
+    *out = NULL;
+    for (int64_t t = 0; t < raw->triangle_count; t++) count += is_finite(uv[t]);
+    if (count == 0) return TOBI_OK;
+    tobi_texture *texture = calloc(1, sizeof *texture);
+    if (texture) texture->corner = malloc((size_t)count*sizeof *texture->corner);
+    if (texture) texture->uv = malloc((size_t)count*sizeof *texture->uv);
+    if (!texture || !texture->corner || !texture->uv) {
+        tobi_texture_free(texture);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)count);
+    }
+    for (int64_t t = 0; t < raw->triangle_count; t++) {
+        if (!is_finite(uv[t])) continue;
+        for (int k = 0; k < 3; k++)
+            memcpy(texture->corner[texture->count][k], raw->vertices[raw->triangles[t][k]], 3*sizeof(double));
+        memcpy(texture->uv[texture->count++], uv[t], sizeof *uv);
+    }
+    *out = texture;
+    return TOBI_OK;
+}
+
+void tobi_texture_free(tobi_texture *texture)
+{
+    if (!texture) return;
+    tobi_bvh_free(texture->tree);
+    free(texture->corner);
+    free(texture->uv);
+    free(texture);
+}
+
+tobi_status tobi_texture_prepare(tobi_texture *texture, tobi_error *err)
+{
+    int32_t (*triangles)[3];
+    if (texture->tree) return TOBI_OK;
+    triangles = malloc((size_t)texture->count*sizeof *triangles);
+    if (!triangles)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates",
+                         (long long)texture->count);
+    for (int64_t t = 0; t < texture->count; t++)
+        for (int k = 0; k < 3; k++) triangles[t][k] = (int32_t)(3*t + k);
+    tobi_status status =
+        tobi_bvh_build(3*texture->count, (const double (*)[3])texture->corner, texture->count,
+                       (const int32_t (*)[3])triangles, &texture->tree, err);
+    free(triangles);
+    return status;
+}
+
+static void mix(const float corner[3][2], const double share[3], float uv[2])
+{
+    for (int c = 0; c < 2; c++)
+        uv[c] = (float)(share[0]*corner[0][c] + share[1]*corner[1][c] + share[2]*corner[2][c]);
+}
+
+double tobi_texture_look(const tobi_texture *texture, const double x[3], float uv[2])
+{
+    tobi_bvh_hit hit;
+    uv[0] = uv[1] = 0;
+    if (!tobi_bvh_closest(texture->tree, x, INFINITY, &hit)) return INFINITY;
+    mix(texture->uv[hit.triangle], hit.barycentric, uv);
+    return hit.distance;
+}
+
+/* Shares of the corners at a point of the triangle's plane; beside the triangle those of its border. */
+static void find_shares(const double corner[3][3], const double x[3], double share[3])
+{
+    double e[3][3], n[3], sum = 0;
+    for (int k = 0; k < 3; k++) vec3_sub(e[k], corner[(k + 2)%3], corner[(k + 1)%3]);
+    vec3_cross(n, e[2], e[0]);
+    for (int k = 0; k < 3; k++) {
+        double d[3], c[3];
+        vec3_sub(d, x, corner[(k + 1)%3]);
+        vec3_cross(c, e[k], d);
+        share[k] = fmax(0, vec3_dot(c, n));
+        sum += share[k];
+    }
+    for (int k = 0; k < 3; k++) share[k] = sum > 0 ? share[k]/sum : 1.0/3;
+}
+
+/* The texture's triangle behind the middle of a triangle of the mesh, read at the corners of that one: at a
+   seam every side has its own. */
+static void look_corners(const tobi_texture *texture, const double corner[3][3], float uv[3][2])
+{
+    double middle[3], share[3];
+    tobi_bvh_hit hit;
+    memset(uv, 0, 3*sizeof *uv);
+    for (int a = 0; a < 3; a++) middle[a] = (corner[0][a] + corner[1][a] + corner[2][a])/3;
+    if (!tobi_bvh_closest(texture->tree, middle, INFINITY, &hit)) return;
+    for (int k = 0; k < 3; k++) {
+        find_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], share);
+        mix((const float (*)[2])texture->uv[hit.triangle], share, uv[k]);
+    }
+}
+
+/* The copy of a vertex with these coordinates, a new one if there is none; next chains the copies. */
+static int32_t find_copy(tobi_skin *skin, int32_t *head, int32_t *next, int32_t vertex, const float uv[2])
+{
+    const float same = 1e-5f;      /* of the picture's side: a tenth of a pixel of 10 000 */
+    for (int32_t k = head[vertex]; k >= 0; k = next[k])
+        if (fabsf(skin->uv[k][0] - uv[0]) <= same && fabsf(skin->uv[k][1] - uv[1]) <= same) return k;
+    int32_t k = (int32_t)skin->vertex_count++;
+    skin->vertex[k] = vertex;
+    memcpy(skin->uv[k], uv, sizeof skin->uv[k]);
+    next[k] = head[vertex];
+    head[vertex] = k;
+    return k;
+}
+
+tobi_status tobi_skin_build(const tobi_mesh *mesh, tobi_skin *out, tobi_error *err)
+{
+    size_t corners = 3*(size_t)mesh->triangle_count + 1;
+    *out = (tobi_skin){ .vertex = malloc(corners*sizeof *out->vertex), .uv = malloc(corners*sizeof *out->uv),
+                        .triangles = malloc(corners*sizeof(int32_t)) };
+    int32_t *head = malloc((size_t)(mesh->vertex_count + 1)*sizeof *head);
+    int32_t *next = malloc(corners*sizeof *next);
+    tobi_status status = TOBI_OK;
+    if (!out->vertex || !out->uv || !out->triangles || !head || !next)
+        status = tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)corners);
+    if (status == TOBI_OK) memset(head, 0xff, (size_t)mesh->vertex_count*sizeof *head);
+    for (int64_t t = 0; status == TOBI_OK && t < mesh->triangle_count; t++) {
+        double corner[3][3];
+        float uv[3][2];
+        for (int k = 0; k < 3; k++)
+            memcpy(corner[k], mesh->vertices[mesh->triangles[t][k]], sizeof corner[k]);
+        look_corners(mesh->texture, (const double (*)[3])corner, uv);
+        for (int k = 0; k < 3; k++)
+            out->triangles[t][k] = find_copy(out, head, next, mesh->triangles[t][k], uv[k]);
+    }
+    free(head);
+    free(next);
+    if (status != TOBI_OK) tobi_skin_free(out);
+    return status;
+}
+
+void tobi_skin_free(tobi_skin *skin)
+{
+    free(skin->vertex);
+    free(skin->uv);
+    free(skin->triangles);
+    *skin = (tobi_skin){ 0 };
+}

@@ -1,0 +1,47 @@
+/* Texture coordinates of particles: of where they started, on the meshes that fill their solid. */
+#include "base/error.h"
+#include "geom/texture.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdlib.h>
+
+int tobi_world_has_textures(const tobi_world *w)
+{
+    int found = 0;
+    for (int k = 0; k < w->region_count; k++) found |= w->regions[k].shape.texture != NULL;
+    return found && w->method->fields & TOBI_MPM;
+}
+
+/* The nearest surface of all meshes that fill the particle's solid. */
+static void look(const tobi_world *w, int64_t i, float uv[2])
+{
+    const tobi_particles *p = &w->sim.particles;
+    const double *lower = w->sim.box.lower;
+    const double x[3] = {p->rest[i].x + lower[0], p->rest[i].y + lower[1], p->rest[i].z + lower[2]};
+    double nearest = INFINITY;
+    uv[0] = uv[1] = 0;
+    for (int k = 0; k < w->region_count; k++) {
+        const tobi_region *r = &w->regions[k];
+        float found[2];
+        if (r->owner != p->fluid[i] || !r->shape.texture) continue;
+        double distance = tobi_texture_look(r->shape.texture, x, found);
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        uv[0] = found[0];
+        uv[1] = found[1];
+    }
+}
+
+tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
+{
+    const tobi_particles *p = &w->sim.particles;
+    if (w->texture || !tobi_world_has_textures(w)) return TOBI_OK;
+    for (int k = 0; k < w->region_count; k++)
+        if (w->regions[k].shape.texture) TOBI_TRY(tobi_texture_prepare(w->regions[k].shape.texture, err));
+    w->texture = calloc((size_t)p->capacity + 1, sizeof *w->texture);
+    if (!w->texture)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)p->count);
+    #pragma omp parallel for num_threads(w->sim.exec.threads)
+    for (int64_t i = 0; i < p->count; i++) look(w, i, w->texture[p->id[i]]);
+    return TOBI_OK;
+}

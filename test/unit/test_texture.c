@@ -1,0 +1,227 @@
+/* Texture coordinates: from the file to the particles of a solid and to the surface of a body. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "geom/texture.h"
+#include "tobiuo/run.h"
+#include "world/world.h"
+
+static const double one[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
+
+/* A cube of side 1; face f (-x, +x, -y, +y, -z, +z) has the stripe f/6 .. (f + 1)/6 of the picture, so that
+   every edge is a seam. faces: how many of the six have coordinates. */
+static void write_cube(const char *path, int faces)
+{
+    static const int corner[6][4] = { { 1, 3, 7, 5 }, { 2, 6, 8, 4 }, { 1, 5, 6, 2 },
+                                      { 3, 4, 8, 7 }, { 1, 2, 4, 3 }, { 5, 7, 8, 6 } };
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    for (int k = 0; k < 8; k++) fprintf(f, "v %d %d %d\n", k & 1, k >> 1 & 1, k >> 2);
+    for (int k = 0; k < 6; k++)
+        for (int c = 0; c < 4; c++) fprintf(f, "vt %.9g %d\n", (k + (c == 1 || c == 2))/6.0, c/2);
+    for (int k = 0; k < 6; k++)
+        for (int t = 0; t < 2; t++) {
+            fprintf(f, t ? "f" : "o face%d\nf", k);
+            for (int c = 0; c < 3; c++) {
+                int at = c == 0 ? 0 : c + t;
+                if (k < faces) fprintf(f, " %d/%d", corner[k][at], 4*k + at + 1);
+                else fprintf(f, " %d", corner[k][at]);
+            }
+            fprintf(f, "\n");
+        }
+    fclose(f);
+}
+
+static void read_cube(tobi_mesh *mesh, int faces)
+{
+    tobi_error err = { 0 };
+    write_cube("cube.obj", faces);
+    if (tobi_mesh_read("cube.obj", mesh, &err) != TOBI_OK) fail_msg("%s", err.text);
+}
+
+static void expect(const tobi_mesh *mesh, double x, double y, double z, double u, double v)
+{
+    float uv[2];
+    double at[3] = { x, y, z };
+    tobi_texture_look(mesh->texture, at, uv);
+    if (fabs(uv[0] - u) > 1e-6 || fabs(uv[1] - v) > 1e-6)
+        fail_msg("%g %g at %g %g %g", uv[0], uv[1], x, y, z);
+}
+
+static void test_reading(void **state)
+{
+    (void)state;
+    tobi_mesh mesh;
+    tobi_error err = { 0 };
+    read_cube(&mesh, 0);
+    assert_null(mesh.texture);
+    tobi_mesh_free(&mesh);
+    read_cube(&mesh, 6);
+    assert_int_equal(mesh.vertex_count, 8);      /* welded in spite of the seams */
+    assert_int_equal(mesh.texture->count, 12);
+    double mirror[3] = { -2, 2, 2 }, shift[3] = { 5, 0, 0 };
+    assert_int_equal(tobi_mesh_transform(&mesh, mirror, up, 0, shift, &err), TOBI_OK);
+    assert_int_equal(tobi_mesh_orient(&mesh, "cube.obj", &err), TOBI_OK);
+    assert_int_equal(tobi_mesh_refine(&mesh, 0.3, &err), TOBI_OK);
+    assert_non_null(mesh.texture);
+    assert_int_equal(tobi_texture_prepare(mesh.texture, &err), TOBI_OK);
+    /* the face -x lies at 5 m now: y turns into u, z into v; deep inside and outside the nearest counts */
+    expect(&mesh, 5, 0.5, 1, 0.25/6, 0.5);
+    expect(&mesh, 4.9, 0.5, 1, 0.25/6, 0.5);
+    expect(&mesh, 9, 0.5, 1, 0.25/6, 0.5);
+    tobi_mesh_free(&mesh);
+    read_cube(&mesh, 2);
+    assert_int_equal(mesh.texture->count, 4);
+    tobi_mesh_free(&mesh);
+}
+
+/* Every corner of every face reads its own stripe, also on a refined mesh. */
+static void test_skin(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    for (int refined = 0; refined < 2; refined++) {
+        tobi_mesh mesh;
+        tobi_skin skin;
+        double area = 0;
+        read_cube(&mesh, 6);
+        assert_int_equal(tobi_mesh_orient(&mesh, "cube.obj", &err), TOBI_OK);
+        if (refined) assert_int_equal(tobi_mesh_refine(&mesh, 0.3, &err), TOBI_OK);
+        assert_int_equal(tobi_texture_prepare(mesh.texture, &err), TOBI_OK);
+        assert_int_equal(tobi_skin_build(&mesh, &skin, &err), TOBI_OK);
+        if (!refined) assert_int_equal(skin.vertex_count, 24);
+        for (int64_t t = 0; t < mesh.triangle_count; t++) {
+            const float *p = skin.uv[skin.triangles[t][0]], *q = skin.uv[skin.triangles[t][1]],
+                        *r = skin.uv[skin.triangles[t][2]];
+            area += 0.5*fabs((double)(q[0] - p[0])*(r[1] - p[1]) - (double)(r[0] - p[0])*(q[1] - p[1]));
+            for (int k = 0; k < 3; k++)
+                assert_int_equal(skin.vertex[skin.triangles[t][k]], mesh.triangles[t][k]);
+        }
+        print_message("%d vertices for %d, area of the picture %.9f\n", (int)skin.vertex_count,
+                      (int)mesh.vertex_count, area);
+        assert_true(fabs(area - 1) < 1e-5);      /* the six stripes, each once */
+        tobi_skin_free(&skin);
+        tobi_mesh_free(&mesh);
+    }
+}
+
+static tobi_world *make_world(int faces)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_error err = { 0 };
+    tobi_world *w;
+    write_cube("cube.obj", faces);
+    def.method = "mlsmpm";
+    def.spacing = 0.1;
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 4;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    for (int k = 0; k < 2; k++) {
+        tobi_solid_def solid = tobi_default_solid_def();
+        tobi_fill_def fill = tobi_default_fill_def();
+        solid.name = k ? "plain" : "cube";
+        fill.mesh = k ? NULL : "cube.obj";
+        memcpy(fill.scale, one, sizeof one);
+        for (int a = 0; a < 3; a++) {
+            fill.translation[a] = 0.5;
+            fill.box_min[a] = 2;
+            fill.box_max[a] = 3;
+        }
+        assert_int_equal(tobi_world_add_solid(w, &solid, &fill, 1, &err), TOBI_OK);
+    }
+    tobi_body_def body = tobi_default_body_def();
+    body.name = "box";
+    body.mesh = "cube.obj";
+    body.translation[0] = 3;
+    if (tobi_world_add_body(w, &body, &err) != TOBI_OK) fail_msg("%s", err.text);
+    return w;
+}
+
+/* Particles keep what they had where they started, when they have moved, too. */
+static void test_particles(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world(6);
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_world_advance(w, 0.05, NULL, &err), TOBI_OK);
+    int64_t n = tobi_world_count(w, TOBI_FLUID), near = 0;
+    double *uv = malloc((size_t)n*2*sizeof *uv), *rest = malloc((size_t)n*3*sizeof *rest);
+    double *material = malloc((size_t)n*sizeof *material);
+    assert_int_equal(tobi_world_read(w, TOBI_FLUID, "texture_coordinates", uv, n, &err), TOBI_OK);
+    assert_int_equal(tobi_world_read(w, TOBI_FLUID, "rest_position", rest, n, &err), TOBI_OK);
+    assert_int_equal(tobi_world_read(w, TOBI_FLUID, "material", material, n, &err), TOBI_OK);
+    for (int64_t i = 0; i < n; i++) {
+        const double *x = rest + 3*i, *t = uv + 2*i;
+        if (material[i] == 1) {
+            assert_true(t[0] == 0 && t[1] == 0);
+            continue;
+        }
+        double other = fmin(fmin(x[1] - 0.5, 1.5 - x[1]), fmin(x[2] - 0.5, 1.5 - x[2]));
+        if (!(x[0] - 0.5 < other - 1e-3)) continue;      /* nearest is the face at the lower x */
+        near++;
+        assert_true(fabs(t[0] - (x[1] - 0.5)/6) < 1e-5 && fabs(t[1] - (x[2] - 0.5)) < 1e-5);
+    }
+    assert_true(near > 50);
+    n = tobi_world_count(w, TOBI_BODIES);
+    uv = realloc(uv, (size_t)n*2*sizeof *uv);
+    assert_int_equal(tobi_world_read(w, TOBI_BODIES, "texture_coordinates", uv, n, &err), TOBI_OK);
+    free(uv);
+    free(rest);
+    free(material);
+    tobi_world_destroy(w);
+}
+
+static int holds(const char *path, const char *words)
+{
+    char text[4000] = "";
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    size_t n = fread(text, 1, sizeof text - 1, f);
+    fclose(f);
+    for (size_t k = 0; k < n; k++) if (!text[k]) text[k] = ' ';
+    return strstr(text, words) != NULL;
+}
+
+/* usual has them where the mesh has, and nothing is made where it has none. */
+static void test_files(void **state)
+{
+    (void)state;
+    for (int faces = 0; faces <= 6; faces += 6) {
+        tobi_world *w = make_world(faces);
+        tobi_output_def output = tobi_default_output_def();
+        tobi_run *run;
+        tobi_error err = { 0 };
+        output.fields = "usual";
+        output.surfaces = 1;
+        const char *dir = faces ? "with" : "without";
+        if (tobi_run_create(w, &output, dir, 0, "{}", &run, &err) != TOBI_OK) fail_msg("%s", err.text);
+        char path[100];
+        snprintf(path, sizeof path, "%s/fluid/fluid_000000.vtu", dir);
+        assert_int_equal(holds(path, "<PointData TCoords=\"texture_coordinates\">"), faces > 0);
+        snprintf(path, sizeof path, "%s/surfaces/box_000000.vtp", dir);
+        assert_int_equal(holds(path, "NumberOfPoints=\"24\""), faces > 0);
+        assert_int_equal(holds(path, "Name=\"texture_coordinates\" NumberOfComponents=\"2\""), faces > 0);
+        assert_int_equal(w->texture != NULL, faces > 0);
+        tobi_run_free(run);
+        tobi_world_destroy(w);
+    }
+}
+
+int main(void)
+{
+    char folder[] = "/tmp/tobiuo_texture_XXXXXX", command[100];
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reading), cmocka_unit_test(test_skin), cmocka_unit_test(test_particles),
+        cmocka_unit_test(test_files),
+    };
+    if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    if (chdir("/") == 0) snprintf(command, sizeof command, "rm -r %s", folder);
+    return system(command) != 0 || failed;
+}
