@@ -16,6 +16,7 @@ shapes and keys (metres):
   blade     length=0.24 height=0.1 thickness=0.003 bevel=0.008 x=0   edge along y, cuts towards -z; the
                                                          origin is the middle of its back, or x away from it
   wire      radius=0.0005 length=0.2 sides=16            axis y, centred
+  carrot    radius=0.016 tip=0.007 length=0.15 sides=32  axis x, thinner towards +x, centred
 
 Every mesh but the apple is one closed surface; triangles counter-clockwise seen from outside.
 """
@@ -214,6 +215,21 @@ def wire(radius=0.0005, length=0.2, sides=16):
     return mesh
 
 
+def carrot(radius=0.016, tip=0.007, length=0.15, sides=32):
+    """Rounded at both ends; its thickness falls evenly in between."""
+    upright, mesh, rings = Mesh(), Mesh(), []
+    for end, r, angles in ((0, radius, range(-6, 1)), (1, tip, range(0, 7))):
+        for k in angles:
+            angle = math.pi * k / 12
+            rings.append((r * math.cos(angle), length * (end - 0.5) + r * (math.sin(angle) - 2 * end + 1)))
+    rings[0], rings[-1] = (0.0, rings[0][1]), (0.0, rings[-1][1])
+    revolve(rings, int(sides), upright)
+    ids = [mesh.vertex(z, y, -x) for x, y, z in upright.vertices]
+    for t in upright.triangles:
+        mesh.triangle(*(ids[i] for i in t))
+    return mesh
+
+
 # --- the flying fish --------------------------------------------------------------------------------
 # Lengths in millimetres here. Rings of points at stations along x make the body and the tail fin; the
 # wings grow out of the quads of the body's flat side strip, so that everything is one surface.
@@ -372,7 +388,7 @@ def fish():
 
 
 SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "torus": torus, "wedge": wedge,
-          "apple": apple, "blade": blade, "wire": wire}
+          "apple": apple, "blade": blade, "wire": wire, "carrot": carrot}
 
 # file below scenes: shape, its keys, title
 OF_SCENES = {
@@ -384,6 +400,7 @@ OF_SCENES = {
     "wedge_split/meshes/wedge.obj": ("blade", {"length": 0.1, "height": 0.1, "thickness": 0.03, "bevel": 0.1},
                                      "wedge, 100 x 100 x 30 mm"),
     "cheese_wire/meshes/wire.obj": ("wire", {}, "wire, 200 mm, 1 mm across"),
+    "carrot/meshes/carrot.obj": ("carrot", {}, "carrot, 0.15 m"),
 }
 
 

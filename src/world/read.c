@@ -127,32 +127,34 @@ static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, d
     }
 }
 
-/* Velocities of a body's particles: central difference of its motion in double. */
-static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3])
+/* Velocities of a body's particles: central difference of its motion in double; no motion is asked for times
+   before 0. */
+static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], tobi_error *err)
 {
-    const double half = 1e-5;
+    const double half = 1e-5, before = fmax(t - half, 0);
     if (!b->motion) {
         memset(out, 0, (size_t)b->particle_count*sizeof *out);
         return TOBI_OK;
     }
-    TOBI_TRY(tobi_body_place_particles(b, t - half, NULL));
+    TOBI_TRY(tobi_body_place_particles(b, before, err));
     memcpy(out, b->particle, (size_t)b->particle_count*sizeof *out);
-    TOBI_TRY(tobi_body_place_particles(b, t + half, NULL));
+    TOBI_TRY(tobi_body_place_particles(b, t + half, err));
     for (int64_t i = 0; i < b->particle_count; i++)
-        for (int a = 0; a < 3; a++) out[i][a] = (b->particle[i][a] - out[i][a])/(2*half);
+        for (int a = 0; a < 3; a++) out[i][a] = (b->particle[i][a] - out[i][a])/(t + half - before);
     return TOBI_OK;
 }
 
-static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer)
+static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer,
+                               tobi_error *err)
 {
     int64_t row = 0, id = w->sim.particles.capacity;
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
         double *out = buffer + row*components;
         if (!strcmp(field, "velocity")) {
-            TOBI_TRY(read_body_velocity(b, w->sim.time, (double (*)[3])(void *)out));
+            TOBI_TRY(read_body_velocity(b, w->sim.time, (double (*)[3])(void *)out, err));
         } else if (!strcmp(field, "position")) {
-            TOBI_TRY(tobi_body_place_particles(b, w->sim.time, NULL));
+            TOBI_TRY(tobi_body_place_particles(b, w->sim.time, err));
             memcpy(out, b->particle, (size_t)b->particle_count*sizeof *b->particle);
         } else {
             int number = !strcmp(field, "particle_id"), object = !strcmp(field, "object_id");
@@ -178,7 +180,7 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     if (count < tobi_world_count(w, set))
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, room for %lld given", field,
                          (long long)tobi_world_count(w, set), (long long)count);
-    if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer);
+    if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);
     TOBI_TRY(tobi_world_refresh(w, err));
     const tobi_pieces *unused;
     const int piece = !strcmp(field, "piece");

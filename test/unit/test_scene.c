@@ -207,7 +207,10 @@ static void every_shipped_scene_loads(void **state)
 {
     (void)state;
     static const char *const names[] = { "flying_fish",      "dam_break",  "dam_break_2d",
-                                         "hydrostatic_tank", "poiseuille", "towed_sphere" };
+                                         "hydrostatic_tank", "poiseuille", "towed_sphere",
+                                         "apple_cut",        "apple_cut_seed", "slicing",
+                                         "wedge_split",      "cheese_wire",    "twisted_knife",
+                                         "knife_leaves",     "carrot" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[1024];
         tobi_scene *scene;

@@ -156,6 +156,39 @@ static void bodies_and_probes(void **state)
     tobi_world_destroy(world);
 }
 
+/* Rises with 2 m/s from time 0 to 1 and knows no other times. */
+static tobi_status rise(void *user, double t, int64_t n, const double (*rest)[3], double (*position)[3],
+                        tobi_error *err)
+{
+    (void)user;
+    if (t < 0 || t > 1) {
+        if (err) snprintf(err->text, sizeof err->text, "no motion at %g s", t);
+        return TOBI_SCRIPT;
+    }
+    for (int64_t i = 0; i < n; i++)
+        for (int a = 0; a < 3; a++) position[i][a] = rest[i][a] + (a == 2 ? 2*t : 0);
+    return TOBI_OK;
+}
+
+static void motions_of_few_times(void **state)
+{
+    (void)state;
+    double velocity[3*64];
+    tobi_world_def def = make_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_world *world = make_world(&def, 0);
+    for (int a = 0; a < 3; a++) body.box_max[a] = 0.4;
+    body.motion = rise;
+    body.motion_rigid = 1;
+    assert_int_equal(tobi_world_add_body(world, &body, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_read(world, TOBI_BODIES, "velocity", velocity, 64, NULL), TOBI_OK);
+    assert_true(velocity[2] > 1.999 && velocity[2] < 2.001);
+    world->sim.time = 1;
+    REFUSED(tobi_world_read(world, TOBI_BODIES, "velocity", velocity, 64, &err), TOBI_SCRIPT,
+            "no motion at 1.00001 s");
+    tobi_world_destroy(world);
+}
+
 static void particles_beyond_the_machine(void **state)
 {
     (void)state;
@@ -379,6 +412,7 @@ int main(void)
         cmocka_unit_test(fluids),
         cmocka_unit_test(surface_tension),
         cmocka_unit_test(bodies_and_probes),
+        cmocka_unit_test(motions_of_few_times),
         cmocka_unit_test(particles_beyond_the_machine),
         cmocka_unit_test(fields),
         cmocka_unit_test(divergence),
