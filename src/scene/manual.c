@@ -235,7 +235,8 @@ static void write_fields(FILE *out)
           "at the start, `density` the density at the start over J. `deformation_gradient` is the elastic\n"
           "part where a model flows, and of a liquid only its determinant means something. `plastic` is the\n"
           "plastic strain of von-mises, the plastic part of J less 1 of snow, and the logarithm of the\n"
-          "volume that loose sand has gained. `material` is the number of the solid, from 0.\n", out);
+          "volume that loose sand has gained. `damage` of a solid with a strength goes from 0 to 1, where\n"
+          "it is broken. `material` is the number of the solid, from 0.\n", out);
 }
 
 /* The parts of an owner and theirs, each under its path: "fluids[].fill[]". */
