@@ -159,7 +159,8 @@ static double oracle_elastic(int corotated, double mu, double lambda, double s, 
 }
 
 /* Damage of an elastic solid: D from the largest stretch, a cracked share like sand without memory. */
-static void oracle_break(const oracle_solid *m, double mu, double lambda, oracle_particle *p, double tau[3][3])
+static void oracle_break(const oracle_solid *m, double mu, double lambda, oracle_particle *p,
+                         double tau[3][3])
 {
     double U[3][3], V[3][3], s[3], h[3], loose[3], value[3], J = oracle_det(p->F), norm = 0, trace = log(J);
     int top = 0;

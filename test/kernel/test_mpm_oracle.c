@@ -47,7 +47,8 @@ static void choose_solids(rig *g)
             .keep = 1 - 0.01*k };
         g->solid[k] = s;
         g->material[k] = (mpm_material){
-            .model = s.model, .strength = (float)s.strength, .brittleness = 10, .mu = (float)(s.E/(2*(1 + s.nu))),
+            .model = s.model, .strength = (float)s.strength, .brittleness = 10,
+            .mu = (float)(s.E/(2*(1 + s.nu))),
             .lambda = (float)(s.E*s.nu/((1 + s.nu)*(1 - 2*s.nu))), .bulk = (float)s.bulk,
             .viscosity = (float)s.viscosity, .yield = (float)s.yield, .hardening = (float)s.hardening,
             .compression = (float)s.compression, .stretch = (float)s.stretch, .friction = (float)s.cone,
