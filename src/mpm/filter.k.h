@@ -56,7 +56,7 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, rows = dim == 3 ? 3 : 1, last = dim - 1;
+    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
     tobi_float4 *calm = v->calm + number*(nodes + 8), *calm_twin = mpm_twin_tile(b, v->calm, nodes);
     mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
@@ -76,22 +76,15 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
             }
             totals[0] += 0.5*mass*square;
             totals[1] += 0.5*mass*keep*keep*square;
-            for (int n = 0; n < 3*rows*3; n++) {
-                const int at[3] = {dim == 3 ? n/9 : n/3, dim == 3 ? n/3%3 : n%3, n%3};
-                float w = s.weight[0][at[0]][k]*s.weight[last][at[last]][k], u[3];
-                if (dim == 3) w *= s.weight[1][at[1]][k];
-                for (int a = 0; a < 3; a++) {
-                    u[a] = (&v->velocity[i + k].x)[a];
-                    for (int c = 0; c < dim*v->affine_momentum; c++)
-                        u[a] += (&v->affine[i + k].c[c].x)[a]*((float)at[c] - s.offset[c][k])*v->cell;
-                }
-                tobi_float4 *node = (calm_twin && v->hidden[i + k] >> n & 1 ? calm_twin : calm) + s.first[k] +
-                    (dim == 3 ? 64*at[0] + 8*at[1] + at[2] : 8*at[0] + at[1]);
-                node->x += w*mass*keep*u[0];
-                node->y += w*mass*keep*u[1];
-                node->z += w*mass*keep*u[2];
-                node->w += w*mass;
+            const quad moving = quad_set(mass*keep), cell = quad_set(v->affine_momentum ? v->cell : 0);
+            quad base = quad_load(&v->velocity[i + k])*moving, column[3];
+            base[3] = mass;
+            for (int c = 0; c < 3; c++) {
+                column[c] = quad_load(&v->affine[i + k].c[c])*cell*moving;
+                column[c][3] = 0;
+                if (c < dim) base = base - column[c]*quad_set(s.offset[c][k]);
             }
+            mpm_add_split(calm, calm_twin, &s, k, calm_twin ? v->hidden[i + k] : 0, base, column, dim);
         }
     }
 }
