@@ -237,11 +237,42 @@ static void other_transfers(void **state)
     cut_once(3e-3, 0.25, TOBI_XPIC);
 }
 
+/* A world that is half cut, made with so many threads. */
+static tobi_world *make_half_cut(int threads)
+{
+    char path[] = "/tmp/tobiuo_blade_XXXXXX.obj";
+    close(mkstemps(path, 4));
+    write_blade(path, 3e-3);
+    tobi_world *world = make_world(path, LEFT + 13*SPACING, threads, TOBI_APIC);
+    unlink(path);
+    OK(tobi_world_advance(world, 0.015, NULL, &err));
+    return world;
+}
+
+static void same_bits(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/tobiuo_cut_XXXXXX";
+    close(mkstemp(path));
+    tobi_world *one = make_half_cut(1), *four = make_half_cut(4);
+    assert_true(one->sim.bodies[0].rigid.cut == 1);
+    assert_int_equal(tobi_world_hash(one), tobi_world_hash(four));
+    OK(tobi_world_save(one, path, &err));
+    OK(tobi_world_load(four, path, &err));
+    OK(tobi_world_advance(one, 0.03, NULL, &err));
+    OK(tobi_world_advance(four, 0.03, NULL, &err));
+    assert_int_equal(tobi_world_hash(one), tobi_world_hash(four));
+    unlink(path);
+    tobi_world_destroy(one);
+    tobi_world_destroy(four);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_blade_at_every_place),
         cmocka_unit_test(other_transfers),
+        cmocka_unit_test(same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
