@@ -288,7 +288,7 @@ typedef struct tobi_step_info {
     double  step_work;            /* J, by the length of time steps, impact included; if measured     */
     double  damping_work;         /* J, by the damping of solids                                      */
     double  friction_work;        /* J, by friction and impact at bodies and at faces of cuts         */
-    double  fracture_work;        /* J, by the edges of blades, for new surface                       */
+    double  fracture_work;        /* J, by the edges of blades and by cracks, for new surface         */
     double  side_work;            /* J, by friction at sides of the domain; < 0: they drive           */
     double  momentum[3];          /* kg m/s of all fluid                                              */
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */

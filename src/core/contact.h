@@ -48,8 +48,8 @@ typedef struct tobi_contacts {
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */
 } tobi_contacts;
 
-/* What contacts have taken from the energy, J, and the work of the bodies on the material: with the velocities
-   at the end of the step. */
+/* What contacts have taken from the energy, J, and the work of the bodies on the material: with the
+   velocities at the end of the step. */
 typedef struct tobi_contact_work { double fracture, friction, bodies; } tobi_contact_work;
 
 typedef struct tobi_contact_step {

@@ -145,6 +145,12 @@ static void join(int32_t *parent, int32_t a, int32_t b)
     }
 }
 
+/* Across a crack the deformation of particles is the width of the crack. */
+static int is_cracked(const search *f, int64_t i)
+{
+    return f->solids[f->particles->fluid[i]].def.strength > 0 && f->particles->strain[i].c[1].w > 0.9f;
+}
+
 /* 1 if two particles that were neighbours at rest have been pulled apart. */
 static int is_torn(const search *f, int64_t i, int64_t j)
 {
@@ -159,6 +165,7 @@ static int is_torn(const search *f, int64_t i, int64_t j)
         now += x*x;
         meant += y*y;
     }
+    if (is_cracked(f, i) || is_cracked(f, j)) meant = 0;
     return !(now <= REACH*REACH*fmax(meant, spacing*spacing));
 }
 

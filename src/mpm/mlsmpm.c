@@ -391,7 +391,7 @@ static mpm_view look_back(const mlsmpm *m)
     return v;
 }
 
-/* totals: elastic energy, kinetic, potential. */
+/* totals: elastic energy, kinetic, potential; spent on cracks. */
 static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const mpm_view *v = view;
@@ -399,18 +399,16 @@ static void sum_energy(const void *view, int64_t begin, int64_t end, double *tot
         const double mass = v->strain[i].c[2].w;
         totals[0] += mpm_look(v, i).energy;
         totals[1] += mpm_kinetic(v, i);
+        totals[3] += mpm_damage_spent(v, i);
         for (int a = 0; a < 3; a++) totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
     }
 }
 
-/* The energy of all solids, J; elastic and kinetic are parts of it. */
-static double find_energy(tobi_simulation *s, const mlsmpm *m, double *elastic, double *kinetic)
+/* The energy of all solids, J; t as in sum_energy. */
+static double find_energy(tobi_simulation *s, const mlsmpm *m, double t[TOBI_TOTALS])
 {
     const mpm_view v = look_back(m);
-    double t[TOBI_TOTALS];
     tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
-    *elastic = t[0];
-    *kinetic = t[1];
     return t[0] + t[1] + t[2];
 }
 
@@ -440,10 +438,11 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
     int64_t kept = 0;
     for (int64_t i = 0; i < p->count; i++) {
         if (is_beyond(s, &p->position[i])) {
-            double t[3] = {0, 0, 0};
+            double t[4] = {0, 0, 0, 0};
             sum_energy(&v, i, i + 1, t);
             m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
-            m->memory[STEPS] -= t[0];
+            m->memory[STEPS] -= t[0] + t[3];
+            m->memory[FRACTURE] += t[3];
             m->memory[NODE_ENERGY] -= t[1];
             continue;
         }
@@ -457,12 +456,12 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
-    double clock = tobi_clock(), elastic, kinetic;
+    double clock = tobi_clock(), t[TOBI_TOTALS];
     s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
     if (s->particles.count > 0 && m->memory[AGE] < 0)
-        m->memory[START_ENERGY] = find_energy(s, m, &elastic, &kinetic);
+        m->memory[START_ENERGY] = find_energy(s, m, t);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
         TOBI_TRY(sort_particles(s, m, &clock, err));
@@ -508,17 +507,18 @@ static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_
 static void measure(tobi_simulation *s, const void *state)
 {
     const mlsmpm *m = state;
-    double kinetic, energy = find_energy(s, m, &s->info.elastic_energy, &kinetic);
+    double t[TOBI_TOTALS], energy = find_energy(s, m, t);
+    s->info.elastic_energy = t[0];
     s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
     s->info.work_bodies = m->memory[BODY_WORK];
-    s->info.fracture_work = m->memory[FRACTURE];
+    s->info.fracture_work = m->memory[FRACTURE] + t[3];
     s->info.friction_work = m->memory[FRICTION];
     s->info.damping_work = m->memory[DAMPING];
     s->info.side_work = m->memory[SIDES];
     s->info.plastic_work = m->memory[FLOW];
     if (!m->def.measure_transfer || s->step == 0) return;
-    s->info.transfer_dissipation = m->memory[TRANSFER] + m->memory[NODE_ENERGY] - kinetic;
-    s->info.step_work = m->memory[STEPS] - m->memory[FLOW] - s->info.elastic_energy;
+    s->info.transfer_dissipation = m->memory[TRANSFER] + m->memory[NODE_ENERGY] - t[1];
+    s->info.step_work = m->memory[STEPS] - m->memory[FLOW] - t[0] - t[3];
 }
 
 /* After a load the blocks are built anew. */

@@ -15,7 +15,7 @@
 /* What differs between the worlds; the rest is a block of 20 x 20 particles in a box of 1 m, 2-D. */
 typedef struct setup {
     int model, transfer, measure, threads, open;
-    double damping, velocity[2], gravity;
+    double damping, velocity[2], gravity, strength;
     int body;                           /* 0 none, 1 rough floor, 2 free box above, 3 floor and blade      */
 } setup;
 
@@ -80,6 +80,8 @@ static tobi_world *make_world(setup s)
     solid.yield_stress = 2000;
     solid.viscosity = 20;
     solid.damping = s.damping;
+    solid.strength = s.strength;
+    if (s.strength > 0) solid.fracture_energy = 10;
     for (int a = 0; a < 2; a++) {
         w.domain_max[a] = 1;
         w.wall_min[a] = w.wall_max[a] = TOBI_WALL_SEPARATE;
@@ -131,6 +133,15 @@ static void parts_add_up_without_bodies(void **state)
             assert_true(elastic ? i.plastic_work == 0 : i.plastic_work > 1);
             assert_true(i.friction_work == 0 && i.fracture_work == 0 && i.work_bodies == 0);
         }
+}
+
+/* A block that breaks when it hits the floor. */
+static void cracks_take_theirs(void **state)
+{
+    (void)state;
+    setup s = { .measure = 1, .threads = 2, .velocity = { 0, -4 }, .strength = 2000 };
+    const tobi_step_info i = check_closure(s, 0.15, 1e-3);
+    assert_true(i.fracture_work > 1);
 }
 
 /* What leaves takes its energy along. */
@@ -204,6 +215,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_add_up_without_bodies),
+        cmocka_unit_test(cracks_take_theirs),
         cmocka_unit_test(leavers_take_theirs),
         cmocka_unit_test(parts_add_up_with_bodies),
         cmocka_unit_test(damping_is_exact),
