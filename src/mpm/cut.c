@@ -310,24 +310,23 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     return TOBI_OK;
 }
 
-/* Contact of the two velocities of a node: momentum is kept, the lost energy is returned. */
+/* Contact of the two velocities of a node. Momentum is kept; what friction takes at the velocities after it is
+   returned, J. */
 static double meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
-    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]}, before, lost = 0;
+    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]}, lost = 0;
     double mass = (double)first->w*second->w/((double)first->w + second->w);
     for (int a = 0; a < 3; a++) u[a] = (double)(&second->x)[a] - (&first->x)[a];
     double along = vec3_dot(u, n), lack = -fmax(seam->gap, 0)/dt - along;
     if (lack > 0) {
-        before = vec3_dot(u, u);
         vec3_add_scaled(slide, u, -along, n);
         double size = vec3_length(slide), grip = fmin(seam->friction*lack, size);
         for (int a = 0; a < 3; a++) {
             double change = lack*n[a] - (size > 0 ? grip/size*slide[a] : 0);
             (&first->x)[a] -= (float)(change*mass/first->w);
             (&second->x)[a] += (float)(change*mass/second->w);
-            u[a] += change;
         }
-        lost = 0.5*mass*(before - vec3_dot(u, u));
+        lost = mass*grip*(size - grip);
         along += lack;
     }
     seam->gap += (float)(along*dt);

@@ -27,6 +27,6 @@ typedef struct mpm_cut {
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
 /* Finds the nodes with two velocities and makes their twins. The grid's view must be bound anew. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
-/* Faces that meet push and rub; gaps are brought to the end of the step. Returns the energy lost, J. */
+/* Faces that meet push and rub; gaps are brought to the end of the step. Returns the work of friction, J. */
 double mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt);
 void mpm_cut_free(mpm_cut *c);
