@@ -62,8 +62,8 @@ static void find_deformation(const mpm_view *v, int64_t i, double f[3][3])
         }
 }
 
-/* How far from a cut a particle may feel nodes beyond it, however the material turns, m; a quarter more for its
-   being compressed. */
+/* How far from a cut a particle may feel nodes beyond it, however the material turns, m; a quarter of a cell
+   more for its being compressed. */
 static double find_band(int dimension, double cell) { return (1.5*sqrt(dimension) + 0.25)*cell; }
 
 /* The particle remembers the cut. A full memory forgets the farthest. */
@@ -310,8 +310,8 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     return TOBI_OK;
 }
 
-/* Contact of the two velocities of a node. Momentum is kept; what friction takes at the velocities after it is
-   returned, J. */
+/* Contact of the two velocities of a node. Momentum is kept; what friction takes at the velocities after it
+   is returned, J. */
 static double meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
     double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]}, lost = 0;
