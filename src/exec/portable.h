@@ -8,12 +8,15 @@
 
 #if defined(__CUDACC__)
 #  define TOBI_FN static __host__ __device__ __forceinline__
+#  define TOBI_RARE_FN static __host__ __device__ __noinline__
 #  define TOBI_RESTRICT __restrict__
 #elif defined(__cplusplus)
 #  define TOBI_FN static inline __attribute__((always_inline))
+#  define TOBI_RARE_FN static __attribute__((noinline, unused))
 #  define TOBI_RESTRICT __restrict__
 #else
 #  define TOBI_FN static inline __attribute__((always_inline))
+#  define TOBI_RARE_FN static __attribute__((noinline, unused))    /* kept out of loops that rarely call it */
 #  define TOBI_RESTRICT restrict
 #endif
 

@@ -75,13 +75,14 @@ TOBI_FN void mpm_find_crack(const mpm_parameters *m, lane_int model, const lane 
 }
 
 /* Kirchhoff stress of breakable particles, eqs. (17), (18). state: D. Only what is broken for good flows. */
-TOBI_FN void mpm_break(const mpm_parameters *m, lane_int model, lane e[9], lane *state, lane tau[6])
+TOBI_RARE_FN void mpm_break(const mpm_parameters *m, const lane_int *model, lane e[9], lane *state,
+                            lane tau[6])
 {
     lane a[6], v[3][3], g[3], value[3], one = lane_set(1), zero = lane_set(0);
     mpm_crack c;
     mpm_finger(e, a);
     mpm_eigen(a, v);
-    mpm_find_crack(m, model, a, &c);
+    mpm_find_crack(m, *model, a, &c);
     lane most = c.s[0], stress = c.intact[0];
     for (int k = 1; k < 3; k++) {
         stress = lane_where_less(most, c.s[k], c.intact[k], stress);

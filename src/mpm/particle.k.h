@@ -147,9 +147,11 @@ TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t p
         }
     }
     if (present & MPM_BREAKS) {
+        mpm_parameters copy = *m;            /* whose address may leave this function, so that m's need not */
+        lane_int number = model;
         lane damage = *state, zero = lane_set(0);
         for (int k = 0; k < 9; k++) kept[k] = e[k];
-        mpm_break(m, model, kept, &damage, part);
+        mpm_break(&copy, &number, kept, &damage, part);
         for (int k = 0; k < 6; k++) tau[k] = lane_where_less(zero, m->strength, part[k], tau[k]);
         for (int k = 0; k < 9; k++) e[k] = lane_where_less(zero, m->strength, kept[k], e[k]);
         *state = lane_where_less(zero, m->strength, damage, *state);
