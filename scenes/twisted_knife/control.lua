@@ -9,7 +9,7 @@ function control(t, body)
     local weight = 9.81*body.mass
     if body.phase == PUSH and body.position[3] > START - 0.005 - params.depth then
         local missing = -params.speed - body.velocity[3]
-        local push = math.max(-params.force, math.min(params.force, 400*body.mass*missing))
+        local push = math.max(-params.force, math.min(params.force, 3000*body.mass*missing))
         return { force = { 0, 0, weight + push }, hold = "x,y,turn" }
     end
     local since = body.phase == TWIST and body.phase_time or 0

@@ -226,7 +226,7 @@ static const char closing[] =
     "(solids[0]). There the stiffness was taken times 0.3, in some versions times the size of the box, and\n"
     "stress and mass were 8 times too large: set solids[0].youngs_modulus to what the apple has, 3e6 Pa.\n"
     "The knife presses down with 600 N/s times the time until its origin is at z = 0.1 m, then slides\n"
-    "along -y with a tenth of that force up to 1 m/s (bodies[0].control).\n"
+    "along -y with a tenth of that force up to 1 m/s (bodies[0].control), as far as the side of the domain.\n"
     "bodies[0].edge_resistance = 250 J/m2 is that of apple: there was none, the apple parted where the\n"
     "grid failed.\n";
 
