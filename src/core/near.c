@@ -523,7 +523,9 @@ static void push_range(const void *view, int64_t begin, int64_t end, double *t)
         const double *x = &p->s->particles.position[i].x;
         int outside = 0;
         for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
-        if (!outside && push_particle(p, i, t)) t[6] += 1;
+        if (outside || !push_particle(p, i, t)) continue;
+        #pragma omp atomic
+        p->s->near.contacts++;      /* all sums are taken; whole numbers add up the same in any order */
     }
 }
 
@@ -550,7 +552,6 @@ void tobi_near_push_out(tobi_simulation *s)
             info->pressure_force[a] += t[a]/s->dt;
             info->pressure_torque[a] += t[3 + a]/s->dt;
         }
-        s->near.contacts += (int64_t)t[6];
     }
 }
 
