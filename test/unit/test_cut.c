@@ -212,9 +212,9 @@ static void cut_once(double thickness, double offset, int transfer)
     const double lost = pull(world, half), overlap = transfer == TOBI_APIC ? collide(world, half) : 0;
     const tobi_pieces *pieces;
     OK(tobi_world_pieces(world, &pieces, &err));
-    printf("blade %.0f mm, %.2f cells into the grid: %d pieces, %d fragments, %d on the wrong side, "
-           "%.1e of the speed lost in pulling, overlap %.2f mm in colliding\n", thickness*1e3, offset, (int)pieces->count,
-           (int)pieces->fragments, wrong, lost, overlap*1e3);
+    printf("blade %.0f mm, %.2f cells into the grid: %d pieces, %d fragments, "
+           "%d on the wrong side, %.1e of the speed lost in pulling, overlap %.2f mm in colliding\n",
+           thickness*1e3, offset, (int)pieces->count, (int)pieces->fragments, wrong, lost, overlap*1e3);
     assert_int_equal(pieces->count, 2);
     assert_int_equal(pieces->fragments, 0);
     assert_int_equal(wrong, 0);
