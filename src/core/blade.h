@@ -7,7 +7,7 @@ typedef struct tobi_blade_place {
     double beyond;                     /* m, past an end of the edge; 0 beside it                 */
     double ahead;                      /* m, in the direction of cutting: > 0 is not cut yet      */
     double aside;                      /* m, along the cut's normal                               */
-    double normal[3];                  /* of the cut, world axes                                  */
+    double normal[3];                  /* of the cut, axes as asked                               */
 } tobi_blade_place;
 
 /* A piece of the edge in world axes. */
@@ -17,8 +17,11 @@ typedef struct tobi_blade_piece {
     double ahead[3], normal[3];        /* direction of cutting, normal of the cut                 */
 } tobi_blade_piece;
 
-/* x: m, from the domain's corner. 0 if the edge has no direction: it is tagged and stands still. */
+/* x: m, from the body's centre, in the body's rest axes, as the normal found. 0 if the edge has no direction: it
+   is tagged and stands still. */
 int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);
+/* The same for x in world axes, from the domain's corner, and a normal in world axes. */
+int tobi_blade_locate_world(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);
 /* The box around the edge, m, grown by `reach`. */
 void tobi_blade_box(const tobi_body *b, double reach, double low[3], double high[3]);
 /* Cuts the edge into pieces of at most `size` (m), in the order of the edges; returns how many there are and

@@ -142,15 +142,21 @@ static int touch_blade(const pose *at, const double x[3], const tobi_columns *cu
     tobi_blade_place place;
     double depth = radius;
     int side = find_side(at->body, cuts, &depth);
+    double from[3], local[3];
     if (depth > 2*radius) return 0;
-    int known = tobi_blade_locate(at->body, at->step->dimension, x, &place);
+    vec3_sub(from, x, at->body->rigid.position);
+    for (int a = 0; a < 3; a++)
+        local[a] = at->matrix[0][a]*from[0] + at->matrix[1][a]*from[1] + at->matrix[2][a]*from[2];
+    int known = tobi_blade_locate(at->body, at->step->dimension, local, &place);
     int near = known && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
     if (!side && near) return 0;
     if (!touch(at, x, out)) return 0;
-    if (near && side*vec3_dot(place.normal, out->normal) < 0.2) {
+    double normal[3];
+    for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
+    if (near && vec3_dot(normal, out->normal) < 0.2) {
         if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
         out->gap = side*place.aside - radius;
-        for (int a = 0; a < 3; a++) out->normal[a] = side*place.normal[a];
+        memcpy(out->normal, normal, sizeof normal);
     }
     out->gap += radius - depth;
     return out->gap < at->step->margin;

@@ -109,7 +109,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
         double f[3][3];
         int out = !can_be_cut(v->material[v->solid[i]].model);
         for (int a = 0; a < dim; a++) out |= x[a] < low[a] || x[a] > high[a];
-        if (out || !tobi_blade_locate(b, dim, x, &at)) continue;
+        if (out || !tobi_blade_locate_world(b, dim, x, &at)) continue;
         if (at.beyond > 0.25*cell || fabs(at.aside) > band || fabs(at.ahead) > cell)
             continue;
         met = 1;
@@ -200,17 +200,21 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
         w[a][1] = 0.75 - (f - 1)*(f - 1);
         w[a][2] = 0.5*(f - 0.5)*(f - 0.5);
     }
+    int low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = first[a] < 0 ? -first[a] : 0;
+        high[a] = first[a] > 1 ? 3 - first[a] : 2;
+    }
+    if (dim == 2) low[2] = high[2] = 1;
     for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
         const tobi_float4 *face = &c->face[i].c[k];
-        if (face->w > 2.6*v->cell) continue;
-        for (int n = 0; n < 27; n++) {
-            const int at[3] = {first[0] + n/9, first[1] + n/3%3, first[2] + n%3};
-            if (at[0] < 0 || at[0] > 3 || at[1] < 0 || at[1] > 3 || at[2] < 0 || at[2] > 3) continue;
-            if (dim == 2 && n%3 != 1) continue;
-            int node = dim == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
-            double weight = mass*w[0][n/9]*w[1][n/3%3]*w[2][n%3];
-            add_vote(votes[node], v, i, face, v->cuts[i].c[k].w, weight, x);
-        }
+        for (int p0 = low[0]; p0 <= high[0]; p0++)
+            for (int p1 = low[1]; p1 <= high[1]; p1++)
+                for (int p2 = low[2]; p2 <= high[2]; p2++) {
+                    const int at[3] = {first[0] + p0, first[1] + p1, first[2] + p2};
+                    int node = dim == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
+                    add_vote(votes[node], v, i, face, v->cuts[i].c[k].w, mass*w[0][p0]*w[1][p1]*w[2][p2], x);
+                }
     }
 }
 

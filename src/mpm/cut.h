@@ -16,7 +16,7 @@ typedef struct mpm_cut {
     mpm_seam *seam;                    /* [patches][nodes], of those with a side                  */
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
-    uint32_t *hidden;                  /* [particles], see mpm_view.hidden                        */
+    uint32_t *hidden;                  /* [particles], see mpm_view                               */
     char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
     int64_t node_room, particle_room, block_room;
     double moved;                      /* m, since sides and gaps were found                      */

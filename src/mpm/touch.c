@@ -13,6 +13,7 @@ static void free_entries(mpm_touch *t)
 {
     free(t->node); free(t->weight); free(t->key); free(t->key_scratch);
     free(t->order); free(t->order_scratch); free(t->begin);
+    free(t->owner); free(t->share);
     t->room = 0;
 }
 
@@ -60,14 +61,18 @@ static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
     t->order = malloc((size_t)room*sizeof *t->order);
     t->order_scratch = malloc((size_t)room*sizeof *t->order_scratch);
     t->begin = malloc((size_t)(room + 1)*sizeof *t->begin);
-    if (t->node && t->weight && t->key && t->key_scratch && t->order && t->order_scratch && t->begin) {
+    t->owner = malloc((size_t)room*sizeof *t->owner);
+    t->share = malloc((size_t)room*sizeof *t->share);
+    if (t->node && t->weight && t->key && t->key_scratch && t->order && t->order_scratch && t->begin &&
+        t->owner && t->share) {
         t->room = room;
         return TOBI_OK;
     }
     free_entries(t);
     t->node = t->key = t->key_scratch = NULL;
     t->weight = NULL;
-    t->order = t->order_scratch = NULL;
+    t->order = t->order_scratch = t->owner = NULL;
+    t->share = NULL;
     t->begin = NULL;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)count);
 }
@@ -247,6 +252,12 @@ static void sort_by_node(mpm_touch *t, const mpm_grid *g, tobi_exec *x)
                      t->histogram);
     t->touched = tobi_find_runs(x, t->count, t->key, 0, t->begin);
     t->begin[t->touched] = t->count;
+    const int64_t each = nodes_each(g);
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t e = 0; e < t->count; e++) {
+        t->owner[e] = (int32_t)contact_of(t, t->order[e], each);
+        t->share[e] = t->weight[t->order[e]];
+    }
 }
 
 /* Rows of the matrix that turns impulses into velocities: their sums bound how strongly all contacts together
@@ -257,7 +268,7 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t n = 0; n < t->touched; n++) {
         float sum = 0;
-        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->weight[t->order[e]];
+        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->share[e];
         t->crowd[t->key[t->begin[n]]] = sum;
     }
     #pragma omp parallel for num_threads(x->threads)
@@ -274,28 +285,29 @@ static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid
     const int64_t each = nodes_each(g);
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < c->count; k++) {
-        double u[3] = {0, 0, 0};
-        for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
-            for (int a = 0; a < 3; a++) u[a] += t->weight[n]*(&g->node[t->node[n]].x)[a];
-        memcpy(c->list[k].velocity, u, sizeof u);
+        const int64_t end = entry_of(t, k + 1, each);
+        quad u = quad_set(0);
+        for (int64_t n = entry_of(t, k, each); n < end; n++)
+            u = u + quad_load(&g->node[t->node[n]])*quad_set(t->weight[n]);
+        for (int a = 0; a < 3; a++) c->list[k].velocity[a] = u[a];
     }
 }
 
 static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
-    const int64_t each = nodes_each(g);
     #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < c->count; k++) memcpy(t->push[k], c->list[k].change, sizeof t->push[k]);
+    for (int64_t k = 0; k < c->count; k++) {
+        const double *change = c->list[k].change;
+        t->push[k] = (tobi_float4){(float)change[0], (float)change[1], (float)change[2], 0};
+    }
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t n = 0; n < t->touched; n++) {
         tobi_float4 *node = &g->node[t->key[t->begin[n]]];
-        double sum[3] = {0, 0, 0};
+        quad sum = quad_set(0);
         if (!(node->w > 0)) continue;
-        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
-            const double *push = t->push[contact_of(t, t->order[e], each)];
-            for (int a = 0; a < 3; a++) sum[a] += t->weight[t->order[e]]*push[a];
-        }
-        for (int a = 0; a < 3; a++) (&node->x)[a] += (float)(sum[a]/node->w);
+        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++)
+            sum = sum + quad_load(&t->push[t->owner[e]])*quad_set(t->share[e]);
+        quad_store(node, quad_load(node) + sum*quad_set(1/node->w));
     }
 }
 

@@ -12,6 +12,8 @@ typedef struct mpm_touch {
     uint32_t *key, *key_scratch;       /* nodes, sorted                                           */
     int32_t *order, *order_scratch;    /* entries                                                 */
     int64_t *begin, *histogram;        /* of the entries of each touched node                     */
+    int32_t *owner;                    /* the contact of each, and its weight                     */
+    float *share;
     int64_t touched, room;
     float *crowd;                      /* [nodes] sum of the contacts' weights                    */
     int64_t node_room;
@@ -21,7 +23,7 @@ typedef struct mpm_touch {
     double cell_mass;                  /* kg of a full cell: the caller's to set                  */
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
     tobi_contact_work work;            /* J, of the last step                                     */
-    double (*push)[3];                 /* N s, what each contact changed last, close together     */
+    tobi_float4 *push;                 /* N s, what each contact changed last, close together     */
     int64_t push_room;
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;
