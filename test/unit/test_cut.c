@@ -237,6 +237,112 @@ static void other_transfers(void **state)
     cut_once(3e-3, 0.25, TOBI_XPIC);
 }
 
+/* --- a cut block against its halves alone ---------------------------------------------------------- */
+
+enum { SIDE = 8, HALF_MOST = SIDE*SIDE*SIDE };
+
+/* Halves of a block of SIDE particles along each axis, cut at the plane x = 0: both (which < 0), or one. A blade
+   that stands far off makes the particles remember cuts. */
+static tobi_world *make_halves(int dimension, int transfer, int which)
+{
+    char path[] = "/tmp/tobiuo_blade_XXXXXX.obj";
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
+    tobi_body_def blade = tobi_default_body_def();
+    tobi_mlsmpm_def method;
+    tobi_world *world;
+    tobi_param_defaults(tobi_method_table("mlsmpm"), &method);
+    method.transfer = transfer;
+    w.method = "mlsmpm";
+    w.dimension = dimension;
+    w.spacing = 0.01;
+    w.time_step = 1e-4;
+    w.threads = 2;
+    for (int a = 0; a < 3; a++) {
+        w.gravity[a] = 0;
+        w.domain_min[a] = -0.4;
+        w.domain_max[a] = 0.4;
+        for (int h = 0; h < 2; h++) {
+            fill[h].box_min[a] = a ? 0 : h ? 0 : -0.5*SIDE*w.spacing;
+            fill[h].box_max[a] = a ? SIDE*w.spacing : fill[h].box_min[0] + 0.5*SIDE*w.spacing;
+        }
+    }
+    solid.youngs_modulus = 1e5;
+    solid.poissons_ratio = 0.3;
+    close(mkstemps(path, 4));
+    write_blade(path, 1e-3);
+    blade.name = "far";
+    blade.mesh = path;
+    blade.blade = 1;
+    blade.translation[0] = 0.35;
+    if (dimension == 3) blade.scale[2] = 0.1;
+    OK(tobi_world_create(&w, &method, &world, &err));
+    OK(tobi_world_add_solid(world, &solid, which < 0 ? fill : &fill[which], which < 0 ? 2 : 1, &err));
+    OK(tobi_world_add_body(world, &blade, &err));
+    OK(tobi_world_start(world, &err));
+    unlink(path);
+    return world;
+}
+
+/* Cuts the block, and gives the halves turning, stretching motions that part them. */
+static void set_off(tobi_world *world)
+{
+    static double u[HALF_MOST][3];
+    tobi_particles *p = &world->sim.particles;
+    for (int64_t i = 0; i < p->count; i++) {
+        const double x = p->rest[i].x - 0.4, y = p->rest[i].y - 0.4, z = p->rest[i].z - 0.4;
+        const double s = x > 0 ? 1 : -1;
+        p->cuts[i].c[0] = (tobi_float4){ (float)x, 0, 0, (float)s };
+        double *to = u[world->sim.particles.id[i]];
+        to[0] = s*(0.5 + 8*fabs(x)) + 3*y;
+        to[1] = s*4*x - 6*y + 0.2*s;
+        to[2] = world->sim.box.dimension == 3 ? 5*z - 4*y : 0;
+    }
+    OK(tobi_world_write(world, "velocity", u[0], p->count, &err));
+}
+
+static void read_positions(tobi_world *world, double (*out)[3])
+{
+    OK(tobi_world_read(world, TOBI_FLUID, "position", out[0], world->sim.particles.count, &err));
+}
+
+/* Largest difference of positions, m, after the halves have moved by about 2 mm. */
+static double compare_halves(int dimension, int transfer)
+{
+    static double both[HALF_MOST][3], alone[HALF_MOST][3];
+    tobi_world *block = make_halves(dimension, transfer, -1);
+    double worst = 0;
+    set_off(block);
+    OK(tobi_world_advance(block, 4e-3, NULL, &err));
+    read_positions(block, both);
+    int64_t at = 0;
+    for (int h = 0; h < 2; h++) {
+        tobi_world *half = make_halves(dimension, transfer, h);
+        set_off(half);
+        OK(tobi_world_advance(half, 4e-3, NULL, &err));
+        read_positions(half, alone);
+        for (int64_t i = 0; i < half->sim.particles.count; i++, at++)
+            for (int a = 0; a < 3; a++) worst = fmax(worst, fabs(both[at][a] - alone[i][a]));
+        tobi_world_destroy(half);
+    }
+    assert_int_equal(at, block->sim.particles.count);
+    tobi_world_destroy(block);
+    return worst;
+}
+
+static void halves_move_as_if_alone(void **state)
+{
+    (void)state;
+    const int transfers[] = { TOBI_APIC, TOBI_FLIP, TOBI_XPIC };
+    for (int dimension = 2; dimension <= 3; dimension++)
+        for (int k = 0; k < 3; k++) {
+            double worst = compare_halves(dimension, transfers[k]);
+            printf("%d-D, transfer %d: positions differ by %.1e m\n", dimension, transfers[k], worst);
+            assert_true(worst < 1e-8);
+        }
+}
+
 /* A world that is half cut, made with so many threads. */
 static tobi_world *make_half_cut(int threads)
 {
@@ -272,6 +378,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_blade_at_every_place),
         cmocka_unit_test(other_transfers),
+        cmocka_unit_test(halves_move_as_if_alone),
         cmocka_unit_test(same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
