@@ -20,10 +20,10 @@ static int find_ahead(const tobi_body *b, const tobi_edge *e, const double along
     return 1;
 }
 
-/* The direction of an edge, its length, m, and where it cuts to, in rest axes; in 2-D it is a point that stands
-   for a metre of depth. */
-static int describe_edge(const tobi_body *b, const tobi_edge *e, int dimension, double along[3], double *length,
-                         double ahead[3])
+/* The direction of an edge, its length, m, and where it cuts to, in rest axes; in 2-D it is a point that
+   stands for a metre of depth. */
+static int describe_edge(const tobi_body *b, const tobi_edge *e, int dimension, double along[3],
+                         double *length, double ahead[3])
 {
     vec3_sub(along, e->b, e->a);
     if (dimension == 2) along[2] = along[2] < 0 ? -1 : 1;

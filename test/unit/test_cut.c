@@ -241,8 +241,8 @@ static void other_transfers(void **state)
 
 enum { SIDE = 8, HALF_MOST = SIDE*SIDE*SIDE };
 
-/* Halves of a block of SIDE particles along each axis, cut at the plane x = 0: both (which < 0), or one. A blade
-   that stands far off makes the particles remember cuts. */
+/* Halves of a block of SIDE particles along each axis, cut at the plane x = 0: both (which < 0), or one. A
+   blade that stands far off makes the particles remember cuts. */
 static tobi_world *make_halves(int dimension, int transfer, int which)
 {
     char path[] = "/tmp/tobiuo_blade_XXXXXX.obj";
