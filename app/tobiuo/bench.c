@@ -209,6 +209,7 @@ int tobiuo_bench(int argc, char **argv)
                "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
                "  fish    the flying fish at --spacing, --steps steps\n"
                "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
+               "  cut     a ball that a blade is half through, and the same without, a minute\n"
                "  bodies  200 rigid boxes fall into a bin, seconds\n"
                "\nTimes are wall clock; run it on a machine that does nothing else."
     };
@@ -217,12 +218,14 @@ int tobiuo_bench(int argc, char **argv)
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
-    if (!tank && !small && !ball && !bodies && strcmp(which, "fish") != 0) {
-        complain("bench: there is no case '%s'; known are small, tank, fish, ball and bodies", which);
+    int cut = strcmp(which, "cut") == 0;
+    if (!tank && !small && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
+        complain("bench: there is no case '%s'; known are small, tank, fish, ball, cut and bodies", which);
         return EXIT_USAGE;
     }
     bench_print_machine(o.threads);
     if (ball) return bench_ball(&o);
+    if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);

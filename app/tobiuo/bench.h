@@ -57,5 +57,7 @@ void bench_print_stages(const bench_run *run);
 
 /* bench_ball.c: the case of the material point method. */
 int bench_ball(const bench_options *o);
+/* bench_cut.c: a blade in a solid. */
+int bench_cut(const bench_options *o);
 /* bench_bodies.c: rigid bodies. */
 int bench_bodies(const bench_options *o);
