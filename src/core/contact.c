@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 20 };
+enum { MATRIX = 36, SUMS = MATRIX + 6, IMPULSES = 21 };
 
 /* Contacts that one chunk of particles has with a body. */
 struct tobi_contact_run { int64_t chunk, first, count; };
@@ -289,6 +289,8 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
     *k = (tobi_contact){ .particle = -1, .limit = full*b->edge_resistance*piece->length*step->dt };
     memcpy(k->normal, piece->normal, sizeof k->normal);
     memcpy(k->ahead, piece->ahead, sizeof k->ahead);
+    vec3_add_scaled(k->change, b->rigid.edge_share, -vec3_dot(b->rigid.edge_share, k->normal), k->normal);
+    for (int a = 0; a < 3; a++) k->change[a] *= k->limit;
     vec3_sub(k->arm, piece->middle, b->rigid.position);
     if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
     tobi_quaternion_matrix(b->rigid.orientation, turn);
@@ -520,6 +522,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
             }
             for (int a = 0; a < 3 && edge; a++) sum[17 + a] -= k->impulse[a];
             if (edge) sum[12] += vec3_dot(k->impulse, k->impulse) > 0;
+            if (edge) sum[20] += k->limit;
             if (edge) continue;
             sum[12] += normal > 0;
             p->velocity[k->particle].w = (float)(normal/dt);
@@ -545,6 +548,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
         b->rigid.twist[a] += total[3 + a] + total[9 + a];
         b->info.pressure_force[a] = total[a]/dt;
         b->info.edge_force[a] = total[17 + a]/dt;
+        b->rigid.edge_share[a] = total[20] > 0 ? -total[17 + a]/total[20] : 0;
         b->info.pressure_torque[a] = total[3 + a]/dt;
         b->info.viscous_force[a] = total[6 + a]/dt;
         b->info.viscous_torque[a] = total[9 + a]/dt;

@@ -314,30 +314,39 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     return TOBI_OK;
 }
 
-/* Contact of the two velocities of a node. Momentum is kept; what friction takes at the velocities after it
-   is returned, J. */
-static double meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
+/* Contact of the two velocities of a node; momentum is kept. */
+static void meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
-    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]}, lost = 0;
+    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]};
     double mass = (double)first->w*second->w/((double)first->w + second->w);
     for (int a = 0; a < 3; a++) u[a] = (double)(&second->x)[a] - (&first->x)[a];
     double along = vec3_dot(u, n), lack = -fmax(seam->gap, 0)/dt - along;
-    if (lack > 0) {
-        vec3_add_scaled(slide, u, -along, n);
-        double size = vec3_length(slide), grip = fmin(seam->friction*lack, size);
-        for (int a = 0; a < 3; a++) {
-            double change = lack*n[a] - (size > 0 ? grip/size*slide[a] : 0);
-            (&first->x)[a] -= (float)(change*mass/first->w);
-            (&second->x)[a] += (float)(change*mass/second->w);
-        }
-        lost = mass*grip*(size - grip);
-        along += lack;
+    memset(seam->push, 0, sizeof seam->push);
+    seam->gap += (float)((along + fmax(lack, 0))*dt);
+    if (!(lack > 0)) return;
+    vec3_add_scaled(slide, u, -along, n);
+    double size = vec3_length(slide), grip = fmin(seam->friction*lack, size);
+    for (int a = 0; a < 3; a++) {
+        double push = mass*(lack*n[a] - (size > 0 ? grip/size*slide[a] : 0));
+        (&first->x)[a] -= (float)(push/first->w);
+        (&second->x)[a] += (float)(push/second->w);
+        seam->push[a] = (float)push;
     }
-    seam->gap += (float)(along*dt);
+}
+
+/* At the velocities that all contacts together leave. Returns what the push has cost, J. */
+static double settle(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
+{
+    double lost = 0;
+    for (int a = 0; a < 3; a++) {
+        double u = (double)(&second->x)[a] - (&first->x)[a];
+        lost -= seam->push[a]*u;
+    }
     return lost;
 }
 
-double mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
+/* meet or settle at every node with two velocities. */
+static double visit_seams(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt, int after)
 {
     const int nodes = nodes_of(g);
     double *part = s->exec.partial, lost = 0;
@@ -347,9 +356,20 @@ double mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt
         for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
             tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
             if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
-            part[k] += meet(&c->seam[k*nodes + n], first, second, dt);
+            if (after) part[k] += settle(&c->seam[k*nodes + n], first, second);
+            else meet(&c->seam[k*nodes + n], first, second, dt);
         }
     }
     for (int64_t k = 0; k < g->patch_count; k++) lost += part[k];
     return lost;
+}
+
+void mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
+{
+    visit_seams(c, s, g, dt, 0);
+}
+
+double mpm_cut_settle(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
+{
+    return visit_seams(c, s, g, dt, 1);
 }

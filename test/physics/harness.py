@@ -198,6 +198,31 @@ def read_vtu(path):
     return arrays
 
 
+def write_prism(path, profile, low, high, along="z"):
+    """A prism as OBJ: the profile, counter-clockwise pairs in the plane x-y (along="y": x-z), over which a
+    fan from its first point lies, from low to high along the other axis. Returns the path."""
+    count, lines = len(profile), []
+    for end in (low, high):
+        lines += ["v %.9g %.9g %.9g" % ((a, b, end) if along == "z" else (a, end, b)) for a, b in profile]
+    faces = []
+    for i in range(count):
+        j = (i + 1) % count
+        faces += [(i, j, j + count), (i, j + count, i + count)]
+    for i in range(1, count - 1):
+        faces += [(0, i + 1, i), (count, count + i, count + i + 1)]
+    if along != "z":
+        faces = [face[::-1] for face in faces]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines + ["f %d %d %d" % tuple(k + 1 for k in face) for face in faces]) + "\n")
+    return path.resolve()
+
+
+def write_blade(path, thickness, wedge, height, low, high, along="z"):
+    """A straight blade with its edge at the origin, pointing down; m. Returns the path."""
+    half = thickness/2
+    return write_prism(path, [(0, 0), (half, wedge), (half, height), (-half, height), (-half, wedge)], low, high, along)
+
+
 def mean(values):
     return sum(values)/len(values)
 

@@ -181,18 +181,32 @@ static double pull(tobi_world *world, const int half[COUNT])
     return fmax(1 - speed_of(world, half, 1)/speed, 1 + speed_of(world, half, 0)/speed);
 }
 
+/* m, by how much particles of the two faces are nearer than a spacing across the cut, of those opposite to each
+   other. Where the cut passes near a column the face may have steps, at which others come nearer. */
+static double find_overlap(tobi_world *world, const int half[COUNT])
+{
+    static double place[COUNT][3];
+    double most = 0;
+    read_field(world, "position", place[0], 3);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < COUNT; k++)
+            if (half[i] < half[k] && fabs(place[i][1] - place[k][1]) < 0.5*SPACING)
+                most = fmax(most, SPACING - fabs(place[i][0] - place[k][0]));
+    return most;
+}
+
 /* Lets the halves run into each other: they push each other back. Returns how far they overlapped, m. */
 static double collide(tobi_world *world, const int half[COUNT])
 {
-    double least = 1;
+    double most = 0;
     set_speed(world, half, -0.5);
     for (int k = 0; k < 400 && speed_of(world, half, 1) - speed_of(world, half, 0) < 0.1; k++) {
         wait(world, 2.5e-4);
-        least = fmin(least, find_gap(world, half));
+        most = fmax(most, find_overlap(world, half));
     }
     assert_true(speed_of(world, half, 1) > 0);
     assert_true(speed_of(world, half, 0) < 0);
-    return fmax(0, -least);
+    return most;
 }
 
 static void cut_once(double thickness, double offset, int transfer)
