@@ -1,5 +1,5 @@
-/* A ball that a blade is half through, against the same ball alone: what cutting and contact cost. The two take
-   turns, so that other programs cost both the same. */
+/* A ball that a blade is half through, against the same ball alone: what cutting and contact cost. The two
+   take turns, so that other programs cost both the same. */
 #include "bench.h"
 #include <stdio.h>
 #include <string.h>
@@ -95,7 +95,7 @@ int bench_cut(const bench_options *o)
         failed = world ? bench_begin(&run[k], world, steps) : EXIT_ERROR;
     }
     if (!failed)
-        printf("case                   ball of 78 mm by mlsmpm, %lld particles, a blade of 3 mm half through\n",
+        printf("case                   ball of 78 mm by mlsmpm, %lld particles, cut half through by 3 mm\n",
                (long long)tobi_world_count(run[1].world, TOBI_FLUID));
     fflush(stdout);
     for (int n = 0; n < steps && !failed; n++)
