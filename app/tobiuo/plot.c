@@ -104,7 +104,7 @@ static int add_panel(picture *p, const rows *r, const panel_row *row, int dimens
     snprintf(a->y_label, sizeof a->y_label, "%s%s", row->y_label,
              dimension == 2 && row->per_depth ? " per m" : "");
     a->logarithmic = row->logarithmic;
-    for (const curve_row *k = row->curves; k < row->curves + 5 && k->column; k++) {
+    for (const curve_row *k = row->curves; k < row->curves + PLOT_CURVES && k->column; k++) {
         const int columns[3] = { table_column(r->table, k->column),
                                  k->plus ? table_column(r->table, k->plus) : -1,
                                  k->too ? table_column(r->table, k->too) : -1 };

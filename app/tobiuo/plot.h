@@ -11,6 +11,8 @@ typedef struct curve_row {
     const char *too;                /* one more to add, where the table has it      */
 } curve_row;
 
+enum { PLOT_CURVES = 8 };
+
 typedef struct panel_row {
     const char *y_label;            /* after scaling                                */
     double scale;                   /* of the column, 0 = 1                         */
@@ -18,7 +20,7 @@ typedef struct panel_row {
     int logarithmic;
     int from_start;                 /* the change since the first row               */
     int of_steps;                   /* values of a step: the row before any step has none */
-    curve_row curves[6];            /* ended by a row without column                */
+    curve_row curves[PLOT_CURVES];  /* ended by a row without column, if not full    */
 } panel_row;
 
 typedef struct picture_row {

@@ -19,6 +19,16 @@ const picture_row plot_history[] = {
             { "lost", "energy_lost", NULL, CURVE_LINE, 3, "elastic_energy", NULL },
             { "kinetic + potential (+ elastic)", "kinetic_energy", "potential_energy", CURVE_DASHED, 7, NULL,
               "elastic_energy" } } } } },
+    { "work", "Work on solids, and where it goes", 1, {
+        { "work, J", 0, 1, 0, 0, 0,
+          { { "by bodies", "work_bodies", NULL, CURVE_LINE, 7, "work_bodies", NULL },
+            { "fracture", "fracture_work", NULL, CURVE_LINE, 0, "fracture_work", NULL },
+            { "friction", "friction_work", NULL, CURVE_LINE, 1, "friction_work", NULL },
+            { "damping", "damping_work", NULL, CURVE_LINE, 4, "damping_work", NULL },
+            { "plastic", "plastic_work", NULL, CURVE_LINE, 5, "plastic_work", NULL },
+            { "transfer", "transfer_dissipation", NULL, CURVE_LINE, 2, "transfer_dissipation", NULL },
+            { "lost in all", "energy_lost", NULL, CURVE_DASHED, 3, "energy_lost", NULL } } },
+        { "pieces", 0, 0, 0, 0, 0, { { "pieces", "pieces", NULL, CURVE_LINE, 0, "pieces", NULL } } } } },
     { "walls", "Force of the fluid on the walls of the domain", 0, {
         { "force, N", 0, 1, 0, 0, 1, XYZ("wall_force") },
         { "force along gravity / weight", 0, 0, 0, 0, 1,
@@ -50,12 +60,14 @@ const picture_row plot_history[] = {
     { label, when "pressure_" noun "_" axis, when "viscous_" noun "_" axis, style, colour, NULL, NULL }
 #define PART(label, part, noun, axis, style, colour)                                             \
     { label, "mean_" part "_" noun "_" axis, NULL, style, colour, "mean_viscous_" noun "_" axis, NULL }
-#define PARTS(noun, axis, unit)                                                                  \
+#define PARTS(noun, axis, unit, ...)                                                             \
     { axis ", " unit, 0, 1, 0, 0, 1,                                                             \
       { SUM("sum, last step", "", noun, axis, CURVE_THIN, 6),                                    \
         SUM("sum, mean", "mean_", noun, axis, CURVE_LINE, 7),                                    \
         PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
-        PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1) } }
+        PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1), __VA_ARGS__ } }
+/* What a blade's edge takes, a part of the pressure. */
+#define EDGE(axis) { "edge, mean", "mean_edge_force_" axis, NULL, CURVE_LINE, 3, "mean_edge_force_" axis, NULL }
 
 /* One panel of what bodies and sides that touch a body do. */
 #define MET(label, when, noun, axis, style, colour)                                              \
@@ -70,10 +82,12 @@ const picture_row plot_body[] = {
         { "position, m", 0, 0, 0, 0, 0, XYZ("position") },
         { "velocity, m/s", 0, 0, 0, 0, 0, XYZ("velocity") },
         { "angular velocity, rad/s", 0, 0, 0, 0, 0, XYZ("angular_velocity") } } },
-    { "force", "Force of the fluid on", 0, {
-        PARTS("force", "x", "N"), PARTS("force", "y", "N"), PARTS("force", "z", "N") } },
-    { "torque", "Torque of the fluid about the centre of mass of", 0, {
-        PARTS("torque", "x", "N m"), PARTS("torque", "y", "N m"), PARTS("torque", "z", "N m") } },
+    { "force", "Force of the particles on", 0, {
+        PARTS("force", "x", "N", EDGE("x")), PARTS("force", "y", "N", EDGE("y")),
+        PARTS("force", "z", "N", EDGE("z")) } },
+    { "torque", "Torque of the particles about the centre of mass of", 0, {
+        PARTS("torque", "x", "N m", { 0 }), PARTS("torque", "y", "N m", { 0 }),
+        PARTS("torque", "z", "N m", { 0 }) } },
     { "contact_force", "Force of bodies and sides on", 1, {
         TOUCH("force", "x", "N"), TOUCH("force", "y", "N"), TOUCH("force", "z", "N") } },
     { "contact_torque", "Torque of bodies and sides about the centre of mass of", 1, {
@@ -89,7 +103,7 @@ const char *plot_unit(const char *column, int dimension)
         { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
         { "pressure", "Pa", "Pa" }, { "level", "m", "m" },
-        { "energy", "J", "J per m" }, { "momentum", "kg m/s", "kg m/s per m" },
+        { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" }, { "momentum", "kg m/s", "kg m/s per m" },
     };
     if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)
