@@ -67,7 +67,8 @@ const picture_row plot_history[] = {
         PART("pressure, mean", "pressure", noun, axis, CURVE_DASHED, 0),                         \
         PART("viscous, mean", "viscous", noun, axis, CURVE_LINE, 1), __VA_ARGS__ } }
 /* What a blade's edge takes, a part of the pressure. */
-#define EDGE(axis) { "edge, mean", "mean_edge_force_" axis, NULL, CURVE_LINE, 3, "mean_edge_force_" axis, NULL }
+#define EDGE(axis)                                                                               \
+    { "edge, mean", "mean_edge_force_" axis, NULL, CURVE_LINE, 3, "mean_edge_force_" axis, NULL }
 
 /* One panel of what bodies and sides that touch a body do. */
 #define MET(label, when, noun, axis, style, colour)                                              \
@@ -103,7 +104,8 @@ const char *plot_unit(const char *column, int dimension)
         { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
         { "pressure", "Pa", "Pa" }, { "level", "m", "m" },
-        { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" }, { "momentum", "kg m/s", "kg m/s per m" },
+        { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
+        { "momentum", "kg m/s", "kg m/s per m" },
     };
     if (strcmp(column, "dt") == 0 || strcmp(column, "time") == 0) return "s";
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)

@@ -3,6 +3,7 @@
 #include "core/blade.h"
 #include "core/cuts.h"
 #include "geom/vec3.h"
+#include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,12 +194,8 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
     double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
     int first[3] = {0, 0, -1};
     for (int a = 0; a < dim; a++) {
-        double at = x[a]*v->inverse_cell, base = floor(at - 0.5), f = at - base;
-        first[a] = (int)base - p->corner[a];
+        first[a] = (int)mpm_spline(x[a]*v->inverse_cell, w[a]) - p->corner[a];
         if (first[a] > 3 || first[a] < -2) return;
-        w[a][0] = 0.5*(1.5 - f)*(1.5 - f);
-        w[a][1] = 0.75 - (f - 1)*(f - 1);
-        w[a][2] = 0.5*(f - 0.5)*(f - 0.5);
     }
     int low[3], high[3];
     for (int a = 0; a < 3; a++) {

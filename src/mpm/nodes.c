@@ -3,6 +3,7 @@
    table; the drawback is that one core does it. */
 #include "mpm/nodes.h"
 #include "mpm/fields.h"
+#include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,17 +63,6 @@ static node *open_node(table *t, int64_t key)
     return n;
 }
 
-/* Quadratic B-splines, eq. (2): the lowest node and the weights of three. */
-static int64_t find_weights(double x, double w[3], double *offset)
-{
-    double base = floor(x - 0.5), f = x - base;
-    w[0] = 0.5*(1.5 - f)*(1.5 - f);
-    w[1] = 0.75 - (f - 1)*(f - 1);
-    w[2] = 0.5*(f - 0.5)*(f - 0.5);
-    *offset = f;
-    return (int64_t)base;
-}
-
 /* What one particle gives to its nodes. */
 static void add_particle(const mpm_view *v, int64_t i, int dimension, table *t)
 {
@@ -83,7 +73,10 @@ static void add_particle(const mpm_view *v, int64_t i, int dimension, table *t)
     double w[3][3] = {{1}, {1}, {1}}, f[3] = {0}, mass = v->strain[i].c[2].w;
     double volume = v->strain[i].c[0].w*s.ratio;
     int64_t first[3] = {0};
-    for (int a = 0; a < dimension; a++) first[a] = find_weights(x[a]*v->inverse_cell, w[a], &f[a]);
+    for (int a = 0; a < dimension; a++) {
+        first[a] = mpm_spline(x[a]*v->inverse_cell, w[a]);
+        f[a] = x[a]*v->inverse_cell - (double)first[a];
+    }
     for (int k = 0; k < (dimension == 3 ? 27 : 9); k++) {
         const int n[3] = {k%3, k/3%3, k/9};
         int64_t at[3] = {first[0] + n[0], first[1] + n[1], first[2] + n[2]};

@@ -1,7 +1,7 @@
-#define TOBI_SCALAR_LANES 1
 #include "mpm/touch.h"
 #include "base/error.h"
-#include "mpm/transfer.k.h"
+#include "exec/rows.h"
+#include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,16 +124,6 @@ static int64_t place_of(const mpm_block *b, int dim, int32_t tile)
     return (int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) + n;
 }
 
-/* Weights of quadratic B-splines for three nodes, eq. (2), at x in cells; returns the lowest node. */
-static int find_weights(double x, double w[3])
-{
-    const double base = floor(x - 0.5), f = x - base;
-    w[0] = 0.5*(1.5 - f)*(1.5 - f);
-    w[1] = 0.75 - (f - 1)*(f - 1);
-    w[2] = 0.5*(f - 0.5)*(f - 0.5);
-    return (int)base;
-}
-
 static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
                        tobi_exec *x)
 {
@@ -145,7 +135,8 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
         const double *at = &v->position[particle].x;
         double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
         int first[3] = {0, 0, 0};                       /* in the tile, which begins a node before */
-        for (int a = 0; a < dim; a++) first[a] = find_weights(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 1;
+        for (int a = 0; a < dim; a++)
+            first[a] = (int)mpm_spline(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 1;
         for (int n = 0; n < each; n++) {
             const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
             const mpm_block *from = twin && v->hidden[particle] >> n & 1 ? twin : b;
@@ -172,7 +163,7 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
     double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
     int first[3] = {0, 0, -1};
     int64_t patch[8];
-    for (int a = 0; a < dim; a++) first[a] = find_weights(x[a]*inverse_cell, w[a]);
+    for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
     for (int n = 0; n < 8; n++) {
         const int at[3] = {first[0] + 2*(n >> 2), first[1] + 2*(n >> 1 & 1),
                            dim == 3 ? first[2] + 2*(n & 1) : 0};

@@ -1,0 +1,15 @@
+/* Weights of quadratic B-splines for one place and axis, eq. (2) of docs/theory/mlsmpm.md; the transfers have
+   them eight at a time in particle.k.h. */
+#pragma once
+#include <math.h>
+#include <stdint.h>
+
+/* x: in cells. Returns the lowest of the three nodes. */
+static inline int64_t mpm_spline(double x, double w[3])
+{
+    const double base = floor(x - 0.5), f = x - base;
+    w[0] = 0.5*(1.5 - f)*(1.5 - f);
+    w[1] = 0.75 - (f - 1)*(f - 1);
+    w[2] = 0.5*(f - 0.5)*(f - 0.5);
+    return (int64_t)base;
+}
