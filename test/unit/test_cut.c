@@ -233,7 +233,7 @@ static void cut_once(double thickness, double offset, int transfer)
     assert_int_equal(pieces->fragments, 0);
     assert_int_equal(wrong, 0);
     assert_true(lost < 1e-5);
-    assert_true(overlap < 0.5*SPACING);        /* no particle's centre gets beyond the other face */
+    assert_true(overlap < 0.25*SPACING);
     tobi_world_destroy(world);
 }
 
