@@ -311,62 +311,75 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     return TOBI_OK;
 }
 
-/* Contact of the two velocities of a node; momentum is kept. */
-static void meet(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
+/* A seam and the two velocities it couples. */
+typedef struct joint {
+    double mass, along, u[3], n[3];    /* kg; m/s, of the second relative to the first            */
+} joint;
+
+static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
 {
-    double u[3], slide[3], n[3] = {seam->normal[0], seam->normal[1], seam->normal[2]};
-    double mass = (double)first->w*second->w/((double)first->w + second->w);
-    for (int a = 0; a < 3; a++) u[a] = (double)(&second->x)[a] - (&first->x)[a];
-    double along = vec3_dot(u, n), lack = -fmax(seam->gap, 0)/dt - along;
-    memset(seam->push, 0, sizeof seam->push);
-    seam->gap += (float)((along + fmax(lack, 0))*dt);
-    if (!(lack > 0)) return;
-    vec3_add_scaled(slide, u, -along, n);
-    double size = vec3_length(slide), grip = fmin(seam->friction*lack, size);
+    joint j = { .mass = (double)first->w*second->w/((double)first->w + second->w) };
     for (int a = 0; a < 3; a++) {
-        double push = mass*(lack*n[a] - (size > 0 ? grip/size*slide[a] : 0));
-        (&first->x)[a] -= (float)(push/first->w);
-        (&second->x)[a] += (float)(push/second->w);
+        j.n[a] = seam->normal[a];
+        j.u[a] = (double)(&second->x)[a] - (&first->x)[a];
+    }
+    j.along = vec3_dot(j.u, j.n);
+    return j;
+}
+
+/* One sweep of contact between the faces, eq. (3): the sum of its impulses pushes and obeys friction; momentum
+   is kept. */
+static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
+{
+    const joint j = look_at(seam, first, second);
+    double was[3] = {seam->push[0], seam->push[1], seam->push[2]}, slide[3];
+    double normal = fmax(0, vec3_dot(was, j.n) + j.mass*(-fmax(seam->gap, 0)/dt - j.along));
+    for (int a = 0; a < 3; a++) slide[a] = was[a] - j.mass*(j.u[a] - j.along*j.n[a]);
+    vec3_add_scaled(slide, slide, -vec3_dot(slide, j.n), j.n);
+    double size = vec3_length(slide), grip = seam->friction*normal, keep = size > grip ? grip/size : 1;
+    for (int a = 0; a < 3; a++) {
+        double push = normal*j.n[a] + keep*slide[a], change = push - was[a];
+        (&first->x)[a] -= (float)(change/first->w);
+        (&second->x)[a] += (float)(change/second->w);
         seam->push[a] = (float)push;
     }
 }
 
-/* At the velocities that all contacts together leave. Returns what the push has cost, J. */
-static double settle(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
+/* The gap at the end of the step; returns what the push has cost, J. */
+static double close(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
 {
-    double lost = 0;
-    for (int a = 0; a < 3; a++) {
-        double u = (double)(&second->x)[a] - (&first->x)[a];
-        lost -= seam->push[a]*u;
-    }
-    return lost;
+    const joint j = look_at(seam, first, second);
+    seam->gap += (float)(j.along*dt);
+    return -(seam->push[0]*j.u[0] + seam->push[1]*j.u[1] + seam->push[2]*j.u[2]);
 }
 
-/* meet or settle at every node with two velocities. */
-static double visit_seams(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt, int after)
+enum { BEGIN, PRESS, CLOSE };
+
+static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, int what)
 {
     const int nodes = nodes_of(g);
-    double *part = s->exec.partial, lost = 0;
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
+    double *part = x->partial, lost = 0;
+    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
         part[k] = 0;
         for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
             tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
+            mpm_seam *seam = &c->seam[k*nodes + n];
             if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
-            if (after) part[k] += settle(&c->seam[k*nodes + n], first, second);
-            else meet(&c->seam[k*nodes + n], first, second, dt);
+            if (what == BEGIN) memset(seam->push, 0, sizeof seam->push);
+            if (what == CLOSE) part[k] += close(seam, first, second, dt);
+            else press(seam, first, second, dt);
         }
     }
     for (int64_t k = 0; k < g->patch_count; k++) lost += part[k];
     return lost;
 }
 
-void mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
-{
-    visit_seams(c, s, g, dt, 0);
-}
+void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit_seams(c, x, g, dt, BEGIN); }
 
-double mpm_cut_settle(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt)
+void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit_seams(c, x, g, dt, PRESS); }
+
+double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
-    return visit_seams(c, s, g, dt, 1);
+    return visit_seams(c, x, g, dt, CLOSE);
 }

@@ -28,9 +28,9 @@ typedef struct mpm_cut {
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
 /* Finds the nodes with two velocities and makes their twins. The grid's view must be bound anew. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
-/* Faces that meet push and rub; gaps are brought to the end of the step. */
-void mpm_cut_meet(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt);
-/* After all other contacts: returns what friction and impact of the faces have taken, at the velocities of
-   the nodes as they are now, J. */
-double mpm_cut_settle(mpm_cut *c, tobi_simulation *s, const mpm_grid *g, double dt);
+/* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
+   gaps, and what friction and impact of the faces have taken, J. */
+void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
+void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
+double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 void mpm_cut_free(mpm_cut *c);

@@ -174,6 +174,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         return status;
     }
     m->touch.cell_mass = INFINITY;
+    m->touch.cut = s->particles.cuts ? &m->cut : NULL;
     for (int k = 0; k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
@@ -339,7 +340,7 @@ static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
     m->view.order = (float)m->def.xpic_order;
     tobi_launch_each(&s->exec, m->kernels->collect, &m->view, count_patches(m), t);
     filter_velocity(s, m);
-    if (m->blades) mpm_cut_meet(&m->cut, s, &m->grid, s->dt);
+    if (m->blades) mpm_cut_meet(&m->cut, &s->exec, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
     m->memory[SIDES] += t[3];
     tobi_stage_end(&s->stages, "grid", clock);
@@ -469,7 +470,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         measure_way_to_grid(s, m);
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
-        if (m->blades) m->memory[FRICTION] += mpm_cut_settle(&m->cut, s, &m->grid, s->dt);
+        if (m->blades) m->memory[FRICTION] += mpm_cut_settle(&m->cut, &s->exec, &m->grid, s->dt);
         measure_nodes(s, m);
         grid_to_particles(s, m, &clock);
         measure_flow(s, m);

@@ -327,6 +327,7 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     for (int sweep = 0; sweep <= SWEEPS; sweep++) {
         double moved = tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
         add_impulses(t, c, g, &s->exec);
+        if (t->cut) mpm_cut_sweep(t->cut, &s->exec, g, step->dt);
         read_velocities(t, c, g, &s->exec);
         if (sweep > 0 && moved < ENOUGH) break;
     }

@@ -2,9 +2,10 @@
    the impulses on the nodes that each particle feels, so that stress and motion know of them. */
 #pragma once
 #include "core/simulation.h"
-#include "mpm/grid.h"
+#include "mpm/cut.h"
 
 typedef struct mpm_touch {
+    mpm_cut *cut;                      /* whose faces push at the same time, NULL = no blades: the caller's */
     int64_t count;                     /* entries: contacts times nodes each feels                */
     uint32_t *node;                    /* place in the nodes' array                               */
     float *weight;
