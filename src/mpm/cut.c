@@ -327,8 +327,8 @@ static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_
     return j;
 }
 
-/* One sweep of contact between the faces, eq. (3): the sum of its impulses pushes and obeys friction; momentum
-   is kept. */
+/* One sweep of contact between the faces, eq. (3): the sum of its impulses pushes and obeys friction;
+   momentum is kept. */
 static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
     const joint j = look_at(seam, first, second);
@@ -375,9 +375,15 @@ static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt
     return lost;
 }
 
-void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit_seams(c, x, g, dt, BEGIN); }
+void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
+{
+    visit_seams(c, x, g, dt, BEGIN);
+}
 
-void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit_seams(c, x, g, dt, PRESS); }
+void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
+{
+    visit_seams(c, x, g, dt, PRESS);
+}
 
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
