@@ -19,7 +19,7 @@ Int. J. Fract. 9: 83, has 0.64 h for a beam on an elastic foundation). So, with 
 
 The edge asks for R whatever the arms release: the wedge's work per area must be R + G. (Material that tears would need R alone, with less
 work of the edge; where G > R a crack would run ahead, which takes a solid with `strength` and `fracture_energy`.) Means over the way from
-1.2 a to 1.7 a. What swings of the arms behind the shoulder has, in the mean, as much elastic as kinetic energy, which is therefore taken
+1.2 a to 2.2 a. What swings of the arms behind the shoulder has, in the mean, as much elastic as kinetic energy, which is therefore taken
 off.""")
 
 E, NU, HIGH, OPEN, R = 1e6, 0.3, 0.02, 0.004, 1.0
@@ -29,7 +29,7 @@ COLUMNS = ["transfer_dissipation", "plastic_work", "step_work", "damping_work", 
 def split(cells, ratio, speed):
     a, d, half = ratio*HIGH, HIGH/cells/2, OPEN/2
     neck, ramp, back = half/40, 0.3*a, 0.01
-    start, far, way = math.ceil((a + back + 0.01)/d)*d, 2.6*a, 1.7*a
+    start, far, way = math.ceil((a + back + 0.01)/d)*d, 3.1*a, 2.2*a
     tall = math.ceil((HIGH + 8*half + 0.01)/d)*d
     mesh = write_prism(case.out/f"wedge_{ratio}.obj", [
         (-a - back, 0), (-a - back, -half), (-a, -half), (-a + ramp, -neck), (0, 0), (-a + ramp, neck), (-a, half),
@@ -42,7 +42,7 @@ def split(cells, ratio, speed):
         "bodies": [{"name": "wedge", "mesh": str(mesh), "translation": [start, 0, 0], "blade": True, "edge_resistance": R,
                     "friction_coefficient": 0, "motion": {"translation": {"velocity": [speed, 0, 0]}}}],
         "mlsmpm": {"measure_transfer": True},
-        "output": {"interval": way/speed/170, "fields": ["piece"], "surfaces": False}})
+        "output": {"interval": way/speed/220, "fields": ["piece"], "surfaces": False}})
     return a, read_table(out/"history.csv"), read_table(out/"bodies.csv")
 
 
@@ -54,7 +54,7 @@ def judge(cells, ratio, speed, slack):
     U = E/(1 - NU*NU)*HIGH**3*OPEN**2/16/c**3
     G = 3*U/c
     xs = [speed*t for t in h["time"]]
-    inside = [k for k, x in enumerate(xs) if 1.2*a <= x <= 1.7*a*(1 + 1e-9)]
+    inside = [k for k, x in enumerate(xs) if 1.2*a <= x <= 2.2*a*(1 + 1e-9)]
     first, last = inside[0], inside[-1]
     swing = mean([h["kinetic_energy"][k] for k in inside])/U
     stored = mean([h["elastic_energy"][k] for k in inside])/U - swing
@@ -79,6 +79,6 @@ def judge(cells, ratio, speed, slack):
 
 # 6 cells, four times as fast as the reference: the arms swing (a tenth of U is kinetic energy), and arms of few cells are
 # too soft (0.8 U).
-for cells, ratio, speed in case.pick([(6, 4, 0.4)], [(6, 5, 0.1), (10, 4, 0.15), (10, 5, 0.15)]):
+for cells, ratio, speed in case.pick([(6, 4, 0.4)], [(6, 4, 0.1), (10, 4, 0.15)]):
     judge(cells, ratio, speed, (0.3, 0.25))
 case.finish()
