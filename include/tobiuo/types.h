@@ -70,6 +70,7 @@ typedef struct tobi_world_def {
 /* Parameters of the DFSPH method. */
 typedef struct tobi_dfsph_def {
     int    kernel;                    /* tobi_smoothing                                               */
+    int    still_water;               /* 1: the pressure that water at rest has is not solved for     */
     double support;                   /* support radius in spacings, 2 to 4                           */
     double density_tolerance;         /* 1, mean |density error| at which the density solve may stop  */
     double divergence_tolerance;      /* 1, mean |div v| dt at which the divergence solve may stop    */

@@ -24,8 +24,9 @@ static tobi_status allocate(tobi_body *b, tobi_error *err)
     b->piece_area = calloc(n + 1, sizeof *b->piece_area);
     b->area = calloc(n + 1, sizeof *b->area);
     b->weight = calloc(n + 1, sizeof *b->weight);
+    b->wet = calloc(n + 1, sizeof *b->wet);
     b->point_of = calloc(n + 1, sizeof *b->point_of);
-    if (!failed && b->piece_area && b->area && b->weight && b->point_of) return TOBI_OK;
+    if (!failed && b->piece_area && b->area && b->weight && b->wet && b->point_of) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %zu surface points", b->name, n);
 }
 
@@ -388,7 +389,7 @@ void tobi_body_free(tobi_body *b)
     tobi_surface_free(&b->surface);
     free(b->vertex); free(b->next); free(b->vertex_velocity);
     free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
-    free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight);
+    free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight); free(b->wet);
     free(b->particle_rest); free(b->particle);
     free(b->rest_vertex);
     free(b->edge);

@@ -41,6 +41,7 @@ typedef struct tobi_body {
     int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */
     int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
+    uint8_t *wet;                    /* [points] 1: a particle sees it                         */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
     double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */

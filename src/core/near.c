@@ -106,6 +106,7 @@ typedef struct look {
     const tobi_simulation *s;
     const tobi_body *b;
     double x[3];
+    double gravity[3];          /* m/s2, what the particle feels */
     tobi_near_entry *entry;
 } look;
 
@@ -144,7 +145,9 @@ static int add_point(void *user, int32_t k)
     tobi_near_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
     if (!(s > 0) || hidden(l, k)) return 0;
-    const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->s->gravity;
+    #pragma omp atomic write
+    b->wet[k] = 1;
+    const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
     double reach = sigma > 0 ? plane_value(l->s, c->plane.lambda, s)/sigma : 0;
@@ -172,18 +175,29 @@ static int add_point(void *user, int32_t k)
 static void blend_lift(const look *l, int32_t i)
 {
     const tobi_simulation *s = l->s;
-    const double *g = s->gravity;
+    const double *g = l->gravity;
     tobi_near_entry *e = l->entry;
-    double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*sqrt(dot(g, g));
-    double p = s->particles.pressure[i], wet = p >= full ? 1 : p > 0 ? p/full : 0;
+    double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*
+                  sqrt(dot(s->gravity, s->gravity));
+    double p = s->particles.pressure[i] + tobi_still_pressure(&s->still, l->x);
+    double wet = p >= full ? 1 : p > 0 ? p/full : 0;
     for (int a = 0; a < s->box.dimension; a++)
         e->lift[a] += wet*(e->ghost_lift[a] - e->share*g[a] - e->lift[a]);
+}
+
+/* Gravity less what still water holds; fluids have one density then. */
+static void feel_gravity(look *l)
+{
+    const tobi_simulation *s = l->s;
+    double held = tobi_still_share(&s->still, l->x)*s->still.push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*s->still.down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
 {
     tobi_near_entry *e = l->entry;
     tobi_bvh_hit hit;
+    feel_gravity(l);
     memset(e, 0, sizeof *e);
     e->particle = i;
     e->body = (int16_t)body;
@@ -248,6 +262,7 @@ tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
     memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
     for (int k = 0; k < s->body_count; k++) {
         TOBI_TRY(fill_bins(s, &s->bodies[k], err));
+        memset(s->bodies[k].wet, 0, (size_t)s->bodies[k].point_count);
         count_near(s, k, blocks);
         int64_t found = tobi_scan(&s->exec, blocks, n->block_count);
         p = n->entry;

@@ -131,9 +131,11 @@ static void press(void *user, int64_t i, const double r[3])
     membrane *m = user;
     const tobi_smoothing_constants *c = &m->s->smoothing;
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
+    const tobi_still *w = &m->s->still;
+    double held = tobi_still_share(w, &m->s->particles.position[i].x)*w->push/m->s->fluid[0].density;
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
-        along += m->s->gravity[a]*m->normal[a];
+        along += (m->s->gravity[a] - held*w->down[a])*m->normal[a];
     }
     if (!(r2 < c->h*c->h) || !(depth > 0)) return;
     int k = (int)(depth/c->h*TOBI_PLANE_SAMPLES);

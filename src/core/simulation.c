@@ -61,12 +61,44 @@ double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3])
     double sum = 0;
     for (int a = 0; a < s->box.dimension; a++)
         sum += (s->def.gravity[a] - s->gravity[a])*(x[a] - 0.5*s->box.size[a]);
-    return sum == 0 ? 0 : s->fluid[0].density*sum;
+    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_still_pressure(&s->still, x);
+}
+
+/* Force and torque of still water on a body, where it is wet. */
+static void sum_still(const tobi_simulation *s, const tobi_body *b, double f[6])
+{
+    for (int64_t k = 0; k < b->point_count; k++) {
+        if (!b->wet[k]) continue;
+        double p = -b->area[k]*tobi_still_pressure(&s->still, b->point[k]), arm[3];
+        const double *n = b->normal[k];
+        for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
+        for (int a = 0; a < 3; a++) {
+            int q = (a + 1)%3, r = (a + 2)%3;
+            f[a] += p*n[a];
+            f[3 + a] += p*(arm[q]*n[r] - arm[r]*n[q]);
+        }
+    }
+}
+
+/* The walls take what is left of the weight that still water holds. */
+static void add_still(tobi_simulation *s)
+{
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += s->still.down[a]*s->still.push*s->still_volume;
+    for (int k = 0; k < s->body_count; k++) {
+        double f[6] = {0};
+        sum_still(s, &s->bodies[k], f);
+        for (int a = 0; a < 3; a++) {
+            s->bodies[k].info.pressure_force[a] += f[a];
+            s->bodies[k].info.pressure_torque[a] += f[3 + a];
+            s->info.wall_force[a] -= f[a];
+        }
+    }
 }
 
 void tobi_simulation_add_hydrostatic(tobi_simulation *s)
 {
     double held = s->smoothing.volume*(double)s->particles.count;
+    if (s->still.push > 0) add_still(s);
     for (int a = 0; a < s->box.dimension; a++) {
         double push = s->fluid[0].density*(s->def.gravity[a] - s->gravity[a]);
         if (push == 0) continue;
@@ -84,6 +116,7 @@ void tobi_simulation_body_hydrostatic(const tobi_simulation *s, int body, double
         double push = s->def.gravity[a] - s->gravity[a];
         if (push != 0) f[a] -= s->fluid[0].density*push*s->bodies[body].info.volume;
     }
+    if (s->still.push > 0) sum_still(s, &s->bodies[body], f);
 }
 
 double tobi_simulation_speed_scale(const tobi_simulation *s)

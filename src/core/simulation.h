@@ -7,6 +7,7 @@
 #include "core/particles.h"
 #include "core/plane.h"
 #include "core/smoothing.h"
+#include "core/still.h"
 #include "tobiuo/tobiuo.h"
 
 enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16 };
@@ -50,6 +51,9 @@ typedef struct tobi_simulation {
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
     double gravity[3];              /* m/s2, what particles feel: see tobi_simulation_fill_up  */
+    tobi_still still;               /* less what still water holds                             */
+    double lowest;                  /* m, drop of the lowest particle at a free surface         */
+    double still_volume;            /* m3 of fluid times the share of gravity so held          */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
     double start_speed;             /* m/s, fastest particle at the start                    */

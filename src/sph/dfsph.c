@@ -11,6 +11,7 @@
 #include "sph/kernels.h"
 #include "sph/multigrid.h"
 #include "sph/stages.h"
+#include "sph/still.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +25,8 @@ typedef struct dfsph {
     const sph_kernels *kernel;
     sph_multigrid grid;
     /* survives a restart */
-    struct { double speed, head, dt, vessel; } memory;   /* vessel: SPH_VESSEL_*                  */
+    struct { double speed, head, dt, vessel, low, level; } memory;   /* vessel: SPH_VESSEL_*; low, level:
+                                     drops of the free surface and of still water, m             */
     /* of the step at hand */
     double motion_dt;             /* step that motion alone allows, s                            */
     double diagonal;              /* mean diagonal of the operator                               */
@@ -58,7 +60,15 @@ static void choose_smoothing(const void *def, int *shape, double *support)
     *support = d->support;
 }
 
-static void bind_view(const tobi_simulation *s, dfsph *m)
+/* The level of still water for the step at hand, by the surface of the last. */
+static void move_level(tobi_simulation *s, dfsph *m)
+{
+    sph_still_set(s, m->memory.level);
+    m->view.still_before = s->still;
+    m->memory.level = m->def.still_water ? sph_still_follow(s, m->memory.level, m->memory.low) : 0;
+}
+
+static void bind_view(tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
@@ -66,6 +76,8 @@ static void bind_view(const tobi_simulation *s, dfsph *m)
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
     }
+    sph_still_set(s, m->memory.level);
+    v->still = s->still;
 }
 
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
@@ -82,7 +94,7 @@ static int list_memory(void *state, double **values)
 {
     dfsph *m = state;
     *values = &m->memory.speed;
-    return 4;
+    return 6;
 }
 
 /* dt <= min(cfl d/|v|, cfl d/(2 sqrt(|p|/rho)), 0.25 sqrt(d/g), 0.8/(nu rate)) with the rate of the
@@ -256,10 +268,12 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    move_level(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
+    m->memory.low = sph_still_low(s);
     apply_forces(s, m, &clock);
     tobi_couple_begin(s);
     remove_divergence(s, m, &clock);

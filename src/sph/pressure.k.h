@@ -137,11 +137,13 @@ TOBI_FN void sph_warm_residual(const sph_view *v, int64_t i, double *totals)
 }
 
 /* Residual of the position equation, eq. (11): r = e/dt^2 with the density error e that the step
-   starts from. Compression is taken out at a bounded pace; gaps close slowly, and not at a free surface. */
+   starts from. Compression is taken out at a bounded pace; gaps close slowly, and not at a free surface.
+   In still water no weight closes them: were they slow there too, it would swell. */
 TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
 {
     float e = v->density[i] - 1;
-    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.02f ? -0.002f : 0.1f*e);
+    float pace = tobi_still_pressure(&v->still, &v->position[i].x) > 0 ? 1 : 0.1f;
+    e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : pace*(e < -0.02f ? -0.02f : e);
     v->pressure[i] = 0;
     sph_start_search(v, i, e * v->inverse_dt * v->inverse_dt,
                      v->diagonal[i] > v->isolated && (!v->surface[i] || e > 0), totals);
@@ -230,11 +232,16 @@ TOBI_FN void sph_center_direction(const sph_view *v, int64_t i, double *totals)
     v->record[i].w -= v->mean;
 }
 
-/* A free surface keeps no pressure that pulls, a particle that hardly touches another none at all: it
+/* The pressure of the last step less what still water has gained since, eq. (18).
+   A free surface keeps no pressure that pulls, a particle that hardly touches another none at all: it
    would need an enormous one, which the next step, with its neighbour nearer, would start from. */
 TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
+    const double *x = &v->position[i].x;
+    if (v->still_before.push > 0)
+        v->pressure[i] += (float)(tobi_still_pressure(&v->still_before, x) -
+                                  tobi_still_pressure(&v->still, x));
     float least = sph_floor(v, i);
     if (v->surface[i] && v->pressure[i] < least) v->pressure[i] = least;
     if (v->diagonal[i] <= v->isolated) v->pressure[i] = 0;

@@ -46,7 +46,8 @@ TOBI_FN void sph_walls(const sph_view *v, int64_t i, double *totals)
 
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
    sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
-   totals: error, surface particles, diagonal, those at a surface beyond doubt; maximum: error. */
+   totals: error, surface particles, diagonal, those at a surface beyond doubt; maxima: error, and how deep
+   the latter reach, which delta keeps for each, m. */
 typedef struct sph_density_acc { lane rho, pressure, gx, gy, gz, g2, div; } sph_density_acc;
 
 TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
@@ -78,11 +79,19 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     float div = k*lane_sum(a->div) + (float)v->dimension*share;
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
-    v->surface[i] = div < v->surface_limit;
+    int flagged = div < v->surface_limit;
+    /* in still water nothing is at a surface: that is how its level was chosen */
+    v->surface[i] = flagged && !(tobi_still_pressure(&v->still, &v->position[i].x) > 0);
     /* edges of the box and disorder lower div x as well, but on all sides alike */
     float nx = 0.5f*(sx - k*lane_sum(a->gx)), ny = 0.5f*(sy - k*lane_sum(a->gy)),
           nz = 0.5f*(sz - k*lane_sum(a->gz)), n2 = nx*nx + ny*ny + nz*nz;
-    totals[3] += v->surface[i] && (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
+    int sure = flagged && (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
+    totals[3] += sure;
+    /* beside walls disorder and the corners of the box make a gradient as well */
+    if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
+    double drop = sure ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
+    v->delta[i] = (float)drop;      /* free until the solve */
+    totals[7] = drop > totals[7] ? drop : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
@@ -136,8 +145,16 @@ TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 {
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
     float full = 2*v->spacing*(float)sqrt(g2)/v->inverse_density[v->fluid[i]];
-    float p = v->pressure[i];
+    float p = v->pressure[i] + (float)tobi_still_pressure(&v->still, &v->position[i].x);
     return p >= full ? 1 : p > 0 ? p/full : 0;
+}
+
+/* Gravity less what still water holds, m/s2. */
+TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
+{
+    double taken = tobi_still_share(&v->still, &v->position[i].x)*v->still.push*
+                   v->inverse_density[v->fluid[i]];
+    for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->still.down[c]);
 }
 
 /* v += dt (g + 2 nu L v - filter L L v + walls), eq. (13), (14): laminar viscosity, a fourth-order
@@ -160,9 +177,11 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     float nu = v->kinematic[v->fluid[i]], k = -v->filter*v->slope;
     tobi_float4 u = v->velocity[i], l = v->accel[i];
     float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
-    float add[3] = {v->gravity[0] + 2 * nu * l.x + k * lane_sum(a->ax),
-                    v->gravity[1] + 2 * nu * l.y + k * lane_sum(a->ay),
-                    v->gravity[2] + 2 * nu * l.z + k * lane_sum(a->az)};
+    float g[3];
+    sph_gravity(v, i, g);
+    float add[3] = {g[0] + 2 * nu * l.x + k * lane_sum(a->ax),
+                    g[1] + 2 * nu * l.y + k * lane_sum(a->ay),
+                    g[2] + 2 * nu * l.z + k * lane_sum(a->az)};
     (void)totals;
     for (int p = 0; p < v->plane_count; p++) {
         float s = sph_plane_distance(v, p, i);
@@ -171,7 +190,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
         float sigma = sph_plane_value(v, v->table->sigma, s),
               lambda = sph_plane_value(v, v->table->lambda, s);
         int axis = v->plane[p].axis;
-        for (int c = 0; c < 3; c++) add[c] -= v->gravity[c]*(c == axis ? lambda + s*sigma : wet*lambda);
+        for (int c = 0; c < 3; c++) add[c] -= g[c]*(c == axis ? lambda + s*sigma : wet*lambda);
         if (!v->plane[p].no_slip) continue;
         for (int c = 0; c < 3; c++)
             if (c != axis) add[c] -= 2*nu*sigma/s*(speed[c] - v->plane[p].velocity[c]);
@@ -181,11 +200,13 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     v->velocity[i] = u;
 }
 
-/* Force of the fluid on plane walls: reaction of pressure, lift and friction. totals[0..2]: N. */
+/* Force of the fluid on plane walls: reaction of pressure, lift and friction. totals[0..2]: N; 3: sum of the
+   shares of gravity that still water holds. */
 TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
 {
     float free[6], sigma[6], lambda[6], s_sigma[6], open = 1;
     int touched = 0;
+    totals[3] += tobi_still_share(&v->still, &v->position[i].x);
     for (int k = 0; k < v->plane_count; k++) {
         float s = sph_plane_distance(v, k, i);
         free[k] = 1;
@@ -202,14 +223,15 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
     }
     if (!touched) return;
     double mass = v->volume/v->inverse_density[v->fluid[i]];
-    float push = v->pressure[i] - sph_capillary(v, i), wet = v->velocity[i].w;
+    float push = v->pressure[i] - sph_capillary(v, i), wet = v->velocity[i].w, g[3];
+    sph_gravity(v, i, g);
     for (int k = 0; k < v->plane_count; k++) {
         if (!(sigma[k] > 0)) continue;
         int axis = v->plane[k].axis;
         float here = sph_plane_value(v, v->table->sigma, sph_plane_distance(v, k, i));
         totals[axis] -= 2.0*v->volume*push*v->plane[k].sign*here*open/free[k];
         for (int c = 0; c < 3; c++)
-            totals[c] += mass*v->gravity[c]*(c == axis ? lambda[k] : wet*(lambda[k] - s_sigma[k]));
+            totals[c] += mass*g[c]*(c == axis ? lambda[k] : wet*(lambda[k] - s_sigma[k]));
         if (!v->plane[k].no_slip) continue;
         float s = sph_plane_distance(v, k, i);
         double drag = 2.0*mass*v->kinematic[v->fluid[i]]*sigma[k]/

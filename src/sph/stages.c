@@ -156,6 +156,7 @@ double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k
     launch(s, v, k->sph_density, t);
     s->info.density_error_mean = t[0]/count;
     s->info.density_error_max = t[6];
+    s->lowest = t[7];
     double diagonal = t[2]/count;
     v->isolated = (float)(ISOLATED*diagonal);
     tobi_stage_end(&s->stages, "density", clock);
@@ -205,6 +206,7 @@ void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, d
     v->pressure = s->particles.pressure;
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
+    s->still_volume = t[3]*s->smoothing.volume;
     if (s->body_count > 0) tobi_near_body_forces(s);
     tobi_stage_end(&s->stages, "walls and bodies", clock);
 }

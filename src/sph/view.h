@@ -1,6 +1,7 @@
 /* Everything an SPH kernel may read or write, as plain pointers and constants. */
 #pragma once
 #include "core/smoothing.h"
+#include "core/still.h"
 #include "exec/portable.h"
 
 enum { TOBI_MAX_FLUIDS = 8 };
@@ -46,6 +47,7 @@ typedef struct sph_view {
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];
+    tobi_still still, still_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */

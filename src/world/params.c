@@ -117,6 +117,9 @@ static const tobi_param dfsph_rows[] = {
     { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0 }, RANGE(0, 1), .unit = "1",
       .text = "off",
       .doc = "Strength of particle shifting in a vessel full of liquid; a free surface turns it off." },
+    { .key = "still_water", BOOL, AT(tobi_dfsph_def, still_water), .def = { 1 },
+      .doc = "Take the pressure that water at rest has, some layers below the free surface, from gravity and "
+             "solve for the rest: slow bodies and waves then lose far less to the disorder of particles." },
     { 0 }
 };
 

@@ -35,6 +35,7 @@ typedef struct oracle {
     double tension[2], contact, band_depth;
     double stiffness, exponent, damping, relaxation;
     double isolated, sheet_limit, surface_gradient, core, push, background;
+    tobi_still still, still_before;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -144,6 +145,25 @@ static void oracle_walls(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
+/* Eq. (18), (19): the pressure of still water, a Hermite cubic between 0 and the straight line. */
+static double still_pressure(const tobi_still *w, const double *x, double shift)
+{
+    double s = shift - w->level, t = 0;
+    for (int a = 0; a < 3; a++) s += w->down[a]*(x[a] - w->corner[a]);
+    t = (s - w->cover)/w->ramp;
+    double end = w->cover + w->ramp - w->rest;
+    if (t > 1) return w->push*(s - w->rest);
+    return t > 0 ? w->push*(end*(3*t*t - 2*t*t*t) + w->ramp*(t*t*t - t*t)) : 0;
+}
+
+/* What of gravity it leaves, m/s2: less its slope over the density. */
+static double felt_gravity(const oracle *o, const row *in, int i, int axis)
+{
+    double step = 1e-5*o->d, *x = (double *)in[i] + POS;
+    double slope = (still_pressure(&o->still, x, step) - still_pressure(&o->still, x, -step))/(2*step);
+    return o->gravity[axis] - slope*o->still.down[axis]/o->rho0[o->fluid[i]];
+}
+
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
@@ -169,14 +189,19 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         out[i][RHO] = rho;
         out[i][PROD] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
-        out[i][SURF] = div < o->surface_limit;
+        double still = still_pressure(&o->still, &in[i][POS], 0), drop = 0;
+        out[i][SURF] = div < o->surface_limit && still == 0;
         if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
         t[0] += e;
         t[1] += out[i][SURF];
         t[2] += out[i][DIAG];
         double steep = sqrt(slant[0]*slant[0] + slant[1]*slant[1] + slant[2]*slant[2]);
-        t[3] += out[i][SURF] > 0 && (div < o->sheet_limit || steep > o->surface_gradient);
+        int sure = div < o->surface_limit && (div < o->sheet_limit || steep > o->surface_gradient);
+        t[3] += sure;
+        for (int a = 0; a < 3; a++) drop += o->still.down[a]*(in[i][POS + a] - o->still.corner[a]);
+        out[i][DELTA] = sure && (share == 0 || div <= 0.7*o->dimension) ? drop : 0;
+        t[7] = fmax(t[7], out[i][DELTA]);
         t[6] = fmax(t[6], e);
     }
 }
@@ -201,7 +226,8 @@ static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t
 static double wetness(const oracle *o, const row *in, int i)
 {
     double g = sqrt(o->gravity[0]*o->gravity[0] + o->gravity[1]*o->gravity[1] + o->gravity[2]*o->gravity[2]);
-    return fmin(fmax(in[i][PRES]/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
+    double p = in[i][PRES] + still_pressure(&o->still, &in[i][POS], 0);
+    return fmin(fmax(p/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
 }
 
 /* Eq. (13), (14), (6). accel holds L v. */
@@ -211,16 +237,17 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
     for (int i = 0; i < o->count; i++) {
         double ll[3], add[3], nu = o->nu[o->fluid[i]];
         laplacian(o, in, i, ACC, ll);
-        for (int a = 0; a < 3; a++) add[a] = o->gravity[a] + 2*nu*in[i][ACC + a] - o->filter*ll[a];
+        for (int a = 0; a < 3; a++)
+            add[a] = felt_gravity(o, in, i, a) + 2*nu*in[i][ACC + a] - o->filter*ll[a];
         for (int k = 0; k < o->plane_count; k++) {
             double s = wall_distance(o, in, i, k);
             if (s >= o->h) continue;
             s = fmax(s, 0.25*o->d);
             double sigma = look_up(o, o->sigma, s);
             for (int a = 0; a < 3; a++)
-                add[a] -= o->gravity[a]*look_up(o, o->lambda, s)*
+                add[a] -= felt_gravity(o, in, i, a)*look_up(o, o->lambda, s)*
                           (a == o->plane[k].axis ? 1 : wetness(o, in, i));
-            add[o->plane[k].axis] -= o->gravity[o->plane[k].axis]*s*sigma;
+            add[o->plane[k].axis] -= felt_gravity(o, in, i, o->plane[k].axis)*s*sigma;
             for (int a = 0; a < 3; a++)
                 if (o->plane[k].no_slip && a != o->plane[k].axis)
                     add[a] -= 2*nu*sigma/s*(in[i][VEL + a] - o->plane[k].velocity[a]);
@@ -234,6 +261,11 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
 static void oracle_wall_force(const oracle *o, const row *in, row *out, double *t)
 {
     (void)out;
+    for (int i = 0; i < o->count; i++) {
+        double step = 1e-5*o->d, held = still_pressure(&o->still, &in[i][POS], step) -
+                                        still_pressure(&o->still, &in[i][POS], -step);
+        if (o->still.push > 0) t[3] += held/(2*step*o->still.push);
+    }
     for (int i = 0; i < o->count; i++)
         for (int k = 0; k < o->plane_count; k++) {
             int axis = o->plane[k].axis;
@@ -244,9 +276,9 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
             t[axis] -= 2*o->volume*(in[i][PRES] - in[i][CAPILLARY])*o->plane[k].sign*g;
             s = fmax(s, 0.25*o->d);
             double mass = o->volume*o->rho0[o->fluid[i]];
-            t[axis] += mass*o->gravity[axis]*s*look_up(o, o->sigma, s);
+            t[axis] += mass*felt_gravity(o, in, i, axis)*s*look_up(o, o->sigma, s);
             for (int c = 0; c < 3; c++)
-                t[c] += mass*o->gravity[c]*look_up(o, o->lambda, s)*(c == axis ? 1 : in[i][WET]);
+                t[c] += mass*felt_gravity(o, in, i, c)*look_up(o, o->lambda, s)*(c == axis ? 1 : in[i][WET]);
             if (!o->plane[k].no_slip) continue;
             for (int c = 0; c < 3; c++)
                 if (c != axis)
@@ -300,194 +332,7 @@ static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t
     }
 }
 
-/* Eq. (8) for the payload. */
-static void pressure_accel(const oracle *o, const row *in, int i, double a[3])
-{
-    double p = in[i][PAYLOAD];
-    for (int c = 0; c < 3; c++) a[c] = 2*p*in[i][WALL + c];
-    EACH_NEIGHBOUR(o, in, i, j, x, r)
-        for (int c = 0; c < 3; c++)
-            a[c] += (p + in[j][PAYLOAD])*-o->volume*o->g_scale*oracle_f(o, r)*x[c];
-    for (int c = 0; c < 3; c++) a[c] /= -o->rho0[o->fluid[i]];
-}
-
-static void oracle_pressure_accel(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) pressure_accel(o, in, i, &out[i][ACC]);
-}
-
-static void oracle_pressure_kick(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        double a[3];
-        pressure_accel(o, in, i, a);
-        for (int c = 0; c < 3; c++) out[i][VEL + c] += o->dt*a[c];
-        t[0] += o->rho0[o->fluid[i]]*sqrt(a[0]*a[0] + a[1]*a[1] + a[2]*a[2]);
-    }
-}
-
-/* Eq. (12) over dt^2: the pressure acceleration with the background, and the core of pairs. */
-static void oracle_shift(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) {
-        double rho = o->rho0[o->fluid[i]], b = 2*o->background;
-        pressure_accel(o, in, i, &out[i][ACC]);
-        for (int c = 0; c < 3; c++) out[i][ACC + c] -= b*in[i][WALL + c]/rho;
-        EACH_NEIGHBOUR(o, in, i, j, x, r) {
-            double overlap = fmax(o->core/(r + 1e-3*o->core) - 1, 0);
-            for (int c = 0; c < 3; c++)
-                out[i][ACC + c] += b*o->volume*o->g_scale*oracle_f(o, r)*x[c]/rho +
-                                   o->push*overlap*x[c]/(o->dt*o->dt);
-        }
-    }
-}
-
-/* Eq. (7): C u; `flux` is G . u_wall. */
-static double compression(const oracle *o, const row *in, int i, int field, double flux)
-{
-    double sum = -2*flux;
-    for (int a = 0; a < 3; a++) sum += 2*in[i][WALL + a]*in[i][field + a];
-    EACH_NEIGHBOUR(o, in, i, j, x, r)
-        for (int a = 0; a < 3; a++)
-            sum += -o->volume*o->g_scale*oracle_f(o, r)*x[a]*(in[i][field + a] - in[j][field + a]);
-    return sum;
-}
-
-/* Eq. (10). */
-static void oracle_source(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        double s = compression(o, in, i, VEL, in[i][FLUX])/o->dt;
-        int active = in[i][DIAG] > o->isolated &&
-                     (in[i][SURF] == 0 || s > 0 || in[i][PRES] > fmin(in[i][CAPILLARY], 0));
-        out[i][PRE] = active ? 1/in[i][DIAG] : 0;
-        out[i][RES] = active ? s : 0;
-        out[i][PAYLOAD] = in[i][PRES];
-        t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
-    }
-}
-
-static void oracle_product(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        out[i][PROD] = -compression(o, in, i, ACC, 0);
-        t[0] += out[i][PROD]*in[i][PAYLOAD];
-        t[1] += out[i][PROD];
-    }
-}
-
-/* The start of conjugate gradients: r, its norm, no change yet. */
-static void begin_search(const row *in, row *out, int i, double r, int active, double *t)
-{
-    out[i][RES] = active ? r : 0;
-    out[i][PRE] = active ? 1/in[i][DIAG] : 0;
-    out[i][DELTA] = 0;
-    t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
-    t[1] += fabs(out[i][RES]);
-    t[2] += out[i][RES];
-    t[6] = fmax(t[6], fabs(out[i][RES]));
-}
-
-static void oracle_warm_residual(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++)
-        begin_search(in, out, i, in[i][RES] - in[i][PROD], in[i][PRE] > 0, t);
-}
-
-/* Eq. (11). */
-static void oracle_density_residual(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        double e = in[i][RHO] - 1, surface = in[i][SURF];
-        e = e >= 0 ? fmin(e, 0.1) : surface > 0 ? 0 : fmax(0.1*e, -0.002);
-        out[i][PRES] = 0;
-        begin_search(in, out, i, e/(o->dt*o->dt), in[i][DIAG] > o->isolated && (surface == 0 || e > 0), t);
-    }
-}
-
-static void oracle_cg_update(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        if (in[i][PRE] == 0) continue;
-        out[i][DELTA] += o->alpha*in[i][PAYLOAD];
-        out[i][RES] -= o->alpha*in[i][PROD];
-        t[0] += out[i][RES]*out[i][RES]*in[i][PRE];
-        t[1] += fabs(out[i][RES]);
-        t[6] = fmax(t[6], fabs(out[i][RES]));
-    }
-}
-
-/* Sum over the 4^dim nodes of the product of hat functions. */
-static double oracle_coarse(const oracle *o, const row *in, int i)
-{
-    double sum = 0;
-    for (int c = 0; c < (o->dimension == 3 ? 64 : 16); c++) {
-        const int at[3] = {c%4, c/4%4, c/16};
-        double hat = 1;
-        for (int a = 0; a < o->dimension; a++) {
-            double far = in[i][POS + a]*o->cells_per_metre[a] - at[a];
-            if (o->periodic[a] && far > 2) far -= 4;
-            hat *= fmax(0, 1 - fabs(far));
-        }
-        sum += hat*o->coarse[c];
-    }
-    return sum;
-}
-
-static void oracle_cg_direction(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        double z = in[i][RES]*in[i][PRE] + oracle_coarse(o, in, i);
-        out[i][PAYLOAD] = in[i][PRE] > 0 ? z + o->beta*in[i][PAYLOAD] : 0;
-        t[0] += out[i][PAYLOAD];
-    }
-}
-
-static void oracle_center_direction(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) out[i][PAYLOAD] = in[i][PAYLOAD] - o->mean;
-}
-
-static void oracle_warm_start(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++)
-        if (in[i][DIAG] <= o->isolated) out[i][PRES] = 0;
-        else if (in[i][SURF] > 0) out[i][PRES] = fmax(in[i][PRES], fmin(in[i][CAPILLARY], 0));
-}
-
-static void oracle_center_residual(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) begin_search(in, out, i, in[i][RES] - o->mean, in[i][PRE] > 0, t);
-}
-
-static void oracle_center_product(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        out[i][PROD] = in[i][PROD] - o->mean;
-        t[0] += out[i][PROD]*in[i][PAYLOAD];
-    }
-}
-
-static void oracle_correct_pressure(const oracle *o, const row *in, row *out, double *t)
-{
-    for (int i = 0; i < o->count; i++) {
-        double p = in[i][PRES] + in[i][DELTA];
-        if (in[i][SURF] > 0) p = fmax(p, fmin(in[i][CAPILLARY], 0));
-        out[i][PRES] = out[i][PAYLOAD] = p;
-        t[0] += fabs(p)/o->rho0[o->fluid[i]];
-        t[1] += p;
-    }
-}
-
-static void oracle_center_pressure(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) out[i][PRES] = out[i][PAYLOAD] = in[i][PRES] - o->mean;
-}
+#include "sph_pressure_oracle.h"
 
 /* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
 static void oracle_tait(const oracle *o, const row *in, row *out, double *t)

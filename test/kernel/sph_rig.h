@@ -91,6 +91,25 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->band_depth = (float)(0.6*g->c.spacing);
 }
 
+/* Still water that begins under the first layers and has sunk by a spacing since. */
+static void rig_bind_still(rig *g, const rig_case *k)
+{
+    sph_view *v = &g->view;
+    double g2 = 0, h = g->c.h;
+    tobi_still w = {.level = k->dimension*0.01, .cover = 0.3*h, .ramp = 1.2*h, .rest = 0.1*h};
+    for (int a = 0; a < k->dimension; a++) g2 += k->periodic[a] ? 0 : (double)v->gravity[a]*v->gravity[a];
+    for (int a = 0; a < k->dimension; a++) {
+        if (k->periodic[a]) continue;
+        w.down[a] = v->gravity[a]/sqrt(g2);
+        w.corner[a] = w.down[a] > 0 ? 0 : g->box.size[a];
+    }
+    if (k->fluids == 1 && g2 > 0) w.push = sqrt(g2)/v->inverse_density[0];
+    v->still = v->still_before = w;
+    v->still_before.level -= g->c.spacing;
+    g->o.still = v->still;
+    g->o.still_before = v->still_before;
+}
+
 /* A grid of 4 nodes along each axis: 3 cells, or 4 where the last meets the first. */
 static void rig_bind_grid(rig *g, const rig_case *k)
 {
@@ -160,6 +179,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     rig_bind(g, k, rho, nu);
     rig_bind_oracle(g, k, rho, nu);
+    rig_bind_still(g, k);
     rig_bind_grid(g, k);
     return 0;
 }

@@ -276,6 +276,7 @@ static void pressure_keeps_momentum(void **state)
         create(&g, &cases[c]);
         const sph_kernels *table = sph_kernels_for(g.exec.isa, cases[c].shape);
         for (int a = 0; a < 3; a++) g.view.gravity[a] = 0;
+        g.view.still.push = 0;
         for (int k = 0; k < g.view.plane_count; k++) g.view.plane[k].no_slip = 0;   /* pressure alone */
         tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
         double sum[3] = {0}, size = 0, t[TOBI_TOTALS];
