@@ -3,6 +3,7 @@
 #include "core/blade.h"
 #include "core/cuts.h"
 #include "geom/vec3.h"
+#include "mpm/meet.h"
 #include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +18,7 @@ void mpm_cut_free(mpm_cut *c)
     free(c->face);
     free(c->hidden);
     free(c->marked);
+    free(c->group);
     memset(c, 0, sizeof *c);
 }
 
@@ -41,8 +43,10 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
     }
     if (g->block_room > c->block_room) {
         free(c->marked);
+        free(c->group);
         c->marked = malloc((size_t)g->block_room);
-        c->block_room = c->marked ? g->block_room : 0;
+        c->group = malloc((size_t)g->block_room*sizeof *c->group);
+        c->block_room = c->marked && c->group ? g->block_room : 0;
     }
     if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
         return TOBI_OK;
@@ -250,7 +254,7 @@ static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t 
     int any = 0, two = 0;
     for (int o = 0; o < 27; o++) any |= p->cover[o] >= 0 && c->marked[p->cover[o]];
     memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
-    if (!any) return 0;
+    if (!any || !v->cuts) return 0;
     memset(votes, 0, sizeof votes);
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
@@ -298,14 +302,21 @@ static void make_twins(mpm_grid *g, const char *marked)
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    find_faces(c, s, v);
+    const int nodes = nodes_of(g);
+    if (v->cuts) find_faces(c, s, v);
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
-        c->marked[k] = 0;
-        for (int64_t i = g->block[k].begin; i < g->block[k].end; i++) c->marked[k] |= v->cuts[i].c[0].w != 0;
+        c->marked[k] = (char)c->apart;
+        if (c->apart) c->group[k] = (int16_t)mpm_meet_group(v, &g->block[k]);
+        for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts && !c->marked[k]; i++)
+            c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
-    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = find_sides(c, g, v, k);
+    for (int64_t k = 0; k < g->patch_count; k++) {
+        g->patch[k].twin = find_sides(c, g, v, k);
+        if (c->apart)
+            g->patch[k].twin |= mpm_meet_find(g, v, c->group, &g->patch[k], c->side + k*nodes, c->seam + k*nodes);
+    }
     make_twins(g, c->marked);
     c->moved = 0;
     return TOBI_OK;

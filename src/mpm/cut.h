@@ -3,14 +3,7 @@
 #pragma once
 #include "core/simulation.h"
 #include "mpm/grid.h"
-
-/* A node with two velocities. */
-typedef struct mpm_seam {
-    float normal[3];                   /* from the face of the first to that of the second        */
-    float gap;                         /* m, between the faces                                     */
-    float friction;                    /* 1, Coulomb                                               */
-    float push[3];                     /* N s, on the second in this step                          */
-} mpm_seam;
+#include "mpm/seam.h"
 
 typedef struct mpm_cut {
     float *side;                       /* [patches][nodes], see mpm_view.side                     */
@@ -19,6 +12,8 @@ typedef struct mpm_cut {
                                           particle's side now, w: distance from the cut now, m    */
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
     char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
+    int16_t *group;                    /* [blocks] of solids, see mpm/meet.h                      */
+    int apart;                         /* 1: there are several groups of solids; the caller's     */
     int64_t node_room, particle_room, block_room;
     double moved;                      /* m, since sides and gaps were found                      */
 } mpm_cut;

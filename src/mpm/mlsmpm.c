@@ -38,7 +38,7 @@ typedef struct mlsmpm {
     double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
     int built;                         /* blocks fit the particles                                 */
     int fresh;                         /* 1: they were built in this step                          */
-    int blades;                        /* 1: material may be cut                                   */
+    int blades;                        /* 1: nodes may have two velocities: cuts, solids that are not bonded */
 } mlsmpm;
 
 static void choose_smoothing(const void *def, int *shape, double *support)
@@ -68,7 +68,8 @@ static mpm_material describe_material(const tobi_solid_def *d, int dimension, do
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)find_cone(d, dimension), .cut_friction = (float)d->cut_friction, .keep = 1 };
+        .friction = (float)find_cone(d, dimension), .cut_friction = (float)d->cut_friction,
+        .surface_friction = d->model == TOBI_LIQUID ? 0 : (float)d->surface_friction, .keep = 1 };
 }
 
 static double viscous_limit(const tobi_solid_def *d, double cell)
@@ -121,7 +122,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->affine = p->affine;
     v->solid = p->fluid;
     v->cuts = p->cuts;
-    m->blades = m->grid.twins = p->cuts != NULL;
+    m->blades = m->grid.twins = p->cuts != NULL || m->cut.apart;
     v->material = m->material;
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
@@ -174,7 +175,6 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         return status;
     }
     m->touch.cell_mass = INFINITY;
-    m->touch.cut = s->particles.cuts ? &m->cut : NULL;
     for (int k = 0; k < s->solid_count; k++) {
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
@@ -183,10 +183,13 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         mpm_damage_describe(d, m->cell, &m->material[k]);
         m->damping[k] = d->damping;
         m->view.damped |= d->damping > 0;
+        m->material[k].group = d->bonded ? 0 : k + 1;
+        m->cut.apart |= !d->bonded;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
     }
     bind_particles(s, m);
+    m->touch.cut = m->blades ? &m->cut : NULL;
     return TOBI_OK;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "core/cuts.h"
 #include "exec/rows.h"
+#include "mpm/meet.h"
 #include "mpm/particle.k.h"
 
 /* Nodes of a tile that belong to the node block at offset -1, 0 or 1 along an axis. */
@@ -32,20 +33,26 @@ TOBI_FN quad mpm_take(uint32_t bits)
     return (quad){(float)(bits & 1), (float)(bits >> 1 & 1), (float)(bits >> 2 & 1), 1};
 }
 
-/* The nodes across a cut from a particle whose lowest node is `first`: see mpm_view.hidden. */
-TOBI_FN uint32_t mpm_find_hidden(const tobi_columns *cuts, const float *side, int32_t first, int dim)
+/* Which of the nodes that feel a particle, whose lowest is `first`, have this side. */
+TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, int dim)
 {
     const int rows = dim == 3 ? 9 : 3;
-    uint32_t hidden = 0;
-    for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
-        const float other = -cuts->c[k].w;
-        for (int r = 0; r < rows; r++) {
-            const float *at = side + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
-            uint32_t bits = (uint32_t)(at[0] == other) | (uint32_t)(at[1] == other) << 1 |
-                            (uint32_t)(at[2] == other) << 2;
-            hidden |= bits << 3*r;
-        }
+    uint32_t found = 0;
+    for (int r = 0; r < rows; r++) {
+        const float *at = side + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
+        uint32_t bits = (uint32_t)(at[0] == other) | (uint32_t)(at[1] == other) << 1 |
+                        (uint32_t)(at[2] == other) << 2;
+        found |= bits << 3*r;
     }
+    return found;
+}
+
+/* The nodes across a cut from a particle, and those whose second velocity is its solid's: see mpm_view.hidden. */
+TOBI_FN uint32_t mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int32_t first, int dim)
+{
+    uint32_t hidden = mpm_match_sides(side, first, mpm_side_of(v->material[v->solid[i]].group), dim);
+    for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
+        hidden |= mpm_match_sides(side, first, -v->cuts[i].c[k].w, dim);
     return hidden;
 }
 

@@ -68,7 +68,7 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
         mpm_find_stencil(v, b, i, dim, &s);
         totals[0] += mpm_find_load(v, i, count, &load);
         for (int k = 0; k < count; k++) {
-            uint32_t hidden = twin ? mpm_find_hidden(&v->cuts[i + k], side, s.first[k], dim) : 0;
+            uint32_t hidden = twin ? mpm_find_hidden(v, i + k, side, s.first[k], dim) : 0;
             if (twin) v->hidden[i + k] = hidden;
             if (calm && hidden)
                 mpm_add_split(calm, calm_twin, &s, k, hidden, quad_load(&load.momentum[k]), zero, dim);

@@ -21,6 +21,8 @@ typedef struct mpm_material {
     float compression, stretch;        /* 1, limits of snow                                       */
     float friction;                    /* 1, alpha of Drucker and Prager                          */
     float cut_friction;                /* 1, Coulomb, between the faces of a cut                  */
+    float surface_friction;            /* 1, Coulomb, where it meets solids it is not bonded to   */
+    int   group;                       /* solids of one group share their velocity where they meet */
     float strength, brittleness;       /* Pa, 0: never breaks; 1/(crack strain at which nothing is left) */
     float keep;                        /* share of the velocity kept in this step, by damping     */
 } mpm_material;

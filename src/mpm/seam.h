@@ -1,0 +1,9 @@
+/* A node with two velocities: those of the two sides of a cut, or of two solids that meet. */
+#pragma once
+
+typedef struct mpm_seam {
+    float normal[3];                   /* from the face of the first to that of the second        */
+    float gap;                         /* m, between the faces                                     */
+    float friction;                    /* 1, Coulomb                                               */
+    float push[3];                     /* N s, on the second in this step                          */
+} mpm_seam;
