@@ -3,7 +3,6 @@
 #include "core/blade.h"
 #include "core/cuts.h"
 #include "geom/vec3.h"
-#include "mpm/meet.h"
 #include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +17,7 @@ void mpm_cut_free(mpm_cut *c)
     free(c->face);
     free(c->hidden);
     free(c->marked);
-    free(c->group);
+    free(c->crowd);
     memset(c, 0, sizeof *c);
 }
 
@@ -43,10 +42,10 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
     }
     if (g->block_room > c->block_room) {
         free(c->marked);
-        free(c->group);
+        free(c->crowd);
         c->marked = malloc((size_t)g->block_room);
-        c->group = malloc((size_t)g->block_room*sizeof *c->group);
-        c->block_room = c->marked && c->group ? g->block_room : 0;
+        c->crowd = malloc((size_t)g->block_room*sizeof *c->crowd);
+        c->block_room = c->marked && c->crowd ? g->block_room : 0;
     }
     if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
         return TOBI_OK;
@@ -306,17 +305,21 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     if (v->cuts) find_faces(c, s, v);
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
-        c->marked[k] = (char)c->apart;
-        if (c->apart) c->group[k] = (int16_t)mpm_meet_group(v, &g->block[k]);
-        for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts && !c->marked[k]; i++)
+        c->marked[k] = 0;
+        if (c->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
+        for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts; i++)
             c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
         g->patch[k].twin = find_sides(c, g, v, k);
         if (c->apart)
-            g->patch[k].twin |= mpm_meet_find(g, v, c->group, &g->patch[k], c->side + k*nodes, c->seam + k*nodes);
+            g->patch[k].twin |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
+                                              c->seam + k*nodes);
     }
+    #pragma omp parallel for num_threads(s->exec.threads)
+    for (int64_t k = 0; k < g->block_count; k++)
+        if (c->apart) c->marked[k] |= (char)mpm_meet_reaches(g, c->side, &c->crowd[k], &g->block[k]);
     make_twins(g, c->marked);
     c->moved = 0;
     return TOBI_OK;

@@ -3,7 +3,7 @@
 #pragma once
 #include "core/simulation.h"
 #include "mpm/grid.h"
-#include "mpm/seam.h"
+#include "mpm/meet.h"
 
 typedef struct mpm_cut {
     float *side;                       /* [patches][nodes], see mpm_view.side                     */
@@ -11,8 +11,8 @@ typedef struct mpm_cut {
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
-    char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
-    int16_t *group;                    /* [blocks] of solids, see mpm/meet.h                      */
+    char *marked;                      /* [blocks] 1: a particle of it may use a second velocity  */
+    mpm_crowd *crowd;                  /* [blocks], see mpm/meet.h                                */
     int apart;                         /* 1: there are several groups of solids; the caller's     */
     int64_t node_room, particle_room, block_room;
     double moved;                      /* m, since sides and gaps were found                      */

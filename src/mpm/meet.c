@@ -6,172 +6,251 @@
 #include <string.h>
 
 enum { GROUPS = 3 };                   /* that one node looks at                                   */
+enum { SPAN = 6, CELLS = SPAN*SPAN*SPAN };     /* base nodes whose particles reach a patch         */
+
+/* A patch and the particles around it. */
+typedef struct scene {
+    const mpm_grid *g;
+    const mpm_view *v;
+    const mpm_patch *p;
+    int32_t near[27];                  /* blocks with particles that reach the patch               */
+    int near_count;
+    int16_t group[CELLS];              /* of the particles with this base node; EMPTY, MPM_MIXED   */
+    char meets[CELLS];                 /* 1: such a particle feels a node where groups meet        */
+} scene;
+
+enum { EMPTY = -2 };
 
 /* What the particles of one group say at one node. */
 typedef struct voice {
     int    group;                      /* -1 = none                                                */
-    double mass, towards[3];           /* kg, weighted; where its volume lies, m4                  */
-    double friction;                   /* weighted by mass                                         */
-    int    shape;                      /* 1: keeps its shape, so that its surface is known best    */
+    int    shaped;                     /* 1: keeps its shape, so that its surface is known best    */
+    double mass, friction;             /* kg; weighted by mass                                     */
+    double towards[3];                 /* where its volume lies, m4                                */
+    double reach;                      /* m, along the normal from the node                        */
 } voice;
 
-int mpm_meet_group(const mpm_view *v, const mpm_block *b)
+/* The base node of a particle relative to the patch; returns whether it reaches the patch. */
+static int find_first(const scene *s, int64_t i, int first[3])
 {
-    int group = v->material[v->solid[b->begin]].group;
-    for (int64_t i = b->begin + 1; i < b->end; i++)
-        if (v->material[v->solid[i]].group != group) return MPM_MIXED;
-    return group;
-}
-
-/* The nodes of a patch that a particle feels: the lowest, and ranges of the three along each axis. Returns 0
-   if there are none. */
-typedef struct reach {
-    double x[3], w[3][3];
-    int first[3], low[3], high[3];
-} reach;
-
-static int find_reach(const mpm_grid *g, const mpm_view *v, const mpm_patch *p, int64_t i, reach *r)
-{
-    *r = (reach){ .x = {v->position[i].x, v->position[i].y, v->position[i].z},
-                  .w = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, .first = {0, 0, -1} };
-    for (int a = 0; a < 3; a++) {
-        if (a < g->dimension) r->first[a] = (int)mpm_spline(r->x[a]*v->inverse_cell, r->w[a]) - p->corner[a];
-        if (r->first[a] > 3 || r->first[a] < -2) return 0;
-        r->low[a] = r->first[a] < 0 ? -r->first[a] : 0;
-        r->high[a] = r->first[a] > 1 ? 3 - r->first[a] : 2;
+    const double *x = &s->v->position[i].x;
+    first[2] = -1;
+    for (int a = 0; a < s->g->dimension; a++) {
+        first[a] = (int)(x[a]*s->v->inverse_cell + 3.5) - 4 - s->p->corner[a];
+        if (first[a] > 3 || first[a] < -2) return 0;
     }
     return 1;
 }
 
-static int node_of(const mpm_grid *g, const reach *r, int a, int b, int c)
+/* Place of a base node, relative to the patch, in the scene's lists. */
+static int cell_of(const int first[3])
 {
-    const int at[3] = {r->first[0] + a, r->first[1] + b, r->first[2] + c};
-    return g->dimension == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
+    return ((first[0] + 2)*SPAN + first[1] + 2)*SPAN + first[2] + 2;
 }
 
-/* From a node of the patch to the particle, m. */
-static void look_from(const mpm_grid *g, const mpm_view *v, const mpm_patch *p, const reach *r,
-                      const int o[3], double d[3])
+mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension)
 {
-    for (int a = 0; a < 3; a++)
-        d[a] = a < g->dimension ? r->x[a] - (p->corner[a] + r->first[a] + o[a])/v->inverse_cell : 0;
+    mpm_crowd c = { .group = v->material[v->solid[b->begin]].group, .low = {1 << 30, 1 << 30, 1 << 30},
+                    .high = {-(1 << 30), -(1 << 30), -(1 << 30)} };
+    for (int64_t i = b->begin; i < b->end; i++) {
+        if (v->material[v->solid[i]].group != c.group) c.group = MPM_MIXED;
+        for (int a = 0; a < dimension; a++) {
+            const int at = (int)floor((&v->position[i].x)[a]*v->inverse_cell - 0.5);
+            if (at < c.low[a]) c.low[a] = at;
+            if (at > c.high[a]) c.high[a] = at;
+        }
+    }
+    return c;
 }
 
-static void add_voice(voice voices[GROUPS], const mpm_view *v, int64_t i, double w, const double d[3])
+/* Lists the blocks whose particles reach the patch; returns whether there is more than one group. */
+static int list_blocks(scene *s, const mpm_crowd *crowd)
 {
-    const mpm_material *m = &v->material[v->solid[i]];
+    int seen = EMPTY, meets = 0;
+    s->near_count = 0;
+    for (int o = 0; o < 27; o++) {
+        int reaches = s->p->cover[o] >= 0;
+        for (int a = 0; a < s->g->dimension && reaches; a++) {
+            const mpm_crowd *c = &crowd[s->p->cover[o]];
+            reaches = c->low[a] <= s->p->corner[a] + 3 && c->high[a] >= s->p->corner[a] - 2;
+        }
+        if (!reaches) continue;
+        const int here = crowd[s->p->cover[o]].group;
+        meets |= here == MPM_MIXED || (seen != EMPTY && seen != here);
+        seen = here;
+        s->near[s->near_count++] = s->p->cover[o];
+    }
+    return meets;
+}
+
+static void mix(int16_t *to, int group)
+{
+    if (group == EMPTY) return;
+    *to = (int16_t)(*to == EMPTY || *to == group ? group : MPM_MIXED);
+}
+
+/* Which base nodes have particles that feel a node without a side where groups meet. Returns if any. */
+static int find_meetings(scene *s, const float *side)
+{
+    const int three = s->g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    int any = 0;
+    for (int k = 0; k < CELLS; k++) s->group[k] = EMPTY;
+    memset(s->meets, 0, sizeof s->meets);
+    for (int k = 0; k < s->near_count; k++) {
+        const mpm_block *b = &s->g->block[s->near[k]];
+        for (int64_t i = b->begin; i < b->end; i++) {
+            int first[3];
+            if (find_first(s, i, first)) mix(&s->group[cell_of(first)], s->v->material[s->v->solid[i]].group);
+        }
+    }
+    for (int n = 0; n < nodes; n++) {
+        const int at[3] = {three ? n/16 : n/4, three ? n/4%4 : n%4, three ? n%4 : 0};
+        int16_t here = EMPTY;
+        if (side[n] != 0) continue;
+        for (int pass = 0; pass < 2; pass++)
+            for (int k = 0; k < 27; k++) {
+                const int first[3] = {at[0] - k/9, at[1] - k/3%3, three ? at[2] - k%3 : -1};
+                if (pass == 0) mix(&here, s->group[cell_of(first)]);
+                else s->meets[cell_of(first)] |= here == MPM_MIXED;
+            }
+        any |= here == MPM_MIXED;
+    }
+    return any;
+}
+
+/* What is said at one node. */
+typedef struct meeting {
+    voice voice[GROUPS];
+    int   first, second;               /* whose velocities it has; first < 0: not decided, or one */
+    float normal[3];                   /* from the first to the second                            */
+} meeting;
+
+static void say_what(const scene *s, int64_t i, double w, const double d[3], meeting *m)
+{
+    const mpm_material *of = &s->v->material[s->v->solid[i]];
+    const double volume = s->v->strain[i].c[0].w, mass = w*s->v->strain[i].c[2].w;
+    const double q = vec3_dot(d, d)*s->v->inverse_cell*s->v->inverse_cell/2.25, near = q < 0.99 ? 1 - q : 0.01;
     int k = 0;
-    while (k < GROUPS && voices[k].group >= 0 && voices[k].group != m->group) k++;
+    while (k < GROUPS && m->voice[k].group >= 0 && m->voice[k].group != of->group) k++;
     if (k == GROUPS) return;
-    voice *to = &voices[k];
-    const double volume = v->strain[i].c[0].w, mass = w*v->strain[i].c[2].w;
-    const double q = vec3_dot(d, d)*v->inverse_cell*v->inverse_cell/2.25, near = q < 0.99 ? 1 - q : 0.01;
-    to->group = m->group;
+    voice *to = &m->voice[k];
+    to->group = of->group;
     to->mass += mass;
-    to->friction += mass*m->surface_friction;
-    to->shape |= m->model != TOBI_LIQUID;
+    to->friction += mass*of->surface_friction;
+    to->shaped |= of->model != TOBI_LIQUID;
     for (int a = 0; a < 3; a++) to->towards[a] += volume*near*d[a];
 }
 
-static void hear(const mpm_grid *g, const mpm_view *v, const mpm_patch *p, voice voices[][GROUPS])
+/* radius: m, half a spacing, which a particle fills. */
+static void say_how_far(const scene *s, int64_t i, double radius, const double d[3], meeting *m)
 {
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0) continue;
-        const mpm_block *b = &g->block[p->cover[o]];
+    const double along = d[0]*m->normal[0] + d[1]*m->normal[1] + d[2]*m->normal[2];
+    const int second = s->v->material[s->v->solid[i]].group == m->voice[m->second].group;
+    double *reach = &m->voice[second ? m->second : m->first].reach;
+    *reach = fmax(*reach, (second ? -along : along) + radius);
+}
+
+/* One particle speaks at the nodes that feel it: what it is or, once it is decided who meets, how far it
+   reaches. */
+static void say(const scene *s, int64_t i, const int first[3], const float *side, meeting *meetings, int decided)
+{
+    const int three = s->g->dimension == 3;
+    const double cell = s->v->cell, volume = s->v->strain[i].c[0].w, *x = &s->v->position[i].x;
+    const double radius = !decided ? 0 : 0.5*(three ? cbrt(volume) : sqrt(volume));
+    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    for (int a = 0; a < s->g->dimension && !decided; a++) mpm_spline(x[a]*s->v->inverse_cell, w[a]);
+    for (int o = 0; o < (three ? 27 : 9); o++) {
+        const int way[3] = {three ? o/9 : o/3, three ? o/3%3 : o%3, three ? o%3 : 1};
+        const int at[3] = {first[0] + way[0], first[1] + way[1], first[2] + way[2]};
+        if ((at[0] | at[1] | at[2]) & ~3) continue;
+        const int n = three ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
+        if (decided ? meetings[n].first < 0 : side[n] != 0) continue;
+        const double d[3] = {x[0] - (s->p->corner[0] + at[0])*cell, x[1] - (s->p->corner[1] + at[1])*cell,
+                             three ? x[2] - (s->p->corner[2] + at[2])*cell : 0};
+        if (decided) say_how_far(s, i, radius, d, &meetings[n]);
+        else say_what(s, i, w[0][way[0]]*w[1][way[1]]*w[2][way[2]], d, &meetings[n]);
+    }
+}
+
+static void hear(const scene *s, const float *side, meeting *meetings, int decided)
+{
+    for (int k = 0; k < s->near_count; k++) {
+        const mpm_block *b = &s->g->block[s->near[k]];
         for (int64_t i = b->begin; i < b->end; i++) {
-            reach r;
-            if (!find_reach(g, v, p, i, &r)) continue;
-            for (int a = r.low[0]; a <= r.high[0]; a++)
-                for (int e = r.low[1]; e <= r.high[1]; e++)
-                    for (int c = r.low[2]; c <= r.high[2]; c++) {
-                        double d[3], w = r.w[0][a]*r.w[1][e]*r.w[2][c];
-                        if (w == 0) continue;
-                        look_from(g, v, p, &r, (const int[3]){a, e, c}, d);
-                        add_voice(voices[node_of(g, &r, a, e, c)], v, i, w, d);
-                    }
+            int first[3];
+            if (find_first(s, i, first) && s->meets[cell_of(first)]) say(s, i, first, side, meetings, decided);
         }
     }
 }
 
-/* The heaviest group has the first velocity, the next the second. A third joins the first. */
-static int decide(const voice voices[GROUPS], float *side, mpm_seam *seam)
+/* The heaviest group has the first velocity, the next the second; a third joins the first. Where only one of
+   the two keeps its shape, its surface is the face. */
+static void decide(meeting *m)
 {
-    const voice *first = &voices[0], *second = NULL;
+    int first = 0, second = -1;
     double n[3];
-    for (int k = 1; k < GROUPS && voices[k].group >= 0; k++) {
-        if (voices[k].mass > first->mass) { second = first; first = &voices[k]; }
-        else if (!second || voices[k].mass > second->mass) second = &voices[k];
+    for (int k = 1; k < GROUPS && m->voice[k].group >= 0; k++) {
+        if (m->voice[k].mass > m->voice[first].mass) { second = first; first = k; }
+        else if (second < 0 || m->voice[k].mass > m->voice[second].mass) second = k;
     }
-    if (!second || !(second->mass > 0)) return 0;
-    const int both = first->shape == second->shape;
+    if (second < 0 || !(m->voice[second].mass > 0)) return;
+    const voice *f = &m->voice[first], *s = &m->voice[second];
+    const int alike = f->shaped == s->shaped;
     for (int a = 0; a < 3; a++)
-        n[a] = (both || second->shape)*second->towards[a] - (both || first->shape)*first->towards[a];
+        n[a] = (alike || s->shaped)*s->towards[a] - (alike || f->shaped)*f->towards[a];
     vec3_normalize(n);
-    for (int a = 0; a < 3; a++) seam->normal[a] = (float)n[a];
-    seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
-    *side = mpm_side_of(second->group);
-    return 1;
+    for (int a = 0; a < 3; a++) m->normal[a] = (float)n[a];
+    m->first = first;
+    m->second = second;
 }
 
-/* How far the two groups reach along the normal. */
-typedef struct span { double first, second; } span;
-
-static void measure(const mpm_grid *g, const mpm_view *v, const mpm_patch *p, const float *side,
-                    const mpm_seam *seam, const char *fresh, span *spans)
+static void write_seam(const meeting *m, float *side, mpm_seam *seam)
 {
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0) continue;
-        const mpm_block *b = &g->block[p->cover[o]];
-        for (int64_t i = b->begin; i < b->end; i++) {
-            reach r;
-            if (!find_reach(g, v, p, i, &r)) continue;
-            const double volume = v->strain[i].c[0].w;
-            const double radius = 0.5*(g->dimension == 3 ? cbrt(volume) : sqrt(volume));
-            const float own = mpm_side_of(v->material[v->solid[i]].group);
-            for (int a = r.low[0]; a <= r.high[0]; a++)
-                for (int e = r.low[1]; e <= r.high[1]; e++)
-                    for (int c = r.low[2]; c <= r.high[2]; c++) {
-                        const int n = node_of(g, &r, a, e, c);
-                        double d[3], m[3], far;
-                        if (!fresh[n]) continue;
-                        look_from(g, v, p, &r, (const int[3]){a, e, c}, d);
-                        for (int k = 0; k < 3; k++) m[k] = seam[n].normal[k];
-                        far = vec3_dot(d, m);
-                        if (side[n] == own) spans[n].second = fmin(spans[n].second, far - radius);
-                        else spans[n].first = fmax(spans[n].first, far + radius);
-                    }
-        }
-    }
+    const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
+    *side = mpm_side_of(second->group);
+    memcpy(seam->normal, m->normal, sizeof seam->normal);
+    seam->gap = (float)-(first->reach + second->reach);
+    seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
 }
 
-int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const int16_t *group, const mpm_patch *p, float *side,
-                  mpm_seam *seam)
+int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, const mpm_patch *p,
+                  float *side, mpm_seam *seam)
 {
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    voice voices[MPM_NODES_3D][GROUPS];
-    span spans[MPM_NODES_3D];
-    char fresh[MPM_NODES_3D];
-    int seen = MPM_MIXED - 1, meets = 0;
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0) continue;
-        const int here = group[p->cover[o]];
-        meets |= here == MPM_MIXED || (seen >= 0 && seen != here);
-        seen = here;
-    }
-    if (!meets) return 0;
-    memset(voices, 0, sizeof voices);
-    for (int n = 0; n < nodes; n++)
-        for (int k = 0; k < GROUPS; k++) voices[n][k].group = -1;
-    hear(g, v, p, voices);
-    meets = 0;
+    scene s = { .g = g, .v = v, .p = p };
+    meeting meetings[MPM_NODES_3D];
+    int any = 0;
+    if (!list_blocks(&s, crowd) || !find_meetings(&s, side)) return 0;
     for (int n = 0; n < nodes; n++) {
-        spans[n] = (span){-INFINITY, INFINITY};
-        fresh[n] = (char)(side[n] == 0 && decide(voices[n], &side[n], &seam[n]));
-        meets |= fresh[n];
+        meetings[n] = (meeting){ .first = -1, .second = -1 };
+        for (int k = 0; k < GROUPS; k++)
+            meetings[n].voice[k] = (voice){ .group = -1, .reach = -INFINITY };
     }
-    if (!meets) return 0;
-    measure(g, v, p, side, seam, fresh, spans);
+    hear(&s, side, meetings, 0);
     for (int n = 0; n < nodes; n++)
-        if (fresh[n]) seam[n].gap = (float)(spans[n].second - spans[n].first);
-    return 1;
+        if (side[n] == 0) decide(&meetings[n]);
+    hear(&s, side, meetings, 1);
+    for (int n = 0; n < nodes; n++) {
+        if (meetings[n].first < 0) continue;
+        write_seam(&meetings[n], &side[n], &seam[n]);
+        any = 1;
+    }
+    return any;
+}
+
+int mpm_meet_reaches(const mpm_grid *g, const float *side, const mpm_crowd *c, const mpm_block *b)
+{
+    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int o = 0; o < 27; o++) {
+        const mpm_patch *p = b->around[o] >= 0 ? &g->patch[b->around[o]] : NULL;
+        for (int n = 0; n < nodes && p && p->twin == 1; n++) {
+            const float here = side[(int64_t)b->around[o]*nodes + n];
+            const int at[3] = {three ? n/16 : n/4, three ? n/4%4 : n%4, n%4};
+            int reaches = c->group == MPM_MIXED ? here >= mpm_side_of(0) : here == mpm_side_of(c->group);
+            for (int a = 0; a < g->dimension && reaches; a++)
+                reaches = p->corner[a] + at[a] >= c->low[a] - 1 && p->corner[a] + at[a] <= c->high[a] + 3;
+            if (reaches) return 1;
+        }
+    }
+    return 0;
 }

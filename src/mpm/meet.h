@@ -8,10 +8,17 @@
    numbers of cuts, in steps that float still tells apart. */
 TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
 
-/* The group of all particles of a block, MPM_MIXED if there are several. */
 enum { MPM_MIXED = -1 };
-int mpm_meet_group(const mpm_view *v, const mpm_block *b);
-/* Finds the nodes of a patch where two groups meet. group: of each block. side, seam: of the patch's nodes;
+/* What is known of a block of particles: their group, MPM_MIXED if there are several; lowest and highest of
+   their base nodes, cells from the domain's lower corner. */
+typedef struct mpm_crowd { int group, low[3], high[3]; } mpm_crowd;
+
+mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension);
+/* Finds the nodes of a patch where two groups meet. crowd: of each block. side, seam: of the patch's nodes;
    those with a side already keep it. Returns 1 if there are any. */
-int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const int16_t *group, const mpm_patch *p, float *side,
-                  mpm_seam *seam);
+int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, const mpm_patch *p,
+                  float *side, mpm_seam *seam);
+/* Whether a particle of a block may have the second velocity of a node where groups meet, a cell of motion
+   included. side: of all nodes;
+   the patches' twins are marked by 1. */
+int mpm_meet_reaches(const mpm_grid *g, const float *side, const mpm_crowd *c, const mpm_block *b);
