@@ -19,7 +19,7 @@ typedef struct scene {
     char meets[CELLS];                 /* 1: such a particle feels a node where groups meet        */
 } scene;
 
-enum { EMPTY = -2 };
+enum { EMPTY = -2, NORMALS = 3 };
 
 /* What the particles of one group say at one node. */
 typedef struct voice {
@@ -27,7 +27,7 @@ typedef struct voice {
     int    shaped;                     /* 1: keeps its shape, so that its surface is known best    */
     double mass, friction;             /* kg; weighted by mass                                     */
     double towards[3];                 /* where its volume lies, m4                                */
-    double reach;                      /* m, along the normal from the node                        */
+    double reach[NORMALS];             /* m, along each normal from the node                      */
 } voice;
 
 /* The base node of a particle relative to the patch; returns whether it reaches the patch. */
@@ -122,7 +122,7 @@ static int find_meetings(scene *s, const float *side)
 typedef struct meeting {
     voice voice[GROUPS];
     int   first, second;               /* whose velocities it has; first < 0: not decided, or one */
-    float normal[3];                   /* from the first to the second                            */
+    double normal[NORMALS][3];         /* that are tried, from the first to the second            */
 } meeting;
 
 static void say_what(const scene *s, int64_t i, double w, const double d[3], meeting *m)
@@ -144,10 +144,12 @@ static void say_what(const scene *s, int64_t i, double w, const double d[3], mee
 /* radius: m, half a spacing, which a particle fills. */
 static void say_how_far(const scene *s, int64_t i, double radius, const double d[3], meeting *m)
 {
-    const double along = d[0]*m->normal[0] + d[1]*m->normal[1] + d[2]*m->normal[2];
     const int second = s->v->material[s->v->solid[i]].group == m->voice[m->second].group;
-    double *reach = &m->voice[second ? m->second : m->first].reach;
-    *reach = fmax(*reach, (second ? -along : along) + radius);
+    double *reach = m->voice[second ? m->second : m->first].reach;
+    for (int k = 0; k < NORMALS; k++) {
+        const double along = vec3_dot(d, m->normal[k]);
+        reach[k] = fmax(reach[k], (second ? -along : along) + radius);
+    }
 }
 
 /* One particle speaks at the nodes that feel it: what it is or, once it is decided who meets, how far it
@@ -183,33 +185,38 @@ static void hear(const scene *s, const float *side, meeting *meetings, int decid
     }
 }
 
-/* The heaviest group has the first velocity, the next the second; a third joins the first. Where only one of
-   the two keeps its shape, its surface is the face. */
+/* The heaviest group has the first velocity, the next the second; a third joins the first. Normals are tried
+   from the volume of either and of both; where only one keeps its shape, from that. */
 static void decide(meeting *m)
 {
     int first = 0, second = -1;
-    double n[3];
     for (int k = 1; k < GROUPS && m->voice[k].group >= 0; k++) {
         if (m->voice[k].mass > m->voice[first].mass) { second = first; first = k; }
         else if (second < 0 || m->voice[k].mass > m->voice[second].mass) second = k;
     }
     if (second < 0 || !(m->voice[second].mass > 0)) return;
     const voice *f = &m->voice[first], *s = &m->voice[second];
-    const int alike = f->shaped == s->shaped;
-    for (int a = 0; a < 3; a++)
-        n[a] = (alike || s->shaped)*s->towards[a] - (alike || f->shaped)*f->towards[a];
-    vec3_normalize(n);
-    for (int a = 0; a < 3; a++) m->normal[a] = (float)n[a];
+    for (int k = 0; k < NORMALS; k++) {
+        const int use_first = f->shaped == s->shaped ? k != 1 : f->shaped;
+        const int use_second = f->shaped == s->shaped ? k != 0 : s->shaped;
+        for (int a = 0; a < 3; a++)
+            m->normal[k][a] = use_second*s->towards[a] - use_first*f->towards[a];
+        vec3_normalize(m->normal[k]);
+    }
     m->first = first;
     m->second = second;
 }
 
+/* Of the normals that with the widest gap parts the two best: at the corner of a block on a floor, the floor's. */
 static void write_seam(const meeting *m, float *side, mpm_seam *seam)
 {
     const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
+    int best = NORMALS - 1;
+    for (int k = 0; k < NORMALS; k++)
+        if (first->reach[k] + second->reach[k] < first->reach[best] + second->reach[best]) best = k;
     *side = mpm_side_of(second->group);
-    memcpy(seam->normal, m->normal, sizeof seam->normal);
-    seam->gap = (float)-(first->reach + second->reach);
+    for (int a = 0; a < 3; a++) seam->normal[a] = (float)m->normal[best][a];
+    seam->gap = (float)-(first->reach[best] + second->reach[best]);
     seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
 }
 
@@ -224,7 +231,7 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     for (int n = 0; n < nodes; n++) {
         meetings[n] = (meeting){ .first = -1, .second = -1 };
         for (int k = 0; k < GROUPS; k++)
-            meetings[n].voice[k] = (voice){ .group = -1, .reach = -INFINITY };
+            meetings[n].voice[k] = (voice){ .group = -1, .reach = {-INFINITY, -INFINITY, -INFINITY} };
     }
     hear(&s, side, meetings, 0);
     for (int n = 0; n < nodes; n++)
