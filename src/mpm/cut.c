@@ -18,6 +18,7 @@ void mpm_cut_free(mpm_cut *c)
     free(c->hidden);
     free(c->marked);
     free(c->crowd);
+    free(c->rows);
     memset(c, 0, sizeof *c);
 }
 
@@ -298,11 +299,8 @@ static void make_twins(mpm_grid *g, const char *marked)
     }
 }
 
-tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g, const mpm_view *v)
 {
-    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    const int nodes = nodes_of(g);
-    if (v->cuts) find_faces(c, s, v);
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
         c->marked[k] = 0;
@@ -310,6 +308,21 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
         for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts; i++)
             c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
+}
+
+static void mark_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g)
+{
+    #pragma omp parallel for num_threads(s->exec.threads)
+    for (int64_t k = 0; k < g->block_count; k++)
+        if (c->apart) c->marked[k] |= (char)mpm_meet_reaches(g, c->side, &c->crowd[k], &g->block[k]);
+}
+
+tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+{
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
+    const int nodes = nodes_of(g);
+    if (v->cuts) find_faces(c, s, v);
+    look_at_blocks(c, s, g, v);
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
         g->patch[k].twin = find_sides(c, g, v, k);
@@ -317,11 +330,49 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
             g->patch[k].twin |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
                                               c->seam + k*nodes);
     }
-    #pragma omp parallel for num_threads(s->exec.threads)
-    for (int64_t k = 0; k < g->block_count; k++)
-        if (c->apart) c->marked[k] |= (char)mpm_meet_reaches(g, c->side, &c->crowd[k], &g->block[k]);
+    mark_blocks(c, s, g);
     make_twins(g, c->marked);
-    c->moved = 0;
+    return TOBI_OK;
+}
+
+tobi_status mpm_cut_keep(const mpm_cut *c, const mpm_grid *g, double **rows, int64_t *count, tobi_error *err)
+{
+    const int nodes = nodes_of(g);
+    int64_t n = 0;
+    for (int64_t k = 0; k < g->patch_count*nodes && c->side; k++) n += c->side[k] != 0;
+    *rows = malloc((size_t)(n + 1)*TOBI_RECALL_ROW*sizeof **rows);
+    if (!*rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities", (long long)n);
+    *count = 0;
+    for (int64_t k = 0; k < g->patch_count*nodes && n > 0; k++) {
+        const mpm_seam *m = &c->seam[k];
+        if (c->side[k] == 0) continue;
+        const double row[TOBI_RECALL_ROW] = {(double)k, c->side[k], m->normal[0], m->normal[1], m->normal[2],
+                                             m->gap, m->friction};
+        memcpy(*rows + TOBI_RECALL_ROW*(*count)++, row, sizeof row);
+    }
+    return TOBI_OK;
+}
+
+tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+{
+    const int nodes = nodes_of(g);
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
+    memset(c->side, 0, (size_t)(g->patch_count*nodes)*sizeof *c->side);
+    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = 0;
+    for (int64_t i = 0; i < c->row_count; i++) {
+        const double *row = c->rows + TOBI_RECALL_ROW*i;
+        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes)))
+            return tobi_fail(err, TOBI_DAMAGED, "the checkpoint has a node %g, allowed are 0 to %lld", row[0],
+                             (long long)(g->patch_count*nodes - 1));
+        const int64_t k = (int64_t)row[0];
+        g->patch[k/nodes].twin = 1;
+        c->side[k] = (float)row[1];
+        c->seam[k] = (mpm_seam){ .normal = {(float)row[2], (float)row[3], (float)row[4]},
+                                 .gap = (float)row[5], .friction = (float)row[6] };
+    }
+    look_at_blocks(c, s, g, v);
+    mark_blocks(c, s, g);
+    make_twins(g, c->marked);
     return TOBI_OK;
 }
 
