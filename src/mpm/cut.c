@@ -241,6 +241,7 @@ static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
     }
     gap -= best->far[0]/best->weight[0] + best->far[1]/best->weight[1];
     seam->gap = (float)gap;
+    seam->fixed = 0;
     seam->friction = (float)(best->friction/(best->weight[0] + best->weight[1]));
     *side = (float)(own ? -best->number : best->number);
     return 1;
@@ -341,13 +342,14 @@ tobi_status mpm_cut_keep(const mpm_cut *c, const mpm_grid *g, double **rows, int
     int64_t n = 0;
     for (int64_t k = 0; k < g->patch_count*nodes && c->side; k++) n += c->side[k] != 0;
     *rows = malloc((size_t)(n + 1)*TOBI_RECALL_ROW*sizeof **rows);
-    if (!*rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities", (long long)n);
+    if (!*rows)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities", (long long)n);
     *count = 0;
     for (int64_t k = 0; k < g->patch_count*nodes && n > 0; k++) {
         const mpm_seam *m = &c->seam[k];
         if (c->side[k] == 0) continue;
         const double row[TOBI_RECALL_ROW] = {(double)k, c->side[k], m->normal[0], m->normal[1], m->normal[2],
-                                             m->gap, m->friction};
+                                             m->gap, m->friction, m->fixed};
         memcpy(*rows + TOBI_RECALL_ROW*(*count)++, row, sizeof row);
     }
     return TOBI_OK;
@@ -361,14 +363,12 @@ tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mp
     for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = 0;
     for (int64_t i = 0; i < c->row_count; i++) {
         const double *row = c->rows + TOBI_RECALL_ROW*i;
-        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes)))
-            return tobi_fail(err, TOBI_DAMAGED, "the checkpoint has a node %g, allowed are 0 to %lld", row[0],
-                             (long long)(g->patch_count*nodes - 1));
+        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes))) continue;      /* not ours */
         const int64_t k = (int64_t)row[0];
         g->patch[k/nodes].twin = 1;
         c->side[k] = (float)row[1];
         c->seam[k] = (mpm_seam){ .normal = {(float)row[2], (float)row[3], (float)row[4]},
-                                 .gap = (float)row[5], .friction = (float)row[6] };
+                                 .gap = (float)row[5], .friction = (float)row[6], .fixed = (int)row[7] };
     }
     look_at_blocks(c, s, g, v);
     mark_blocks(c, s, g);
@@ -384,6 +384,7 @@ typedef struct joint {
 static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
 {
     joint j = { .mass = (double)first->w*second->w/((double)first->w + second->w) };
+    if (seam->fixed) j.mass = seam->fixed == 1 ? second->w : first->w;
     for (int a = 0; a < 3; a++) {
         j.n[a] = seam->normal[a];
         j.u[a] = (double)(&second->x)[a] - (&first->x)[a];
@@ -404,8 +405,8 @@ static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, doubl
     double size = vec3_length(slide), grip = seam->friction*normal, keep = size > grip ? grip/size : 1;
     for (int a = 0; a < 3; a++) {
         double push = normal*j.n[a] + keep*slide[a], change = push - was[a];
-        (&first->x)[a] -= (float)(change/first->w);
-        (&second->x)[a] += (float)(change/second->w);
+        if (seam->fixed != 1) (&first->x)[a] -= (float)(change/first->w);
+        if (seam->fixed != 2) (&second->x)[a] += (float)(change/second->w);
         seam->push[a] = (float)push;
     }
 }
@@ -416,6 +417,14 @@ static double close(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 
     const joint j = look_at(seam, first, second);
     seam->gap += (float)(j.along*dt);
     return -(seam->push[0]*j.u[0] + seam->push[1]*j.u[1] + seam->push[2]*j.u[2]);
+}
+
+/* What is stationary does not even fall. */
+static void begin(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second)
+{
+    tobi_float4 *fixed = seam->fixed == 1 ? first : second;
+    if (seam->fixed) fixed->x = fixed->y = fixed->z = 0;
+    memset(seam->push, 0, sizeof seam->push);
 }
 
 enum { BEGIN, PRESS, CLOSE };
@@ -431,7 +440,7 @@ static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt
             tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
             mpm_seam *seam = &c->seam[k*nodes + n];
             if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
-            if (what == BEGIN) memset(seam->push, 0, sizeof seam->push);
+            if (what == BEGIN) begin(seam, first, second);
             if (what == CLOSE) part[k] += close(seam, first, second, dt);
             else press(seam, first, second, dt);
         }

@@ -1,6 +1,5 @@
 #include "mpm/meet.h"
 #include "geom/vec3.h"
-#include "mpm/spline.h"
 #include "tobiuo/types.h"
 #include <math.h>
 #include <string.h>
@@ -19,33 +18,63 @@ typedef struct scene {
     char meets[CELLS];                 /* 1: such a particle feels a node where groups meet        */
 } scene;
 
-enum { EMPTY = -2, NORMALS = 3 };
+enum { EMPTY = -2, NORMALS = 4 };
+#define MARGIN (2*MPM_MEET_STALE)      /* the step in which it is exceeded included            */
 
 /* What the particles of one group say at one node. */
 typedef struct voice {
     int    group;                      /* -1 = none                                                */
     int    shaped;                     /* 1: keeps its shape, so that its surface is known best    */
+    int    fixed;                      /* 1: is stationary                                         */
     double mass, friction;             /* kg; weighted by mass                                     */
     double towards[3];                 /* where its volume lies, m4                                */
+    double place[3];                   /* kg m, from the node, weighted by mass                    */
     double reach[NORMALS];             /* m, along each normal from the node                      */
 } voice;
 
-/* The base node of a particle relative to the patch; returns whether it reaches the patch. */
-static int find_first(const scene *s, int64_t i, int first[3])
+static void mix(int16_t *to, int group)
+{
+    if (group == EMPTY) return;
+    *to = (int16_t)(*to == EMPTY || *to == group ? group : MPM_MIXED);
+}
+
+typedef struct range { int low[3], high[3]; } range;
+
+/* The base nodes of a particle, relative to the patch, wherever it moves by a tenth of a cell, cut to those
+   that reach the patch; returns whether any do. */
+static int find_range(const scene *s, int64_t i, range *r)
 {
     const double *x = &s->v->position[i].x;
-    first[2] = -1;
+    r->low[2] = r->high[2] = -1;
     for (int a = 0; a < s->g->dimension; a++) {
-        first[a] = (int)(x[a]*s->v->inverse_cell + 3.5) - 4 - s->p->corner[a];
-        if (first[a] > 3 || first[a] < -2) return 0;
+        const double at = x[a]*s->v->inverse_cell + 3.5;   /* cells from -4: positive, so that (int) is floor */
+        r->low[a] = (int)(at - MARGIN) - 4 - s->p->corner[a];
+        r->high[a] = (int)(at + MARGIN) - 4 - s->p->corner[a];
+        if (r->low[a] > 3 || r->high[a] < -2) return 0;
+        if (r->low[a] < -2) r->low[a] = -2;
+        if (r->high[a] > 3) r->high[a] = 3;
     }
     return 1;
 }
 
 /* Place of a base node, relative to the patch, in the scene's lists. */
-static int cell_of(const int first[3])
+static int cell_of(int a, int b, int c) { return ((a + 2)*SPAN + b + 2)*SPAN + c + 2; }
+
+/* A particle adds its group to its base nodes. */
+static void stand(scene *s, const range *r, int group)
 {
-    return ((first[0] + 2)*SPAN + first[1] + 2)*SPAN + first[2] + 2;
+    for (int a = r->low[0]; a <= r->high[0]; a++)
+        for (int b = r->low[1]; b <= r->high[1]; b++)
+            for (int c = r->low[2]; c <= r->high[2]; c++) mix(&s->group[cell_of(a, b, c)], group);
+}
+
+static int is_near(const scene *s, const range *r)
+{
+    int near = 0;
+    for (int a = r->low[0]; a <= r->high[0]; a++)
+        for (int b = r->low[1]; b <= r->high[1]; b++)
+            for (int c = r->low[2]; c <= r->high[2]; c++) near |= s->meets[cell_of(a, b, c)];
+    return near;
 }
 
 mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension)
@@ -72,7 +101,7 @@ static int list_blocks(scene *s, const mpm_crowd *crowd)
         int reaches = s->p->cover[o] >= 0;
         for (int a = 0; a < s->g->dimension && reaches; a++) {
             const mpm_crowd *c = &crowd[s->p->cover[o]];
-            reaches = c->low[a] <= s->p->corner[a] + 3 && c->high[a] >= s->p->corner[a] - 2;
+            reaches = c->low[a] <= s->p->corner[a] + 4 && c->high[a] >= s->p->corner[a] - 3;
         }
         if (!reaches) continue;
         const int here = crowd[s->p->cover[o]].group;
@@ -81,12 +110,6 @@ static int list_blocks(scene *s, const mpm_crowd *crowd)
         s->near[s->near_count++] = s->p->cover[o];
     }
     return meets;
-}
-
-static void mix(int16_t *to, int group)
-{
-    if (group == EMPTY) return;
-    *to = (int16_t)(*to == EMPTY || *to == group ? group : MPM_MIXED);
 }
 
 /* Which base nodes have particles that feel a node without a side where groups meet. Returns if any. */
@@ -99,8 +122,8 @@ static int find_meetings(scene *s, const float *side)
     for (int k = 0; k < s->near_count; k++) {
         const mpm_block *b = &s->g->block[s->near[k]];
         for (int64_t i = b->begin; i < b->end; i++) {
-            int first[3];
-            if (find_first(s, i, first)) mix(&s->group[cell_of(first)], s->v->material[s->v->solid[i]].group);
+            range r;
+            if (find_range(s, i, &r)) stand(s, &r, s->v->material[s->v->solid[i]].group);
         }
     }
     for (int n = 0; n < nodes; n++) {
@@ -109,9 +132,9 @@ static int find_meetings(scene *s, const float *side)
         if (side[n] != 0) continue;
         for (int pass = 0; pass < 2; pass++)
             for (int k = 0; k < 27; k++) {
-                const int first[3] = {at[0] - k/9, at[1] - k/3%3, three ? at[2] - k%3 : -1};
-                if (pass == 0) mix(&here, s->group[cell_of(first)]);
-                else s->meets[cell_of(first)] |= here == MPM_MIXED;
+                const int base = cell_of(at[0] - k/9, at[1] - k/3%3, three ? at[2] - k%3 : -1);
+                if (pass == 0) mix(&here, s->group[base]);
+                else s->meets[base] |= here == MPM_MIXED;
             }
         any |= here == MPM_MIXED;
     }
@@ -128,7 +151,7 @@ typedef struct meeting {
 static void say_what(const scene *s, int64_t i, double w, const double d[3], meeting *m)
 {
     const mpm_material *of = &s->v->material[s->v->solid[i]];
-    const double volume = s->v->strain[i].c[0].w, mass = w*s->v->strain[i].c[2].w;
+    const double volume = s->v->strain[i].c[0].w, mass = (w + 1e-6)*s->v->strain[i].c[2].w;
     const double q = vec3_dot(d, d)*s->v->inverse_cell*s->v->inverse_cell/2.25, near = q < 0.99 ? 1 - q : 0.01;
     int k = 0;
     while (k < GROUPS && m->voice[k].group >= 0 && m->voice[k].group != of->group) k++;
@@ -138,7 +161,11 @@ static void say_what(const scene *s, int64_t i, double w, const double d[3], mee
     to->mass += mass;
     to->friction += mass*of->surface_friction;
     to->shaped |= of->model != TOBI_LIQUID;
-    for (int a = 0; a < 3; a++) to->towards[a] += volume*near*d[a];
+    to->fixed |= of->model == TOBI_STATIONARY;
+    for (int a = 0; a < 3; a++) {
+        to->towards[a] += volume*near*d[a];
+        to->place[a] += mass*d[a];
+    }
 }
 
 /* radius: m, half a spacing, which a particle fills. */
@@ -152,26 +179,40 @@ static void say_how_far(const scene *s, int64_t i, double radius, const double d
     }
 }
 
-/* One particle speaks at the nodes that feel it: what it is or, once it is decided who meets, how far it
-   reaches. */
-static void say(const scene *s, int64_t i, const int first[3], const float *side, meeting *meetings, int decided)
+/* Weight of a quadratic B-spline at x cells from its node, eq. (2) of docs/theory/mlsmpm.md. */
+static double weigh(double x)
+{
+    const double far = fabs(x);
+    return far < 0.5 ? 0.75 - far*far : far < 1.5 ? 0.5*(1.5 - far)*(1.5 - far) : 0;
+}
+
+/* One particle speaks at the nodes that feel it, or soon may: what it is or, once it is decided who meets,
+   how far it reaches. */
+static void say(const scene *s, int64_t i, const range *r, const float *side, meeting *meetings, int decided)
 {
     const int three = s->g->dimension == 3;
     const double cell = s->v->cell, volume = s->v->strain[i].c[0].w, *x = &s->v->position[i].x;
     const double radius = !decided ? 0 : 0.5*(three ? cbrt(volume) : sqrt(volume));
-    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    for (int a = 0; a < s->g->dimension && !decided; a++) mpm_spline(x[a]*s->v->inverse_cell, w[a]);
-    for (int o = 0; o < (three ? 27 : 9); o++) {
-        const int way[3] = {three ? o/9 : o/3, three ? o/3%3 : o%3, three ? o%3 : 1};
-        const int at[3] = {first[0] + way[0], first[1] + way[1], first[2] + way[2]};
-        if ((at[0] | at[1] | at[2]) & ~3) continue;
-        const int n = three ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
-        if (decided ? meetings[n].first < 0 : side[n] != 0) continue;
-        const double d[3] = {x[0] - (s->p->corner[0] + at[0])*cell, x[1] - (s->p->corner[1] + at[1])*cell,
-                             three ? x[2] - (s->p->corner[2] + at[2])*cell : 0};
-        if (decided) say_how_far(s, i, radius, d, &meetings[n]);
-        else say_what(s, i, w[0][way[0]]*w[1][way[1]]*w[2][way[2]], d, &meetings[n]);
+    int low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = a == 2 && !three ? 0 : r->low[a] < 0 ? 0 : r->low[a];
+        high[a] = a == 2 && !three ? 0 : r->high[a] > 1 ? 3 : r->high[a] + 2;
     }
+    for (int a = low[0]; a <= high[0]; a++)
+        for (int b = low[1]; b <= high[1]; b++)
+            for (int c = low[2]; c <= high[2]; c++) {
+                const int n = three ? (a*4 + b)*4 + c : a*4 + b;
+                if (decided ? meetings[n].first < 0 : side[n] != 0) continue;
+                const double d[3] = {x[0] - (s->p->corner[0] + a)*cell, x[1] - (s->p->corner[1] + b)*cell,
+                                     three ? x[2] - (s->p->corner[2] + c)*cell : 0};
+                if (decided) {
+                    say_how_far(s, i, radius, d, &meetings[n]);
+                    continue;
+                }
+                double w = 1;
+                for (int k = 0; k < s->g->dimension; k++) w *= weigh(d[k]*s->v->inverse_cell);
+                say_what(s, i, w, d, &meetings[n]);
+            }
 }
 
 static void hear(const scene *s, const float *side, meeting *meetings, int decided)
@@ -179,14 +220,15 @@ static void hear(const scene *s, const float *side, meeting *meetings, int decid
     for (int k = 0; k < s->near_count; k++) {
         const mpm_block *b = &s->g->block[s->near[k]];
         for (int64_t i = b->begin; i < b->end; i++) {
-            int first[3];
-            if (find_first(s, i, first) && s->meets[cell_of(first)]) say(s, i, first, side, meetings, decided);
+            range r;
+            if (find_range(s, i, &r) && is_near(s, &r)) say(s, i, &r, side, meetings, decided);
         }
     }
 }
 
 /* The heaviest group has the first velocity, the next the second; a third joins the first. Normals are tried
-   from the volume of either and of both; where only one keeps its shape, from that. */
+   from the volume of either, of both, and from one's mean place to the other's; where only one keeps its
+   shape, from that. */
 static void decide(meeting *m)
 {
     int first = 0, second = -1;
@@ -194,13 +236,15 @@ static void decide(meeting *m)
         if (m->voice[k].mass > m->voice[first].mass) { second = first; first = k; }
         else if (second < 0 || m->voice[k].mass > m->voice[second].mass) second = k;
     }
-    if (second < 0 || !(m->voice[second].mass > 0)) return;
+    if (second < 0) return;
     const voice *f = &m->voice[first], *s = &m->voice[second];
     for (int k = 0; k < NORMALS; k++) {
         const int use_first = f->shaped == s->shaped ? k != 1 : f->shaped;
         const int use_second = f->shaped == s->shaped ? k != 0 : s->shaped;
         for (int a = 0; a < 3; a++)
-            m->normal[k][a] = use_second*s->towards[a] - use_first*f->towards[a];
+            m->normal[k][a] = k == 3 && f->shaped == s->shaped
+                                  ? s->place[a]/s->mass - f->place[a]/f->mass
+                                  : use_second*s->towards[a] - use_first*f->towards[a];
         vec3_normalize(m->normal[k]);
     }
     m->first = first;
@@ -211,12 +255,13 @@ static void decide(meeting *m)
 static void write_seam(const meeting *m, float *side, mpm_seam *seam)
 {
     const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
-    int best = NORMALS - 1;
+    int best = 2;
     for (int k = 0; k < NORMALS; k++)
         if (first->reach[k] + second->reach[k] < first->reach[best] + second->reach[best]) best = k;
     *side = mpm_side_of(second->group);
     for (int a = 0; a < 3; a++) seam->normal[a] = (float)m->normal[best][a];
     seam->gap = (float)-(first->reach[best] + second->reach[best]);
+    seam->fixed = first->fixed ? 1 : second->fixed ? 2 : 0;
     seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
 }
 
@@ -231,7 +276,7 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     for (int n = 0; n < nodes; n++) {
         meetings[n] = (meeting){ .first = -1, .second = -1 };
         for (int k = 0; k < GROUPS; k++)
-            meetings[n].voice[k] = (voice){ .group = -1, .reach = {-INFINITY, -INFINITY, -INFINITY} };
+            meetings[n].voice[k] = (voice){ .group = -1, .reach = {-INFINITY, -INFINITY, -INFINITY, -INFINITY} };
     }
     hear(&s, side, meetings, 0);
     for (int n = 0; n < nodes; n++)

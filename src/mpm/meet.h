@@ -8,6 +8,9 @@
    numbers of cuts, in steps that float still tells apart. */
 TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
 
+/* Cells that particles may move before the nodes with two velocities are found anew. */
+#define MPM_MEET_STALE 0.1
+
 enum { MPM_MIXED = -1 };
 /* What is known of a block of particles: their group, MPM_MIXED if there are several; lowest and highest of
    their base nodes, cells from the domain's lower corner. */

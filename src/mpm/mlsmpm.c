@@ -229,10 +229,9 @@ static int is_stale(const mlsmpm *m)
     return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
 }
 
-/* Nodes with two velocities stay as they are for a tenth of a cell. */
 static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_error *err)
 {
-    if (stale || m->memory[MOVED] > 0.1*m->cell) {
+    if (stale || m->memory[MOVED] > MPM_MEET_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
         m->memory[MOVED] = 0;

@@ -514,6 +514,7 @@ static const struct { const char *key; uint32_t models; } constants[] = {
     { "friction_angle", OF(TOBI_SAND) | BREAKABLE }, { "strength", BREAKABLE },
     { "fracture_energy", BREAKABLE },       { "damping", ~OF(TOBI_STATIONARY) },
     { "cut_friction", ~(OF(TOBI_STATIONARY) | OF(TOBI_LIQUID) | OF(TOBI_SAND)) },
+    { "surface_friction", ~OF(TOBI_LIQUID) },
 #undef BREAKABLE
 #undef ELASTIC
 };

@@ -150,6 +150,12 @@ static void bad_solids_are_refused_in_words(void **state)
     refuse(make(text, ""), "s.json:4:19: solids[0].poissons_ratio: ", "is 0.5, allowed is -0.99 to 0.495");
     snprintf(text, sizeof text, "\"youngs_modulus\": 0, %s", ball);
     refuse(make(text, ""), "s.json:4:19: solids[0].youngs_modulus: ", "is 0, allowed is greater than 0 Pa");
+    snprintf(text, sizeof text, "\"surface_friction\": -1, %s", ball);
+    refuse(make(text, ""), "s.json:4:21: solids[0].surface_friction: ", "is -1, allowed is at least 0");
+    snprintf(text, sizeof text, "\"bonded\": 0, %s", ball);
+    refuse(make(text, ""), "s.json:4:11: solids[0].bonded: ", "is a number, must be true or false");
+    snprintf(text, sizeof text, "\"model\": \"liquid\", \"surface_friction\": 0.1, %s", ball);
+    refuse(make(text, ""), "s.json:4:20: solids[0].surface_friction: ", "is nothing that this model knows");
     snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s }, { \"name\": \"a\",\n"
              "\"fill\": [ { " BOX("[0.6, 0, 0]", "[1, 1, 1]") " } ] } ] }", start, ball);
     refuse(text, "s.json:3:", "\"a\" is already the name of solids[0]");
