@@ -120,10 +120,10 @@ typedef struct tobi_solid_def {
     double strength;                  /* Pa, tension per area at the start that breaks it; 0 = never  */
     double fracture_energy;           /* J/m2, of a crack, per area at the start                      */
     double cut_friction;              /* 1, Coulomb, between the faces of a cut                       */
-    int    bonded;                    /* 1: shares its velocity with other bonded solids it touches   */
-    double surface_friction;          /* 1, Coulomb, against other solids where it is not             */
+    double surface_friction;          /* 1, Coulomb, against solids that it is not bonded to          */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
+    int    bonded;                    /* 1: sticks to other bonded solids that it touches              */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
     double core_color[3];             /* RGB of what was below the surface at the start; all -1 = color */
     int    visible;                   /* 0: left out of pictures                                      */

@@ -18,7 +18,7 @@ typedef struct scene {
     char meets[CELLS];                 /* 1: such a particle feels a node where groups meet        */
 } scene;
 
-enum { EMPTY = -2, NORMALS = 4 };
+enum { EMPTY = -2, NORMALS = 4, WELL = 8 };     /* cells: more than any reach               */
 #define MARGIN (2*MPM_MEET_STALE)      /* the step in which it is exceeded included            */
 
 /* What the particles of one group say at one node. */
@@ -29,7 +29,7 @@ typedef struct voice {
     double mass, friction;             /* kg; weighted by mass                                     */
     double towards[3];                 /* where its volume lies, m4                                */
     double place[3];                   /* kg m, from the node, weighted by mass                    */
-    double reach[NORMALS];             /* m, along each normal from the node                      */
+    double reach[NORMALS];             /* m, along each normal, from WELL before the node          */
 } voice;
 
 static void mix(int16_t *to, int group)
@@ -47,7 +47,7 @@ static int find_range(const scene *s, int64_t i, range *r)
     const double *x = &s->v->position[i].x;
     r->low[2] = r->high[2] = -1;
     for (int a = 0; a < s->g->dimension; a++) {
-        const double at = x[a]*s->v->inverse_cell + 3.5;   /* cells from -4: positive, so that (int) is floor */
+        const double at = x[a]*s->v->inverse_cell + 3.5;       /* from -4: (int) is floor */
         r->low[a] = (int)(at - MARGIN) - 4 - s->p->corner[a];
         r->high[a] = (int)(at + MARGIN) - 4 - s->p->corner[a];
         if (r->low[a] > 3 || r->high[a] < -2) return 0;
@@ -152,7 +152,8 @@ static void say_what(const scene *s, int64_t i, double w, const double d[3], mee
 {
     const mpm_material *of = &s->v->material[s->v->solid[i]];
     const double volume = s->v->strain[i].c[0].w, mass = (w + 1e-6)*s->v->strain[i].c[2].w;
-    const double q = vec3_dot(d, d)*s->v->inverse_cell*s->v->inverse_cell/2.25, near = q < 0.99 ? 1 - q : 0.01;
+    const double q = vec3_dot(d, d)*s->v->inverse_cell*s->v->inverse_cell/2.25;
+    const double near = q < 0.99 ? 1 - q : 0.01;
     int k = 0;
     while (k < GROUPS && m->voice[k].group >= 0 && m->voice[k].group != of->group) k++;
     if (k == GROUPS) return;
@@ -175,7 +176,7 @@ static void say_how_far(const scene *s, int64_t i, double radius, const double d
     double *reach = m->voice[second ? m->second : m->first].reach;
     for (int k = 0; k < NORMALS; k++) {
         const double along = vec3_dot(d, m->normal[k]);
-        reach[k] = fmax(reach[k], (second ? -along : along) + radius);
+        reach[k] = fmax(reach[k], (second ? -along : along) + radius + WELL*s->v->cell);
     }
 }
 
@@ -251,8 +252,8 @@ static void decide(meeting *m)
     m->second = second;
 }
 
-/* Of the normals that with the widest gap parts the two best: at the corner of a block on a floor, the floor's. */
-static void write_seam(const meeting *m, float *side, mpm_seam *seam)
+/* The normal with the widest gap parts the two best: at the corner of a block on a floor, the floor's. */
+static void write_seam(const meeting *m, double cell, float *side, mpm_seam *seam)
 {
     const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
     int best = 2;
@@ -260,7 +261,7 @@ static void write_seam(const meeting *m, float *side, mpm_seam *seam)
         if (first->reach[k] + second->reach[k] < first->reach[best] + second->reach[best]) best = k;
     *side = mpm_side_of(second->group);
     for (int a = 0; a < 3; a++) seam->normal[a] = (float)m->normal[best][a];
-    seam->gap = (float)-(first->reach[best] + second->reach[best]);
+    seam->gap = (float)(2*WELL*cell - first->reach[best] - second->reach[best]);
     seam->fixed = first->fixed ? 1 : second->fixed ? 2 : 0;
     seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
 }
@@ -275,8 +276,7 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     if (!list_blocks(&s, crowd) || !find_meetings(&s, side)) return 0;
     for (int n = 0; n < nodes; n++) {
         meetings[n] = (meeting){ .first = -1, .second = -1 };
-        for (int k = 0; k < GROUPS; k++)
-            meetings[n].voice[k] = (voice){ .group = -1, .reach = {-INFINITY, -INFINITY, -INFINITY, -INFINITY} };
+        for (int k = 0; k < GROUPS; k++) meetings[n].voice[k] = (voice){ .group = -1 };
     }
     hear(&s, side, meetings, 0);
     for (int n = 0; n < nodes; n++)
@@ -284,7 +284,7 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     hear(&s, side, meetings, 1);
     for (int n = 0; n < nodes; n++) {
         if (meetings[n].first < 0) continue;
-        write_seam(&meetings[n], &side[n], &seam[n]);
+        write_seam(&meetings[n], v->cell, &side[n], &seam[n]);
         any = 1;
     }
     return any;

@@ -4,10 +4,6 @@
 #include "mpm/grid.h"
 #include "mpm/seam.h"
 
-/* The side of a node whose second velocity is that of a group of solids (mpm_material.group): beyond the
-   numbers of cuts, in steps that float still tells apart. */
-TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
-
 /* Cells that particles may move before the nodes with two velocities are found anew. */
 #define MPM_MEET_STALE 0.1
 
@@ -22,6 +18,5 @@ mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension);
 int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, const mpm_patch *p,
                   float *side, mpm_seam *seam);
 /* Whether a particle of a block may have the second velocity of a node where groups meet, a cell of motion
-   included. side: of all nodes;
-   the patches' twins are marked by 1. */
+   included. side: of all nodes; patches that will have a twin are marked by 1. */
 int mpm_meet_reaches(const mpm_grid *g, const float *side, const mpm_crowd *c, const mpm_block *b);

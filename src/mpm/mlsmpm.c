@@ -39,7 +39,7 @@ typedef struct mlsmpm {
     int built;                         /* blocks fit the particles                                 */
     int fresh;                         /* 1: they were built in this step                          */
     int recalled;                      /* 1: a checkpoint says which nodes have two velocities     */
-    int blades;                        /* 1: nodes may have two velocities: cuts, solids that are not bonded */
+    int blades;                        /* 1: nodes may have two velocities                        */
 } mlsmpm;
 
 static void choose_smoothing(const void *def, int *shape, double *support)

@@ -3,7 +3,6 @@
 #pragma once
 #include "core/cuts.h"
 #include "exec/rows.h"
-#include "mpm/meet.h"
 #include "mpm/particle.k.h"
 
 /* Nodes of a tile that belong to the node block at offset -1, 0 or 1 along an axis. */
@@ -47,7 +46,7 @@ TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, 
     return found;
 }
 
-/* The nodes across a cut from a particle, and those whose second velocity is its solid's: see mpm_view.hidden. */
+/* The nodes across a cut from a particle, and those whose second velocity is its solid's. */
 TOBI_FN uint32_t mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int32_t first, int dim)
 {
     uint32_t hidden = mpm_match_sides(side, first, mpm_side_of(v->material[v->solid[i]].group), dim);

@@ -27,6 +27,10 @@ typedef struct mpm_material {
     float keep;                        /* share of the velocity kept in this step, by damping     */
 } mpm_material;
 
+/* The side of a node whose second velocity is that of a group of solids (mpm_material.group): beyond the
+   numbers of cuts, in steps that float still tells apart. */
+TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
+
 /* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. Where cuts are, a node has two
    velocities (docs/theory/cutting.md): blocks of particles and of nodes have twins for the second, behind all
    others. A twin block has the tile of the second velocity, no particles, and around it twins of node blocks
@@ -64,7 +68,8 @@ typedef struct mpm_view {
     const mpm_patch *TOBI_RESTRICT patch;
     const tobi_columns *TOBI_RESTRICT cuts;   /* core/cuts.h; NULL in scenes without blades        */
     const float *TOBI_RESTRICT side;   /* [patches][nodes] number of the cut at a node, with the sign of
-                                          the side its first velocity belongs to; 0 = one velocity  */
+                                          the side its first velocity belongs to; mpm_side_of;
+                                          0 = one velocity                                         */
     uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
                                           (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it  */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */

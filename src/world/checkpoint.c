@@ -25,7 +25,7 @@ static tobi_status get_rows(tobi_world *w, tobi_store *f, tobi_error *err)
     if (!w->method->recall) return TOBI_OK;
     TOBI_TRY(tobi_store_rows(f, "rows", &count, err));
     double *rows = malloc((size_t)(count + 1)*TOBI_RECALL_ROW*sizeof *rows);
-    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the nodes of %lld faces", (long long)count);
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)count);
     tobi_status status = tobi_store_get(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
     if (status == TOBI_OK) w->method->recall(w->method_state, rows, count);
     else free(rows);

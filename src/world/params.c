@@ -207,11 +207,12 @@ static const tobi_param solid_rows[] = {
     { .key = "cut_friction", REAL, AT(tobi_solid_def, cut_friction), .def = { 0.3 }, FROM(0), .unit = "1",
       .doc = "Coulomb friction between the faces of what a blade has cut." },
     { .key = "bonded", BOOL, AT(tobi_solid_def, bonded), .def = { 1 },
-      .doc = "Whether it sticks to the other bonded solids that it touches; one that is not meets all others "
-             "with contact and friction." },
+      .doc = "Whether it sticks to the other bonded solids that it touches; one that is not meets all "
+             "others with contact and friction." },
     { .key = "surface_friction", REAL, AT(tobi_solid_def, surface_friction), .def = { 0.3 }, FROM(0),
-      .unit = "1", .doc = "Coulomb friction where it meets solids that it is not bonded to; of two the square "
-                          "root of the product counts, and liquids have none." },
+      .unit = "1",
+      .doc = "Coulomb friction where it meets solids that it is not bonded to; of two the square root "
+             "of the product counts, and liquids have none." },
     { .key = "damping", REAL, AT(tobi_solid_def, damping), FROM(0), .unit = "1/s", .text = "none",
       .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),

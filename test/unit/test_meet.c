@@ -121,7 +121,8 @@ static void they_meet_when_they_touch(void **state)
         assert_true(fabs(early) < 1e-3);
         wait(world, 0.02);
         const double up = speed_of(world, 1, 1), low = speed_of(world, 0, 1);
-        printf("at %.2f cells: %.1e of the speed lost before, then %.3f and %.3f m/s\n", 0.25*o, early, up, low);
+        printf("at %.2f cells: %.1e of the speed lost before, then %.3f and %.3f m/s\n", 0.25*o, early, up,
+               low);
         assert_true(up > 0.1 && fabs(up + low) < 1e-5*fabs(p.speed));
         tobi_world_destroy(world);
     }

@@ -52,7 +52,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control + hole);
     assert_int_equal(count_uncovered(&tobi_output_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_mlsmpm_table), 2*hole);
-    assert_int_equal(count_uncovered(&tobi_solid_table), 3*hole);
+    assert_int_equal(count_uncovered(&tobi_solid_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_plane_table), hole);
     assert_int_equal(count_uncovered(&tobi_reference_table), 0);
 }
@@ -203,7 +203,8 @@ static void models_know_their_constants(void **state)
         assert_true(tobi_solid_uses(model, "density") && tobi_solid_uses(model, "color"));
     }
     tobi_solid_list(TOBI_SAND, text, sizeof text);
-    assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, damping");
+    assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, damping, "
+                        "surface_friction");
 }
 
 static void methods_are_found_by_name(void **state)
