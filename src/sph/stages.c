@@ -1,5 +1,6 @@
 #include "sph/stages.h"
 #include "core/couple.h"
+#include "core/push.h"
 #include <math.h>
 #include <string.h>
 
@@ -230,7 +231,7 @@ tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
         TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
         if (s->bodies[k].rigid.kind != TOBI_PRESCRIBED) tobi_body_bring_surface(&s->bodies[k]);
     }
-    if (s->body_count > 0) tobi_near_push_out(s);
+    if (s->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
     s->info.contacts += s->near.contacts;
     tobi_stage_end(&s->stages, "motion", clock);
