@@ -60,7 +60,7 @@ static tobi_world *make_world(int dimension, double x, course *course)
     return world;
 }
 
-/* One step of dt = 1 s of particle and plate, without the fluid's own forces; the particle's place in x, y, z. */
+/* One step of dt = 1 s of particle and plate, without the fluid's own forces; x: where the particle is. */
 static void step(tobi_simulation *s, const double way[3], double x[3])
 {
     tobi_error err;
