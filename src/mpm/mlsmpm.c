@@ -216,8 +216,11 @@ static tobi_status accept_solid(const tobi_simulation *s, const void *def, int s
                                 tobi_error *err)
 {
     const tobi_solid *d = &s->solids[solid];
-    return mpm_damage_check(&d->def, d->name, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing, note,
-                            err);
+    const double cell = ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing;
+    const char *key;
+    tobi_error why = { 0 };
+    tobi_status status = mpm_damage_check(&d->def, cell, &key, note, &why);
+    return status ? tobi_fail(err, status, "solid '%s': %s %s", d->name, key, why.text) : TOBI_OK;
 }
 
 static int is_stale(const mlsmpm *m)

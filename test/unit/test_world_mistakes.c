@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include "calls.h"
 #include "exec/exec.h"
 #include "geom/mesh.h"
 #include "geom/surface.h"
@@ -22,14 +23,6 @@
 #include "world/world.h"
 
 static const char box_mesh[] = TOBI_SOURCE_DIR "/test/meshes/box.obj";
-
-#define REFUSED(call, expected, part)                                      \
-    do {                                                                   \
-        tobi_error err = { 0 };                                            \
-        int got = (call);                                                  \
-        if (got != (expected) || !strstr(err.text, part))                  \
-            fail_msg("status %d, '%s' without '%s'", got, err.text, part); \
-    } while (0)
 
 static tobi_world_def make_def(void)
 {
