@@ -18,8 +18,8 @@ static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_e
     return tobi_world_add_notes(w, "fluid", def->name, text, err);
 }
 
-/* Boxes take whole layers of particles, each of which stands for one cube of the spacing: levels and forces of
-   runs at several spacings differ by what is too much or missing. */
+/* Boxes take whole layers of particles, each of which stands for one cube of the spacing: levels and forces
+   of runs at several spacings differ by what is too much or missing. */
 static tobi_status note_amount(tobi_world *w, const char *name, int first, double volume, tobi_error *err)
 {
     const tobi_smoothing_constants *c = &w->sim.smoothing;
@@ -29,7 +29,8 @@ static tobi_status note_amount(tobi_world *w, const char *name, int first, doubl
         held += (double)tobi_world_guess_particles(w, &w->regions[r])*c->volume;
     double more = held/volume - 1;
     if (!(fabs(more) > 0.01)) return TOBI_OK;
-    snprintf(text, sizeof text, "its particles hold %.1f %% %s than its regions: whole layers of %g m do not fit\n",
+    snprintf(text, sizeof text,
+             "its particles hold %.1f %% %s than its regions: whole layers of %g m do not fit\n",
              100*fabs(more), more > 0 ? "more" : "less", c->spacing);
     return tobi_world_add_notes(w, "fluid", name, text, err);
 }
