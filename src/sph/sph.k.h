@@ -44,6 +44,14 @@ TOBI_FN void sph_walls(const sph_view *v, int64_t i, double *totals)
     v->density[i] = 1 - open;
 }
 
+/* What walls and bodies with a share lambda of the kernel add to the relative density, eq. (5b). */
+TOBI_FN float sph_wall_density(const sph_view *v, float share)
+{
+    float at = v->wall_share, full = v->wall_lattice;
+    if (share <= at) return share*full/at;
+    return share < 0.5f ? full + (share - at)*(0.5f - full)/(0.5f - at) : share;
+}
+
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
    sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
    totals: error, surface particles, diagonal, those at a surface beyond doubt; maxima: error, and how deep
@@ -73,7 +81,7 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
 TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a, double *totals)
 {
     float share = v->density[i], k = v->slope;
-    float rho = v->weight*(1 + lane_sum(a->rho)) + share;
+    float fluid = v->weight*(1 + lane_sum(a->rho)), rho = fluid + sph_wall_density(v, share);
     tobi_float4 w = v->wall[i];
     float sx = 2*w.x - k*lane_sum(a->gx), sy = 2*w.y - k*lane_sum(a->gy), sz = 2*w.z - k*lane_sum(a->gz);
     float div = k*lane_sum(a->div) + (float)v->dimension*share;
@@ -92,7 +100,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     double drop = sure ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
     v->delta[i] = (float)drop;      /* free until the solve */
     totals[7] = drop > totals[7] ? drop : totals[7];
-    float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
+    float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;

@@ -59,6 +59,7 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
     v->weight = (float)c->weight; v->slope = (float)c->slope;
+    v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;
     v->dimension = c->dimension;
     v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f
