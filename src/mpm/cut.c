@@ -14,6 +14,7 @@ void mpm_cut_free(mpm_cut *c)
 {
     free(c->side);
     free(c->seam);
+    free(c->tile);
     free(c->face);
     free(c->hidden);
     free(c->marked);
@@ -102,6 +103,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
     const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
     double low[3], high[3];
     int met = 0, dim = s->box.dimension;
+    tobi_blade_bring(b, dim);
     tobi_blade_box(b, band, low, high);
     #pragma omp parallel for num_threads(s->exec.threads) reduction(|: met)
     for (int64_t i = 0; i < s->particles.count; i++) {
@@ -192,7 +194,12 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
     const double mass = v->strain[i].c[2].w;
     double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    int first[3] = {0, 0, -1};
+    int first[3] = {0, 0, -1}, apart = 0;
+    for (int a = 0; a < dim; a++) {                    /* most of them, by a wide margin */
+        const double base = x[a]*v->inverse_cell - p->corner[a];
+        apart |= base < -1.6 || base > 4.6;
+    }
+    if (apart) return;
     for (int a = 0; a < dim; a++) {
         first[a] = (int)mpm_spline(x[a]*v->inverse_cell, w[a]) - p->corner[a];
         if (first[a] > 3 || first[a] < -2) return;
@@ -263,19 +270,87 @@ static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t 
     return two;
 }
 
-/* Twins of the node blocks with two velocities and of the particle blocks that reach them. */
-static void make_twins(mpm_grid *g, const char *marked)
+/* The sides of the nodes around a block, as its tile. */
+static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
 {
-    g->patch_twins = g->block_twins = 0;
-    for (int64_t k = 0; k < g->patch_count; k++)
-        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+    const int deep = dim == 3 ? 8 : 1;
+    for (int x = 0; x < 8; x++)
+        for (int y = 0; y < 8; y++)
+            for (int z = 0; z < deep; z++) {
+                const int o = ((x + 3)/4*3 + (y + 3)/4)*3 + (dim == 3 ? (z + 3)/4 : 1);
+                const int row = (x + 3)%4*4 + (y + 3)%4;
+                tile[dim == 3 ? (x*8 + y)*8 + z : x*8 + y] =
+                    c->side[(int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) +
+                            (dim == 3 ? row*4 + (z + 3)%4 : row)];
+            }
+}
+
+/* Whether a particle of the block may have a node of its tile hidden from it: 1 for each that is so. */
+static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int nodes)
+{
+    enum { MOST = 16 };
+    float other[MOST];
+    int count = 0, found = 0;
+    for (int64_t i = b->begin; i < b->end; i++)
+        for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
+            int n = 0;
+            while (n < count && other[n] != -v->cuts[i].c[k].w) n++;
+            if (n == MOST) return 1;
+            if (n == count) other[count++] = -v->cuts[i].c[k].w;
+        }
+    for (int k = 0; k < count; k++)
+        for (int n = 0; n < nodes; n++) found |= tile[n] == other[k];
+    return found;
+}
+
+/* Marks the particle blocks that need a twin, as twin == 1, and gives them tiles of sides. */
+static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const tobi_exec *x, tobi_error *err)
+{
+    const int nodes = g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    c->tile_count = 0;
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
-        int reaches = 0;
-        for (int o = 0; o < 27 && marked[k]; o++)
-            reaches |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
-        b->twin = reaches ? (int32_t)(g->block_count + g->block_twins++) : -1;
-        if (!reaches) continue;
+        b->twin = 0;
+        for (int o = 0; o < 27 && c->marked[k]; o++)
+            b->twin |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
+        b->sides = b->twin ? (int32_t)c->tile_count++ : -1;
+    }
+    if (c->tile_count > c->tile_room) {
+        free(c->tile);
+        c->tile_room = c->tile_count + c->tile_count/4 + 8;
+        c->tile = calloc((size_t)c->tile_room*MPM_SIDES, sizeof *c->tile);
+        if (!c->tile) {
+            c->tile_room = 0;
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the cuts of %lld blocks",
+                             (long long)c->tile_count);
+        }
+    }
+    #pragma omp parallel for num_threads(tobi_team(x, c->tile_count, 4)) schedule(dynamic, 4)
+    for (int64_t k = 0; k < g->block_count; k++) {
+        mpm_block *b = &g->block[k];
+        if (!b->twin) continue;
+        copy_sides(c, b, c->tile + (int64_t)b->sides*MPM_SIDES, g->dimension);
+        b->twin = hides(v, b, c->tile + (int64_t)b->sides*MPM_SIDES, nodes);
+    }
+    return TOBI_OK;
+}
+
+/* Numbers the twins of the node blocks with two velocities. */
+static void number_patches(mpm_grid *g)
+{
+    g->patch_twins = 0;
+    for (int64_t k = 0; k < g->patch_count; k++)
+        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+}
+
+/* Twins of the particle blocks that find_split has marked, and of the node blocks. */
+static void make_twins(mpm_grid *g)
+{
+    g->block_twins = 0;
+    for (int64_t k = 0; k < g->block_count; k++) {
+        mpm_block *b = &g->block[k];
+        b->twin = b->twin ? (int32_t)(g->block_count + g->block_twins++) : -1;
+        if (b->twin < 0) continue;
         mpm_block *t = &g->block[b->twin];
         *t = *b;
         t->begin = t->end = 0;
@@ -295,6 +370,21 @@ static void make_twins(mpm_grid *g, const char *marked)
     }
 }
 
+/* Packs the seams of the nodes with a side. */
+static void list_seams(mpm_cut *c, const mpm_grid *g)
+{
+    const int nodes = nodes_of(g);
+    c->seam_count = 0;
+    for (int64_t k = 0; k < g->patch_count; k++)
+        for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
+            if (c->side[k*nodes + n] == 0) continue;
+            mpm_seam *seam = &c->seam[c->seam_count++];
+            *seam = c->seam[k*nodes + n];
+            seam->first = (int32_t)(k*nodes + n);
+            seam->second = (int32_t)(g->patch[k].twin*(int64_t)nodes + n);
+        }
+}
+
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
@@ -306,19 +396,22 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     }
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = find_sides(c, g, v, k);
-    make_twins(g, c->marked);
+    number_patches(g);
+    list_seams(c, g);
+    TOBI_TRY(find_split(c, g, v, &s->exec, err));
+    make_twins(g);
     c->moved = 0;
     return TOBI_OK;
 }
 
 /* A seam and the two velocities it couples. */
 typedef struct joint {
-    double mass, along, u[3], n[3];    /* kg; m/s, of the second relative to the first            */
+    double along, u[3], n[3];          /* m/s, of the second relative to the first                 */
 } joint;
 
 static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
 {
-    joint j = { .mass = (double)first->w*second->w/((double)first->w + second->w) };
+    joint j;
     for (int a = 0; a < 3; a++) {
         j.n[a] = seam->normal[a];
         j.u[a] = (double)(&second->x)[a] - (&first->x)[a];
@@ -332,9 +425,12 @@ static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_
 static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
     const joint j = look_at(seam, first, second);
+    const double lack = -fmax(seam->gap, 0)/dt - j.along;
     double was[3] = {seam->push[0], seam->push[1], seam->push[2]}, slide[3];
-    double normal = fmax(0, vec3_dot(was, j.n) + j.mass*(-fmax(seam->gap, 0)/dt - j.along));
-    for (int a = 0; a < 3; a++) slide[a] = was[a] - j.mass*(j.u[a] - j.along*j.n[a]);
+    if (lack <= 0 && was[0] == 0 && was[1] == 0 && was[2] == 0) return;
+    const double mass = (double)first->w*second->w/((double)first->w + second->w);
+    double normal = fmax(0, vec3_dot(was, j.n) + mass*lack);
+    for (int a = 0; a < 3; a++) slide[a] = was[a] - mass*(j.u[a] - j.along*j.n[a]);
     vec3_add_scaled(slide, slide, -vec3_dot(slide, j.n), j.n);
     double size = vec3_length(slide), grip = seam->friction*normal, keep = size > grip ? grip/size : 1;
     for (int a = 0; a < 3; a++) {
@@ -346,33 +442,43 @@ static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, doubl
 }
 
 /* The gap at the end of the step; returns what the push has cost, J. */
-static double close(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
+static double settle_seam(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
 {
     const joint j = look_at(seam, first, second);
     seam->gap += (float)(j.along*dt);
     return -(seam->push[0]*j.u[0] + seam->push[1]*j.u[1] + seam->push[2]*j.u[2]);
 }
 
-enum { BEGIN, PRESS, CLOSE };
+enum { BEGIN, PRESS, SETTLE };
+
+/* A walk over the seams. */
+typedef struct walk {
+    mpm_seam *seam;
+    tobi_float4 *node;
+    double dt;
+    int what;
+} walk;
+
+/* totals: 0 what the pushes have cost, J. */
+static void visit_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const walk *w = view;
+    for (int64_t k = begin; k < end; k++) {
+        mpm_seam *seam = &w->seam[k];
+        tobi_float4 *first = &w->node[seam->first], *second = &w->node[seam->second];
+        if (!(first->w > 0) || !(second->w > 0)) continue;
+        if (w->what == BEGIN) memset(seam->push, 0, sizeof seam->push);
+        if (w->what == SETTLE) totals[0] += settle_seam(seam, first, second, w->dt);
+        else press(seam, first, second, w->dt);
+    }
+}
 
 static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, int what)
 {
-    const int nodes = nodes_of(g);
-    double *part = x->partial, lost = 0;
-    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 8)
-    for (int64_t k = 0; k < g->patch_count; k++) {
-        part[k] = 0;
-        for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
-            tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
-            mpm_seam *seam = &c->seam[k*nodes + n];
-            if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
-            if (what == BEGIN) memset(seam->push, 0, sizeof seam->push);
-            if (what == CLOSE) part[k] += close(seam, first, second, dt);
-            else press(seam, first, second, dt);
-        }
-    }
-    for (int64_t k = 0; k < g->patch_count; k++) lost += part[k];
-    return lost;
+    const walk w = { .seam = c->seam, .node = g->node, .dt = dt, .what = what };
+    double totals[TOBI_TOTALS];
+    tobi_launch(x, visit_range, &w, 0, c->seam_count, totals);
+    return totals[0];
 }
 
 void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
@@ -387,5 +493,5 @@ void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
-    return visit_seams(c, x, g, dt, CLOSE);
+    return visit_seams(c, x, g, dt, SETTLE);
 }
