@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double IDLE = 0.05;
+
 /* clear: m, `way` of the list at which it may be as near to the surface as 0. */
 typedef struct candidate { int32_t particle; float clear; } candidate;
 
@@ -122,8 +124,9 @@ static double approach(const pose *at, const double x[3], double arm[3], double 
         local[a] = at->matrix[0][a]*arm[0] + at->matrix[1][a]*arm[1] + at->matrix[2][a]*arm[2];
     for (int a = 0; a < at->step->dimension; a++) {
         const double v = deforms ? x[a] : local[a];
-        const double d = fmax(0, fmax(at->box[0][a] - v, v - at->box[1][a]));
-        square += d*d;
+        const double below = at->box[0][a] - v, above = v - at->box[1][a];
+        const double d = below > above ? below : above;
+        square += d > 0 ? d*d : 0;
     }
     return sqrt(square);
 }
@@ -298,6 +301,20 @@ static tobi_status find_candidates(tobi_contacts *c, struct tobi_contact_near *n
     return list_candidates(c, near, at, p, at->reach - at->step->margin + skin, x, err);
 }
 
+/* A contact at which nothing can happen in this step: it did not push in the last one, and the particle, as it
+   moves against the surface, ends farther from it than others could push it by, IDLE times the margin. One
+   that overlaps counts whatever its velocity, so that a wrong guess is made good in the next step. */
+static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *velocity)
+{
+    const tobi_rigid *r = &at->body->rigid;
+    double turning[3], along = 0;
+    if (k->gap <= 0 || velocity->w < 0) return 0;
+    vec3_cross(turning, r->angular_velocity, k->arm);
+    for (int a = 0; a < 3; a++)
+        along += k->normal[a]*((double)(&velocity->x)[a] - r->velocity[a] - turning[a] - k->deforming[a]);
+    return k->gap + along*at->step->dt > IDLE*at->step->margin;
+}
+
 /* Contacts of one block of candidates into `found`; returns how many. */
 static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
                             int64_t block, tobi_contact found[TOBI_BLOCK])
@@ -315,7 +332,8 @@ static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi
         double clear = approach(at, x, out->arm, local);
         if (clear <= at->reach + slack &&
             (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &clear)
-                                        : touch(at, x, local, out, &clear))) {
+                                        : touch(at, x, local, out, &clear)) &&
+            !is_idle(at, out, &p->velocity[i])) {
             double start = fmax(0, -p->velocity[i].w)*at->step->dt;
             for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
             n++;

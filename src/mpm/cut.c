@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "core/blade.h"
 #include "core/cuts.h"
+#include "exec/rows.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"
 #include <math.h>
@@ -162,28 +163,26 @@ static void find_faces(mpm_cut *c, const tobi_simulation *s, const mpm_view *v)
     }
 }
 
-/* What the particles on the two sides of one cut say at one node. Index 0: the + side. */
+/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight, of
+   places (m, from the corner of the block) with the weights themselves, and of normals with distances from the
+   cut (m). */
 typedef struct vote {
-    double number, weight[2];
-    double place[2][3], far[2], normal[3], friction;
+    quad place[2], face[2];
+    float number, friction;
 } vote;
 
-static void add_vote(vote votes[VOTES], const mpm_view *v, int64_t i, const tobi_float4 *face, double mark,
-                     double w, const double x[3])
+/* mark: of the particle, with its side. */
+static void add_vote(vote votes[VOTES], float mark, float w, quad place, quad face, float friction)
 {
     const int side = mark < 0;
     int k = 0;
-    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabs(mark)) k++;
+    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
     if (k == VOTES) return;
     vote *to = &votes[k];
-    to->number = fabs(mark);
-    to->weight[side] += w;
-    to->far[side] += w*face->w;
-    to->friction += w*v->material[v->solid[i]].cut_friction;
-    for (int a = 0; a < 3; a++) {
-        to->place[side][a] += w*x[a];
-        to->normal[a] += (side ? -w : w)*(&face->x)[a];
-    }
+    to->number = fabsf(mark);
+    to->friction += w*friction;
+    to->place[side] = to->place[side] + place*quad_set(w);
+    to->face[side] = to->face[side] + face*quad_set(w);
 }
 
 /* Adds the votes of one particle to the nodes of a block that feel it. */
@@ -210,15 +209,20 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
         high[a] = first[a] > 1 ? 3 - first[a] : 2;
     }
     if (dim == 2) low[2] = high[2] = 1;
+    const float friction = v->material[v->solid[i]].cut_friction;
+    quad place = {0, 0, 0, 1};
+    for (int a = 0; a < dim; a++) place[a] = (float)(x[a] - p->corner[a]*(double)v->cell);
     for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
-        const tobi_float4 *face = &c->face[i].c[k];
+        const quad face = quad_load(&c->face[i].c[k]);
+        const float mark = v->cuts[i].c[k].w;
         for (int p0 = low[0]; p0 <= high[0]; p0++)
-            for (int p1 = low[1]; p1 <= high[1]; p1++)
-                for (int p2 = low[2]; p2 <= high[2]; p2++) {
-                    const int at[3] = {first[0] + p0, first[1] + p1, first[2] + p2};
-                    int node = dim == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
-                    add_vote(votes[node], v, i, face, v->cuts[i].c[k].w, mass*w[0][p0]*w[1][p1]*w[2][p2], x);
-                }
+            for (int p1 = low[1]; p1 <= high[1]; p1++) {
+                const int row = (first[0] + p0)*4 + first[1] + p1;
+                const double along = mass*w[0][p0]*w[1][p1];
+                for (int p2 = low[2]; p2 <= high[2]; p2++)
+                    add_vote(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark, (float)(along*w[2][p2]),
+                             place, face, friction);
+            }
     }
 }
 
@@ -226,26 +230,25 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
 static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
 {
     const vote *best = NULL;
-    double most = 0;
+    float most = 0;
     for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
-        double least = fmin(votes[k].weight[0], votes[k].weight[1]);
+        float least = fminf(votes[k].place[0][3], votes[k].place[1][3]);
         if (least > most) { most = least; best = &votes[k]; }
     }
     *side = 0;
     if (!best) return 0;
-    const int own = best->weight[1] > best->weight[0], other = !own;
-    double n[3], gap = 0;
-    memcpy(n, best->normal, sizeof n);
+    const double weight[2] = {best->place[0][3], best->place[1][3]};
+    const int own = weight[1] > weight[0], other = !own;
+    double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
+    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];   /* to the second */
     vec3_normalize(n);
     for (int a = 0; a < 3; a++) {
-        n[a] = own ? n[a] : -n[a];             /* votes point to the + side, seams to the second */
-        gap += n[a]*(best->place[other][a]/best->weight[other] - best->place[own][a]/best->weight[own]);
+        gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
         seam->normal[a] = (float)n[a];
     }
-    gap -= best->far[0]/best->weight[0] + best->far[1]/best->weight[1];
     seam->gap = (float)gap;
-    seam->friction = (float)(best->friction/(best->weight[0] + best->weight[1]));
-    *side = (float)(own ? -best->number : best->number);
+    seam->friction = (float)(best->friction/(weight[0] + weight[1]));
+    *side = own ? -best->number : best->number;
     return 1;
 }
 

@@ -22,9 +22,7 @@ TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, 
     uint32_t found = 0;
     for (int r = 0; r < rows; r++) {
         const float *at = side + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
-        uint32_t bits = (uint32_t)(at[0] == other) | (uint32_t)(at[1] == other) << 1 |
-                        (uint32_t)(at[2] == other) << 2;
-        found |= bits << 3*r;
+        found |= quad_matches(quad_load(at), other) << 3*r;
     }
     return found;
 }
@@ -56,9 +54,14 @@ TOBI_FN void mpm_add_split(tobi_float4 *tile, tobi_float4 *twin, const mpm_stenc
             const int32_t at = s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
             const uint32_t bits = hidden >> 3*(n*rows + r) & 7;
             const row value = dim == 3 ? row_mul(y, row_set(s->weight[1][r][k])) : y;
-            const row first = row_spread(mpm_take(~bits)), second = row_spread(mpm_take(bits));
-            row_store(tile + at, row_fma(value, first, row_load(tile + at)));
-            if (bits) row_store(twin + at, row_fma(value, second, row_load(twin + at)));
+            if (bits == 0 || bits == 7) {
+                tobi_float4 *to = (bits ? twin : tile) + at;
+                row_store(to, row_add(value, row_load(to)));
+            } else {
+                const row first = row_spread(mpm_take(~bits)), second = row_spread(mpm_take(bits));
+                row_store(tile + at, row_fma(value, first, row_load(tile + at)));
+                row_store(twin + at, row_fma(value, second, row_load(twin + at)));
+            }
             y = row_add(y, turn);
         }
         x = row_add(x, d0);
@@ -73,8 +76,8 @@ TOBI_FN void mpm_load_split(const tobi_float4 *tile, const tobi_float4 *twin, in
     for (int r = 0; r < rows; r++) {
         const int32_t at = first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
         const uint32_t bits = hidden >> 3*r & 7;
-        g[r] = row_load(tile + at);
-        if (bits)
+        g[r] = row_load((bits == 7 ? twin : tile) + at);
+        if (bits != 0 && bits != 7)
             g[r] = row_fma(row_load(twin + at), row_spread(mpm_take(bits)),
                            row_mul(g[r], row_spread(mpm_take(~bits))));
     }
