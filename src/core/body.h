@@ -13,7 +13,8 @@
 
 /* A straight piece of a blade's edge as it cuts now, in rest axes about the centre of mass. */
 typedef struct tobi_blade_edge {
-    double from[3], along[3], ahead[3], normal[3];   /* m; unit vectors: of the piece, of cutting, of the cut */
+    double from[3];                  /* m, its first end                                       */
+    double along[3], ahead[3], normal[3];    /* unit vectors: the piece, where it cuts to, of the cut */
     double length;                   /* m; in 2-D 1, per metre of depth                        */
     int cuts;                        /* 0: tagged without a direction, and at rest             */
 } tobi_blade_edge;

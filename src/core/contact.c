@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MATRIX = 36, SUMS = TOBI_CONTACT_SUMS, IMPULSES = 21 };
+enum { MATRIX = 36, SUMS = TOBI_CONTACT_SUMS };
 _Static_assert(SUMS == MATRIX + 6, "a matrix and a vector of six");
 
 static int64_t count_parts(const tobi_contacts *c) { return (c->count + TOBI_BLOCK - 1)/TOBI_BLOCK; }
@@ -213,64 +213,101 @@ void tobi_contact_shift(tobi_contacts *c, tobi_particles *p)
     c->shift_count = 0;
 }
 
-int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
-                            double *far, tobi_contact_work *work, tobi_exec *x)
+/* What the contacts of a body give it and cost in a step. */
+typedef union outcome {
+    struct {
+        double pressure[6], friction[6];   /* N s, and N m s about its centre: along normals, surfaces */
+        double edge[3], edge_limit;        /* N s, of the edge's pieces, and what they may be at most  */
+        double pushing;                    /* contacts                                                 */
+        double fracture, rubbing, material;    /* J, taken by each; on the material by its velocity    */
+    };
+    double all[20];
+} outcome;
+_Static_assert(sizeof(outcome) == 20*sizeof(double), "the struct and its array are the same numbers");
+_Static_assert(sizeof(outcome) <= SUMS*sizeof(double), "fits its place in partial");
+
+static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *sum)
 {
-    int64_t parts = count_parts(c);
-    double total[IMPULSES] = {0}, dt = step->dt;
+    const int edge = k->particle < 0;
+    double part[2][3], twist[3], relative[3], normal = vec3_dot(k->impulse, k->normal);
+    for (int a = 0; a < 3; a++) {
+        part[0][a] = edge ? -k->impulse[a] : -normal*k->normal[a];
+        part[1][a] = -k->impulse[a] - part[0][a];
+    }
+    for (int m = 0; m < 2; m++) {
+        double *to = m ? sum->friction : sum->pressure;
+        vec3_cross(twist, k->arm, part[m]);
+        for (int a = 0; a < 3; a++) { to[a] += part[m][a]; to[3 + a] += twist[a]; }
+    }
+    find_relative(k, c->velocity, c->spin, relative);
+    *(edge ? &sum->fracture : &sum->rubbing) -= vec3_dot(k->impulse, relative);
+    sum->material += vec3_dot(k->impulse, k->velocity);
+    sum->pushing += edge ? vec3_dot(k->impulse, k->impulse) > 0 : normal > 0;
+    if (!edge) return;
+    for (int a = 0; a < 3; a++) sum->edge[a] -= k->impulse[a];
+    sum->edge_limit += k->limit;
+}
+
+/* Sums over the list, in one order for any number of threads; particles remember their normal forces. */
+static void sum_impulses(tobi_contacts *c, tobi_particles *p, double dt, outcome *total, tobi_exec *x)
+{
+    const int64_t parts = count_parts(c);
+    memset(total, 0, sizeof *total);
     #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (parts > 1)
     for (int64_t q = 0; q < parts; q++) {
-        double *sum = c->partial + q*SUMS;
-        memset(sum, 0, IMPULSES*sizeof *sum);
+        outcome sum;
+        memset(&sum, 0, sizeof sum);
         for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
             const tobi_contact *k = &c->list[n];
-            const int edge = k->particle < 0;
-            double part[2][3], twist[3], relative[3], normal = vec3_dot(k->impulse, k->normal);
-            for (int a = 0; a < 3; a++) {
-                part[0][a] = edge ? -k->impulse[a] : -normal*k->normal[a];
-                part[1][a] = -k->impulse[a] - part[0][a];
-            }
-            find_relative(k, c->velocity, c->spin, relative);
-            sum[edge ? 14 : 15] -= vec3_dot(k->impulse, relative);
-            sum[16] += vec3_dot(k->impulse, k->velocity);
-            for (int m = 0; m < 2; m++) {
-                vec3_cross(twist, k->arm, part[m]);
-                for (int a = 0; a < 3; a++) { sum[6*m + a] += part[m][a]; sum[6*m + 3 + a] += twist[a]; }
-            }
-            for (int a = 0; a < 3 && edge; a++) sum[17 + a] -= k->impulse[a];
-            if (edge) sum[12] += vec3_dot(k->impulse, k->impulse) > 0;
-            if (edge) sum[20] += k->limit;
-            if (edge) continue;
-            sum[12] += normal > 0;
-            p->velocity[k->particle].w = (float)(normal/dt);
-            sum[13] = fmax(sum[13], find_push(k, step));
+            add_impulse(k, c, &sum);
+            if (k->particle >= 0)
+                p->velocity[k->particle].w = (float)(vec3_dot(k->impulse, k->normal)/dt);
         }
+        memcpy(c->partial + q*SUMS, sum.all, sizeof sum);
     }
+    for (int64_t q = 0; q < parts; q++)
+        for (size_t n = 0; n < sizeof *total/sizeof *total->all; n++) total->all[n] += c->partial[q*SUMS + n];
+}
+
+static void list_shifts(tobi_contacts *c, const tobi_contact_step *step, double *far)
+{
     for (int64_t n = 0; n < c->count; n++) {
         const tobi_contact *k = &c->list[n];
         if (!(k->gap < 0) || k->particle < 0) continue;
+        const double push = find_push(k, step);
         tobi_shift *shift = &c->shift[c->shift_count++];
         *shift = (tobi_shift){ .particle = k->particle };
-        for (int a = 0; a < step->dimension; a++) shift->by[a] = find_push(k, step)*k->normal[a];
+        for (int a = 0; a < step->dimension; a++) shift->by[a] = push*k->normal[a];
+        *far = fmax(*far, push);
     }
-    for (int64_t q = 0; q < parts; q++) {
-        for (int n = 0; n < IMPULSES; n++) total[n] += c->partial[q*SUMS + n];
-        *far = fmax(*far, c->partial[q*SUMS + 13]);
-    }
-    work->fracture += total[14];
-    work->friction += total[15];
-    work->bodies += total[14] + total[15] + total[16];
+}
+
+static void give_to_body(tobi_body *b, const outcome *total, double dt)
+{
     for (int a = 0; a < 3; a++) {
-        b->rigid.impulse[a] += total[a] + total[6 + a];
-        b->rigid.twist[a] += total[3 + a] + total[9 + a];
-        b->info.pressure_force[a] = total[a]/dt;
-        b->info.edge_force[a] = total[17 + a]/dt;
-        b->rigid.edge_share[a] = total[20] > 0 ? -total[17 + a]/total[20] : 0;
-        b->info.pressure_torque[a] = total[3 + a]/dt;
-        b->info.viscous_force[a] = total[6 + a]/dt;
-        b->info.viscous_torque[a] = total[9 + a]/dt;
+        b->rigid.impulse[a] += total->pressure[a] + total->friction[a];
+        b->rigid.twist[a] += total->pressure[3 + a] + total->friction[3 + a];
+        b->info.pressure_force[a] = total->pressure[a]/dt;
+        b->info.pressure_torque[a] = total->pressure[3 + a]/dt;
+        b->info.viscous_force[a] = total->friction[a]/dt;
+        b->info.viscous_torque[a] = total->friction[3 + a]/dt;
+        b->info.edge_force[a] = total->edge[a]/dt;
+        b->rigid.edge_share[a] = total->edge_limit > 0 ? -total->edge[a]/total->edge_limit : 0;
     }
+}
+
+int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
+                            double *far, tobi_contact_work *work, tobi_exec *x)
+{
+    outcome total;
+    sum_impulses(c, p, step->dt, &total, x);
+    list_shifts(c, step, far);
+    work->fracture += total.fracture;
+    work->friction += total.rubbing;
+    work->bodies += total.fracture + total.rubbing + total.material;
+    give_to_body(b, &total, step->dt);
     /* Touched, it moves as it will, or a resting body would fall into the material in every step. */
-    if (b->rigid.kind != TOBI_PRESCRIBED && total[12] > 0) tobi_body_correct(b, c->velocity, c->spin, dt);
-    return (int64_t)total[12];
+    if (b->rigid.kind != TOBI_PRESCRIBED && total.pushing > 0)
+        tobi_body_correct(b, c->velocity, c->spin, step->dt);
+    return (int64_t)total.pushing;
 }

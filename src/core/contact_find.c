@@ -11,8 +11,9 @@
 
 static const double IDLE = 0.05;
 
-/* clear: m, `way` of the list at which it may be as near to the surface as 0. */
-typedef struct candidate { int32_t particle; float clear; } candidate;
+/* Less `way` of its list, clear is what the particle is at least outside the surface, m; and more by it, most
+   is how far it is at most from it. */
+typedef struct candidate { int32_t particle; float clear, most; } candidate;
 
 /* Particles near one body. */
 struct tobi_contact_near {
@@ -157,20 +158,25 @@ static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth
     return 0;
 }
 
-static int find_closest(const pose *at, const double x[3], const double local[3], double far, tobi_bvh_hit *hit)
+static int find_closest(const pose *at, const double x[3], const double local[3], double far,
+                        tobi_bvh_hit *hit)
 {
     const tobi_body *b = at->body;
-    return b->deforms ? tobi_bvh_closest(b->bvh, x, far, hit) : tobi_bvh_closest(b->rest_bvh, local, far, hit);
+    return tobi_bvh_closest(b->deforms ? b->bvh : b->rest_bvh, b->deforms ? x : local, far, hit);
 }
 
-/* Nearest point of the body to x (from the domain's corner). *clear is raised to the distance that is free of
-   the body; beyond what a contact needs it is a lower bound. */
-static int touch(const pose *at, const double x[3], const double local[3], tobi_contact *out, double *clear)
+/* What is known of a particle's distance from the surface, see candidate, m. */
+typedef struct bounds { double clear, most; } bounds;
+
+/* Nearest point of the body to x (from the domain's corner). Narrows the bounds. */
+static int touch(const pose *at, const double x[3], const double local[3], tobi_contact *out, bounds *known)
 {
     const tobi_body *b = at->body;
     tobi_bvh_hit hit;
     const double far = fmax(at->reach, at->step->reach), farther = far + at->step->reach;
-    if (!find_closest(at, x, local, far, &hit)) {
+    double *clear = &known->clear;
+    if (!(known->most < far && find_closest(at, x, local, known->most, &hit)) &&
+        !find_closest(at, x, local, far, &hit)) {
         /* Outside its box nobody is inside the body. */
         if (*clear > 0) *clear = fmax(*clear, far);
         else if (!find_closest(at, x, local, farther, &hit)) *clear = farther - far + at->reach;
@@ -179,6 +185,7 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
     }
     out->gap = hit.signed_distance - at->step->radius;
     *clear = fmax(*clear, hit.signed_distance);
+    known->most = hit.distance;
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
@@ -191,17 +198,17 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
    particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
    contact. */
 static int touch_blade(const pose *at, const double x[3], const double local[3], const tobi_columns *cuts,
-                       tobi_contact *out, double *clear)
+                       tobi_contact *out, bounds *known)
 {
     const double radius = at->step->radius, reach = at->step->reach;
     tobi_blade_place place;
     double depth = radius;
     int side = find_side(at->body, cuts, &depth);
     if (depth > 2*radius) return 0;
-    int known = tobi_blade_locate(at->body, at->step->dimension, local, &place);
-    int near = known && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
+    int found = tobi_blade_locate(at->body, at->step->dimension, local, &place);
+    int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
     if (!side && near) return 0;
-    if (!touch(at, x, local, out, clear)) return 0;
+    if (!touch(at, x, local, out, known)) return 0;
     double normal[3];
     for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
     if (near && vec3_dot(normal, out->normal) < 0.2) {
@@ -225,7 +232,7 @@ static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
         if (outside) continue;
         const double clear = approach(at, x, arm, local);
-        if (clear < far) out[n++] = (candidate){(int32_t)i, (float)(clear*(1 - 1e-6))};
+        if (clear < far) out[n++] = (candidate){(int32_t)i, (float)(clear*(1 - 1e-6)), INFINITY};
     }
     return n;
 }
@@ -284,7 +291,8 @@ static double find_way(const pose *at, struct tobi_contact_near *near)
     }
     memcpy(near->position, r->position, sizeof near->position);
     memcpy(near->orientation, r->orientation, sizeof near->orientation);
-    return vec3_length(shift) + 2*sqrt(turn*size);     /* |q - p| = 2 sin(angle/4), the way 2 r sin(angle/2) */
+    /* The two orientations differ by 2 sin(angle/4), and a point at r goes 2 r sin(angle/2). */
+    return vec3_length(shift) + 2*sqrt(turn*size);
 }
 
 /* Brings the body's list of candidates up to date. */
@@ -301,8 +309,8 @@ static tobi_status find_candidates(tobi_contacts *c, struct tobi_contact_near *n
     return list_candidates(c, near, at, p, at->reach - at->step->margin + skin, x, err);
 }
 
-/* A contact at which nothing can happen in this step: it did not push in the last one, and the particle, as it
-   moves against the surface, ends farther from it than others could push it by, IDLE times the margin. One
+/* A contact at which nothing can happen in this step: it did not push in the last one, and the particle, as
+   it moves against the surface, ends farther from it than others could push it by, IDLE times the margin. One
    that overlaps counts whatever its velocity, so that a wrong guess is made good in the next step. */
 static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *velocity)
 {
@@ -329,23 +337,24 @@ static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi
         double local[3];
         tobi_contact *out = &found[n];
         *out = (tobi_contact){ .particle = (int32_t)i };
-        double clear = approach(at, x, out->arm, local);
-        if (clear <= at->reach + slack &&
-            (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &clear)
-                                        : touch(at, x, local, out, &clear)) &&
+        bounds known = { approach(at, x, out->arm, local), (one->most + near->way)*(1 + 1e-6) + slack };
+        if (known.clear <= at->reach + slack &&
+            (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
+                                        : touch(at, x, local, out, &known)) &&
             !is_idle(at, out, &p->velocity[i])) {
             double start = fmax(0, -p->velocity[i].w)*at->step->dt;
             for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
             n++;
         }
-        one->clear = (float)((clear + near->way)*(1 - 1e-6));
+        one->clear = (float)((known.clear + near->way)*(1 - 1e-6));
+        one->most = (float)(known.most - near->way);
     }
     return n;
 }
 
 /* Fills `found` and the runs; returns how many contacts there are, more than `room` if that was too short. */
-static int64_t search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at, const tobi_particles *p,
-                      tobi_exec *x)
+static int64_t search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                      const tobi_particles *p, tobi_exec *x)
 {
     const int64_t runs = count_chunks(near->count);
     int64_t used = 0;
@@ -416,7 +425,7 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     while ((c->count = search(c, near, &at, p, x)) > c->room) TOBI_TRY(make_room(c, c->count, err));
     TOBI_TRY(reserve_shifts(c, err));
     int64_t n = 0;
-    for (int64_t k = 0; k < count_chunks(near->count); k++) {  /* in the order of the runs, whoever was first */
+    for (int64_t k = 0; k < count_chunks(near->count); k++) {  /* in this order, whoever was first */
         memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
         n += c->run[k].count;
     }
@@ -442,6 +451,8 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
     tobi_quaternion_matrix(b->rigid.orientation, turn);
     for (int a = 0; a < 3; a++)
         local[a] = turn[0][a]*k->arm[0] + turn[1][a]*k->arm[1] + turn[2][a]*k->arm[2];
-    if (tobi_bvh_closest(b->rest_bvh, local, INFINITY, &hit)) find_deforming(b, &hit, k);
+    if (tobi_bvh_closest(b->rest_bvh, local, 0.1*step->radius, &hit) ||      /* most edges lie on the mesh */
+        tobi_bvh_closest(b->rest_bvh, local, INFINITY, &hit))
+        find_deforming(b, &hit, k);
     return TOBI_OK;
 }

@@ -163,9 +163,9 @@ static void find_faces(mpm_cut *c, const tobi_simulation *s, const mpm_view *v)
     }
 }
 
-/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight, of
-   places (m, from the corner of the block) with the weights themselves, and of normals with distances from the
-   cut (m). */
+/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight,
+   of places (m, from the corner of the block) with the weights themselves, and of normals with distances from
+   the cut (m). */
 typedef struct vote {
     quad place[2], face[2];
     float number, friction;
@@ -240,7 +240,7 @@ static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
     const double weight[2] = {best->place[0][3], best->place[1][3]};
     const int own = weight[1] > weight[0], other = !own;
     double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
-    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];   /* to the second */
+    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];
     vec3_normalize(n);
     for (int a = 0; a < 3; a++) {
         gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
@@ -462,26 +462,31 @@ typedef struct walk {
     int what;
 } walk;
 
-/* totals: 0 what the pushes have cost, J. */
-static void visit_range(const void *view, int64_t begin, int64_t end, double *totals)
+/* Returns what the pushes have cost, J. */
+static double visit_range(const walk *w, int64_t begin, int64_t end)
 {
-    const walk *w = view;
+    double lost = 0;
     for (int64_t k = begin; k < end; k++) {
         mpm_seam *seam = &w->seam[k];
         tobi_float4 *first = &w->node[seam->first], *second = &w->node[seam->second];
         if (!(first->w > 0) || !(second->w > 0)) continue;
         if (w->what == BEGIN) memset(seam->push, 0, sizeof seam->push);
-        if (w->what == SETTLE) totals[0] += settle_seam(seam, first, second, w->dt);
+        if (w->what == SETTLE) lost += settle_seam(seam, first, second, w->dt);
         else press(seam, first, second, w->dt);
     }
+    return lost;
 }
 
 static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, int what)
 {
     const walk w = { .seam = c->seam, .node = g->node, .dt = dt, .what = what };
-    double totals[TOBI_TOTALS];
-    tobi_launch(x, visit_range, &w, 0, c->seam_count, totals);
-    return totals[0];
+    const int64_t parts = (c->seam_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    double *part = x->partial, lost = 0;
+    #pragma omp parallel for num_threads(tobi_team(x, parts, 8))
+    for (int64_t q = 0; q < parts; q++)
+        part[q] = visit_range(&w, q*TOBI_BLOCK, q < parts - 1 ? (q + 1)*TOBI_BLOCK : c->seam_count);
+    for (int64_t q = 0; q < parts; q++) lost += part[q];
+    return lost;
 }
 
 void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)

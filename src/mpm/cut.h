@@ -30,7 +30,8 @@ typedef struct mpm_cut {
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
    made, counted up. */
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
-/* Finds the nodes with two velocities and makes their twins. The caller then sets view.sides and view.hidden. */
+/* Finds the nodes with two velocities and makes their twins. The caller then points
+   view.sides and view.hidden at what is here. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
    gaps, and what friction and impact of the faces have taken, J. */

@@ -12,8 +12,9 @@ static const double ENOUGH = 4e-3;     /* of the largest impulse may still chang
 static void free_entries(mpm_touch *t)
 {
     free(t->node); free(t->weight); free(t->touched); free(t->begin); free(t->owner); free(t->share);
+    free(t->inverse);
     t->node = t->touched = NULL;
-    t->weight = t->share = NULL;
+    t->weight = t->share = t->inverse = NULL;
     t->begin = NULL;
     t->owner = NULL;
     t->room = 0;
@@ -66,7 +67,8 @@ static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
     t->begin = malloc((size_t)(room + 1)*sizeof *t->begin);
     t->owner = malloc((size_t)room*sizeof *t->owner);
     t->share = malloc((size_t)room*sizeof *t->share);
-    if (t->node && t->weight && t->touched && t->begin && t->owner && t->share) {
+    t->inverse = malloc((size_t)room*sizeof *t->inverse);
+    if (t->node && t->weight && t->touched && t->begin && t->owner && t->share && t->inverse) {
         t->room = room;
         return TOBI_OK;
     }
@@ -218,8 +220,8 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
     return 1;
 }
 
-/* Lists the pieces of a blade's edge that lie in material, and their surroundings in the same order. The share
-   rises from 0 to 1 within half a cell across the surface. */
+/* Lists the pieces of a blade's edge that lie in material, and their surroundings in the same order. The
+   share rises from 0 to 1 within half a cell across the surface. */
 static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
@@ -310,8 +312,8 @@ static void sort_by_node(mpm_touch *t, int64_t contacts, const mpm_grid *g, tobi
         return;
     }
     memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
-    tobi_sort_by_key(x, t->count, (uint32_t)count_nodes(g), t->key, t->order, t->key_scratch, t->order_scratch,
-                     t->histogram);
+    tobi_sort_by_key(x, t->count, (uint32_t)count_nodes(g), t->key, t->order, t->key_scratch,
+                     t->order_scratch, t->histogram);
     t->touched_count = tobi_find_runs(x, t->count, t->key, 0, t->begin);
     t->begin[t->touched_count] = t->count;
     #pragma omp parallel for num_threads(x->threads)
@@ -334,13 +336,15 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
     for (int64_t n = 0; n < t->touched_count; n++) {
         float sum = 0;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->share[e];
-        t->crowd[t->touched[n]] = sum;
+        const float mass = g->node[t->touched[n]].w;
+        t->inverse[n] = mass > 0 ? 1/mass : 0;
+        t->crowd[t->touched[n]] = sum*t->inverse[n];
     }
     #pragma omp parallel for num_threads(team)
     for (int64_t k = 0; k < c->count; k++) {
         double sum = 0;
         for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
-            if (g->node[t->node[n]].w > 0) sum += t->weight[n]*t->crowd[t->node[n]]/g->node[t->node[n]].w;
+            sum += t->weight[n]*t->crowd[t->node[n]];
         c->list[k].mobility = sum;
     }
 }
@@ -368,10 +372,9 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
     for (int64_t n = 0; n < t->touched_count; n++) {
         tobi_float4 *node = &g->node[t->touched[n]];
         quad sum = quad_set(0);
-        if (!(node->w > 0)) continue;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++)
             sum = sum + quad_load(&t->push[t->owner[e]])*quad_set(t->share[e]);
-        quad_store(node, quad_load(node) + sum*quad_set(1/node->w));
+        quad_store(node, quad_load(node) + sum*quad_set(t->inverse[n]));
     }
 }
 

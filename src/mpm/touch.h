@@ -12,10 +12,11 @@ typedef struct mpm_touch {
     /* The entries by node, so that every node is changed by one thread, in one order. */
     uint32_t *touched;                 /* places of the nodes that have any                       */
     int64_t *begin;                    /* of the entries of each touched node                     */
+    float *inverse;                    /* 1/kg, of its mass                                       */
     int32_t *owner;                    /* the contact of each, and its weight                     */
     float *share;
     int64_t touched_count, room;
-    float *crowd;                      /* [nodes] sum of the contacts' weights                    */
+    float *crowd;                      /* [nodes] sum of the contacts' weights over the mass, 1/kg */
     int32_t *slot;                     /* [nodes] scratch of the sort, else 0                     */
     int64_t node_room;
     uint32_t *key, *key_scratch;       /* scratch of the sort of many entries                     */
