@@ -193,12 +193,7 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
     const double mass = v->strain[i].c[2].w;
     double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    int first[3] = {0, 0, -1}, apart = 0;
-    for (int a = 0; a < dim; a++) {                    /* most of them, by a wide margin */
-        const double base = x[a]*v->inverse_cell - p->corner[a];
-        apart |= base < -1.6 || base > 4.6;
-    }
-    if (apart) return;
+    int first[3] = {0, 0, -1};
     for (int a = 0; a < dim; a++) {
         first[a] = (int)mpm_spline(x[a]*v->inverse_cell, w[a]) - p->corner[a];
         if (first[a] > 3 || first[a] < -2) return;
@@ -252,6 +247,28 @@ static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
     return 1;
 }
 
+/* Adds the votes of the particles that remember a cut to a block of nodes. */
+static void hold_vote(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
+                      vote votes[][VOTES])
+{
+    /* Most are farther than 1.5 cells from all its nodes. */
+    double low[3] = {-INFINITY, -INFINITY, -INFINITY}, high[3] = {INFINITY, INFINITY, INFINITY};
+    for (int a = 0; a < g->dimension; a++) {
+        low[a] = (p->corner[a] - 1.6)/v->inverse_cell;
+        high[a] = (p->corner[a] + 4.6)/v->inverse_cell;
+    }
+    for (int o = 0; o < 27; o++) {
+        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
+        const mpm_block *b = &g->block[p->cover[o]];
+        for (int64_t i = b->begin; i < b->end; i++) {
+            const tobi_double3 *x = &v->position[i];
+            if (x->x < low[0] || x->x > high[0] || x->y < low[1] || x->y > high[1] || x->z < low[2] ||
+                x->z > high[2] || v->cuts[i].c[0].w == 0) continue;
+            vote_particle(c, g, v, p, i, votes);
+        }
+    }
+}
+
 static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
 {
     const mpm_patch *p = &g->patch[patch];
@@ -262,12 +279,7 @@ static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t 
     memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
     if (!any) return 0;
     memset(votes, 0, sizeof votes);
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
-        const mpm_block *b = &g->block[p->cover[o]];
-        for (int64_t i = b->begin; i < b->end; i++)
-            if (v->cuts[i].c[0].w != 0) vote_particle(c, g, v, p, i, votes);
-    }
+    hold_vote(c, g, v, p, votes);
     for (int n = 0; n < nodes; n++)
         two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
     return two;
