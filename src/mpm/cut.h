@@ -10,11 +10,15 @@ typedef struct mpm_seam {
     float gap;                         /* m, between the faces                                     */
     float friction;                    /* 1, Coulomb                                               */
     float push[3];                     /* N s, on the second in this step                          */
+    int32_t first, second;             /* places of the two velocities in the nodes' array         */
 } mpm_seam;
 
 typedef struct mpm_cut {
     float *side;                       /* [patches][nodes], see mpm_view.side                     */
-    mpm_seam *seam;                    /* [patches][nodes], of those with a side                  */
+    mpm_seam *seam;                    /* [seam_count] of the nodes with a side, in their order   */
+    int64_t seam_count;
+    float *tile;                       /* [tile_count] see mpm_view.sides                         */
+    int64_t tile_count, tile_room;
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
@@ -26,7 +30,8 @@ typedef struct mpm_cut {
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
    made, counted up. */
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
-/* Finds the nodes with two velocities and makes their twins. The grid's view must be bound anew. */
+/* Finds the nodes with two velocities and makes their twins. The caller then points
+   view.sides and view.hidden at what is here. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
    gaps, and what friction and impact of the faces have taken, J. */

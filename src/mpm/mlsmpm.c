@@ -232,7 +232,7 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, tobi_error *err)
 {
     mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
     TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
-    m->view.side = m->cut.side;
+    m->view.sides = m->cut.tile;
     m->view.hidden = m->cut.hidden;
     return TOBI_OK;
 }
