@@ -20,36 +20,43 @@ static int find_ahead(const tobi_body *b, const tobi_edge *e, const double along
     return 1;
 }
 
-/* The direction of an edge, its length, m, and where it cuts to, in rest axes; in 2-D it is a point that
-   stands for a metre of depth. */
-static int describe_edge(const tobi_body *b, const tobi_edge *e, int dimension, double along[3],
-                         double *length, double ahead[3])
+void tobi_blade_bring(tobi_body *b, int dimension)
 {
-    vec3_sub(along, e->b, e->a);
-    if (dimension == 2) along[2] = along[2] < 0 ? -1 : 1;
-    *length = dimension == 2 ? 1 : vec3_length(along);
-    vec3_normalize(along);
-    return find_ahead(b, e, along, ahead);
+    for (int64_t k = 0; k < b->edge_count; k++) {
+        const tobi_edge *e = &b->edge[k];
+        tobi_blade_edge *now = &b->edge_now[k];
+        memcpy(now->from, e->a, sizeof now->from);
+        vec3_sub(now->along, e->b, e->a);
+        if (dimension == 2) now->along[2] = now->along[2] < 0 ? -1 : 1;
+        now->length = dimension == 2 ? 1 : vec3_length(now->along);
+        vec3_normalize(now->along);
+        now->cuts = find_ahead(b, e, now->along, now->ahead);
+        vec3_cross(now->normal, now->along, now->ahead);
+    }
 }
 
 int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out)
 {
-    double nearest = INFINITY;
-    for (int64_t k = 0; k < b->edge_count; k++) {
-        double along[3], ahead[3], normal[3], from[3], length;
-        if (!describe_edge(b, &b->edge[k], dimension, along, &length, ahead)) continue;
-        vec3_cross(normal, along, ahead);
-        vec3_sub(from, x, b->edge[k].a);
+    const tobi_blade_edge *nearest = NULL;
+    double least = INFINITY;
+    for (const tobi_blade_edge *e = b->edge_now; e < b->edge_now + b->edge_count; e++) {
+        double from[3];
+        if (!e->cuts) continue;
+        vec3_sub(from, x, e->from);
         if (dimension == 2) from[2] = 0;
-        double way = dimension == 2 ? 0 : vec3_dot(from, along);
-        double beyond = fmax(0, fmax(-way, way - length));
-        double before = vec3_dot(from, ahead), aside = vec3_dot(from, normal);
-        double far = beyond*beyond + before*before + aside*aside;
-        if (far >= nearest) continue;
-        nearest = far;
-        *out = (tobi_blade_place){ beyond, before, aside, {normal[0], normal[1], normal[2]} };
+        double way = dimension == 2 ? 0 : vec3_dot(from, e->along);
+        double beyond = fmax(0, fmax(-way, way - e->length));
+        double ahead = vec3_dot(from, e->ahead), aside = vec3_dot(from, e->normal);
+        double far = beyond*beyond + ahead*ahead + aside*aside;
+        if (far >= least) continue;
+        least = far;
+        nearest = e;
+        out->beyond = beyond;
+        out->ahead = ahead;
+        out->aside = aside;
     }
-    return nearest < INFINITY;
+    if (nearest) memcpy(out->normal, nearest->normal, sizeof out->normal);
+    return nearest != NULL;
 }
 
 int tobi_blade_locate_world(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out)
@@ -87,20 +94,20 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
     int64_t count = 0;
     tobi_quaternion_matrix(b->rigid.orientation, turn);
     for (int64_t k = 0; k < b->edge_count; k++) {
-        double along[3], ahead[3], normal[3], length, middle[3];
-        if (!describe_edge(b, &b->edge[k], dimension, along, &length, ahead)) continue;
-        vec3_cross(normal, along, ahead);
-        int64_t parts = dimension == 2 ? 1 : (int64_t)ceil(length/size*(1 - 1e-12));
+        const tobi_blade_edge *e = &b->edge_now[k];
+        double middle[3];
+        if (!e->cuts) continue;
+        int64_t parts = dimension == 2 ? 1 : (int64_t)ceil(e->length/size*(1 - 1e-12));
         for (int64_t n = 0; n < parts; n++, count++) {
             if (count >= room) continue;
             tobi_blade_piece *p = &out[count];
-            p->length = length/(double)parts;
-            vec3_add_scaled(middle, b->edge[k].a, dimension == 2 ? 0 : ((double)n + 0.5)*p->length, along);
+            p->length = e->length/(double)parts;
+            vec3_add_scaled(middle, e->from, dimension == 2 ? 0 : ((double)n + 0.5)*p->length, e->along);
             if (dimension == 2) middle[2] = 0;
             for (int a = 0; a < 3; a++) {
                 p->middle[a] = b->rigid.position[a] + vec3_dot(turn[a], middle);
-                p->ahead[a] = vec3_dot(turn[a], ahead);
-                p->normal[a] = vec3_dot(turn[a], normal);
+                p->ahead[a] = vec3_dot(turn[a], e->ahead);
+                p->normal[a] = vec3_dot(turn[a], e->normal);
             }
         }
     }

@@ -393,6 +393,7 @@ void tobi_body_free(tobi_body *b)
     free(b->particle_rest); free(b->particle);
     free(b->rest_vertex);
     free(b->edge);
+    free(b->edge_now);
     tobi_bvh_free(b->rest_bvh);
     memset(b, 0, sizeof *b);
 }

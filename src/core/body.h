@@ -11,6 +11,14 @@
 #include "geom/surface.h"
 #include "tobiuo/types.h"
 
+/* A straight piece of a blade's edge as it cuts now, in rest axes about the centre of mass. */
+typedef struct tobi_blade_edge {
+    double from[3];                  /* m, its first end                                       */
+    double along[3], ahead[3], normal[3];    /* unit vectors: the piece, where it cuts to, of the cut */
+    double length;                   /* m; in 2-D 1, per metre of depth                        */
+    int cuts;                        /* 0: tagged without a direction, and at rest             */
+} tobi_blade_edge;
+
 typedef struct tobi_body {
     char name[64];
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
@@ -20,6 +28,7 @@ typedef struct tobi_body {
     double edge_resistance;          /* J/m2 of new surface                                    */
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */
     int64_t edge_count;
+    tobi_blade_edge *edge_now;       /* [edge_count], by tobi_blade_bring                      */
     double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */

@@ -31,6 +31,9 @@ typedef struct tobi_contact {
     double  change[3];               /* N s, by the last sweep                                   */
 } tobi_contact;
 
+/* Numbers that are summed over contacts at once: a matrix of 6 x 6 and a vector. */
+enum { TOBI_CONTACT_SUMS = 42 };
+
 /* A way by which an overlap of one particle is lessened. */
 typedef struct tobi_shift { int32_t particle; double by[3]; } tobi_shift;
 
@@ -41,6 +44,8 @@ typedef struct tobi_contacts {
     tobi_shift *shift;               /* of this step, at all bodies so far                       */
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;
+    struct tobi_contact_near *near;  /* of each body: particles that may touch it                */
+    int near_next, near_room;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
     double drift;                    /* m, how far they may be out of it                         */
     double *partial;                 /* sums of parts of the list                                */

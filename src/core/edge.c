@@ -89,5 +89,7 @@ tobi_status tobi_body_find_edge(tobi_body *b, const tobi_body_def *def, int dime
                          "body '%s' is a blade, but its motion changes its shape; a blade is rigid",
                          b->name);
     for (int a = 0; a < dimension; a++) given |= def->edge_start[a] != 0 || def->edge_end[a] != 0;
-    return given ? take_given(b, def, dimension, err) : look_for_edge(b, def->edge_angle, dimension, err);
+    TOBI_TRY(given ? take_given(b, def, dimension, err) : look_for_edge(b, def->edge_angle, dimension, err));
+    b->edge_now = calloc((size_t)b->edge_count, sizeof *b->edge_now);
+    return b->edge_now ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for an edge");
 }

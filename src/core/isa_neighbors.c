@@ -1,34 +1,63 @@
-/* Neighbour search, compiled once per instruction set. For each particle the rows of cells around it
-   are contiguous runs; eight candidates are tested at once and the hits packed to the front. */
+/* Neighbour search, compiled once per instruction set. For each cell the rows of cells around it are
+   contiguous runs; their records are unpacked once for all particles of the cell, which then test as many
+   candidates at once as a register holds and pack the hits to the front. */
 #include "core/cells.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
 
-enum { GROUP = 32, MAX_NEIGHBORS = 1024, MAX_RUNS = 27 };
+#if defined(__AVX512F__)
+enum { MANY = 16 };           /* candidates tested at once: no bit of a list depends on it */
+#else
+enum { MANY = 8 };
+#endif
+typedef float   many     __attribute__((vector_size(4*MANY)));
+typedef int32_t many_int __attribute__((vector_size(4*MANY)));
+typedef uint32_t many_uint __attribute__((vector_size(4*MANY)));
 
-/* Writes the elements of idx whose mask is set to out (8 slots are overwritten); returns how many. */
-static inline int pack(int32_t *out, lane_int idx, lane_int mask)
+enum {
+    BATCH = 16,               /* particles of one cell that are searched for together     */
+    CHUNK = 512,              /* candidates unpacked at once                              */
+    MAX_NEIGHBORS = 1024, ROOM = MAX_NEIGHBORS + 32, MAX_RUNS = 27,
+    FOUND = 2*BATCH*ROOM      /* entries kept before room is claimed in the shared list   */
+};
+
+/* Bit k: candidate k is nearer than sqrt(h2) and is not i itself. */
+static inline unsigned test(many r2, float h2, many_int index, int32_t i)
 {
-#if defined(__AVX512VL__)
-    __mmask8 m = (__mmask8)_mm256_movemask_ps((__m256)mask);
-    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_maskz_compress_epi32(m, (__m256i)idx));
-    return __builtin_popcount(m);
+#if defined(__AVX512F__)
+    __mmask16 near = _mm512_cmp_ps_mask((__m512)r2, _mm512_set1_ps(h2), _CMP_LT_OQ);
+    return _mm512_mask_cmpneq_epi32_mask(near, (__m512i)index, _mm512_set1_epi32(i));
+#else
+    many_int hit = (r2 < h2) & (index != i);
+#if defined(__AVX2__)
+    return (unsigned)_mm256_movemask_ps((__m256)hit);
+#else
+    unsigned m = 0;
+    for (int k = 0; k < MANY; k++) m |= (unsigned)(hit[k] & 1) << k;
+    return m;
+#endif
+#endif
+}
+
+/* Writes the elements of index whose bit is set to out (MANY slots); returns how many. */
+static inline int pack(int32_t *out, many_int index, unsigned m)
+{
+#if defined(__AVX512F__)
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32((__mmask16)m, (__m512i)index));
 #elif defined(__AVX2__) && defined(__BMI2__)
-    unsigned m = (unsigned)_mm256_movemask_ps((__m256)mask);
     uint64_t bytes = _pdep_u64(m, 0x0101010101010101u)*0xFF;
     uint64_t order = _pext_u64(0x0706050403020100u, bytes);
     __m256i perm = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((int64_t)order));
-    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_permutevar8x32_epi32((__m256i)idx, perm));
-    return __builtin_popcount(m);
+    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_permutevar8x32_epi32((__m256i)index, perm));
 #else
     int n = 0;
-    for (int k = 0; k < 8; k++) {
-        out[n] = idx[k];
-        n += mask[k] != 0;
+    for (int k = 0; k < MANY; k++) {
+        out[n] = index[k];
+        n += m >> k & 1;
     }
-    return n;
 #endif
+    return __builtin_popcount(m);
 }
 
 typedef struct run { int32_t begin, end; } run;
@@ -57,26 +86,113 @@ static int find_runs(const tobi_cells *c, int cx, int cy, int cz, run *runs)
     return count;
 }
 
-static int search_runs(const tobi_list_view *v, int32_t i, const run *runs, int run_count, int32_t *out)
+typedef struct candidates {
+    int count;
+    int32_t x[CHUNK + MANY], y[CHUNK + MANY], z[CHUNK + MANY], index[CHUNK + MANY];
+} candidates;
+
+static inline many_int load(const int32_t *p)
 {
-    static const int32_t STEP[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    tobi_record own = v->record[i];
-    int n = 0;
-    for (int r = 0; r < run_count; r++)
-        for (int32_t j = runs[r].begin; j < runs[r].end; j += 8) {
-            lane_int x, y, z, idx = lane_load_index(STEP) + j;
-            lane w;
-            lane_load_record(v->record + j, STEP, &x, &y, &z, &w);
-            lane dx = lane_from_int(lane_sub_wrap(own.x, x))*v->from_fixed[0];
-            lane dy = lane_from_int(lane_sub_wrap(own.y, y))*v->from_fixed[1];
-            lane dz = lane_from_int(lane_sub_wrap(own.z, z))*v->from_fixed[2];
-            lane r2 = dx*dx + dy*dy + dz*dz;
-            lane_int hit = (r2 < v->h2) & (idx < runs[r].end) & (idx != i);
-            n += pack(out + n, idx, hit);
-            if (n > MAX_NEIGHBORS - 16) return n;
-        }
-    while (n & 7) out[n++] = i;
+    many_int a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+
+/* Unpacks records [begin, end), at most CHUNK less those there already; returns the first left over. */
+static int32_t unpack(const tobi_list_view *v, int32_t begin, int32_t end, candidates *c)
+{
+    static const int32_t STEP[TOBI_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+    if (end - begin > CHUNK - c->count) end = begin + CHUNK - c->count;
+    for (int32_t j = begin; j < end; j += TOBI_LANES) {
+        lane_int x, y, z, index = lane_load_index(STEP) + j;
+        lane w;
+        int at = c->count + (j - begin);
+        lane_load_record(v->record + j, STEP, &x, &y, &z, &w);
+        __builtin_memcpy(c->x + at, &x, sizeof x);
+        __builtin_memcpy(c->y + at, &y, sizeof y);
+        __builtin_memcpy(c->z + at, &z, sizeof z);
+        __builtin_memcpy(c->index + at, &index, sizeof index);
+    }
+    c->count += end - begin;
+    return end;
+}
+
+/* own - x in metres; wraps around periodic sides. */
+static inline many distance(int32_t own, const int32_t *x, float from_fixed)
+{
+    many_int d = (many_int)((uint32_t)own - (many_uint)load(x));
+    return __builtin_convertvector(d, many)*from_fixed;
+}
+
+/* Appends the neighbours of i among the candidates to its n hits; returns how many it has now. */
+static int search(const tobi_list_view *v, int32_t i, const candidates *c, int32_t *out, int n)
+{
+    const tobi_record own = v->record[i];
+    for (int k = 0; k < c->count && n <= MAX_NEIGHBORS; k += MANY) {
+        many dx = distance(own.x, c->x + k, v->from_fixed[0]);
+        many dy = distance(own.y, c->y + k, v->from_fixed[1]);
+        many dz = distance(own.z, c->z + k, v->from_fixed[2]);
+        many_int index = load(c->index + k);
+        unsigned hit = test(dx*dx + dy*dy + dz*dz, v->h2, index, i);
+        if (k + MANY > c->count) hit &= (1u << (c->count - k)) - 1;
+        n += pack(out + n, index, hit);
+    }
     return n;
+}
+
+typedef struct batch { int32_t begin, end; int count[BATCH]; int32_t hits[BATCH][ROOM]; } batch;
+
+/* The neighbours of particles of one cell, by run; 0: too many. */
+static int search_cell(const tobi_list_view *v, const run *runs, int run_count, batch *b)
+{
+    candidates c;
+    c.count = 0;
+    __builtin_memset(b->count, 0, sizeof b->count);
+    for (int r = 0; r < run_count; r++)
+        for (int32_t j = runs[r].begin, last = r + 1 == run_count; j < runs[r].end || last;) {
+            if (j < runs[r].end) j = unpack(v, j, runs[r].end, &c);
+            int done = last && j >= runs[r].end;
+            if (c.count < CHUNK && !done) continue;
+            for (int32_t i = b->begin; i < b->end; i++) {
+                int *n = &b->count[i - b->begin];
+                *n = search(v, i, &c, b->hits[i - b->begin], *n);
+                if (*n > MAX_NEIGHBORS - 16) return 0;
+            }
+            c.count = 0;
+            if (done) break;
+        }
+    return 1;
+}
+
+/* Lists of particles [begin, end) on their way into the shared list; starts count from their first. */
+typedef struct lists { int32_t begin, end; int64_t used; int32_t found[FOUND]; } lists;
+
+/* Whole groups of 8, padded with the particle itself. */
+static void append(const tobi_list_view *v, const batch *b, lists *l)
+{
+    for (int32_t i = b->begin; i < b->end; i++) {
+        int n = b->count[i - b->begin];
+        int32_t *to = l->found + l->used;
+        v->list_start[i] = (uint32_t)(l->used/8);
+        v->list_groups[i] = (uint16_t)((n + 7)/8);
+        __builtin_memcpy(to, b->hits[i - b->begin], (size_t)n*sizeof *to);
+        while (n & 7) to[n++] = i;
+        l->used += n;
+    }
+    l->end = b->end;
+}
+
+static void claim(const tobi_list_view *v, lists *l)
+{
+    int64_t start = __atomic_fetch_add(v->used, l->used, __ATOMIC_RELAXED);
+    if (start + l->used > v->capacity) {
+        if (*v->overflow == 0) *v->overflow = 1;
+    } else {
+        __builtin_memcpy(v->list + start, l->found, (size_t)l->used*sizeof *l->found);
+        for (int32_t i = l->begin; i < l->end; i++) v->list_start[i] += (uint32_t)(start/8);
+    }
+    l->begin = l->end;
+    l->used = 0;
 }
 
 static int cell_of(const tobi_cells *c, int axis, double x)
@@ -85,42 +201,29 @@ static int cell_of(const tobi_cells *c, int axis, double x)
     return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : k;
 }
 
-/* A group of particles collects its lists on the stack, then claims room in the shared list. */
-static void search_group(const tobi_list_view *v, int32_t begin, int32_t end)
+void JOIN(tobi_neighbors, TOBI_ISA)(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    int32_t found[(GROUP + 1)*MAX_NEIGHBORS];
-    int count[GROUP], total = 0, at[3] = {-1, -1, -1}, runs = 0;
-    run run_list[MAX_RUNS];
-    for (int32_t i = begin; i < end; i++) {
+    const tobi_list_view *v = view;
+    const tobi_cells *c = v->cells;
+    run runs[MAX_RUNS];
+    lists l;
+    batch b;
+    (void)totals;
+    l.begin = (int32_t)begin;
+    l.used = 0;
+    for (int32_t i = (int32_t)begin; i < end; i = b.end) {
         tobi_double3 q = v->position[i];
-        int cell[3] = {cell_of(v->cells, 0, q.x), cell_of(v->cells, 1, q.y), cell_of(v->cells, 2, q.z)};
-        if (cell[0] != at[0] || cell[1] != at[1] || cell[2] != at[2])
-            runs = find_runs(v->cells, cell[0], cell[1], cell[2], run_list);
-        __builtin_memcpy(at, cell, sizeof at);
-        int n = search_runs(v, i, run_list, runs, found + total);
-        if (n > MAX_NEIGHBORS - 16) {
+        int x = cell_of(c, 0, q.x), y = cell_of(c, 1, q.y), z = cell_of(c, 2, q.z);
+        int32_t next = c->start[tobi_cells_row(c, y, z) + x + 1];
+        b.begin = i;
+        b.end = next < end ? next : (int32_t)end;
+        if (b.end > i + BATCH) b.end = i + BATCH;
+        if (!search_cell(v, runs, find_runs(c, x, y, z, runs), &b)) {
             *v->overflow = 2;
             return;
         }
-        count[i - begin] = n;
-        total += n;
+        if (l.used > FOUND/2) claim(v, &l);
+        append(v, &b, &l);
     }
-    int64_t start = __atomic_fetch_add(v->used, total, __ATOMIC_RELAXED);
-    if (start + total > v->capacity) {
-        if (*v->overflow == 0) *v->overflow = 1;
-        return;
-    }
-    __builtin_memcpy(v->list + start, found, (size_t)total*sizeof *found);
-    for (int32_t i = begin; i < end; i++) {
-        v->list_start[i] = (uint32_t)(start/8);
-        v->list_groups[i] = (uint16_t)(count[i - begin]/8);
-        start += count[i - begin];
-    }
-}
-
-void JOIN(tobi_neighbors, TOBI_ISA)(const void *view, int64_t begin, int64_t end, double *totals)
-{
-    (void)totals;
-    for (int64_t i = begin; i < end; i += GROUP)
-        search_group(view, (int32_t)i, (int32_t)(i + GROUP < end ? i + GROUP : end));
+    claim(v, &l);
 }

@@ -201,8 +201,12 @@ static int look_at(look *l, int32_t i, int body)
     memset(e, 0, sizeof *e);
     e->particle = i;
     e->body = (int16_t)body;
+    e->triangle = -1;
     if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
     e->distance = hit.signed_distance;
+    e->triangle = hit.triangle;
+    memcpy(e->barycentric, hit.barycentric, sizeof e->barycentric);
+    for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
     visit_points(&l->s->near, l->x, add_point, l);
@@ -456,117 +460,6 @@ void tobi_near_body_forces(tobi_simulation *s)
         tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
         memcpy(info->viscous_force, t, 3*sizeof *t);
         memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
-    }
-}
-
-/* share: of its speed into the body, that a particle loses. counting: nothing moves, totals are asked for. */
-typedef struct pusher {
-    tobi_simulation *s;
-    const tobi_body *b;
-    double lo[3], hi[3], share;
-    int counting;
-} pusher;
-
-/* A particle that a body has caught: where, and its speed along the normal against the body's. */
-static int find_caught(const tobi_simulation *s, const tobi_body *b, int64_t i, tobi_bvh_hit *hit,
-                       double *along)
-{
-    tobi_double3 q = s->particles.position[i];
-    double x[3] = {q.x, q.y, q.z}, u[3];
-    if (!tobi_bvh_closest(b->bvh, x, s->smoothing.h, hit)) return 0;
-    if (hit->signed_distance >= 0.2*s->smoothing.spacing) return 0;
-    const int32_t *tri = b->mesh.triangles[hit->triangle];
-    const tobi_float4 *v = &s->particles.velocity[i];
-    double *w[3] = {b->vertex_velocity[tri[0]], b->vertex_velocity[tri[1]], b->vertex_velocity[tri[2]]};
-    for (int a = 0; a < 3; a++)
-        u[a] = (&v->x)[a] - (hit->barycentric[0] * w[0][a] + hit->barycentric[1] * w[1][a] +
-                             hit->barycentric[2] * w[2][a]);
-    *along = dot(u, hit->normal);
-    return 1;
-}
-
-/* Counts a caught particle that would push a free body in t[0]; t[6]: by how much an impulse of its mass
-   times 1 m/s changes the body's speed at that point. */
-static void count_push(const pusher *p, int64_t i, const tobi_bvh_hit *hit, const double twist[3], double *t)
-{
-    const tobi_simulation *s = p->s;
-    double shift[3], turn[3][3], answer = 0;
-    tobi_rigid_inverse(&p->b->rigid, shift, turn);
-    for (int a = 0; a < 3; a++)
-        answer += shift[a]*hit->normal[a]*hit->normal[a] + twist[a]*dot(turn[a], twist);
-    answer *= s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
-    t[0] += 1;
-    t[6] = fmax(t[6], answer);
-}
-
-/* Puts one particle outside; the impulse it loses goes to t[0..5]. */
-static int push_particle(const pusher *c, int64_t i, double *t)
-{
-    tobi_bvh_hit hit;
-    tobi_simulation *s = c->s;
-    const tobi_body *b = c->b;
-    tobi_double3 *q = &s->particles.position[i];
-    double least = 0.2*s->smoothing.spacing, arm[3], twist[3], into;
-    if (!find_caught(s, b, i, &hit, &into)) return 0;
-    for (int a = 0; a < 3; a++) arm[a] = hit.point[a] + b->lower[a] - b->centre[a];
-    for (int a = 0; a < 3; a++) {
-        int p = (a + 1)%3, r = (a + 2)%3;
-        twist[a] = arm[p]*hit.normal[r] - arm[r]*hit.normal[p];
-    }
-    if (c->counting) {
-        if (into < 0) count_push(c, i, &hit, twist, t);
-        return 0;
-    }
-    q->x = hit.point[0] + least*hit.normal[0];
-    q->y = hit.point[1] + least*hit.normal[1];
-    if (s->box.dimension == 3) q->z = hit.point[2] + least*hit.normal[2];
-    if (into >= 0) return 1;
-    into *= c->share;
-    double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
-    for (int a = 0; a < 3; a++) {
-        (&s->particles.velocity[i].x)[a] -= (float)(into*hit.normal[a]);
-        t[a] += mass*into*hit.normal[a];
-        t[3 + a] += mass*into*twist[a];
-    }
-    return 1;
-}
-
-static void push_range(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const pusher *p = view;
-    for (int64_t i = begin; i < end; i++) {
-        const double *x = &p->s->particles.position[i].x;
-        int outside = 0;
-        for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
-        if (outside || !push_particle(p, i, t)) continue;
-        #pragma omp atomic
-        p->s->near.contacts++;      /* all sums are taken; whole numbers add up the same in any order */
-    }
-}
-
-void tobi_near_push_out(tobi_simulation *s)
-{
-    s->near.contacts = 0;
-    for (int k = 0; k < s->body_count; k++) {
-        double t[TOBI_TOTALS];
-        pusher p = {.s = s, .b = &s->bodies[k], .share = 1};
-        tobi_bvh_box(p.b->bvh, p.lo, p.hi);
-        for (int a = 0; a < 3; a++) {
-            p.lo[a] -= s->smoothing.spacing;
-            p.hi[a] += s->smoothing.spacing;
-        }
-        if (p.b->rigid.kind != TOBI_PRESCRIBED) {
-            p.counting = 1;
-            tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
-            p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
-            p.counting = 0;
-        }
-        tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
-        tobi_body_info *info = &s->bodies[k].info;
-        for (int a = 0; a < 3; a++) {
-            info->pressure_force[a] += t[a]/s->dt;
-            info->pressure_torque[a] += t[3 + a]/s->dt;
-        }
     }
 }
 

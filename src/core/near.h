@@ -20,6 +20,9 @@ typedef struct tobi_near_entry {
     double foot[3];           /* closest point on the body, relative to the box                   */
     double foot_normal[3];    /* outward                                                          */
     double distance;          /* signed distance to the body, m                                   */
+    double offset[3];         /* from foot to the particle, m                                     */
+    double barycentric[3];    /* of foot in its triangle                                          */
+    int32_t triangle;
 } tobi_near_entry;
 
 typedef struct tobi_near_bodies {
@@ -51,7 +54,4 @@ void tobi_near_contact(struct tobi_simulation *s);
 void tobi_near_known_forces(struct tobi_simulation *s, int body, double force[6]);
 /* Forces and torques on every body of the pressure and the friction of this step. */
 void tobi_near_body_forces(struct tobi_simulation *s);
-/* Puts particles that the body's new pose has caught, or that came nearer than 0.2 d, back outside:
-   their speed into the body is taken, the impulse counts as pressure force. */
-void tobi_near_push_out(struct tobi_simulation *s);
 void tobi_near_free(tobi_near_bodies *near);

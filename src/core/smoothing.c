@@ -33,8 +33,9 @@ double tobi_smoothing_f(int shape, int dimension, double h, double r)
     return norm(shape, dimension, h)*6/h*(t*t - (u > 0 ? 4*u*u : 0))/(r > 0 ? r : 1e-30);
 }
 
-/* Sums over lattice neighbours: kernel, second moment xx, gradient of those with x > 0, V F. */
-typedef struct lattice_sums { double w, moment, slope_half, rate; } lattice_sums;
+/* Sums over lattice neighbours: kernel, that of those with x > 0, second moment xx, gradient of those with
+   x > 0, V F. */
+typedef struct lattice_sums { double w, behind, moment, slope_half, rate; } lattice_sums;
 
 static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
 {
@@ -45,7 +46,9 @@ static lattice_sums sum_lattice(int shape, int dimension, double d, double h)
         for (int j = -n; j <= n; j++)
             for (int i = -n; i <= n; i++) {
                 double x = i*d, y = j*d, z = k*d, r2 = x*x + y*y + z*z, r = sqrt(r2);
-                s.w += v*tobi_smoothing_w(shape, dimension, h, r);
+                double w = v*tobi_smoothing_w(shape, dimension, h, r);
+                s.w += w;
+                if (i > 0) s.behind += w;
                 if (r2 == 0) continue;
                 double f = v*tobi_smoothing_f(shape, dimension, h, r);
                 s.rate += f;
@@ -67,7 +70,7 @@ static double integrate_plane(int shape, int dimension, double h, double z)
     return sum*end/N;
 }
 
-static void fill_plane(tobi_smoothing_constants *c, double slope_half)
+static void fill_plane(tobi_smoothing_constants *c, double slope_half, double behind)
 {
     enum { N = TOBI_PLANE_SAMPLES };
     double h = c->h, step = h/N, lambda = 0, sigma[N + 2];
@@ -78,10 +81,14 @@ static void fill_plane(tobi_smoothing_constants *c, double slope_half)
         c->plane.lambda[k] = (float)lambda;
         c->plane.sigma[k] = (float)sigma[k];
     }
-    /* Scale sigma to what a lattice particle at s = d/2 needs against a uniform pressure. */
+    /* Scale sigma to what a lattice particle at s = d/2 needs against a uniform pressure, and lambda, in
+       the density, to what it lacks. */
     double at = 0.5*c->spacing/step;
     int k = (int)at;
     double value = c->plane.sigma[k] + (at - k)*(c->plane.sigma[k + 1] - c->plane.sigma[k]);
+    double share = c->plane.lambda[k] + (at - k)*(c->plane.lambda[k + 1] - c->plane.lambda[k]);
+    c->wall_share = share;
+    c->wall_lattice = behind;
     double scale = slope_half*c->slope_correction/value;
     c->plane_scale = scale;
     for (k = 0; k <= N; k++) c->plane.sigma[k] *= (float)scale;
@@ -104,5 +111,5 @@ void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, 
     double n = norm(shape, dimension, h)*c->volume;
     c->weight = n*c->weight_correction;
     c->slope = n*(shape == TOBI_SHAPE_WENDLAND ? 20/(h*h) : 6/h)*c->slope_correction;
-    fill_plane(c, s.slope_half);
+    fill_plane(c, s.slope_half, s.behind*c->weight_correction);
 }

@@ -22,6 +22,7 @@ typedef struct tobi_smoothing_constants {
     double slope;          /* V grad W = -slope falloff(q) dx; linear fields exact on the lattice */
     double rate;           /* lattice sum of V F, 1/m2: the scale of particle-wise differences   */
     double weight_correction, slope_correction; /* against the integral norm */
+    double wall_share, wall_lattice; /* at s = d/2: lambda, and what a lattice lacks there */
     double plane_scale;    /* sigma over the plain integral; also scales W at body points          */
     tobi_wall_table plane;
 } tobi_smoothing_constants;

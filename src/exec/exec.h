@@ -24,6 +24,13 @@ void tobi_exec_free(tobi_exec *x);
 /* Makes room for sums over n items, so that launches never allocate. */
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 
+/* Threads for a loop that launch does not run: waking one costs some 10 us, so each gets at least `worth`
+   items. The result must not depend on them. */
+static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)
+{
+    return items/worth >= x->threads ? x->threads : items < 2*worth ? 1 : (int)(items/worth);
+}
+
 /* Runs kernel over [begin, end); totals (TOBI_TOTALS doubles) may be NULL. */
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
                  double *totals);

@@ -160,6 +160,15 @@ TOBI_FN quad quad_load(const void *p)
     return q;
 }
 TOBI_FN void quad_store(void *p, quad q) { __builtin_memcpy(p, &q, sizeof q); }
+/* Bit k: element k of the first three is b. */
+TOBI_FN uint32_t quad_matches(quad a, float b)
+{
+#if defined(__AVX2__) && !defined(__CUDACC__)
+    return (uint32_t)_mm_movemask_ps(_mm_cmpeq_ps((__m128)a, _mm_set1_ps(b))) & 7;
+#else
+    return (uint32_t)(a[0] == b) | (uint32_t)(a[1] == b) << 1 | (uint32_t)(a[2] == b) << 2;
+#endif
+}
 #if defined(__AVX512F__) || defined(__CUDACC__)
 TOBI_FN row row_load(const void *p)
 {

@@ -185,6 +185,7 @@ static void free_canvas(canvas *c)
     free(c->value);
     free(c->scratch);
     free(c->shadow.depth);
+    free(c->shadow.range);
 }
 
 static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)

@@ -41,6 +41,7 @@ typedef struct shadow {
     vec    center, right, up, forward;
     float  focal;                /* samples of the map per m                                       */
     float *depth;                /* NULL = everything is lit                                       */
+    float *range;                /* least and largest depth of each block and the eight around it  */
 } shadow;
 
 typedef struct canvas {
@@ -125,6 +126,14 @@ vec  shade_solid(const canvas *c, vec p, vec n, vec albedo);
 /* frame_shadow.c */
 tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err);
 float lit_at(const canvas *c, vec point);
+
+/* frame_smooth.c: after particles were splatted. */
+typedef enum look { WATER, GRAINS, DISCS } look;     /* how the particles of a pass look */
+typedef struct patch {
+    int x, y, width, height; /* samples; width 0 = none */
+} patch;
+/* *p: what is around the surface; nothing beyond it was changed. */
+tobi_status smooth_surface(canvas *c, float radius, look what, patch *p, tobi_error *err);
 
 /* frame_water.c. Solids first: they become part of what is opaque. */
 tobi_status draw_grains(canvas *c, const tobi_frame *frame, double value_min, double value_max,

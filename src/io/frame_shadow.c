@@ -2,7 +2,8 @@
 #include "io/frame_draw.h"
 #include <stdlib.h>
 
-enum { SIDE = 1024 };
+/* A block is wider than the reach of lit_at. */
+enum { SIDE = 1024, BLOCK = 8, ACROSS = SIDE/BLOCK };
 
 static vec turn(const shadow *s, vec p)
 {
@@ -43,6 +44,31 @@ static void cast_grains(canvas *light, const tobi_frame *frame)
     }
 }
 
+/* The least and the largest depth of each block of samples and the eight around it. */
+static void find_ranges(shadow *s)
+{
+    float low[ACROSS*ACROSS], high[ACROSS*ACROSS];
+    for (int k = 0; k < ACROSS*ACROSS; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            int k = y/BLOCK*ACROSS + x/BLOCK;
+            float depth = s->depth[(size_t)y*SIDE + (size_t)x];
+            low[k] = depth < low[k] ? depth : low[k];
+            high[k] = depth > high[k] ? depth : high[k];
+        }
+    for (int y = 0; y < ACROSS; y++)
+        for (int x = 0; x < ACROSS; x++) {
+            float *range = &s->range[2*(y*ACROSS + x)];
+            range[0] = INFINITY, range[1] = -INFINITY;
+            for (int k = 0; k < 9; k++) {
+                int i = x + k%3 - 1, j = y + k/3 - 1;
+                bool inside = i >= 0 && j >= 0 && i < ACROSS && j < ACROSS;      /* beyond all is lit */
+                range[0] = fminf(range[0], inside ? low[j*ACROSS + i] : INFINITY);
+                range[1] = fmaxf(range[1], inside ? high[j*ACROSS + i] : INFINITY);
+            }
+        }
+}
+
 tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
 {
     if (frame->mesh_count == 0 && !frame->opaque) return TOBI_OK;
@@ -58,13 +84,15 @@ tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
     s->right = vec_unit(vec_cross(s->forward, aside));
     s->up = vec_cross(s->right, s->forward);
     canvas light = { .width = SIDE, .height = SIDE, .camera = light_camera(&c->camera, s, sqrt(size)) };
-    light.depth = malloc((size_t)SIDE*SIDE*sizeof(float));
-    if (!light.depth) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
+    s->depth = light.depth = malloc((size_t)SIDE*SIDE*sizeof(float));
+    s->range = malloc((size_t)ACROSS*ACROSS*2*sizeof(float));
+    if (!s->depth || !s->range) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
     for (size_t k = 0; k < (size_t)SIDE*SIDE; k++) light.depth[k] = INFINITY;
-    s->depth = light.depth;
     s->focal = light.camera.focal;
     if (frame->opaque) cast_grains(&light, frame);
-    return draw_meshes(&light, frame, err);
+    TOBI_TRY(draw_meshes(&light, frame, err));
+    find_ranges(s);
+    return TOBI_OK;
 }
 
 /* Share of the light that reaches a view point: 16 samples around it, softer edges than the map's. */
@@ -78,6 +106,11 @@ float lit_at(const canvas *c, vec p)
     vec q = turn(s, p);
     float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
     int lit = 0;
+    if (x >= 0 && y >= 0 && x < SIDE && y < SIDE) {      /* most points are far from every edge of a shadow */
+        const float *range = &s->range[2*((int)y/BLOCK*ACROSS + (int)x/BLOCK)];
+        if (q.z - bias < range[0]) return 1;
+        if (q.z - bias >= range[1]) return 0;
+    }
     for (int k = 0; k < 16; k++) {
         float r = 1 + 1.3f*(float)(k/4);
         float sx = x + r*ring[k%4][k/4%2], sy = y + r*ring[k%4][1 - k/4%2];

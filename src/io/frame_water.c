@@ -1,4 +1,4 @@
-/* Particles, of water or of solids: splatted into depth, thickness and value; the depth smoothed; the surface
+/* Particles, of water or of solids: splatted into depth, thickness and value, smoothed by frame_smooth.c, and
    lit. */
 #include "io/frame_draw.h"
 #include <stdlib.h>
@@ -9,10 +9,6 @@ typedef struct splat {
     float value;             /* 0 to 1 */
 } splat;
 
-/* How the particles of a pass look. */
-typedef enum look { WATER, GRAINS, DISCS } look;
-
-enum { REACH_MAX = 40 };     /* samples, of the smoothing filter to one side */
 /* In particle radii: neighbours' spheres overlap into a surface. */
 static const float water_radius = 1.7f, grain_radius = 1.55f;
 
@@ -270,174 +266,6 @@ tobi_status draw_discs(canvas *c, const tobi_frame *f, double low, double high, 
     return splat_particles(c, f, 0.95f*(float)f->radius, (double[2]){ low, high }, DISCS, 1, err);
 }
 
-/* One row of the narrow-range filter. Neighbours in front by more than `narrow` are other water and do not
-   count (nor does their mirror image, so that slopes stay); those behind count as `narrow` behind. */
-static void smooth_row(const float *in, float *out, int n, float reach_at_1m, bool flat, float narrow,
-                       float (*gauss)[REACH_MAX + 1])
-{
-    for (int x = 0; x < n; x++) {
-        float z = in[x];
-        out[x] = z;
-        if (!(z < INFINITY)) continue;
-        int reach = (int)(flat ? reach_at_1m : reach_at_1m/z);
-        if (reach > REACH_MAX) reach = REACH_MAX;
-        if (reach > x) reach = x;
-        if (reach > n - 1 - x) reach = n - 1 - x;
-        const float *g = gauss[reach];
-        float sum = 0, weight = 1;
-        for (int k = 1; k <= reach; k++) {
-            float l = in[x - k] - z, r = in[x + k] - z;
-            float w = l < -narrow || r < -narrow ? 0 : g[k];
-            sum += w*((l > narrow ? narrow : l) + (r > narrow ? narrow : r));
-            weight += 2*w;
-        }
-        out[x] = z + sum/weight;
-    }
-}
-
-static void blur_row(const float *in, float *out, int n, int reach)
-{
-    double sum = 0;
-    for (int x = -reach; x < n; x++) {
-        if (x + reach < n) sum += in[x + reach];
-        if (x - reach - 1 >= 0) sum -= in[x - reach - 1];
-        if (x >= 0) out[x] = (float)(sum/(2*reach + 1));
-    }
-}
-
-static void transpose(const float *in, float *out, int width, int height)
-{
-    enum { B = 32 };
-    #pragma omp parallel for schedule(static)
-    for (int y0 = 0; y0 < height; y0 += B)
-        for (int x0 = 0; x0 < width; x0 += B)
-            for (int y = y0; y < y0 + B && y < height; y++)
-                for (int x = x0; x < x0 + B && x < width; x++)
-                    out[(size_t)x*(size_t)height + (size_t)y] = in[(size_t)y*(size_t)width + (size_t)x];
-}
-
-typedef struct filter {
-    float reach;             /* samples at 1 m, or anywhere if flat; of a blur: samples */
-    float narrow;            /* m; 0 = plain blur                                       */
-    bool  flat;
-    float gauss[REACH_MAX + 1][REACH_MAX + 1];
-} filter;
-
-static void filter_rows(filter *f, const float *in, float *out, int width, int height)
-{
-    #pragma omp parallel for schedule(dynamic, 16)
-    for (int y = 0; y < height; y++) {
-        size_t row = (size_t)y*(size_t)width;
-        if (f->narrow > 0) smooth_row(in + row, out + row, width, f->reach, f->flat, f->narrow, f->gauss);
-        else blur_row(in + row, out + row, width, (int)f->reach);
-    }
-}
-
-/* Rows, then columns, with the result back in data. */
-static void filter_plane(filter *f, float *data, float *scratch, int width, int height)
-{
-    filter_rows(f, data, scratch, width, height);
-    transpose(scratch, data, width, height);
-    filter_rows(f, data, scratch, height, width);
-    transpose(scratch, data, height, width);
-}
-
-/* The rows-then-columns filter leaves streaks along the axes where water is ragged; a small square one
-   takes them away. */
-static void filter_square(float *data, float *scratch, int width, int height, int reach, float narrow)
-{
-    memcpy(scratch, data, (size_t)width*(size_t)height*sizeof *data);
-    #pragma omp parallel for schedule(dynamic, 16)
-    for (int y = reach; y < height - reach; y++)
-        for (int x = reach; x < width - reach; x++) {
-            const float *in = scratch + (size_t)y*(size_t)width + (size_t)x;
-            float z = *in, sum = 0, weight = 0;
-            if (!(z < INFINITY)) continue;
-            for (int j = -reach; j <= reach; j++)
-                for (int i = -reach; i <= reach; i++) {
-                    float d = in[(int64_t)j*width + i] - z, w = fabsf(d) < narrow ? 1.0f : 0.0f;
-                    sum += w > 0 ? d : 0;
-                    weight += w;
-                }
-            data[(size_t)y*(size_t)width + (size_t)x] = z + sum/weight;
-        }
-}
-
-/* One direction of a blur of the thickness: neighbours over another solid (or none) do not count, or bodies
-   under water would glow around their edges. */
-static void blur_along(const canvas *c, const float *in, float *out, int dx, int dy, int reach, float same)
-{
-    #pragma omp parallel for schedule(static)
-    for (int y = 0; y < c->height; y++) {
-        int low = dy && y < reach ? -y : -reach;
-        int high = dy && y + reach >= c->height ? c->height - 1 - y : reach;
-        const float *solid = c->depth + (size_t)y*(size_t)c->width;
-        for (int x = 0; x < c->width; x++) {
-            int first = dx && x < reach ? -x : low;
-            int last = dx && x + reach >= c->width ? c->width - 1 - x : high;
-            int64_t step = dx + (int64_t)dy*c->width, k = (int64_t)y*c->width + x;
-            float sum = 0, weight = 0, here = solid[x];
-            if (in[k] <= 0 && !(c->surface[k] < INFINITY)) {
-                out[k] = 0;
-                continue;
-            }
-            for (int i = first; i <= last; i++) {
-                float there = c->depth[k + i*step];
-                float w = there == here || fabsf(there - here) < same ? 1.0f : 0.0f;
-                sum += w*in[k + i*step];
-                weight += w;
-            }
-            out[k] = sum/weight;
-        }
-    }
-}
-
-/* The mean values: sums and weights are blurred apart, so that nothing bleeds in from beyond the water. */
-static void average_values(canvas *c, filter *f, float *room)
-{
-    size_t n = (size_t)c->width*(size_t)c->height;
-    filter_plane(f, c->value, room, c->width, c->height);
-    filter_plane(f, c->scratch, room, c->width, c->height);
-    #pragma omp parallel for
-    for (size_t k = 0; k < n; k++)
-        c->value[k] = c->scratch[k] > 1e-6f ? clampf(c->value[k]/c->scratch[k], 0, 1) : 0;
-}
-
-static tobi_status smooth_water(canvas *c, float radius, look what, tobi_error *err)
-{
-    static const int rounds = 3;
-    filter *f = calloc(1, sizeof *f);
-    float *room = malloc((size_t)c->width*(size_t)c->height*sizeof *room);
-    if (!f || !room) {
-        free(f);
-        free(room);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
-    }
-    for (int r = 1; r <= REACH_MAX; r++)
-        for (int k = 0; k <= r; k++) f->gauss[r][k] = expf(-3.0f*(float)(k*k)/(float)(r*r));
-    /* Blurs are as wide as a particle in the middle of the water. */
-    double sum = 0;
-    int64_t n = 0;
-    for (size_t k = 0; k < (size_t)c->width*(size_t)c->height; k += 61)
-        if (c->surface[k] < INFINITY) sum += c->surface[k], n++;
-    float size = n ? radius*scale_at(&c->camera, (float)(sum/(double)n)) : 1;
-    f->reach = clampf(0.5f*size, 1, 60);
-    if (what == WATER || !c->palette) average_values(c, f, room);
-    int reach = (int)clampf(0.6f*size, 1, 40);
-    for (int i = 0; i < 2 && what == WATER; i++) {
-        blur_along(c, c->thickness, room, 1, 0, reach, 4*radius);
-        blur_along(c, room, c->thickness, 0, 1, reach, 4*radius);
-    }
-    f->flat = c->camera.orthographic;
-    f->reach = 2.4f*radius*c->camera.focal;
-    f->narrow = 3.0f*radius;
-    for (int i = 0; i < rounds; i++) filter_plane(f, c->surface, room, c->width, c->height);
-    filter_square(c->surface, room, c->width, c->height, (int)clampf(0.35f*size, 1, 5), 0.6f*radius);
-    free(f);
-    free(room);
-    return TOBI_OK;
-}
-
 /* Difference of the surface's view points along one axis, taken on the side where the depth changes
  * less. */
 static vec slope(const canvas *c, int x, int y, int dx, int dy)
@@ -546,8 +374,9 @@ tobi_status draw_grains(canvas *c, const tobi_frame *f, double low, double high,
 {
     float radius = grain_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, GRAINS, 1, err));
-    TOBI_TRY(smooth_water(c, radius, GRAINS, err));
-    light_grains(c);
+    patch p;
+    TOBI_TRY(smooth_surface(c, radius, GRAINS, &p, err));
+    if (p.width > 0) light_grains(c);
     return TOBI_OK;
 }
 
@@ -555,7 +384,9 @@ tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, 
 {
     float radius = water_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, WATER, 1, err));
-    TOBI_TRY(smooth_water(c, radius, WATER, err));
+    patch p;
+    TOBI_TRY(smooth_surface(c, radius, WATER, &p, err));
+    if (p.width == 0) return TOBI_OK;
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
     return light_water(c, f->clarity > 0 ? (float)f->clarity : (float)(0.18*sqrt(size)), err);

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "core/blade.h"
 #include "core/cuts.h"
+#include "exec/rows.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"
 #include <math.h>
@@ -14,6 +15,7 @@ void mpm_cut_free(mpm_cut *c)
 {
     free(c->side);
     free(c->seam);
+    free(c->tile);
     free(c->face);
     free(c->hidden);
     free(c->marked);
@@ -106,6 +108,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
     const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
     double low[3], high[3];
     int met = 0, dim = s->box.dimension;
+    tobi_blade_bring(b, dim);
     tobi_blade_box(b, band, low, high);
     #pragma omp parallel for num_threads(s->exec.threads) reduction(|: met)
     for (int64_t i = 0; i < s->particles.count; i++) {
@@ -164,28 +167,26 @@ static void find_faces(mpm_cut *c, const tobi_simulation *s, const mpm_view *v)
     }
 }
 
-/* What the particles on the two sides of one cut say at one node. Index 0: the + side. */
+/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight,
+   of places (m, from the corner of the block) with the weights themselves, and of normals with distances from
+   the cut (m). */
 typedef struct vote {
-    double number, weight[2];
-    double place[2][3], far[2], normal[3], friction;
+    quad place[2], face[2];
+    float number, friction;
 } vote;
 
-static void add_vote(vote votes[VOTES], const mpm_view *v, int64_t i, const tobi_float4 *face, double mark,
-                     double w, const double x[3])
+/* mark: of the particle, with its side. */
+static void add_vote(vote votes[VOTES], float mark, float w, quad place, quad face, float friction)
 {
     const int side = mark < 0;
     int k = 0;
-    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabs(mark)) k++;
+    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
     if (k == VOTES) return;
     vote *to = &votes[k];
-    to->number = fabs(mark);
-    to->weight[side] += w;
-    to->far[side] += w*face->w;
-    to->friction += w*v->material[v->solid[i]].cut_friction;
-    for (int a = 0; a < 3; a++) {
-        to->place[side][a] += w*x[a];
-        to->normal[a] += (side ? -w : w)*(&face->x)[a];
-    }
+    to->number = fabsf(mark);
+    to->friction += w*friction;
+    to->place[side] = to->place[side] + place*quad_set(w);
+    to->face[side] = to->face[side] + face*quad_set(w);
 }
 
 /* Adds the votes of one particle to the nodes of a block that feel it. */
@@ -207,15 +208,20 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
         high[a] = first[a] > 1 ? 3 - first[a] : 2;
     }
     if (dim == 2) low[2] = high[2] = 1;
+    const float friction = v->material[v->solid[i]].cut_friction;
+    quad place = {0, 0, 0, 1};
+    for (int a = 0; a < dim; a++) place[a] = (float)(x[a] - p->corner[a]*(double)v->cell);
     for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
-        const tobi_float4 *face = &c->face[i].c[k];
+        const quad face = quad_load(&c->face[i].c[k]);
+        const float mark = v->cuts[i].c[k].w;
         for (int p0 = low[0]; p0 <= high[0]; p0++)
-            for (int p1 = low[1]; p1 <= high[1]; p1++)
-                for (int p2 = low[2]; p2 <= high[2]; p2++) {
-                    const int at[3] = {first[0] + p0, first[1] + p1, first[2] + p2};
-                    int node = dim == 3 ? (at[0]*4 + at[1])*4 + at[2] : at[0]*4 + at[1];
-                    add_vote(votes[node], v, i, face, v->cuts[i].c[k].w, mass*w[0][p0]*w[1][p1]*w[2][p2], x);
-                }
+            for (int p1 = low[1]; p1 <= high[1]; p1++) {
+                const int row = (first[0] + p0)*4 + first[1] + p1;
+                const double along = mass*w[0][p0]*w[1][p1];
+                for (int p2 = low[2]; p2 <= high[2]; p2++)
+                    add_vote(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark, (float)(along*w[2][p2]),
+                             place, face, friction);
+            }
     }
 }
 
@@ -223,28 +229,49 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
 static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
 {
     const vote *best = NULL;
-    double most = 0;
+    float most = 0;
     for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
-        double least = fmin(votes[k].weight[0], votes[k].weight[1]);
+        float least = fminf(votes[k].place[0][3], votes[k].place[1][3]);
         if (least > most) { most = least; best = &votes[k]; }
     }
     *side = 0;
     if (!best) return 0;
-    const int own = best->weight[1] > best->weight[0], other = !own;
-    double n[3], gap = 0;
-    memcpy(n, best->normal, sizeof n);
+    const double weight[2] = {best->place[0][3], best->place[1][3]};
+    const int own = weight[1] > weight[0], other = !own;
+    double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
+    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];
     vec3_normalize(n);
     for (int a = 0; a < 3; a++) {
-        n[a] = own ? n[a] : -n[a];             /* votes point to the + side, seams to the second */
-        gap += n[a]*(best->place[other][a]/best->weight[other] - best->place[own][a]/best->weight[own]);
+        gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
         seam->normal[a] = (float)n[a];
     }
-    gap -= best->far[0]/best->weight[0] + best->far[1]/best->weight[1];
     seam->gap = (float)gap;
     seam->fixed = 0;
-    seam->friction = (float)(best->friction/(best->weight[0] + best->weight[1]));
-    *side = (float)(own ? -best->number : best->number);
+    seam->friction = (float)(best->friction/(weight[0] + weight[1]));
+    *side = own ? -best->number : best->number;
     return 1;
+}
+
+/* Adds the votes of the particles that remember a cut to a block of nodes. */
+static void hold_vote(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
+                      vote votes[][VOTES])
+{
+    /* Most are farther than 1.5 cells from all its nodes. */
+    double low[3] = {-INFINITY, -INFINITY, -INFINITY}, high[3] = {INFINITY, INFINITY, INFINITY};
+    for (int a = 0; a < g->dimension; a++) {
+        low[a] = (p->corner[a] - 1.6)/v->inverse_cell;
+        high[a] = (p->corner[a] + 4.6)/v->inverse_cell;
+    }
+    for (int o = 0; o < 27; o++) {
+        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
+        const mpm_block *b = &g->block[p->cover[o]];
+        for (int64_t i = b->begin; i < b->end; i++) {
+            const tobi_double3 *x = &v->position[i];
+            if (x->x < low[0] || x->x > high[0] || x->y < low[1] || x->y > high[1] || x->z < low[2] ||
+                x->z > high[2] || v->cuts[i].c[0].w == 0) continue;
+            vote_particle(c, g, v, p, i, votes);
+        }
+    }
 }
 
 static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
@@ -257,30 +284,103 @@ static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t 
     memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
     if (!any || !v->cuts) return 0;
     memset(votes, 0, sizeof votes);
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
-        const mpm_block *b = &g->block[p->cover[o]];
-        for (int64_t i = b->begin; i < b->end; i++)
-            if (v->cuts[i].c[0].w != 0) vote_particle(c, g, v, p, i, votes);
-    }
+    hold_vote(c, g, v, p, votes);
     for (int n = 0; n < nodes; n++)
         two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
     return two;
 }
 
-/* Twins of the node blocks with two velocities and of the particle blocks that reach them. */
-static void make_twins(mpm_grid *g, const char *marked)
+/* The sides of the nodes around a block, as its tile. */
+static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
 {
-    g->patch_twins = g->block_twins = 0;
-    for (int64_t k = 0; k < g->patch_count; k++)
-        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+    const int deep = dim == 3 ? 8 : 1;
+    for (int x = 0; x < 8; x++)
+        for (int y = 0; y < 8; y++)
+            for (int z = 0; z < deep; z++) {
+                const int o = ((x + 3)/4*3 + (y + 3)/4)*3 + (dim == 3 ? (z + 3)/4 : 1);
+                const int row = (x + 3)%4*4 + (y + 3)%4;
+                tile[dim == 3 ? (x*8 + y)*8 + z : x*8 + y] =
+                    c->side[(int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) +
+                            (dim == 3 ? row*4 + (z + 3)%4 : row)];
+            }
+}
+
+enum { MOST = 16 };                    /* sides that a block of particles is asked about          */
+
+/* Adds a side to a list if it is not there; 0 if the list is full. */
+static int note(float list[MOST], int *count, float side)
+{
+    int n = 0;
+    while (n < *count && list[n] != side) n++;
+    if (n == MOST) return 0;
+    list[n] = side;
+    if (n == *count) ++*count;
+    return 1;
+}
+
+/* Whether a particle of the block may have a node of its tile hidden from it: 1 for each that is so. */
+static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int nodes)
+{
+    float other[MOST];
+    int count = 0, found = 0;
+    for (int64_t i = b->begin; i < b->end; i++) {
+        if (v->apart && !note(other, &count, mpm_side_of(v->material[v->solid[i]].group))) return 1;
+        for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
+            if (!note(other, &count, -v->cuts[i].c[k].w)) return 1;
+    }
+    for (int k = 0; k < count; k++)
+        for (int n = 0; n < nodes; n++) found |= tile[n] == other[k];
+    return found;
+}
+
+/* Marks the particle blocks that need a twin, as twin == 1, and gives them tiles of sides. */
+static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const tobi_exec *x, tobi_error *err)
+{
+    const int nodes = g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    c->tile_count = 0;
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
-        int reaches = 0;
-        for (int o = 0; o < 27 && marked[k]; o++)
-            reaches |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
-        b->twin = reaches ? (int32_t)(g->block_count + g->block_twins++) : -1;
-        if (!reaches) continue;
+        b->twin = 0;
+        for (int o = 0; o < 27 && (v->apart || c->marked[k]); o++)
+            b->twin |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
+        b->sides = b->twin ? (int32_t)c->tile_count++ : -1;
+    }
+    if (c->tile_count > c->tile_room) {
+        free(c->tile);
+        c->tile_room = c->tile_count + c->tile_count/4 + 8;
+        c->tile = calloc((size_t)c->tile_room*MPM_SIDES, sizeof *c->tile);
+        if (!c->tile) {
+            c->tile_room = 0;
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the cuts of %lld blocks",
+                             (long long)c->tile_count);
+        }
+    }
+    #pragma omp parallel for num_threads(tobi_team(x, c->tile_count, 4)) schedule(dynamic, 4)
+    for (int64_t k = 0; k < g->block_count; k++) {
+        mpm_block *b = &g->block[k];
+        if (!b->twin) continue;
+        copy_sides(c, b, c->tile + (int64_t)b->sides*MPM_SIDES, g->dimension);
+        b->twin = hides(v, b, c->tile + (int64_t)b->sides*MPM_SIDES, nodes);
+    }
+    return TOBI_OK;
+}
+
+/* Numbers the twins of the node blocks with two velocities. */
+static void number_patches(mpm_grid *g)
+{
+    g->patch_twins = 0;
+    for (int64_t k = 0; k < g->patch_count; k++)
+        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+}
+
+/* Twins of the particle blocks that find_split has marked, and of the node blocks. */
+static void make_twins(mpm_grid *g)
+{
+    g->block_twins = 0;
+    for (int64_t k = 0; k < g->block_count; k++) {
+        mpm_block *b = &g->block[k];
+        b->twin = b->twin ? (int32_t)(g->block_count + g->block_twins++) : -1;
+        if (b->twin < 0) continue;
         mpm_block *t = &g->block[b->twin];
         *t = *b;
         t->begin = t->end = 0;
@@ -300,57 +400,72 @@ static void make_twins(mpm_grid *g, const char *marked)
     }
 }
 
+/* Packs the seams of the nodes with a side. */
+static void list_seams(mpm_cut *c, const mpm_grid *g)
+{
+    const int nodes = nodes_of(g);
+    c->seam_count = 0;
+    for (int64_t k = 0; k < g->patch_count; k++)
+        for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
+            if (c->side[k*nodes + n] == 0) continue;
+            mpm_seam *seam = &c->seam[c->seam_count++];
+            *seam = c->seam[k*nodes + n];
+            seam->first = (int32_t)(k*nodes + n);
+            seam->second = (int32_t)(g->patch[k].twin*(int64_t)nodes + n);
+        }
+}
+
 static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g, const mpm_view *v)
 {
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
         c->marked[k] = 0;
-        if (c->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
+        if (v->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
         for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts; i++)
             c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
 }
 
-static void mark_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g)
+/* Twins of the blocks that need them, once the sides are known. */
+static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v,
+                                tobi_error *err)
 {
-    #pragma omp parallel for num_threads(s->exec.threads)
-    for (int64_t k = 0; k < g->block_count; k++)
-        if (c->apart) c->marked[k] |= (char)mpm_meet_reaches(g, c->side, &c->crowd[k], &g->block[k]);
+    number_patches(g);
+    list_seams(c, g);
+    TOBI_TRY(find_split(c, g, v, &s->exec, err));
+    make_twins(g);
+    return TOBI_OK;
 }
 
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
-    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     const int nodes = nodes_of(g);
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     if (v->cuts) find_faces(c, s, v);
     look_at_blocks(c, s, g, v);
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
         g->patch[k].twin = find_sides(c, g, v, k);
-        if (c->apart)
+        if (v->apart)
             g->patch[k].twin |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
                                               c->seam + k*nodes);
     }
-    mark_blocks(c, s, g);
-    make_twins(g, c->marked);
-    return TOBI_OK;
+    return split_blocks(c, s, g, v, err);
 }
 
-tobi_status mpm_cut_keep(const mpm_cut *c, const mpm_grid *g, double **rows, int64_t *count, tobi_error *err)
+tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err)
 {
-    const int nodes = nodes_of(g);
-    int64_t n = 0;
-    for (int64_t k = 0; k < g->patch_count*nodes && c->side; k++) n += c->side[k] != 0;
-    *rows = malloc((size_t)(n + 1)*TOBI_RECALL_ROW*sizeof **rows);
+    *count = c->rows ? c->row_count : c->seam_count;       /* loaded and not run since */
+    *rows = malloc((size_t)(*count + 1)*TOBI_RECALL_ROW*sizeof **rows);
     if (!*rows)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities", (long long)n);
-    *count = 0;
-    for (int64_t k = 0; k < g->patch_count*nodes && n > 0; k++) {
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities",
+                         (long long)*count);
+    if (c->rows) memcpy(*rows, c->rows, (size_t)*count*TOBI_RECALL_ROW*sizeof **rows);
+    for (int64_t k = 0; k < *count && !c->rows; k++) {
         const mpm_seam *m = &c->seam[k];
-        if (c->side[k] == 0) continue;
-        const double row[TOBI_RECALL_ROW] = {(double)k, c->side[k], m->normal[0], m->normal[1], m->normal[2],
-                                             m->gap, m->friction, m->fixed};
-        memcpy(*rows + TOBI_RECALL_ROW*(*count)++, row, sizeof row);
+        const double row[TOBI_RECALL_ROW] = {m->first, c->side[m->first], m->normal[0], m->normal[1],
+                                             m->normal[2], m->gap, m->friction, m->fixed};
+        memcpy(*rows + TOBI_RECALL_ROW*k, row, sizeof row);
     }
     return TOBI_OK;
 }
@@ -371,20 +486,17 @@ tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mp
                                  .gap = (float)row[5], .friction = (float)row[6], .fixed = (int)row[7] };
     }
     look_at_blocks(c, s, g, v);
-    mark_blocks(c, s, g);
-    make_twins(g, c->marked);
-    return TOBI_OK;
+    return split_blocks(c, s, g, v, err);
 }
 
 /* A seam and the two velocities it couples. */
 typedef struct joint {
-    double mass, along, u[3], n[3];    /* kg; m/s, of the second relative to the first            */
+    double along, u[3], n[3];          /* m/s, of the second relative to the first                 */
 } joint;
 
 static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
 {
-    joint j = { .mass = (double)first->w*second->w/((double)first->w + second->w) };
-    if (seam->fixed) j.mass = seam->fixed == 1 ? second->w : first->w;
+    joint j;
     for (int a = 0; a < 3; a++) {
         j.n[a] = seam->normal[a];
         j.u[a] = (double)(&second->x)[a] - (&first->x)[a];
@@ -398,9 +510,14 @@ static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_
 static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
 {
     const joint j = look_at(seam, first, second);
+    const double lack = -fmax(seam->gap, 0)/dt - j.along;
     double was[3] = {seam->push[0], seam->push[1], seam->push[2]}, slide[3];
-    double normal = fmax(0, vec3_dot(was, j.n) + j.mass*(-fmax(seam->gap, 0)/dt - j.along));
-    for (int a = 0; a < 3; a++) slide[a] = was[a] - j.mass*(j.u[a] - j.along*j.n[a]);
+    if (lack <= 0 && was[0] == 0 && was[1] == 0 && was[2] == 0) return;
+    const double mass = seam->fixed == 1   ? second->w
+                        : seam->fixed == 2 ? first->w
+                                           : (double)first->w*second->w/((double)first->w + second->w);
+    double normal = fmax(0, vec3_dot(was, j.n) + mass*lack);
+    for (int a = 0; a < 3; a++) slide[a] = was[a] - mass*(j.u[a] - j.along*j.n[a]);
     vec3_add_scaled(slide, slide, -vec3_dot(slide, j.n), j.n);
     double size = vec3_length(slide), grip = seam->friction*normal, keep = size > grip ? grip/size : 1;
     for (int a = 0; a < 3; a++) {
@@ -412,7 +529,7 @@ static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, doubl
 }
 
 /* The gap at the end of the step; returns what the push has cost, J. */
-static double close(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
+static double settle_seam(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
 {
     const joint j = look_at(seam, first, second);
     seam->gap += (float)(j.along*dt);
@@ -420,32 +537,47 @@ static double close(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 
 }
 
 /* What is stationary does not even fall. */
-static void begin(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second)
+static void begin_seam(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second)
 {
     tobi_float4 *fixed = seam->fixed == 1 ? first : second;
     if (seam->fixed) fixed->x = fixed->y = fixed->z = 0;
     memset(seam->push, 0, sizeof seam->push);
 }
 
-enum { BEGIN, PRESS, CLOSE };
+enum { BEGIN, PRESS, SETTLE };
+
+/* A walk over the seams. */
+typedef struct walk {
+    mpm_seam *seam;
+    tobi_float4 *node;
+    double dt;
+    int what;
+} walk;
+
+/* Returns what the pushes have cost, J. */
+static double visit_range(const walk *w, int64_t begin, int64_t end)
+{
+    double lost = 0;
+    for (int64_t k = begin; k < end; k++) {
+        mpm_seam *seam = &w->seam[k];
+        tobi_float4 *first = &w->node[seam->first], *second = &w->node[seam->second];
+        if (!(first->w > 0) || !(second->w > 0)) continue;
+        if (w->what == BEGIN) begin_seam(seam, first, second);
+        if (w->what == SETTLE) lost += settle_seam(seam, first, second, w->dt);
+        else press(seam, first, second, w->dt);
+    }
+    return lost;
+}
 
 static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, int what)
 {
-    const int nodes = nodes_of(g);
+    const walk w = { .seam = c->seam, .node = g->node, .dt = dt, .what = what };
+    const int64_t parts = (c->seam_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     double *part = x->partial, lost = 0;
-    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 8)
-    for (int64_t k = 0; k < g->patch_count; k++) {
-        part[k] = 0;
-        for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
-            tobi_float4 *first = &g->node[k*nodes + n], *second = &g->node[g->patch[k].twin*nodes + n];
-            mpm_seam *seam = &c->seam[k*nodes + n];
-            if (c->side[k*nodes + n] == 0 || !(first->w > 0) || !(second->w > 0)) continue;
-            if (what == BEGIN) begin(seam, first, second);
-            if (what == CLOSE) part[k] += close(seam, first, second, dt);
-            else press(seam, first, second, dt);
-        }
-    }
-    for (int64_t k = 0; k < g->patch_count; k++) lost += part[k];
+    #pragma omp parallel for num_threads(tobi_team(x, parts, 8))
+    for (int64_t q = 0; q < parts; q++)
+        part[q] = visit_range(&w, q*TOBI_BLOCK, q < parts - 1 ? (q + 1)*TOBI_BLOCK : c->seam_count);
+    for (int64_t q = 0; q < parts; q++) lost += part[q];
     return lost;
 }
 
@@ -461,5 +593,5 @@ void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
-    return visit_seams(c, x, g, dt, CLOSE);
+    return visit_seams(c, x, g, dt, SETTLE);
 }

@@ -6,23 +6,26 @@
 #include "mpm/meet.h"
 
 typedef struct mpm_cut {
-    float *side;                       /* [patches][nodes], see mpm_view.side                     */
-    mpm_seam *seam;                    /* [patches][nodes], of those with a side                  */
+    float *side;                       /* [patches][nodes], see mpm_view.sides                    */
+    mpm_seam *seam;                    /* [seam_count] of the nodes with a side, in their order   */
+    int64_t seam_count;
+    float *tile;                       /* [tile_count] see mpm_view.sides                         */
+    int64_t tile_count, tile_room;
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
-    char *marked;                      /* [blocks] 1: a particle of it may use a second velocity  */
+    char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
     mpm_crowd *crowd;                  /* [blocks], see mpm/meet.h                                */
-    int apart;                         /* 1: there are several groups of solids; the caller's     */
     int64_t node_room, particle_room, block_room;
-    double *rows;                      /* of a checkpoint, for the next step                      */
+    double *rows;                      /* of a checkpoint, for the next step; NULL = none         */
     int64_t row_count;
 } mpm_cut;
 
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
    made, counted up. */
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
-/* Finds the nodes with two velocities and makes their twins. The grid's view must be bound anew. */
+/* Finds the nodes with two velocities and makes their twins. The caller then points
+   view.sides and view.hidden at what is here. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
    gaps, and what friction and impact of the faces have taken, J. */
@@ -30,7 +33,7 @@ void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 /* The nodes with two velocities as they are now, for a checkpoint: rows of TOBI_RECALL_ROW numbers, the
-   caller's to free; and back, after the blocks are built, instead of finding them. */
-tobi_status mpm_cut_keep(const mpm_cut *c, const mpm_grid *g, double **rows, int64_t *count, tobi_error *err);
+   caller's to free; and back from c->rows, after the blocks are built, instead of finding them. */
+tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err);
 tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 void mpm_cut_free(mpm_cut *c);

@@ -13,33 +13,28 @@ static const double MOST_CELLS = 1.3;
 /* How far a crack opens until nothing is left, m. */
 static double find_opening(const tobi_solid_def *d) { return 2*d->fracture_energy/d->strength; }
 
-static tobi_status check_keys(const tobi_solid_def *def, const char *name, tobi_error *err)
+static tobi_status check_keys(const tobi_solid_def *def, const char **key, tobi_error *err)
 {
     const int breaks = def->strength > 0, costs = def->fracture_energy > 0;
+    *key = breaks ? "strength" : "fracture_energy";
     if (breaks && def->model != TOBI_NEO_HOOKEAN && def->model != TOBI_COROTATED)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "solid '%s': strength is for the models neo-hookean and "
-                         "corotated", name);
-    if (breaks && !costs)
-        return tobi_fail(err, TOBI_INVALID, "solid '%s': strength needs a fracture_energy greater than 0 "
-                         "J/m2", name);
-    if (costs && !breaks)
-        return tobi_fail(err, TOBI_INVALID, "solid '%s': fracture_energy needs a strength greater than 0 Pa",
-                         name);
+        return tobi_fail(err, TOBI_UNSUPPORTED, "is for the models neo-hookean and corotated");
+    if (breaks && !costs) return tobi_fail(err, TOBI_INVALID, "needs a fracture_energy greater than 0 J/m2");
+    if (costs && !breaks) return tobi_fail(err, TOBI_INVALID, "needs a strength greater than 0 Pa");
     return TOBI_OK;
 }
 
-tobi_status mpm_damage_check(const tobi_solid_def *def, const char *name, double cell, char note[200],
+tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[200],
                              tobi_error *err)
 {
     note[0] = 0;
-    TOBI_TRY(check_keys(def, name, err));
+    TOBI_TRY(check_keys(def, key, err));
     if (!(def->strength > 0)) return TOBI_OK;
     const double opening = find_opening(def);
     const double most = opening*(def->youngs_modulus/def->strength + NARROWING)/BAND;
     if (!(cell < most))
-        return tobi_fail(err, TOBI_INVALID, "solid '%s': its strength and fracture_energy need cells smaller "
-                         "than %.4g m, they have %.4g m; larger ones hold more elastic energy than a crack "
-                         "takes", name, most, cell);
+        return tobi_fail(err, TOBI_INVALID, "needs cells smaller than %.4g m, they have %.4g m; larger ones "
+                         "hold more elastic energy than a crack of this fracture_energy takes", most, cell);
     if (opening > MOST_CELLS*cell)
         snprintf(note, 200, "cracks open by %.3g m until they are through; cells of %.3g m lose sight of "
                  "their faces before, and the energy stays below fracture_energy; cells larger than %.3g m "

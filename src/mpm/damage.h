@@ -5,10 +5,10 @@
 #include "core/simulation.h"
 #include "mpm/view.h"
 
-/* TOBI_INVALID in words if strength and fracture energy do not belong together, or if cells of this size (m)
-   are too large for them, eq. (21). name: of the solid. note: at least 200 characters; empty, or what the
-   user should know of such cells. */
-tobi_status mpm_damage_check(const tobi_solid_def *def, const char *name, double cell, char note[200],
+/* TOBI_INVALID if strength and fracture energy do not belong together, or if cells of this size (m) are too
+   large for them, eq. (21); TOBI_UNSUPPORTED for models that do not break. The text goes on from the name of
+   the key to blame, which *key becomes. note: empty, or what the user should know of such cells. */
+tobi_status mpm_damage_check(const tobi_solid_def *def, double cell, const char **key, char note[200],
                              tobi_error *err);
 /* Writes strength and brittleness of a solid on cells of this size (m), eq. (20). */
 void mpm_damage_describe(const tobi_solid_def *def, double cell, mpm_material *material);

@@ -289,20 +289,3 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     }
     return any;
 }
-
-int mpm_meet_reaches(const mpm_grid *g, const float *side, const mpm_crowd *c, const mpm_block *b)
-{
-    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
-    for (int o = 0; o < 27; o++) {
-        const mpm_patch *p = b->around[o] >= 0 ? &g->patch[b->around[o]] : NULL;
-        for (int n = 0; n < nodes && p && p->twin == 1; n++) {
-            const float here = side[(int64_t)b->around[o]*nodes + n];
-            const int at[3] = {three ? n/16 : n/4, three ? n/4%4 : n%4, n%4};
-            int reaches = c->group == MPM_MIXED ? here >= mpm_side_of(0) : here == mpm_side_of(c->group);
-            for (int a = 0; a < g->dimension && reaches; a++)
-                reaches = p->corner[a] + at[a] >= c->low[a] - 1 && p->corner[a] + at[a] <= c->high[a] + 3;
-            if (reaches) return 1;
-        }
-    }
-    return 0;
-}

@@ -17,6 +17,3 @@ mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension);
    those with a side already keep it. Returns 1 if there are any. */
 int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, const mpm_patch *p,
                   float *side, mpm_seam *seam);
-/* Whether a particle of a block may have the second velocity of a node where groups meet, a cell of motion
-   included. side: of all nodes; patches that will have a twin are marked by 1. */
-int mpm_meet_reaches(const mpm_grid *g, const float *side, const mpm_crowd *c, const mpm_block *b);

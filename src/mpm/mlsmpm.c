@@ -38,8 +38,7 @@ typedef struct mlsmpm {
     double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
     int built;                         /* blocks fit the particles                                 */
     int fresh;                         /* 1: they were built in this step                          */
-    int recalled;                      /* 1: a checkpoint says which nodes have two velocities     */
-    int blades;                        /* 1: nodes may have two velocities                        */
+    int blades;                        /* 1: nodes may have two velocities                         */
 } mlsmpm;
 
 static void choose_smoothing(const void *def, int *shape, double *support)
@@ -123,7 +122,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->affine = p->affine;
     v->solid = p->fluid;
     v->cuts = p->cuts;
-    m->blades = m->grid.twins = p->cuts != NULL || m->cut.apart;
+    m->blades = m->grid.twins = p->cuts != NULL || m->view.apart;
     v->material = m->material;
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
@@ -185,7 +184,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         m->damping[k] = d->damping;
         m->view.damped |= d->damping > 0;
         m->material[k].group = d->bonded ? 0 : k + 1;
-        m->cut.apart |= !d->bonded;
+        m->view.apart |= !d->bonded;
         m->sound = fmax(m->sound, sound);
         m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
     }
@@ -220,8 +219,11 @@ static tobi_status accept_solid(const tobi_simulation *s, const void *def, int s
                                 tobi_error *err)
 {
     const tobi_solid *d = &s->solids[solid];
-    return mpm_damage_check(&d->def, d->name, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing, note,
-                            err);
+    const double cell = ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing;
+    const char *key;
+    tobi_error why = { 0 };
+    tobi_status status = mpm_damage_check(&d->def, cell, &key, note, &why);
+    return status ? tobi_fail(err, status, "solid '%s': %s %s", d->name, key, why.text) : TOBI_OK;
 }
 
 static int is_stale(const mlsmpm *m)
@@ -235,11 +237,12 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_erro
         mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
         m->memory[MOVED] = 0;
-    } else if (m->recalled) {
+    } else if (m->cut.rows) {
         TOBI_TRY(mpm_cut_recall(&m->cut, s, &m->grid, &m->view, err));
     }
-    m->recalled = 0;
-    m->view.side = m->cut.side;
+    free(m->cut.rows);
+    m->cut.rows = NULL;
+    m->view.sides = m->cut.tile;
     m->view.hidden = m->cut.hidden;
     return TOBI_OK;
 }
@@ -544,7 +547,7 @@ static tobi_status keep_rows(const tobi_simulation *s, const void *state, double
 {
     const mlsmpm *m = state;
     (void)s;
-    return mpm_cut_keep(&m->cut, &m->grid, rows, count, err);
+    return mpm_cut_keep(&m->cut, rows, count, err);
 }
 
 /* After a load the blocks are built anew. */
@@ -554,7 +557,6 @@ static void recall_rows(void *state, double *rows, int64_t count)
     free(m->cut.rows);
     m->cut.rows = rows;
     m->cut.row_count = count;
-    m->recalled = m->memory[AGE] >= 0;
     m->built = 0;
 }
 

@@ -9,23 +9,6 @@
 TOBI_FN int mpm_span_first(int offset) { return offset < 0 ? 0 : offset == 0 ? 1 : 5; }
 TOBI_FN int mpm_span_last(int offset) { return offset < 0 ? 0 : offset == 0 ? 4 : 7; }
 
-/* The sides of the nodes around a block, into a tile. */
-TOBI_FN void mpm_copy_sides(const mpm_view *v, const mpm_block *b, float *tile, int dim)
-{
-    for (int o = 0; o < 27; o++) {
-        if (dim == 2 && o%3 != 1) continue;
-        const int ox = o/9 - 1, oy = o/3%3 - 1, oz = dim == 3 ? o%3 - 1 : 0;
-        const float *from = v->side + (int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D);
-        for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
-            for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                const int row = (x - 1 - 4*ox)*4 + (y - 1 - 4*oy);
-                if (dim == 2) tile[x*8 + y] = from[row];
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz) && dim == 3; z++)
-                    tile[(x*8 + y)*8 + z] = from[row*4 + (z - 1 - 4*oz)];
-            }
-    }
-}
-
 /* 1 for each of the three nodes of a row that the bits name, and for the fourth that carries nothing. */
 TOBI_FN quad mpm_take(uint32_t bits)
 {
@@ -39,17 +22,18 @@ TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, 
     uint32_t found = 0;
     for (int r = 0; r < rows; r++) {
         const float *at = side + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
-        uint32_t bits = (uint32_t)(at[0] == other) | (uint32_t)(at[1] == other) << 1 |
-                        (uint32_t)(at[2] == other) << 2;
-        found |= bits << 3*r;
+        found |= quad_matches(quad_load(at), other) << 3*r;
     }
     return found;
 }
 
-/* The nodes across a cut from a particle, and those whose second velocity is its solid's. */
+/* The nodes across a cut from a particle, and those whose second velocity is its solid's: see
+   mpm_view.hidden. */
 TOBI_FN uint32_t mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int32_t first, int dim)
 {
-    uint32_t hidden = mpm_match_sides(side, first, mpm_side_of(v->material[v->solid[i]].group), dim);
+    uint32_t hidden = 0;
+    if (v->apart)
+        hidden = mpm_match_sides(side, first, mpm_side_of(v->material[v->solid[i]].group), dim);
     for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
         hidden |= mpm_match_sides(side, first, -v->cuts[i].c[k].w, dim);
     return hidden;
@@ -73,9 +57,14 @@ TOBI_FN void mpm_add_split(tobi_float4 *tile, tobi_float4 *twin, const mpm_stenc
             const int32_t at = s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
             const uint32_t bits = hidden >> 3*(n*rows + r) & 7;
             const row value = dim == 3 ? row_mul(y, row_set(s->weight[1][r][k])) : y;
-            const row first = row_spread(mpm_take(~bits)), second = row_spread(mpm_take(bits));
-            row_store(tile + at, row_fma(value, first, row_load(tile + at)));
-            if (bits) row_store(twin + at, row_fma(value, second, row_load(twin + at)));
+            if (bits == 0 || bits == 7) {
+                tobi_float4 *to = (bits ? twin : tile) + at;
+                row_store(to, row_add(value, row_load(to)));
+            } else {
+                const row first = row_spread(mpm_take(~bits)), second = row_spread(mpm_take(bits));
+                row_store(tile + at, row_fma(value, first, row_load(tile + at)));
+                row_store(twin + at, row_fma(value, second, row_load(twin + at)));
+            }
             y = row_add(y, turn);
         }
         x = row_add(x, d0);
@@ -90,8 +79,8 @@ TOBI_FN void mpm_load_split(const tobi_float4 *tile, const tobi_float4 *twin, in
     for (int r = 0; r < rows; r++) {
         const int32_t at = first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
         const uint32_t bits = hidden >> 3*r & 7;
-        g[r] = row_load(tile + at);
-        if (bits)
+        g[r] = row_load((bits == 7 ? twin : tile) + at);
+        if (bits != 0 && bits != 7)
             g[r] = row_fma(row_load(twin + at), row_spread(mpm_take(bits)),
                            row_mul(g[r], row_spread(mpm_take(~bits))));
     }

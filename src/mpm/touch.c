@@ -11,19 +11,32 @@ static const double ENOUGH = 4e-3;     /* of the largest impulse may still chang
 
 static void free_entries(mpm_touch *t)
 {
-    free(t->node); free(t->weight); free(t->key); free(t->key_scratch);
-    free(t->order); free(t->order_scratch); free(t->begin);
-    free(t->owner); free(t->share);
+    free(t->node); free(t->weight); free(t->touched); free(t->begin); free(t->owner); free(t->share);
+    free(t->inverse);
+    t->node = t->touched = NULL;
+    t->weight = t->share = t->inverse = NULL;
+    t->begin = NULL;
+    t->owner = NULL;
     t->room = 0;
+}
+
+static void free_sort(mpm_touch *t)
+{
+    free(t->key); free(t->key_scratch); free(t->order); free(t->order_scratch); free(t->histogram);
+    t->key = t->key_scratch = NULL;
+    t->order = t->order_scratch = NULL;
+    t->histogram = NULL;
+    t->sort_room = 0;
 }
 
 void mpm_touch_free(mpm_touch *t)
 {
     free_entries(t);
+    free_sort(t);
     free(t->crowd);
-    free(t->histogram);
+    free(t->slot);
     free(t->piece);
-    free(t->full);
+    free(t->around);
     free(t->push);
     memset(t, 0, sizeof *t);
 }
@@ -43,12 +56,6 @@ static int64_t entry_of(const mpm_touch *t, int64_t k, int64_t each)
     return k < t->edge_first ? k*each : (2*k - t->edge_first)*each;
 }
 
-static int64_t contact_of(const mpm_touch *t, int64_t entry, int64_t each)
-{
-    int64_t k = entry/each;
-    return k < t->edge_first ? k : t->edge_first + (k - t->edge_first)/2;
-}
-
 static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
 {
     if (count <= t->room) return TOBI_OK;
@@ -56,26 +63,38 @@ static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
     free_entries(t);
     t->node = malloc((size_t)room*sizeof *t->node);
     t->weight = malloc((size_t)room*sizeof *t->weight);
-    t->key = malloc((size_t)room*sizeof *t->key);
-    t->key_scratch = malloc((size_t)room*sizeof *t->key_scratch);
-    t->order = malloc((size_t)room*sizeof *t->order);
-    t->order_scratch = malloc((size_t)room*sizeof *t->order_scratch);
+    t->touched = malloc((size_t)room*sizeof *t->touched);
     t->begin = malloc((size_t)(room + 1)*sizeof *t->begin);
     t->owner = malloc((size_t)room*sizeof *t->owner);
     t->share = malloc((size_t)room*sizeof *t->share);
-    if (t->node && t->weight && t->key && t->key_scratch && t->order && t->order_scratch && t->begin &&
-        t->owner && t->share) {
+    t->inverse = malloc((size_t)room*sizeof *t->inverse);
+    if (t->node && t->weight && t->touched && t->begin && t->owner && t->share && t->inverse) {
         t->room = room;
         return TOBI_OK;
     }
     free_entries(t);
-    t->node = t->key = t->key_scratch = NULL;
-    t->weight = NULL;
-    t->order = t->order_scratch = t->owner = NULL;
-    t->share = NULL;
-    t->begin = NULL;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)count);
 }
+
+static tobi_status reserve_sort(mpm_touch *t, const tobi_exec *x, tobi_error *err)
+{
+    if (t->room <= t->sort_room) return TOBI_OK;
+    free_sort(t);
+    t->key = malloc((size_t)t->room*sizeof *t->key);
+    t->key_scratch = malloc((size_t)t->room*sizeof *t->key_scratch);
+    t->order = malloc((size_t)t->room*sizeof *t->order);
+    t->order_scratch = malloc((size_t)t->room*sizeof *t->order_scratch);
+    t->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *t->histogram);
+    if (t->key && t->key_scratch && t->order && t->order_scratch && t->histogram) {
+        t->sort_room = t->room;
+        return TOBI_OK;
+    }
+    free_sort(t);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)t->room);
+}
+
+/* Few entries are counted by one thread, many sorted by all. */
+static int are_many(const mpm_touch *t, const tobi_exec *x) { return x->threads > 1 && t->count > 1 << 18; }
 
 static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, const tobi_exec *x,
                            tobi_error *err)
@@ -83,11 +102,13 @@ static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, co
     int64_t nodes = count_nodes(g);
     t->count = entry_of(t, contacts, nodes_each(g));
     TOBI_TRY(reserve_entries(t, t->count, err));
-    if (!t->histogram) t->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *t->histogram);
+    if (are_many(t, x)) TOBI_TRY(reserve_sort(t, x, err));
     if (nodes > t->node_room) {
         free(t->crowd);
+        free(t->slot);
         t->node_room = nodes + nodes/8;
         t->crowd = malloc((size_t)t->node_room*sizeof *t->crowd);
+        t->slot = calloc((size_t)t->node_room, sizeof *t->slot);
     }
     if (contacts > t->push_room) {
         free(t->push);
@@ -95,10 +116,13 @@ static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, co
         t->push = malloc((size_t)t->push_room*sizeof *t->push);
         if (!t->push) t->push_room = 0;
     }
-    if (t->crowd && t->histogram && t->push) return TOBI_OK;
+    if (t->crowd && t->slot && t->push) return TOBI_OK;
     t->node_room = 0;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
 }
+
+/* Threads for a loop over all entries. */
+static int team_of(const mpm_touch *t, const tobi_exec *x) { return tobi_team(x, t->count, 16384); }
 
 static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
 {
@@ -111,49 +135,63 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
     return &g->block[low];
 }
 
-/* Place of a tile's node in the array of nodes. */
-static int64_t place_of(const mpm_block *b, int dim, int32_t tile)
-{
-    int at[3] = {tile/64, tile/8%8, tile%8};
-    if (dim == 2) { at[0] = tile/8; at[1] = tile%8; at[2] = 1; }
-    int o = 0, n = 0;
-    for (int a = 0; a < 3; a++) {
-        o = o*3 + (at[a] + 3)/4;
-        if (a < dim) n = n*4 + (at[a] + 3)%4;
-    }
-    return (int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) + n;
-}
-
 static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
                        tobi_exec *x)
 {
-    const int dim = g->dimension, each = nodes_each(g);
-    #pragma omp parallel for num_threads(x->threads)
+    const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
+    const int64_t nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256))
     for (int64_t k = 0; k < t->edge_first; k++) {
         const int64_t particle = c->list[k].particle;
         const mpm_block *b = block_of(g, particle), *twin = b->twin < 0 ? NULL : &g->block[b->twin];
+        const uint32_t hidden = twin ? v->hidden[particle] : 0;
         const double *at = &v->position[particle].x;
-        double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-        int first[3] = {0, 0, 0};                       /* in the tile, which begins a node before */
-        for (int a = 0; a < dim; a++)
-            first[a] = (int)mpm_spline(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 1;
-        for (int n = 0; n < each; n++) {
-            const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
-            const mpm_block *from = twin && v->hidden[particle] >> n & 1 ? twin : b;
-            const int32_t tile = dim == 3 ? (first[0] + i)*64 + (first[1] + j)*8 + first[2] + l
-                                          : (first[0] + i)*8 + first[1] + j;
-            t->node[k*each + n] = (uint32_t)place_of(from, dim, tile);
-            t->weight[k*each + n] = (float)(w[0][i]*w[1][j]*w[2][l]);
+        double w[3][3] = {{1}, {1}, {1}};
+        int block[3][3] = {{0}, {0}, {1}}, inner[3][3] = {{0}};      /* block around, node in it */
+        for (int a = 0; a < dim; a++) {
+            const int first = (int)mpm_spline(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 4;
+            for (int n = 0; n < 3; n++) {
+                block[a][n] = (first + n)/4;
+                inner[a][n] = (first + n)%4;
+            }
         }
+        uint32_t *node = t->node + k*each;
+        float *weight = t->weight + k*each;
+        for (int i = 0, n = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                const int row = dim == 3 ? (inner[0][i]*4 + inner[1][j])*4 : inner[0][i]*4 + inner[1][j];
+                for (int l = 0; l < deep; l++, n++) {
+                    const mpm_block *from = hidden >> n & 1 ? twin : b;
+                    const int64_t patch = from->around[(block[0][i]*3 + block[1][j])*3 + block[2][l]];
+                    node[n] = (uint32_t)(patch*nodes + row + inner[2][l]);
+                    weight[n] = (float)(w[0][i]*w[1][j]*w[2][l]);
+                }
+            }
     }
 }
 
 /* The nodes around a place: of both velocities, with their weights. */
-typedef struct surroundings {
+typedef struct mpm_surroundings {
     int64_t place[2][27];
     double weight[27];
     double full;                       /* mass over that of a full cell                            */
 } surroundings;
+
+/* The blocks of nodes that the 3 nodes from `first` along each axis lie in; 0 if one is missing. */
+static int find_patches(const mpm_grid *g, const int first[3], int64_t patch[8])
+{
+    for (int n = 0; n < 8; n++) {
+        const int step[3] = {n >> 2, n >> 1 & 1, n & 1};
+        int at[3], from = n;
+        for (int a = 0; a < 3; a++) {
+            at[a] = a < g->dimension ? first[a] + 2*step[a] : 0;
+            if (step[a] && (a >= g->dimension || at[a] >> 2 == first[a] >> 2)) from = n & ~(4 >> a);
+        }
+        patch[n] = from < n ? patch[from] : mpm_grid_find_patch(g, at);
+        if (patch[n] < 0) return 0;
+    }
+    return 1;
+}
 
 /* 0 if no material is near. */
 static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, double cell_mass,
@@ -164,12 +202,7 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
     int first[3] = {0, 0, -1};
     int64_t patch[8];
     for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
-    for (int n = 0; n < 8; n++) {
-        const int at[3] = {first[0] + 2*(n >> 2), first[1] + 2*(n >> 1 & 1),
-                           dim == 3 ? first[2] + 2*(n & 1) : 0};
-        patch[n] = mpm_grid_find_patch(g, at);
-        if (patch[n] < 0) return 0;
-    }
+    if (!find_patches(g, first, patch)) return 0;
     s->full = 0;
     for (int n = 0; n < each; n++) {
         const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
@@ -187,73 +220,109 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
     return 1;
 }
 
-/* Lists the pieces of a blade's edge that lie in material. The share rises from 0 to 1 within half a cell
-   across the surface. */
+/* Lists the pieces of a blade's edge that lie in material, and their surroundings in the same order. The
+   share rises from 0 to 1 within half a cell across the surface. */
 static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
-                              const mpm_view *v, const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
+                              const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     const double size = 2*step->radius;
-    int64_t count = tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
+    int64_t count = tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room), listed = 0;
     if (count > t->piece_room) {
         free(t->piece);
-        free(t->full);
+        free(t->around);
         t->piece = malloc((size_t)count*sizeof *t->piece);
-        t->full = malloc((size_t)count*sizeof *t->full);
-        t->piece_room = t->piece && t->full ? count : 0;
+        t->around = malloc((size_t)count*sizeof *t->around);
+        t->piece_room = t->piece && t->around ? count : 0;
         if (!t->piece_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
-    #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < count; k++) {
-        surroundings s;
-        int near = look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, &s);
-        t->full[k] = near ? fmin(1, 2*s.full - 0.5) : 0;
+        surroundings *s = &t->around[listed];
+        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, s)) continue;
+        const double full = fmin(1, 2*s->full - 0.5);
+        if (!(full > 0)) continue;
+        TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], full, step, err));
+        listed++;
     }
-    for (int64_t k = 0; k < count; k++)
-        if (t->full[k] > 0) TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], t->full[k], step, err));
     return TOBI_OK;
 }
 
 /* Each velocity of a node moves a piece of an edge by its share of the mass. */
-static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
-                            const mpm_view *v, tobi_exec *x)
+static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g)
 {
     const int each = nodes_each(g);
-    #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = t->edge_first; k < c->count; k++) {
-        const int64_t entry = entry_of(t, k, each);
-        double at[3], sum = 0;
-        surroundings s;
-        for (int a = 0; a < 3; a++) at[a] = b->rigid.position[a] + c->list[k].arm[a];
-        look_around(g, at, v->inverse_cell, t->cell_mass, &s);
+        const surroundings *s = &t->around[k - t->edge_first];
+        uint32_t *node = t->node + entry_of(t, k, each);
+        float *weight = t->weight + entry_of(t, k, each);
+        double sum = 0;
         for (int n = 0; n < each; n++) {
             double mass[2], both;
-            for (int m = 0; m < 2; m++) mass[m] = s.place[m][n] < 0 ? 0 : g->node[s.place[m][n]].w;
+            for (int m = 0; m < 2; m++) mass[m] = s->place[m][n] < 0 ? 0 : g->node[s->place[m][n]].w;
             both = mass[0] + mass[1];
             for (int m = 0; m < 2; m++) {
-                t->node[entry + 2*n + m] = (uint32_t)s.place[mass[m] > 0 ? m : 0][n];
-                t->weight[entry + 2*n + m] = mass[m] > 0 ? (float)(s.weight[n]*mass[m]/both) : 0;
+                node[2*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
+                weight[2*n + m] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/both) : 0;
             }
-            if (both > 0) sum += s.weight[n];
+            if (both > 0) sum += s->weight[n];
         }
-        for (int n = 0; n < 2*each; n++) t->weight[entry + n] /= (float)sum;
+        for (int n = 0; n < 2*each; n++) weight[n] /= (float)sum;
     }
 }
 
-/* Lists the entries of every node. */
-static void sort_by_node(mpm_touch *t, const mpm_grid *g, tobi_exec *x)
+/* Puts an entry of a contact in its place in the list of its node. */
+static void place_entry(mpm_touch *t, int64_t place, int64_t entry, int64_t contact)
 {
-    int64_t nodes = count_nodes(g);
-    memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
-    tobi_sort_by_key(x, t->count, (uint32_t)nodes, t->key, t->order, t->key_scratch, t->order_scratch,
-                     t->histogram);
-    t->touched = tobi_find_runs(x, t->count, t->key, 0, t->begin);
-    t->begin[t->touched] = t->count;
-    const int64_t each = nodes_each(g);
-    #pragma omp parallel for num_threads(x->threads)
+    t->owner[place] = (int32_t)contact;
+    t->share[place] = t->weight[entry];
+}
+
+static void count_by_node(mpm_touch *t, int64_t contacts, int64_t each)
+{
+    int64_t sum = 0;
+    t->touched_count = 0;
     for (int64_t e = 0; e < t->count; e++) {
-        t->owner[e] = (int32_t)contact_of(t, t->order[e], each);
-        t->share[e] = t->weight[t->order[e]];
+        int32_t *slot = &t->slot[t->node[e]];
+        if (!*slot) {
+            t->begin[t->touched_count] = 0;
+            t->touched[t->touched_count++] = t->node[e];
+            *slot = (int32_t)t->touched_count;
+        }
+        t->begin[*slot - 1]++;
+    }
+    for (int64_t n = 0; n < t->touched_count; n++) {
+        const int64_t count = t->begin[n];
+        t->begin[n] = sum;
+        sum += count;
+    }
+    for (int64_t k = 0, e = 0; k < contacts; k++)
+        for (const int64_t end = entry_of(t, k + 1, each); e < end; e++)
+            place_entry(t, t->begin[t->slot[t->node[e]] - 1]++, e, k);
+    memmove(t->begin + 1, t->begin, (size_t)t->touched_count*sizeof *t->begin);    /* the ends were left */
+    t->begin[0] = 0;
+    for (int64_t n = 0; n < t->touched_count; n++) t->slot[t->touched[n]] = 0;
+}
+
+/* Lists the entries of every node, each in the order of the contacts. */
+static void sort_by_node(mpm_touch *t, int64_t contacts, const mpm_grid *g, tobi_exec *x)
+{
+    const int64_t each = nodes_each(g);
+    if (!are_many(t, x)) {
+        count_by_node(t, contacts, each);
+        return;
+    }
+    memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
+    tobi_sort_by_key(x, t->count, (uint32_t)count_nodes(g), t->key, t->order, t->key_scratch,
+                     t->order_scratch, t->histogram);
+    t->touched_count = tobi_find_runs(x, t->count, t->key, 0, t->begin);
+    t->begin[t->touched_count] = t->count;
+    #pragma omp parallel for num_threads(x->threads)
+    for (int64_t n = 0; n < t->touched_count; n++) {
+        t->touched[n] = t->key[t->begin[n]];
+        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
+            const int64_t k = t->order[e]/each;        /* an edge has twice as many */
+            place_entry(t, e, t->order[e], k < t->edge_first ? k : t->edge_first + (k - t->edge_first)/2);
+        }
     }
 }
 
@@ -262,17 +331,20 @@ static void sort_by_node(mpm_touch *t, const mpm_grid *g, tobi_exec *x)
 static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const int64_t each = nodes_each(g);
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t n = 0; n < t->touched; n++) {
+    const int team = team_of(t, x);
+    #pragma omp parallel for num_threads(team)
+    for (int64_t n = 0; n < t->touched_count; n++) {
         float sum = 0;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->share[e];
-        t->crowd[t->key[t->begin[n]]] = sum;
+        const float mass = g->node[t->touched[n]].w;
+        t->inverse[n] = mass > 0 ? 1/mass : 0;
+        t->crowd[t->touched[n]] = sum*t->inverse[n];
     }
-    #pragma omp parallel for num_threads(x->threads)
+    #pragma omp parallel for num_threads(team)
     for (int64_t k = 0; k < c->count; k++) {
         double sum = 0;
         for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
-            if (g->node[t->node[n]].w > 0) sum += t->weight[n]*t->crowd[t->node[n]]/g->node[t->node[n]].w;
+            sum += t->weight[n]*t->crowd[t->node[n]];
         c->list[k].mobility = sum;
     }
 }
@@ -280,7 +352,7 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
 static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const int64_t each = nodes_each(g);
-    #pragma omp parallel for num_threads(x->threads)
+    #pragma omp parallel for num_threads(team_of(t, x))
     for (int64_t k = 0; k < c->count; k++) {
         const int64_t end = entry_of(t, k + 1, each);
         quad u = quad_set(0);
@@ -292,19 +364,17 @@ static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid
 
 static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
-    #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < c->count; k++) {
         const double *change = c->list[k].change;
         t->push[k] = (tobi_float4){(float)change[0], (float)change[1], (float)change[2], 0};
     }
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t n = 0; n < t->touched; n++) {
-        tobi_float4 *node = &g->node[t->key[t->begin[n]]];
+    #pragma omp parallel for num_threads(team_of(t, x))
+    for (int64_t n = 0; n < t->touched_count; n++) {
+        tobi_float4 *node = &g->node[t->touched[n]];
         quad sum = quad_set(0);
-        if (!(node->w > 0)) continue;
         for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++)
             sum = sum + quad_load(&t->push[t->owner[e]])*quad_set(t->share[e]);
-        quad_store(node, quad_load(node) + sum*quad_set(1/node->w));
+        quad_store(node, quad_load(node) + sum*quad_set(t->inverse[n]));
     }
 }
 
@@ -315,12 +385,12 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
     t->edge_first = c->count;
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
-        TOBI_TRY(list_edges(t, c, b, g, v, step, &s->exec, err));
+        TOBI_TRY(list_edges(t, c, b, g, v, step, err));
     if (c->count == 0) return TOBI_OK;
     TOBI_TRY(reserve(t, g, c->count, &s->exec, err));
     find_nodes(t, c, g, v, &s->exec);
-    find_edge_nodes(t, c, b, g, v, &s->exec);
-    sort_by_node(t, g, &s->exec);
+    find_edge_nodes(t, c, g);
+    sort_by_node(t, c->count, g, &s->exec);
     find_mobility(t, c, g, &s->exec);
     read_velocities(t, c, g, &s->exec);
     tobi_contact_aim(c, b, step, &s->exec);

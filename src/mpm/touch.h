@@ -10,16 +10,20 @@ typedef struct mpm_touch {
     uint32_t *node;                    /* place in the nodes' array                               */
     float *weight;
     /* The entries by node, so that every node is changed by one thread, in one order. */
-    uint32_t *key, *key_scratch;       /* nodes, sorted                                           */
-    int32_t *order, *order_scratch;    /* entries                                                 */
-    int64_t *begin, *histogram;        /* of the entries of each touched node                     */
+    uint32_t *touched;                 /* places of the nodes that have any                       */
+    int64_t *begin;                    /* of the entries of each touched node                     */
+    float *inverse;                    /* 1/kg, of its mass                                       */
     int32_t *owner;                    /* the contact of each, and its weight                     */
     float *share;
-    int64_t touched, room;
-    float *crowd;                      /* [nodes] sum of the contacts' weights                    */
+    int64_t touched_count, room;
+    float *crowd;                      /* [nodes] sum of the contacts' weights over the mass, 1/kg */
+    int32_t *slot;                     /* [nodes] scratch of the sort, else 0                     */
     int64_t node_room;
+    uint32_t *key, *key_scratch;       /* scratch of the sort of many entries                     */
+    int32_t *order, *order_scratch;
+    int64_t *histogram, sort_room;
     tobi_blade_piece *piece;           /* of the present blade's edge                             */
-    double *full;                      /* [pieces] share in material                              */
+    struct mpm_surroundings *around;   /* [pieces] and what is there; those in material first     */
     int64_t piece_room;
     double cell_mass;                  /* kg of a full cell: the caller's to set                  */
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */

@@ -56,10 +56,9 @@ TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, cons
     tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
     tobi_float4 *twin = mpm_twin_tile(b, v->tile, nodes);
     tobi_float4 *calm_twin = calm ? mpm_twin_tile(b, v->calm, nodes) : NULL;
-    float side[MPM_TILE_3D];
     mpm_clear(v->tile + number*(nodes + 8), nodes + 8);
     if (calm) mpm_clear(calm, nodes + 8);
-    if (twin) mpm_copy_sides(v, b, side, dim);
+    const float *side = twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
     for (int r = 0; r < 9; r++) sum[r] = row_set(0);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;

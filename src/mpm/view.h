@@ -11,7 +11,8 @@
 #pragma once
 #include "core/particles.h"
 
-enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32 };
+enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
+       MPM_SIDES = MPM_TILE_3D + 8 };
 
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
@@ -40,6 +41,7 @@ typedef struct mpm_block {
     int64_t begin, end;                /* particles                                               */
     int32_t around[27];                /* index of the node block at offset (x + 1)*9 + (y + 1)*3 + z + 1 */
     int32_t twin;                      /* index of the twin block, -1 = none                      */
+    int32_t sides;                     /* of a block with a twin: number of its tile of sides     */
 } mpm_block;
 
 /* Nodes of one block, and the particle blocks (of a twin: twins) whose tiles reach it, -1 = none. */
@@ -67,9 +69,9 @@ typedef struct mpm_view {
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
     const tobi_columns *TOBI_RESTRICT cuts;   /* core/cuts.h; NULL in scenes without blades        */
-    const float *TOBI_RESTRICT side;   /* [patches][nodes] number of the cut at a node, with the sign of
-                                          the side its first velocity belongs to; mpm_side_of;
-                                          0 = one velocity                                         */
+    const float *TOBI_RESTRICT sides;  /* tiles of MPM_SIDES, around blocks with a twin: number of the cut at
+                                          a node, with the sign of the side its first velocity belongs to;
+                                          mpm_side_of; 0 = one velocity                            */
     uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
                                           (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it  */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
@@ -81,6 +83,7 @@ typedef struct mpm_view {
     float  cell;                       /* m                                                        */
     float  dt, strain_dt;              /* s, of this step and of the gradients that strain lacks    */
     int    damped;                     /* 1: a material is damped                                  */
+    int    apart;                      /* 1: there are several groups of solids                    */
     int    affine_momentum;            /* 1: APIC                                                  */
     float  flip;                       /* share of FLIP; 1 with XPIC                               */
     float  own;                        /* 1 if the particle's own velocity goes on: FLIP           */

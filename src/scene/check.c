@@ -2,6 +2,7 @@
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
 #include "scene/suggest.h"
+#include "mpm/damage.h"
 #include "world/methods.h"
 #include "world/params.h"
 #include "world/world.h"
@@ -213,6 +214,23 @@ static void check_solid(const tobi_scene *scene, tobi_source *source, const tobi
     }
 }
 
+/* Strength and fracture energy must fit each other and the cells: tobi_world_add_solid would say the same,
+   but not where. */
+static void check_strength(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+{
+    const tobi_scene_solid *solid = &scene->solids[entry->index];
+    const tobi_mlsmpm_def *method = scene->method_def;
+    const char *key;
+    char note[200];
+    tobi_error err = { 0 };
+    if (scene->method != &tobi_mlsmpm_table || solid->bound.good != solid->bound.given ||
+        !tobi_solid_uses(solid->def.model, "strength") ||
+        !tobi_bind_has(&tobi_world_table, scene->world_bound.good, "spacing")) return;
+    if (mpm_damage_check(&solid->def, method->cell*scene->world.spacing, &key, note, &err) == TOBI_OK) return;
+    tobi_place place = { entry, key, 0 };
+    tobi_source_mistake_at_key(source, &place, "%s", err.text);
+}
+
 static void check_solids(const tobi_scene *scene, tobi_source *source)
 {
     tobi_place solids = { &root, "solids", 0 };
@@ -220,6 +238,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
         tobi_place entry = { &solids, NULL, (size_t)i };
         check_name(scene, source, &entry, SOLIDS);
         check_solid(scene, source, &entry);
+        check_strength(scene, source, &entry);
         tobi_check_fills(scene, source, &entry, scene->solids[i].fills, scene->solids[i].fill_count);
     }
 }

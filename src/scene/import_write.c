@@ -32,12 +32,36 @@ static void shorten_paths(json_t *root, const char *directory)
     }
 }
 
-static tobi_status write_scene(const tobi_scene *scene, const char *from, const char *path, tobi_error *err)
+/* The table with the paths that the new scene has; owned by the caller, NULL without memory. */
+static char *shorten_table(const char *table, const char *directory)
+{
+    json_t *folder = json_string(directory);
+    char *quoted = folder ? json_dumps(folder, JSON_ENCODE_ANY) : NULL, *out = quoted ? strdup(table) : NULL;
+    if (out && directory[1]) {
+        size_t n = strlen(quoted);      /* "directory" becomes "directory/ */
+        quoted[n - 1] = '/';
+        for (char *at = out; (at = strstr(at, quoted)) != NULL;) {
+            at++;
+            memmove(at, at + n - 1, strlen(at + n - 1) + 1);
+        }
+    }
+    free(quoted);
+    json_decref(folder);
+    return out;
+}
+
+static tobi_status write_scene(const tobi_scene *scene, const char *from, const char *path, char **table,
+                               tobi_error *err)
 {
     char *directory = tobi_scene_find_directory(path);
     json_t *root = directory ? json_deep_copy(scene->root) : NULL;
     if (root) shorten_paths(root, directory);
     char *text = root ? tobi_write_json(root) : NULL;
+    *table = text ? shorten_table(scene->import_table, directory) : NULL;
+    if (!*table) {
+        free(text);
+        text = NULL;
+    }
     tobi_status status = text ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
     tobi_file file;
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
@@ -46,7 +70,7 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
         tobi_file_print(&file, "# Translated from %s, a scene of the Taichi program. What became of\n"
                         "# its keys:\n",
                         slash ? slash + 1 : from);
-        for (const char *line = scene->import_table; *line;) {
+        for (const char *line = *table; *line;) {
             size_t length = strcspn(line, "\n");
             tobi_file_print(&file, "#   %.*s\n", (int)length, line);
             line += length + (line[length] == '\n');
@@ -74,10 +98,10 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
     if (!scene->import_table)
         status = tobi_fail(err, TOBI_INVALID, "%s is a native scene already: it has no Configuration",
                            old_path);
-    if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, err);
-    if (status == TOBI_OK) {
-        *table = strdup(scene->import_table);
-        if (!*table) status = tobi_fail(err, TOBI_NO_MEMORY, "no memory for the table");
+    if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, table, err);
+    if (status != TOBI_OK) {
+        free(*table);
+        *table = NULL;
     }
     tobi_scene_free(scene);
     return status;

@@ -318,32 +318,24 @@ static node *read_factor(reader *r)
     return negative ? operate(r, at, '*', &minus, base) : base;
 }
 
-static node *read_product(reader *r)
+/* Operands with these operators between them, from the left. */
+static node *read_row(reader *r, const char *operators, node *(*read_operand)(reader *))
 {
-    node *sum = read_factor(r);
+    node *left = read_operand(r);
     for (;;) {
         skip_blanks(r);
-        char op = r->text[r->at];
-        if (r->failed || (op != '*' && op != '/')) return sum;
-        size_t at = r->at++;
-        if (r->text[r->at] == op) refuse(r, r->at, "the operators are + - * / **");
-        node *right = read_factor(r);
-        sum = operate(r, at, op, sum, right);
+        const char op = r->text[r->at];
+        if (r->failed || !op || !strchr(operators, op)) return left;
+        const size_t at = r->at++;
+        if (strchr("*/", op) && r->text[r->at] == op) refuse(r, r->at, "the operators are + - * / **");
+        node *right = read_operand(r);
+        left = operate(r, at, op, left, right);
     }
 }
 
-static node *read_sum(reader *r)
-{
-    node *sum = read_product(r);
-    for (;;) {
-        skip_blanks(r);
-        char op = r->text[r->at];
-        if (r->failed || (op != '+' && op != '-')) return sum;
-        size_t at = r->at++;
-        node *right = read_product(r);
-        sum = operate(r, at, op, sum, right);
-    }
-}
+static node *read_product(reader *r) { return read_row(r, "*/", read_factor); }
+
+static node *read_sum(reader *r) { return read_row(r, "+-", read_product); }
 
 /* --- statements -------------------------------------------------------------------------- */
 

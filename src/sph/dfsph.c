@@ -210,6 +210,7 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     double t[TOBI_TOTALS];
     m->view.pressure = s->particles.pressure;
     launch(s, m, k->sph_warm_start, NULL);
+    launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_source, t);
     solve q = {.tolerance = m->def.divergence_tolerance,
                .relative_tolerance = m->def.pressure_tolerance,
@@ -218,8 +219,6 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
                .max = m->def.divergence_iterations_max,
                .grid = 1,
                .coupled = 1};
-    launch(s, m, k->sph_pressure_accel, NULL);
-    launch(s, m, k->sph_product, NULL);
     tobi_couple_product(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
     sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);

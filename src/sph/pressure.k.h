@@ -27,11 +27,11 @@ TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_ne
 
 TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
 {
-    tobi_float4 w = v->wall[i], out;
+    tobi_float4 w = v->wall[i], out, sum = lane_sum4(a->x, a->y, a->z, lane_set(0));
     float k = v->inverse_density[v->fluid[i]], p2 = 2*v->record[i].w;
-    out.x = k*(v->slope*lane_sum(a->x) - p2*w.x);
-    out.y = k*(v->slope*lane_sum(a->y) - p2*w.y);
-    out.z = k*(v->slope*lane_sum(a->z) - p2*w.z);
+    out.x = k*(v->slope*sum.x - p2*w.x);
+    out.y = k*(v->slope*sum.y - p2*w.y);
+    out.z = k*(v->slope*sum.z - p2*w.z);
     out.w = 0;
     return out;
 }
@@ -92,7 +92,8 @@ TOBI_FN float sph_floor(const sph_view *v, int64_t i)
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
-   (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign.
+   (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. In the same
+   pass product = A p, from accel = a(p) for the pressure p of the last step.
    totals[0]: |s|^2/diagonal, the scale of residuals. */
 TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active, double *totals)
 {
@@ -106,26 +107,28 @@ TOBI_FN void sph_start_search(const sph_view *v, int64_t i, float r, int active,
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
-#define sph_source_acc sph_compression_acc
-TOBI_FN void sph_source_start(const sph_view *v, int64_t i, sph_compression_acc *a)
+typedef struct sph_source_acc { sph_compression_acc free, held; } sph_source_acc;
+TOBI_FN void sph_source_start(const sph_view *v, int64_t i, sph_source_acc *a)
 {
-    sph_compression_start(v, i, a, v->velocity);
+    sph_compression_start(v, i, &a->free, v->velocity);
+    sph_compression_start(v, i, &a->held, v->accel);
 }
-TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n,
-                             sph_compression_acc *a, const int shape)
+TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_source_acc *a,
+                             const int shape)
 {
     (void)i;
-    sph_compression_pair(v, n, a, v->velocity, shape);
+    sph_compression_pair(v, n, &a->free, v->velocity, shape);
+    sph_compression_pair(v, n, &a->held, v->accel, shape);
 }
-TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
+TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, double *totals)
 {
-    float rate = sph_compression_value(v, i, a, v->velocity, 1);
+    float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
-    v->record[i].w = v->pressure[i];
+    v->product[i] = -sph_compression_value(v, i, &a->held, v->accel, 0);
     totals[0] += (double)v->residual[i]*(v->residual[i]*v->precondition[i]);
 }
 
@@ -234,7 +237,8 @@ TOBI_FN void sph_center_direction(const sph_view *v, int64_t i, double *totals)
 
 /* The pressure of the last step less what still water has gained since, eq. (18).
    A free surface keeps no pressure that pulls, a particle that hardly touches another none at all: it
-   would need an enormous one, which the next step, with its neighbour nearer, would start from. */
+   would need an enormous one, which the next step, with its neighbour nearer, would start from.
+   Payload = that pressure. */
 TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
@@ -245,6 +249,7 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
     float least = sph_floor(v, i);
     if (v->surface[i] && v->pressure[i] < least) v->pressure[i] = least;
     if (v->diagonal[i] <= v->isolated) v->pressure[i] = 0;
+    v->record[i].w = v->pressure[i];
 }
 
 /* Adds the correction, clamped at free surfaces; payload = the pressure. totals: |p|/rho, m2/s2; p. */
@@ -283,13 +288,14 @@ TOBI_FN void sph_shift_pair(const sph_view *v, int64_t i, const tobi_near *n, sp
 }
 TOBI_FN void sph_shift_finish(const sph_view *v, int64_t i, sph_shift_acc *a, double *totals)
 {
-    tobi_float4 w = v->wall[i], out;
+    tobi_float4 w = v->wall[i], out, sum = lane_sum4(a->x, a->y, a->z, lane_set(0)),
+                core = lane_sum4(a->cx, a->cy, a->cz, lane_set(0));
     float k = v->inverse_density[v->fluid[i]], p2 = 2*(v->record[i].w + v->background);
     float c = v->push*v->inverse_dt*v->inverse_dt;
     (void)totals;
-    out.x = k*(v->slope*lane_sum(a->x) - p2*w.x) + c*lane_sum(a->cx);
-    out.y = k*(v->slope*lane_sum(a->y) - p2*w.y) + c*lane_sum(a->cy);
-    out.z = k*(v->slope*lane_sum(a->z) - p2*w.z) + c*lane_sum(a->cz);
+    out.x = k*(v->slope*sum.x - p2*w.x) + c*core.x;
+    out.y = k*(v->slope*sum.y - p2*w.y) + c*core.y;
+    out.z = k*(v->slope*sum.z - p2*w.z) + c*core.z;
     out.w = 0;
     v->accel[i] = out;
 }

@@ -44,6 +44,14 @@ TOBI_FN void sph_walls(const sph_view *v, int64_t i, double *totals)
     v->density[i] = 1 - open;
 }
 
+/* What walls and bodies with a share lambda of the kernel add to the relative density, eq. (5b). */
+TOBI_FN float sph_wall_density(const sph_view *v, float share)
+{
+    float at = v->wall_share, full = v->wall_lattice;
+    if (share <= at) return share*full/at;
+    return share < 0.5f ? full + (share - at)*(0.5f - full)/(0.5f - at) : share;
+}
+
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
    sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
    totals: error, surface particles, diagonal, those at a surface beyond doubt; maxima: error, and how deep
@@ -73,9 +81,9 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
 TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a, double *totals)
 {
     float share = v->density[i], k = v->slope;
-    float rho = v->weight*(1 + lane_sum(a->rho)) + share;
-    tobi_float4 w = v->wall[i];
-    float sx = 2*w.x - k*lane_sum(a->gx), sy = 2*w.y - k*lane_sum(a->gy), sz = 2*w.z - k*lane_sum(a->gz);
+    tobi_float4 w = v->wall[i], g = lane_sum4(a->gx, a->gy, a->gz, a->rho);
+    float fluid = v->weight*(1 + g.w), rho = fluid + sph_wall_density(v, share);
+    float sx = 2*w.x - k*g.x, sy = 2*w.y - k*g.y, sz = 2*w.z - k*g.z;
     float div = k*lane_sum(a->div) + (float)v->dimension*share;
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
@@ -83,8 +91,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     /* in still water nothing is at a surface: that is how its level was chosen */
     v->surface[i] = flagged && !(tobi_still_pressure(&v->still, &v->position[i].x) > 0);
     /* edges of the box and disorder lower div x as well, but on all sides alike */
-    float nx = 0.5f*(sx - k*lane_sum(a->gx)), ny = 0.5f*(sy - k*lane_sum(a->gy)),
-          nz = 0.5f*(sz - k*lane_sum(a->gz)), n2 = nx*nx + ny*ny + nz*nz;
+    float nx = 0.5f*(sx - k*g.x), ny = 0.5f*(sy - k*g.y), nz = 0.5f*(sz - k*g.z), n2 = nx*nx + ny*ny + nz*nz;
     int sure = flagged && (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
@@ -92,7 +99,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     double drop = sure ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
     v->delta[i] = (float)drop;      /* free until the solve */
     totals[7] = drop > totals[7] ? drop : totals[7];
-    float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/rho;
+    float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
@@ -135,7 +142,8 @@ TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_near *n
 }
 TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a, double *totals)
 {
-    tobi_float4 out = {v->slope*lane_sum(a->ax), v->slope*lane_sum(a->ay), v->slope*lane_sum(a->az), 0};
+    tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
+    tobi_float4 out = {v->slope*sum.x, v->slope*sum.y, v->slope*sum.z, 0};
     (void)totals;
     v->accel[i] = out;
 }
@@ -179,9 +187,8 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     float speed[3] = {u.x, u.y, u.z}, wet = sph_wetness(v, i);
     float g[3];
     sph_gravity(v, i, g);
-    float add[3] = {g[0] + 2 * nu * l.x + k * lane_sum(a->ax),
-                    g[1] + 2 * nu * l.y + k * lane_sum(a->ay),
-                    g[2] + 2 * nu * l.z + k * lane_sum(a->az)};
+    tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
+    float add[3] = {g[0] + 2*nu*l.x + k*sum.x, g[1] + 2*nu*l.y + k*sum.y, g[2] + 2*nu*l.z + k*sum.z};
     (void)totals;
     for (int p = 0; p < v->plane_count; p++) {
         float s = sph_plane_distance(v, p, i);
@@ -260,7 +267,8 @@ TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_near *n
 }
 TOBI_FN void sph_vorticity_finish(const sph_view *v, int64_t i, sph_vorticity_acc *a, double *totals)
 {
-    tobi_float4 out = {v->slope*lane_sum(a->x), v->slope*lane_sum(a->y), v->slope*lane_sum(a->z), 0};
+    tobi_float4 sum = lane_sum4(a->x, a->y, a->z, lane_set(0));
+    tobi_float4 out = {v->slope*sum.x, v->slope*sum.y, v->slope*sum.z, 0};
     (void)totals;
     v->accel[i] = out;
 }

@@ -1,5 +1,6 @@
 #include "sph/stages.h"
 #include "core/couple.h"
+#include "core/push.h"
 #include <math.h>
 #include <string.h>
 
@@ -58,6 +59,7 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
     v->weight = (float)c->weight; v->slope = (float)c->slope;
+    v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;
     v->dimension = c->dimension;
     v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f
@@ -230,7 +232,7 @@ tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
         TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
         if (s->bodies[k].rigid.kind != TOBI_PRESCRIBED) tobi_body_bring_surface(&s->bodies[k]);
     }
-    if (s->body_count > 0) tobi_near_push_out(s);
+    if (s->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
     s->info.contacts += s->near.contacts;
     tobi_stage_end(&s->stages, "motion", clock);

@@ -7,8 +7,16 @@
    The payload of the pressure force adds the damping of sound, eq. (22). A free surface does not pull.
    totals: |C v|, |p|; maximum: |C v|. */
 #define sph_tait_acc sph_compression_acc
-#define sph_tait_start sph_source_start
-#define sph_tait_pair sph_source_pair
+TOBI_FN void sph_tait_start(const sph_view *v, int64_t i, sph_compression_acc *a)
+{
+    sph_compression_start(v, i, a, v->velocity);
+}
+TOBI_FN void sph_tait_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a,
+                           const int shape)
+{
+    (void)i;
+    sph_compression_pair(v, n, a, v->velocity, shape);
+}
 TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *a, double *totals)
 {
     float rate = sph_compression_value(v, i, a, v->velocity, 1), size = fabsf(rate);

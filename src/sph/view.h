@@ -29,6 +29,7 @@ typedef struct sph_view {
     /* constants of the discretisation */
     float from_fixed[3];
     float h, inverse_h, weight, slope;        /* see core/smoothing.h */
+    float wall_share, wall_lattice;           /* eq. (5b) */
     float spacing, volume;
     int   dimension;
     float surface_limit;                      /* div x below this marks a free surface */

@@ -24,6 +24,7 @@ typedef struct oracle {
     double d, h, volume, box[3];
     int periodic[3];
     double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
+    double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
     int plane_count;
     tobi_plane plane[6];
@@ -76,18 +77,20 @@ static double plane_integral(const oracle *o, double s)
 static void oracle_normalise(oracle *o)
 {
     int n = 5, nz = o->dimension == 3 ? n : 0;
-    double w = 0, moment = 0, half = 0;
+    double w = 0, moment = 0, half = 0, behind = 0;
     o->volume = pow(o->d, o->dimension);
     for (int k = -nz; k <= nz; k++)
         for (int j = -n; j <= n; j++)
             for (int i = -n; i <= n; i++) {
                 double r = o->d*sqrt(i*i + j*j + k*k), x = i*o->d;
                 w += o->volume*oracle_w(o, r);
+                if (i < 0) behind += o->volume*oracle_w(o, r);
                 if (r == 0) continue;
                 moment += o->volume*oracle_f(o, r)*x*x;
                 if (i > 0) half += o->volume*oracle_f(o, r)*x;
             }
     o->w_scale = 1/w;
+    o->behind = behind/w;
     o->g_scale = 1/moment;
     for (int k = 0; k <= TABLE; k++) o->sigma[k] = plane_integral(o, o->h*k/TABLE);
     o->lambda[TABLE] = 0;
@@ -164,6 +167,13 @@ static double felt_gravity(const oracle *o, const row *in, int i, int axis)
     return o->gravity[axis] - slope*o->still.down[axis]/o->rho0[o->fluid[i]];
 }
 
+/* Eq. (5b) by its three points: nothing, a lattice at a wall, half a space. */
+static double oracle_fill(const oracle *o, double share)
+{
+    double at = look_up(o, o->lambda, 0.5*o->d), slope = (0.5 - o->behind)/(0.5 - at);
+    return share > 0.5 ? share : share < at ? o->behind*share/at : 0.5 - slope*(0.5 - share);
+}
+
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
@@ -183,8 +193,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
                 div -= g*x[a];
             }
         }
-        rho += share;
-        mean /= rho;
+        mean /= rho + share;
+        rho += oracle_fill(o, share);
         double e = rho - 1;
         out[i][RHO] = rho;
         out[i][PROD] = mean;

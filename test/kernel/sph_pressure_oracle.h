@@ -65,7 +65,7 @@ static void oracle_source(const oracle *o, const row *in, row *out, double *t)
                      (in[i][SURF] == 0 || s > 0 || in[i][PRES] > fmin(in[i][CAPILLARY], 0));
         out[i][PRE] = active ? 1/in[i][DIAG] : 0;
         out[i][RES] = active ? s : 0;
-        out[i][PAYLOAD] = in[i][PRES];
+        out[i][PROD] = -compression(o, in, i, ACC, 0);
         t[0] += out[i][RES]*out[i][RES]*out[i][PRE];
     }
 }
@@ -162,6 +162,7 @@ static void oracle_warm_start(const oracle *o, const row *in, row *out, double *
         out[i][PRES] -= o->still_before.push > 0 ? gained : 0;
         if (in[i][DIAG] <= o->isolated) out[i][PRES] = 0;
         else if (in[i][SURF] > 0) out[i][PRES] = fmax(out[i][PRES], fmin(in[i][CAPILLARY], 0));
+        out[i][PAYLOAD] = out[i][PRES];
     }
 }
 

@@ -65,6 +65,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     for (int a = 0; a < 3; a++) v->from_fixed[a] = g->box.from_fixed[a];
     v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h);
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
+    v->wall_share = (float)g->c.wall_share; v->wall_lattice = (float)g->c.wall_lattice;
     v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;
     v->dimension = k->dimension;
     v->surface_limit = (k->dimension == 3 ? 0.87f : 0.80f)*(float)k->dimension;

@@ -12,6 +12,7 @@ import html
 import json
 import os
 import pathlib
+import platform
 import re
 import shlex
 import subprocess
@@ -33,19 +34,25 @@ class Case:
         parser.add_argument("--tobiuo", required=True, help="the program")
         parser.add_argument("--size", choices=["smoke", "reference"], default="smoke")
         parser.add_argument("--out", help="folder for the results (a temporary one, removed at the end)")
-        parser.add_argument("--commit", default="unknown")
-        parser.add_argument("--machine", default="unknown")
+        parser.add_argument("--commit", help="for the page (default: that of the clone)")
+        parser.add_argument("--machine", help="for the page (default: this one)")
         parser.add_argument("--threads", type=int, help="default: 1 at smoke size, all cores at reference size")
-        parser.add_argument("--reference", default=str(ROOT.parent / "shared" / "reference"),
-                            help="folder of published reference data, used where it exists")
+        parser.add_argument("--reference", default=os.environ.get("TOBIUO_REFERENCE"), metavar="DIR",
+                            help="folder of published reference data (default: $TOBIUO_REFERENCE; without "
+                                 "one, the cases use the few values that stand in them)")
         self.args = parser.parse_args()
+        if self.args.reference and not os.path.isdir(self.args.reference):
+            parser.error(f"--reference: there is no folder {self.args.reference}")
         self.program = os.path.abspath(self.args.tobiuo)
         if self.args.threads is None:
             self.args.threads = 1 if self.args.size == "smoke" else 0
         self.smoke = self.args.size == "smoke"
+        if not self.smoke:
+            self.commit, self.machine = self.args.commit or find_commit(), self.args.machine or find_machine()
         self.folder = pathlib.Path(__file__).resolve().parent / name
         self.begin = time.monotonic()
         self.rows, self.broken, self.commands, self.plots = [], 0, [], []
+        self.referred = False
         self.temporary = None
         if self.args.out:
             self.out = pathlib.Path(self.args.out)
@@ -58,8 +65,11 @@ class Case:
 
     def reference_file(self, path):
         """A file of published data, or None. Such files are never part of this repository."""
-        found = pathlib.Path(self.args.reference) / path
-        return found if found.is_file() else None
+        found = pathlib.Path(self.args.reference) / path if self.args.reference else None
+        if not (found and found.is_file()):
+            return None
+        self.referred = True
+        return found
 
     def run(self, label, *options, scene=None, may_fail=False):
         """Runs a scene (the case's own by default); returns the folder of the results (None: it failed)."""
@@ -130,16 +140,35 @@ class Case:
         if self.plots:
             (VALIDATION / f"{self.name}.svg").write_text(draw(self.plots))
             lines += ["", f"![plot]({self.name}.svg)"]
-        lines += ["", f"Command: `./test.sh --slow {self.name}`, which runs", "",
+        option = " --reference DIR" if self.referred else ""
+        lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
                   *["    " + c for c in self.commands], "",
-                  f"Commit: {self.args.commit}. Machine: {self.args.machine}."]
+                  f"Commit: {self.commit}. Machine: {self.machine}."]
         (VALIDATION / f"{self.name}.md").write_text("\n".join(lines) + "\n")
+
+
+def find_commit():
+    """The commit of this clone; +changes if what decides a result differs from it."""
+    def git(*command):
+        done = subprocess.run(["git", "-C", str(ROOT), *command], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"no commit for the page ({done.stderr.strip()}): give --commit")
+        return done.stdout.strip()
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", "src", "include", "app", "test")
+    return git("rev-parse", "--short", "HEAD") + ("+changes" if changed else "")
+
+
+def find_machine():
+    name = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+    return f"{name[1] if name else platform.machine()}, {os.cpu_count()} cores"
 
 
 def write_index():
     """docs/validation/README.md: the rows of all case pages in one table."""
-    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE]`, one page per case; do not edit.",
-             "Every figure stands here, met or missed; those without a goal are stated.", "",
+    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
+             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
+             "dam_break uses the few values that stand in its run.py. Every figure stands here, met or missed; those without a",
+             "goal are stated.", "",
              "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
     for page in sorted(VALIDATION.glob("*.md")):
         text = page.read_text()

@@ -7,23 +7,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include "calls.h"
 #include "world/world.h"
 
 static const char wedge_mesh[] = TOBI_SOURCE_DIR "/test/meshes/wedge.obj";
-
-#define REFUSED(call, expected, part)                                      \
-    do {                                                                   \
-        tobi_error err = { 0 };                                            \
-        int got = (call);                                                  \
-        if (got != (expected) || !strstr(err.text, part))                  \
-            fail_msg("status %d, '%s' without '%s'", got, err.text, part); \
-    } while (0)
-
-#define OK(call)                                                          \
-    do {                                                                  \
-        tobi_error err = { 0 };                                           \
-        if ((call) != TOBI_OK) fail_msg("%s: %s", #call, err.text);       \
-    } while (0)
 
 static tobi_world *make_world(const char *method, int dimension)
 {

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "calls.h"
 #include "base/param.h"
 #include "world/params.h"
 #include "world/world.h"
@@ -18,12 +19,6 @@
 #define SPACING (CELL/2)
 enum { ACROSS = 26, COUNT = ACROSS*ACROSS };
 static const double LEFT = 0.12, TOP = 0.07, LOW = 3e-4, DOWN = 2, UP = 4;
-
-#define OK(call)                                                          \
-    do {                                                                  \
-        tobi_error err = { 0 };                                           \
-        if ((call) != TOBI_OK) fail_msg("%s: %s", #call, err.text);       \
-    } while (0)
 
 /* A blade with a wedge of 8 mm, its edge at the origin, along z. */
 static void write_blade(const char *path, double thickness)

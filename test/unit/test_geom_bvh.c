@@ -7,7 +7,7 @@ static tobi_bvh *build_tree(const tobi_mesh *m)
 {
     tobi_bvh *bvh;
     OK(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
-                      (const int32_t (*)[3])m->triangles, &bvh, err));
+                      (const int32_t (*)[3])m->triangles, &bvh, &err));
     return bvh;
 }
 
@@ -126,12 +126,12 @@ static void few_triangles_fit_one_node(void **state)
     static const double v[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     static const int32_t t[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     tobi_bvh *bvh;
-    OK(tobi_bvh_build(4, v, 4, t, &bvh, err));
+    OK(tobi_bvh_build(4, v, 4, t, &bvh, &err));
     assert_true(tobi_bvh_inside(bvh, (double[3]){0.1, 0.1, 0.1}));
     assert_false(tobi_bvh_inside(bvh, (double[3]){0.4, 0.4, 0.4}));
     assert_true(tobi_bvh_segment_hits(bvh, (double[3]){-1, 0.1, 0.1}, (double[3]){2, 0.1, 0.1}));
     tobi_bvh_free(bvh);
-    REFUSED(tobi_bvh_build(4, v, 0, t, &bvh, err), TOBI_INVALID, "0 triangles");
+    REFUSED(tobi_bvh_build(4, v, 0, t, &bvh, &err), TOBI_INVALID, "0 triangles");
     assert_null(bvh);
 }
 
@@ -311,7 +311,7 @@ static void same_bits_for_any_number_of_threads(void **state)
 {
     (void)state;
     tobi_mesh mesh = read_own("test/meshes/torus.obj");
-    OK(tobi_mesh_refine(&mesh, 0.015, err));
+    OK(tobi_mesh_refine(&mesh, 0.015, &err));
     tobi_bvh *bvh = build_tree(&mesh);
     enum { N = 4000 };
     static double p[N][3];
@@ -345,9 +345,9 @@ static void flat_triangles_are_harmless(void **state)
     memcpy(t[12], (int32_t[3]){8, b, c}, sizeof t[12]);
     memcpy(t[13], (int32_t[3]){a, b, 8}, sizeof t[13]);
     tobi_mesh mesh;
-    OK(tobi_mesh_build("sliver", 9, (const double (*)[3])v, 14, (const int32_t (*)[3])t, &mesh, err));
+    OK(tobi_mesh_build("sliver", 9, (const double (*)[3])v, 14, (const int32_t (*)[3])t, &mesh, &err));
     assert_int_equal(mesh.triangle_count, 14);
-    OK(tobi_mesh_orient(&mesh, "sliver", err));
+    OK(tobi_mesh_orient(&mesh, "sliver", &err));
     tobi_bvh *bvh = build_tree(&mesh);
     uint64_t seed = 4;
     for (int i = 0; i < 20000; i++) {

@@ -25,7 +25,7 @@ static tobi_mesh rebuild(tobi_mesh mesh)
 {
     tobi_mesh out;
     OK(tobi_mesh_build("rebuilt", mesh.vertex_count, (const double (*)[3])mesh.vertices, mesh.triangle_count,
-                       (const int32_t (*)[3])mesh.triangles, &out, err));
+                       (const int32_t (*)[3])mesh.triangles, &out, &err));
     tobi_mesh_free(&mesh);
     return out;
 }
@@ -33,7 +33,7 @@ static tobi_mesh rebuild(tobi_mesh mesh)
 static void has_volume(const tobi_mesh *mesh, double volume, double tolerance)
 {
     tobi_massprops p;
-    OK(tobi_massprops_volume(mesh, &p, err));
+    OK(tobi_massprops_volume(mesh, &p, &err));
     NEAR(p.volume, volume, tolerance);
 }
 
@@ -41,7 +41,7 @@ static void a_good_mesh_needs_no_words(void **state)
 {
     (void)state;
     tobi_mesh mesh = make_cube(1);
-    OK(tobi_mesh_orient(&mesh, "cube", err));
+    OK(tobi_mesh_orient(&mesh, "cube", &err));
     says(&mesh, NULL);
     assert_false(mesh.overlapping);
     tobi_mesh_free(&mesh);
@@ -55,13 +55,13 @@ static void flipped_faces_are_turned_and_counted(void **state)
     (void)state;
     tobi_mesh mesh = make_cube(1);
     for (int t = 0; t < 12; t++) turn(mesh.triangles[t]);
-    OK(tobi_mesh_orient(&mesh, "inside out", err));
+    OK(tobi_mesh_orient(&mesh, "inside out", &err));
     has_volume(&mesh, 8, 1e-15);
     says(&mesh, "1 of 1 shells turned");
     tobi_mesh_free(&mesh);
     mesh = make_cube(1);
     for (int t = 0; t < 12; t += 4) turn(mesh.triangles[t]);
-    OK(tobi_mesh_orient(&mesh, "three faces", err));
+    OK(tobi_mesh_orient(&mesh, "three faces", &err));
     has_volume(&mesh, 8, 1e-15);
     says(&mesh, "3 of 12 triangles turned");
     tobi_mesh_free(&mesh);
@@ -71,12 +71,12 @@ static void shells_beside_and_within_each_other(void **state)
 {
     (void)state;
     tobi_mesh mesh = join_meshes(make_cube(1), make_box((double[3]){3, 0, 0}, (double[3]){4, 1, 1}));
-    OK(tobi_mesh_orient(&mesh, "two", err));
+    OK(tobi_mesh_orient(&mesh, "two", &err));
     has_volume(&mesh, 9, 1e-14);
     says(&mesh, NULL);
     tobi_mesh_free(&mesh);
     mesh = join_meshes(make_cube(2), make_cube(1));
-    OK(tobi_mesh_orient(&mesh, "hollow", err));
+    OK(tobi_mesh_orient(&mesh, "hollow", &err));
     has_volume(&mesh, 64 - 8, 1e-14);
     says(&mesh, "1 of 2 shells lie inside another one and are hollows");
     assert_false(mesh.overlapping);
@@ -92,10 +92,10 @@ static void overlapping_solids_count_once(void **state)
     tobi_bvh *bvh;
     tobi_massprops p;
     tobi_bvh_hit hit;
-    OK(tobi_mesh_orient(&mesh, "bar", err));
+    OK(tobi_mesh_orient(&mesh, "bar", &err));
     assert_true(mesh.overlapping);
     says(&mesh, "parts of the surface overlap");
-    OK(tobi_massprops_volume(&mesh, &p, err));
+    OK(tobi_massprops_volume(&mesh, &p, &err));
     NEAR(p.volume, 8.5, 2e-4);
     /* the parts that stick out: 0.5 long at x = -1.25, 1.5 long at x = 1.75, section 0.25 */
     /* half a line spacing, 4 m/1000, over the shared 0.5 m3 of 8.5 */
@@ -104,7 +104,7 @@ static void overlapping_solids_count_once(void **state)
     double yy = 8*4/12. + 0.5*0.25/12;
     NEAR(p.inertia[8], xx + yy - 8.5*p.centre[0]*p.centre[0], 1e-3);
     OK(tobi_bvh_build(mesh.vertex_count, (const double (*)[3])mesh.vertices, mesh.triangle_count,
-                      (const int32_t (*)[3])mesh.triangles, &bvh, err));
+                      (const int32_t (*)[3])mesh.triangles, &bvh, &err));
     tobi_bvh_use_winding(bvh);
     uint64_t seed = 3;
     for (int i = 0; i < 20000; i++) {
@@ -120,13 +120,13 @@ static void overlapping_solids_count_once(void **state)
     tobi_bvh_free(bvh);
     double (*points)[3];
     int64_t count;
-    OK(tobi_sample_volume(&mesh, NULL, 0.1, 3, &points, &count, err));
+    OK(tobi_sample_volume(&mesh, NULL, 0.1, 3, &points, &count, &err));
     NEAR((double)count*0.001, 8.5, 0.01);
     for (int64_t i = 0; i < count; i++)
         for (int64_t j = i + 1; j < count && j < i + 3; j++)
             assert_true(vec3_distance2(points[i], points[j]) > 0.0099);
     free(points);
-    OK(tobi_massprops_section(&mesh, &p, err));
+    OK(tobi_massprops_section(&mesh, &p, &err));
     NEAR(p.volume, 4 + 0.5*0.5 + 1.5*0.5, 1e-3);
     tobi_mesh_free(&mesh);
 }
@@ -139,7 +139,7 @@ static void a_winding_number_is_exact_on_any_line(void **state)
     tobi_mesh mesh = make_cube(1);
     tobi_bvh *bvh;
     OK(tobi_bvh_build(mesh.vertex_count, (const double (*)[3])mesh.vertices, mesh.triangle_count,
-                      (const int32_t (*)[3])mesh.triangles, &bvh, err));
+                      (const int32_t (*)[3])mesh.triangles, &bvh, &err));
     for (int i = -4; i <= 4; i++)
         for (int j = -4; j <= 4; j++) {
             double below[3] = {i/4.0, j/4.0, -1.5}, middle[3] = {i/4.0, j/4.0, 0.1};
@@ -159,9 +159,9 @@ static void a_missing_face_is_closed(void **state)
     memmove(mesh.triangles, mesh.triangles + 2, 10*sizeof *mesh.triangles);
     mesh.triangle_count = 10;
     for (int t = 0; t < 10; t += 3) turn(mesh.triangles[t]);
-    OK(tobi_mesh_orient(&mesh, "open box", err));
+    OK(tobi_mesh_orient(&mesh, "open box", &err));
     assert_int_equal(mesh.triangle_count, 12);
-    OK(tobi_massprops_volume(&mesh, &p, err));
+    OK(tobi_massprops_volume(&mesh, &p, &err));
     NEAR(p.volume, 6, 1e-14);
     NEAR(p.centre[2], 1.5, 1e-14);
     NEAR(p.inertia[0], 6*(4 + 9)/12., 1e-13);
@@ -186,15 +186,15 @@ static void a_hole_that_says_too_little_is_refused(void **state)
         memcpy(t[2*i + 1], (int32_t[3]){2*i, 2*j + 1, 2*i + 1}, sizeof t[0]);
     }
     tobi_mesh mesh;
-    OK(tobi_mesh_build("crown", 2*N, (const double (*)[3])v, 2*N, (const int32_t (*)[3])t, &mesh, err));
-    REFUSED(tobi_mesh_orient(&mesh, "crown", err), TOBI_INVALID,
+    OK(tobi_mesh_build("crown", 2*N, (const double (*)[3])v, 2*N, (const int32_t (*)[3])t, &mesh, &err));
+    REFUSED(tobi_mesh_orient(&mesh, "crown", &err), TOBI_INVALID,
             "does not say what is inside: 2 holes (48 open");
     tobi_mesh_free(&mesh);
     /* a single sheet */
     static const int32_t sheet[2][3] = {{0, 1, 2}, {0, 2, 3}};
     static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    OK(tobi_mesh_build("sheet", 4, corner, 2, sheet, &mesh, err));
-    REFUSED(tobi_mesh_orient(&mesh, "sheet", err), TOBI_INVALID, "1 hole (4 open edges): 4 m around");
+    OK(tobi_mesh_build("sheet", 4, corner, 2, sheet, &mesh, &err));
+    REFUSED(tobi_mesh_orient(&mesh, "sheet", &err), TOBI_INVALID, "1 hole (4 open edges): 4 m around");
     tobi_mesh_free(&mesh);
 }
 
@@ -211,9 +211,9 @@ static void borders_that_nearly_meet_are_welded(void **state)
         for (int k = 0; k < 3; k++) v[i][k] += 1e-5*random_number(&seed);
         t[i/3][i % 3] = i;
     }
-    OK(tobi_mesh_build("gaps", 36, (const double (*)[3])v, 12, (const int32_t (*)[3])t, &mesh, err));
+    OK(tobi_mesh_build("gaps", 36, (const double (*)[3])v, 12, (const int32_t (*)[3])t, &mesh, &err));
     assert_int_equal(mesh.vertex_count, 36);
-    OK(tobi_mesh_orient(&mesh, "gaps", err));
+    OK(tobi_mesh_orient(&mesh, "gaps", &err));
     assert_int_equal(mesh.vertex_count, 8);
     has_volume(&mesh, 8, 1e-4);
     says(&mesh, "36 open edges became 0");
@@ -234,7 +234,7 @@ static void cracks_between_tessellations_are_closed(void **state)
     memcpy(mesh.triangles[12], (int32_t[3]){8, 2, 1}, sizeof *mesh.triangles);
     mesh.vertex_count = 9;
     mesh.triangle_count = 13;
-    OK(tobi_mesh_orient(&mesh, "crack", err));
+    OK(tobi_mesh_orient(&mesh, "crack", &err));
     assert_int_equal(mesh.triangle_count, 14);
     has_volume(&mesh, 8, 1e-14);
     says(&mesh, "1 hole (3 open edges)");
@@ -248,7 +248,7 @@ static void double_triangles_and_touching_solids(void **state)
     tobi_mesh mesh = rebuild(join_meshes(make_cube(1), make_box((double[3]){1, -1, -1},
                                                                 (double[3]){3, 1, 1})));
     assert_int_equal(mesh.vertex_count, 12);
-    OK(tobi_mesh_orient(&mesh, "face", err));
+    OK(tobi_mesh_orient(&mesh, "face", &err));
     has_volume(&mesh, 16, 1e-14);
     says(&mesh, "double triangles dropped");
     tobi_mesh_free(&mesh);
@@ -257,18 +257,18 @@ static void double_triangles_and_touching_solids(void **state)
     mesh.triangles = realloc(mesh.triangles, 13*sizeof *mesh.triangles);
     memcpy(mesh.triangles[12], mesh.triangles[4], sizeof *mesh.triangles);
     mesh.triangle_count = 13;
-    OK(tobi_mesh_orient(&mesh, "twice", err));
+    OK(tobi_mesh_orient(&mesh, "twice", &err));
     assert_int_equal(mesh.triangle_count, 12);
     has_volume(&mesh, 8, 1e-14);
     tobi_mesh_free(&mesh);
     /* two cubes share an edge: four triangles meet there */
     mesh = rebuild(join_meshes(make_cube(1), make_box((double[3]){1, 1, -1}, (double[3]){2, 2, 1})));
     assert_int_equal(mesh.vertex_count, 14);
-    OK(tobi_mesh_orient(&mesh, "edge", err));
+    OK(tobi_mesh_orient(&mesh, "edge", &err));
     assert_int_equal(mesh.vertex_count, 16);
     has_volume(&mesh, 8 + 2, 1e-14);
     says(&mesh, "1 edges with more than two triangles taken apart");
-    OK(tobi_mesh_refine(&mesh, 0.5, err));
+    OK(tobi_mesh_refine(&mesh, 0.5, &err));
     has_volume(&mesh, 8 + 2, 1e-13);
     tobi_mesh_free(&mesh);
     /* a fin without thickness on a cube */
@@ -279,7 +279,7 @@ static void double_triangles_and_touching_solids(void **state)
     memcpy(mesh.triangles[12], (int32_t[3]){0, 1, 8}, sizeof *mesh.triangles);
     mesh.vertex_count = 9;
     mesh.triangle_count = 13;
-    REFUSED(tobi_mesh_orient(&mesh, "fin", err), TOBI_INVALID, "shell around (0, -1, 2) encloses no volume");
+    REFUSED(tobi_mesh_orient(&mesh, "fin", &err), TOBI_INVALID, "shell around (0, -1, 2) encloses no volume");
     tobi_mesh_free(&mesh);
 }
 
@@ -295,7 +295,8 @@ static void an_edge_that_cannot_be_taken_apart_is_refused(void **state)
         if (solid[i/4][i/2 % 2][i % 2]) all = join_meshes(all, make_box(low, high));
     }
     mesh = rebuild(all);
-    REFUSED(tobi_mesh_orient(&mesh, "grid", err), TOBI_INVALID, "1 edges with more than two triangles and 0");
+    REFUSED(tobi_mesh_orient(&mesh, "grid", &err), TOBI_INVALID,
+            "1 edges with more than two triangles and 0");
     tobi_mesh_free(&mesh);
 }
 

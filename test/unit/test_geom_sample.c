@@ -12,7 +12,7 @@ typedef struct cloud {
 static cloud fill(const tobi_mesh *mesh, double spacing, int dimension)
 {
     cloud c;
-    OK(tobi_sample_volume(mesh, NULL, spacing, dimension, &c.points, &c.count, err));
+    OK(tobi_sample_volume(mesh, NULL, spacing, dimension, &c.points, &c.count, &err));
     return c;
 }
 
@@ -20,7 +20,7 @@ static tobi_bvh *build_tree(const tobi_mesh *m)
 {
     tobi_bvh *bvh;
     OK(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,
-                      (const int32_t (*)[3])m->triangles, &bvh, err));
+                      (const int32_t (*)[3])m->triangles, &bvh, &err));
     return bvh;
 }
 
@@ -29,7 +29,7 @@ static double check_cloud(const tobi_mesh *mesh, cloud c, double spacing)
 {
     tobi_bvh *bvh = build_tree(mesh);
     tobi_massprops p;
-    OK(tobi_massprops_volume(mesh, &p, err));
+    OK(tobi_massprops_volume(mesh, &p, &err));
     double middle[3] = {0};
     for (int64_t i = 0; i < c.count; i++) {
         tobi_bvh_hit hit;
@@ -123,7 +123,7 @@ static void sections_are_filled_in_two_dimensions(void **state)
         tobi_mesh mesh = read_own(cases[i].path);
         tobi_bvh *bvh = build_tree(&mesh);
         tobi_massprops p;
-        OK(tobi_massprops_section(&mesh, &p, err));
+        OK(tobi_massprops_section(&mesh, &p, &err));
         cloud c = fill(&mesh, cases[i].spacing, 2);
         double ratio = (double)c.count*pow(cases[i].spacing, 2)/p.volume;
         printf("2-D %-26s spacing %-5g %6lld points, area %+.2f %%\n", cases[i].path, cases[i].spacing,
@@ -145,11 +145,11 @@ static void refuses_what_cannot_be_filled(void **state)
     (void)state;
     tobi_mesh mesh = make_box((double[3]){0, 0, 0.5}, (double[3]){1, 1, 1.5});
     cloud c;
-    REFUSED(tobi_sample_volume(&mesh, NULL, 0, 3, &c.points, &c.count, err), TOBI_INVALID, "must be > 0");
-    REFUSED(tobi_sample_volume(&mesh, NULL, NAN, 3, &c.points, &c.count, err), TOBI_INVALID, "must be > 0");
-    REFUSED(tobi_sample_volume(&mesh, NULL, 0.1, 4, &c.points, &c.count, err), TOBI_INVALID, "2 and 3");
-    REFUSED(tobi_sample_volume(&mesh, NULL, 1e-6, 3, &c.points, &c.count, err), TOBI_INVALID, "too fine");
-    REFUSED(tobi_sample_volume(&mesh, NULL, 0.1, 2, &c.points, &c.count, err), TOBI_INVALID, "z = 0");
+    REFUSED(tobi_sample_volume(&mesh, NULL, 0, 3, &c.points, &c.count, &err), TOBI_INVALID, "must be > 0");
+    REFUSED(tobi_sample_volume(&mesh, NULL, NAN, 3, &c.points, &c.count, &err), TOBI_INVALID, "must be > 0");
+    REFUSED(tobi_sample_volume(&mesh, NULL, 0.1, 4, &c.points, &c.count, &err), TOBI_INVALID, "2 and 3");
+    REFUSED(tobi_sample_volume(&mesh, NULL, 1e-6, 3, &c.points, &c.count, &err), TOBI_INVALID, "too fine");
+    REFUSED(tobi_sample_volume(&mesh, NULL, 0.1, 2, &c.points, &c.count, &err), TOBI_INVALID, "z = 0");
     assert_null(c.points);
     tobi_mesh_free(&mesh);
 }
@@ -161,11 +161,11 @@ static void pieces_cover_the_surface(void **state)
     (void)state;
     tobi_mesh mesh = read_own("scenes/flying_fish/meshes/fish.obj");
     tobi_massprops p;
-    OK(tobi_massprops_volume(&mesh, &p, err));
+    OK(tobi_massprops_volume(&mesh, &p, &err));
     static const double spacings[] = {0.004, 0.001};
     for (int i = 0; i < 2; i++) {
         tobi_surface s;
-        OK(tobi_surface_build(&mesh, spacings[i], 3, &s, err));
+        OK(tobi_surface_build(&mesh, spacings[i], 3, &s, &err));
         double (*x)[3] = malloc((size_t)s.count*sizeof *x), (*n)[3] = malloc((size_t)s.count*sizeof *n);
         double *area = malloc((size_t)s.count*sizeof *area);
         double sum = 0, largest = 0, closed[3] = {0}, volume = 0;
@@ -199,14 +199,15 @@ static void pieces_move_with_the_mesh(void **state)
     (void)state;
     tobi_mesh mesh = make_cube(1);
     tobi_surface s;
-    OK(tobi_surface_build(&mesh, 0.5, 3, &s, err));
+    OK(tobi_surface_build(&mesh, 0.5, 3, &s, &err));
     double (*before)[3] = malloc((size_t)s.count*sizeof *before);
     double (*after)[3] = malloc((size_t)s.count*sizeof *after);
     double (*n)[3] = malloc((size_t)s.count*sizeof *n);
     double *area = malloc((size_t)s.count*sizeof *area), sum = 0;
     const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
     tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, before, n, area);
-    OK(tobi_mesh_transform(&mesh, (double[3]){3, 1, 1}, (double[3]){0, 0, 1}, 90, (double[3]){0, 5, 0}, err));
+    OK(tobi_mesh_transform(&mesh, (double[3]){3, 1, 1}, (double[3]){0, 0, 1}, 90, (double[3]){0, 5, 0},
+                           &err));
     tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, after, n, area);
     for (int64_t i = 0; i < s.count; i++) {
         WITHIN(after[i][0], -before[i][1], 1e-12);
@@ -234,8 +235,8 @@ static void outlines_in_two_dimensions(void **state)
     tobi_mesh mesh = read_own("test/meshes/cylinder.obj");
     tobi_massprops p;
     tobi_surface s;
-    OK(tobi_massprops_section(&mesh, &p, err));
-    OK(tobi_surface_build(&mesh, 0.03, 2, &s, err));
+    OK(tobi_massprops_section(&mesh, &p, &err));
+    OK(tobi_surface_build(&mesh, 0.03, 2, &s, &err));
     double (*x)[3] = malloc((size_t)s.count*sizeof *x), (*n)[3] = malloc((size_t)s.count*sizeof *n);
     double *length = malloc((size_t)s.count*sizeof *length);
     const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
@@ -261,9 +262,9 @@ static void outlines_in_two_dimensions(void **state)
     free(n);
     free(length);
     tobi_surface_free(&s);
-    REFUSED(tobi_surface_build(&mesh, 0, 2, &s, err), TOBI_INVALID, "must be > 0");
-    REFUSED(tobi_surface_build(&mesh, 0.1, 1, &s, err), TOBI_INVALID, "2 and 3");
-    REFUSED(tobi_surface_build(&mesh, 1e-9, 3, &s, err), TOBI_INVALID, "allow larger");
+    REFUSED(tobi_surface_build(&mesh, 0, 2, &s, &err), TOBI_INVALID, "must be > 0");
+    REFUSED(tobi_surface_build(&mesh, 0.1, 1, &s, &err), TOBI_INVALID, "2 and 3");
+    REFUSED(tobi_surface_build(&mesh, 1e-9, 3, &s, &err), TOBI_INVALID, "allow larger");
     tobi_mesh_free(&mesh);
 }
 

@@ -40,7 +40,7 @@ static cloud place(const tobi_seed_shape *s, double spacing)
 static cloud scatter(const tobi_seed_shape *s, double spacing, uint64_t number, int threads)
 {
     cloud c = place(s, spacing);
-    OK(tobi_seed_scatter(s, spacing, number, c.count, c.x, threads, err));
+    OK(tobi_seed_scatter(s, spacing, number, c.count, c.x, threads, &err));
     return c;
 }
 
@@ -117,7 +117,7 @@ static void even_in_meshes(void **state)
     tobi_mesh m = read_own("test/meshes/torus.obj");
     tobi_bvh *tree;
     OK(tobi_bvh_build(m.vertex_count, (const double (*)[3])m.vertices, m.triangle_count,
-                      (const int32_t (*)[3])m.triangles, &tree, err));
+                      (const int32_t (*)[3])m.triangles, &tree, &err));
     tobi_seed_shape s = { .tree = tree, .dimension = 3 };
     tobi_bvh_box(tree, s.lower, s.upper);
     check_shape(&s, 0.05, 0);
@@ -131,7 +131,7 @@ static void small_shapes(void **state)
     (void)state;
     const tobi_seed_shape sheet = { .lower = {0, 0, 0}, .upper = {1, 1, 0.02}, .dimension = 3 };
     const tobi_seed_shape grain = { .lower = {0, 0, 0}, .upper = {0.1, 0.1, 0.1}, .dimension = 3 };
-    OK(tobi_seed_scatter(&grain, 0.1, 1, 0, NULL, 1, err));
+    OK(tobi_seed_scatter(&grain, 0.1, 1, 0, NULL, 1, &err));
     cloud one = scatter(&grain, 0.1, 1, 1), many = scatter(&sheet, 0.02, 1, 2);
     assert_int_equal(one.count, 1);
     assert_true(inside(&grain, one.x[0]));

@@ -27,8 +27,8 @@ static tobi_mesh make_prism(const double (*section)[2], int n, double length, in
         t[count][0] = pieces*n; t[count][1] = pieces*n + i; t[count++][2] = pieces*n + i + 1;
     }
     OK(tobi_mesh_build("prism", n*(pieces + 1), (const double (*)[3])v, count, (const int32_t (*)[3])t, &mesh,
-                       err));
-    OK(tobi_mesh_orient(&mesh, "prism", err));
+                       &err));
+    OK(tobi_mesh_orient(&mesh, "prism", &err));
     free(v);
     free(t);
     return mesh;
@@ -67,7 +67,7 @@ static void test_wedge_edge(void **state)
     (void)state;
     tobi_sharp s;
     tobi_mesh mesh = make_prism(knife, 5, 0.24, 12);
-    OK(tobi_sharp_find(&mesh, 60, 0.0007, 0, &s, err));
+    OK(tobi_sharp_find(&mesh, 60, 0.0007, 0, &s, &err));
     assert_int_equal(s.count, 1);
     assert_true(s.width == 0);
     WITHIN(s.sharpest, 2*atan(0.0015/0.008)*180/PI, 1e-9);
@@ -77,7 +77,7 @@ static void test_wedge_edge(void **state)
     check_pieces(&s);
     free(s.edge);
     /* The limit decides: the edge is 21.2 degrees sharp. */
-    OK(tobi_sharp_find(&mesh, 21.1, 0.0007, 0, &s, err));
+    OK(tobi_sharp_find(&mesh, 21.1, 0.0007, 0, &s, &err));
     assert_int_equal(s.count, 0);
     assert_null(s.edge);
     tobi_mesh_free(&mesh);
@@ -94,7 +94,7 @@ static void test_blunt_edge(void **state)
                                  { -0.0015, 0.008 }, { -half, half*8/1.5 } };
         tobi_sharp s;
         tobi_mesh mesh = make_prism(section, 6, 0.24, 12);
-        OK(tobi_sharp_find(&mesh, 60, 0.0007, 0, &s, err));
+        OK(tobi_sharp_find(&mesh, 60, 0.0007, 0, &s, &err));
         assert_in_range(s.count, 1, 3);
         for (int64_t i = 0; i < s.count; i++) assert_true(fabs(s.edge[i].a[0]) <= half*1.001);
         assert_true(s.width >= 2*half && s.width <= 4*half);
@@ -102,7 +102,7 @@ static void test_blunt_edge(void **state)
         WITHIN(s.edge[0].ahead[2], -1, 1e-3);
         check_pieces(&s);
         free(s.edge);
-        OK(tobi_sharp_find(&mesh, 60, half, 0, &s, err));
+        OK(tobi_sharp_find(&mesh, 60, half, 0, &s, &err));
         assert_int_equal(s.count, 0);
         tobi_mesh_free(&mesh);
     }
@@ -121,7 +121,7 @@ static void test_round_edge(void **state)
     section[18][0] = -0.002; section[18][1] = 0.05;
     tobi_sharp s;
     tobi_mesh mesh = make_prism(section, 19, 0.24, 30);
-    OK(tobi_sharp_find(&mesh, 60, 0.0015, 0, &s, err));
+    OK(tobi_sharp_find(&mesh, 60, 0.0015, 0, &s, &err));
     assert_in_range(s.count, 1, 4);
     WITHIN(length_of(&s), 0.24, 0.0003);
     for (int64_t i = 0; i < s.count; i++) {
@@ -145,19 +145,19 @@ static void test_no_edge(void **state)
         tobi_mesh mesh;
         char path[300];
         snprintf(path, sizeof path, "%s/test/meshes/%s.obj", TOBI_SOURCE_DIR, names[k]);
-        OK(tobi_mesh_read(path, &mesh, err));
-        OK(tobi_mesh_orient(&mesh, names[k], err));
-        OK(tobi_sharp_find(&mesh, 60, 0.05, 0, &s, err));
+        OK(tobi_mesh_read(path, &mesh, &err));
+        OK(tobi_mesh_orient(&mesh, names[k], &err));
+        OK(tobi_sharp_find(&mesh, 60, 0.05, 0, &s, &err));
         assert_int_equal(s.count, 0);
         assert_true(s.sharpest > 60);
         tobi_mesh_free(&mesh);
     }
     const double low[3] = { 0, 0, 0 }, high[3] = { 0.003, 0.1, 0.2 };
     tobi_mesh plate = make_box(low, high);
-    OK(tobi_sharp_find(&plate, 60, 0.25*0.0029, 0, &s, err));
+    OK(tobi_sharp_find(&plate, 60, 0.25*0.0029, 0, &s, &err));
     assert_int_equal(s.count, 0);
     WITHIN(s.sharpest, 90, 1e-9);
-    OK(tobi_sharp_find(&plate, 91, 0.25*0.0029, 0, &s, err));
+    OK(tobi_sharp_find(&plate, 91, 0.25*0.0029, 0, &s, &err));
     assert_true(s.count > 0);
     free(s.edge);
     tobi_mesh_free(&plate);
@@ -179,9 +179,9 @@ static void test_closed_edge(void **state)
     }
     tobi_mesh mesh;
     tobi_sharp s;
-    OK(tobi_mesh_build("lens", N + 2, (const double (*)[3])v, 2*N, (const int32_t (*)[3])t, &mesh, err));
-    OK(tobi_mesh_orient(&mesh, "lens", err));
-    OK(tobi_sharp_find(&mesh, 60, 0.001, 0, &s, err));
+    OK(tobi_mesh_build("lens", N + 2, (const double (*)[3])v, 2*N, (const int32_t (*)[3])t, &mesh, &err));
+    OK(tobi_mesh_orient(&mesh, "lens", &err));
+    OK(tobi_sharp_find(&mesh, 60, 0.001, 0, &s, &err));
     NEAR(length_of(&s), 2*N*0.1*sin(PI/N), 2e-3);
     check_pieces(&s);
     for (int64_t i = 0; i < s.count; i++) {
@@ -199,8 +199,8 @@ static void test_section(void **state)
     tobi_mesh mesh = make_prism(knife, 5, 0.24, 1);
     const double unit[3] = { 1, 1, 1 }, x[3] = { 1, 0, 0 }, none[3] = { 0 };
     tobi_sharp s;
-    OK(tobi_mesh_transform(&mesh, unit, x, 90, none, err));        /* y -> z, z -> -y */
-    OK(tobi_sharp_find(&mesh, 60, 0.0007, 1, &s, err));
+    OK(tobi_mesh_transform(&mesh, unit, x, 90, none, &err));        /* y -> z, z -> -y */
+    OK(tobi_sharp_find(&mesh, 60, 0.0007, 1, &s, &err));
     assert_int_equal(s.count, 1);
     WITHIN(s.edge[0].a[2], -0.5, 0);
     WITHIN(s.edge[0].b[2], 0.5, 0);
@@ -224,10 +224,10 @@ static void test_shipped(void **state)
         tobi_sharp s;
         char path[300];
         snprintf(path, sizeof path, "%s/scenes/%s", TOBI_SOURCE_DIR, meshes[k].file);
-        OK(tobi_mesh_read(path, &mesh, err));
-        OK(tobi_mesh_orient(&mesh, path, err));
+        OK(tobi_mesh_read(path, &mesh, &err));
+        OK(tobi_mesh_orient(&mesh, path, &err));
         assert_string_equal(mesh.notes, "");
-        OK(tobi_sharp_find(&mesh, 60, 0.25*meshes[k].thickness, 0, &s, err));
+        OK(tobi_sharp_find(&mesh, 60, 0.25*meshes[k].thickness, 0, &s, &err));
         assert_int_equal(s.count, meshes[k].length > 0);
         WITHIN(length_of(&s), meshes[k].length, 1e-9);
         if (s.count) WITHIN(s.edge[0].ahead[2], -1, 1e-9);

@@ -1,31 +1,12 @@
 /* Meshes and random numbers for the tests of src/geom. */
 #pragma once
+#include "calls.h"
 #include "geom/mesh.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
-
-#define OK(call)                                                  \
-    do {                                                          \
-        tobi_error ok_ = {0}, *err = &ok_;                        \
-        if ((call) != TOBI_OK) fail_msg("%s: %s", #call, ok_.text); \
-    } while (0)
-
-/* The call must fail with this status, and its text must hold these words. */
-#define REFUSED(call, expected, words)                                        \
-    do {                                                                      \
-        tobi_error refused_ = {0}, *err = &refused_;                          \
-        assert_int_equal(call, expected);                                     \
-        if (!strstr(refused_.text, words))                                    \
-            fail_msg("\"%s\" does not say \"%s\"", refused_.text, words);     \
-    } while (0)
 
 /* A relative difference of at most tolerance. */
 #define NEAR(value, expected, tolerance)                                              \
@@ -65,7 +46,7 @@ static inline tobi_mesh make_box(const double min[3], const double max[3])
     for (int i = 0; i < 8; i++)
         for (int k = 0; k < 3; k++) v[i][k] = i >> k & 1 ? max[k] : min[k];
     tobi_mesh mesh;
-    OK(tobi_mesh_build("box", 8, (const double (*)[3])v, 12, t, &mesh, err));
+    OK(tobi_mesh_build("box", 8, (const double (*)[3])v, 12, t, &mesh, &err));
     return mesh;
 }
 
@@ -109,7 +90,7 @@ static inline tobi_mesh read_own(const char *path)
     char full[1000];
     tobi_mesh mesh;
     snprintf(full, sizeof full, "%s/%s", TOBI_SOURCE_DIR, path);
-    OK(tobi_mesh_read(full, &mesh, err));
-    OK(tobi_mesh_orient(&mesh, path, err));
+    OK(tobi_mesh_read(full, &mesh, &err));
+    OK(tobi_mesh_orient(&mesh, path, &err));
     return mesh;
 }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "solid_rig.h"
 #include "core/cuts.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
@@ -20,24 +21,15 @@
 /* A block of nx x ny x nz particles, its lower corner at (1, 1, 1). */
 static tobi_world *make_world(int dimension, int model, const int n[3], int threads)
 {
-    tobi_world_def w = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    tobi_world *world;
-    tobi_error err = { 0 };
-    w.method = "mlsmpm";
-    w.dimension = dimension;
-    w.spacing = D;
-    w.threads = threads;
-    solid.model = model;
+    solid_setup s = solid_default(dimension, D, 8);
+    s.world.threads = threads;
+    s.solid.model = model;
     for (int a = 0; a < dimension; a++) {
-        w.domain_max[a] = 8;
-        fill.box_min[a] = 1;
-        fill.box_max[a] = 1 + n[a]*D;
+        s.fill.box_min[a] = 1;
+        s.fill.box_max[a] = 1 + n[a]*D;
     }
-    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, &fill, 1, &err) ||
-        tobi_world_start(world, &err))
-        fail_msg("%s", err.text);
+    tobi_world *world = solid_world(&s);
+    OK(tobi_world_start(world, &err));
     return world;
 }
 
@@ -52,9 +44,8 @@ static void remember_cuts(tobi_world *world)
 static const tobi_pieces *find(tobi_world *world)
 {
     const tobi_pieces *pieces;
-    tobi_error err = { 0 };
     world->fresh = 0;                   /* the tests move particles behind its back */
-    if (tobi_world_pieces(world, &pieces, &err)) fail_msg("%s", err.text);
+    OK(tobi_world_pieces(world, &pieces, &err));
     double mass = 0, volume = 0;
     int64_t particles = 0;
     for (int64_t k = 0; k < pieces->count + pieces->fragments; k++) {
@@ -72,15 +63,6 @@ static const tobi_pieces *find(tobi_world *world)
     return pieces;
 }
 
-static double *get(tobi_world *world, const char *field)
-{
-    tobi_error err = { 0 };
-    int64_t n = tobi_world_count(world, TOBI_FLUID);
-    double *out = malloc((size_t)n*sizeof *out + 1);
-    if (tobi_world_read(world, TOBI_FLUID, field, out, n, &err)) fail_msg("%s", err.text);
-    return out;
-}
-
 static void a_block_is_one_piece(void **state)
 {
     (void)state;
@@ -89,7 +71,7 @@ static void a_block_is_one_piece(void **state)
     assert_true(p->count == 1 && p->fragments == 0 && p->piece[0].particles == 120);
     assert_true(fabs(p->mass - 120) < 1e-4 && fabs(p->volume - 0.12) < 1e-7);
     assert_true(fabs(p->piece[0].centre[0] - 1.3) < 1e-6 && fabs(p->piece[0].centre[2] - 1.2) < 1e-6);
-    double *cut = get(world, "cut_side");
+    double *cut = solid_read(world, "cut_side", 1);
     for (int i = 0; i < 120; i++) assert_true(cut[i] == 0);
     free(cut);
     /* Squeezed by half: the volume is that of now. */
@@ -132,10 +114,8 @@ static void cuts_part(void **state)
         p = find(world);
         assert_true(p->count == 4);
         for (int k = 0; k < 4; k++) assert_true(fabs(p->piece[k].centre[0] - (1.25 + 0.5*k)) < 1e-6);
-        double *piece = get(world, "piece"), *side = get(world, "cut_side"), *x = NULL;
-        x = malloc((size_t)world->sim.particles.count*3*sizeof *x);
-        assert_int_equal(tobi_world_read(world, TOBI_FLUID, "position", x, world->sim.particles.count, NULL),
-                         TOBI_OK);
+        double *piece = solid_read(world, "piece", 1), *side = solid_read(world, "cut_side", 1);
+        double *x = solid_read(world, "position", 3);
         for (int64_t i = 0; i < world->sim.particles.count; i++) {
             assert_true(piece[i] == floor((x[3*i] - 1)/0.5));
             double latest = x[3*i] > 2.5 - 3*D ? (x[3*i] > 2.5 ? 3 : -3) : 0;
@@ -161,7 +141,7 @@ static void crumbs_are_told_apart(void **state)
     const tobi_pieces *found = find(world);
     assert_true(found->count == 1 && found->fragments == 1 && found->piece[1].particles == 3);
     assert_true(found->piece[1].first_id == 0 && found->mass == whole);
-    double *piece = get(world, "piece");
+    double *piece = solid_read(world, "piece", 1);
     for (int i = 0; i < 512; i++) assert_true(piece[i] == (i < 3));
     free(piece);
     tobi_world_destroy(world);
@@ -208,27 +188,20 @@ static void solids_stay_apart_and_liquids_have_none(void **state)
     (void)state;
     tobi_world *world = make_world(3, TOBI_LIQUID, (int[]){ 4, 4, 4 }, 1);
     assert_true(find(world)->count == 0 && find(world)->fragments == 0 && find(world)->mass == 0);
-    double *piece = get(world, "piece");
+    double *piece = solid_read(world, "piece", 1);
     for (int i = 0; i < 64; i++) assert_true(piece[i] == -1);
     free(piece);
     tobi_world_destroy(world);
 
-    tobi_world_def w = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    w.method = "mlsmpm";
-    w.spacing = D;
-    for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = 4;
-        fill.box_max[a] = 1;
-    }
-    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
+    solid_setup s = solid_default(3, D, 4);
+    OK(tobi_world_create(&s.world, NULL, &world, &err));
     for (int k = 0; k < 3; k++) {        /* side by side: the second solid is the heaviest */
-        solid.density = k == 1 ? 2000 : 1000;
-        solid.model = k == 2 ? TOBI_STATIONARY : TOBI_NEO_HOOKEAN;
-        fill.box_min[0] = k;
-        fill.box_max[0] = k + 1;
-        assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+        s.solid.density = k == 1 ? 2000 : 1000;
+        s.solid.model = k == 2 ? TOBI_STATIONARY : TOBI_NEO_HOOKEAN;
+        s.fill.box_min[0] = k;
+        s.fill.box_max[0] = k + 1;
+        s.fill.box_max[1] = s.fill.box_max[2] = 1;
+        OK(tobi_world_add_solid(world, &s.solid, &s.fill, 1, &err));
     }
     const tobi_pieces *p = find(world);
     assert_true(p->count == 3 && p->piece[0].solid == 1 && p->piece[1].solid == 0 && p->piece[2].solid == 2);
@@ -276,7 +249,7 @@ static void check_cloud(int dimension, double size, double far, int threads)
     }
     if (far > 1e6) p->position[17].x = NAN;
     const tobi_pieces *found = find(world);
-    double *piece = get(world, "piece");
+    double *piece = solid_read(world, "piece", 1);
     int *of = malloc((size_t)p->count*sizeof *of), number = 0;
     int64_t *stack = malloc((size_t)p->count*sizeof *stack);
     for (int64_t i = 0; i < p->count; i++) of[i] = -1;
@@ -314,13 +287,13 @@ static void threads_do_not_matter(void **state)
     for (int k = 0; k < 2; k++) {
         remember_cuts(both[k]);
         for (int cut = 1; cut < 8; cut++) cut_at(both[k], 1 + 0.5*cut, cut);
-        for (int n = 0; n < 30; n++) assert_int_equal(tobi_world_step(both[k], 0, NULL, NULL), TOBI_OK);
+        solid_step(both[k], 30);
     }
     const tobi_pieces *a = find(one), *b = find(four);
     assert_true(a->count == 8 && a->count == b->count && a->fragments == b->fragments);
     assert_memory_equal(a->piece, b->piece, (size_t)a->count*sizeof *a->piece);
     assert_true(a->mass == b->mass && a->volume == b->volume);
-    double *x = get(one, "piece"), *y = get(four, "piece");
+    double *x = solid_read(one, "piece", 1), *y = solid_read(four, "piece", 1);
     assert_memory_equal(x, y, 40*12*12*sizeof *x);
     free(x);
     free(y);
@@ -397,12 +370,12 @@ static void files_tell(void **state)
     tobi_world *world = make_world(3, TOBI_NEO_HOOKEAN, (int[]){ 70, 3, 3 }, 1);
     tobi_output_def output = tobi_default_output_def();
     tobi_run *run;
-    tobi_error err = { 0 };
     output.fields = "piece,cut_side";
-    if (tobi_run_create(world, &output, folder, 1, NULL, &run, &err)) fail_msg("%s", err.text);
+    OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));
     remember_cuts(world);
     slice_up(world);
-    if (tobi_run_output(run, &err) || tobi_run_finish(run, "complete", &err)) fail_msg("%s", err.text);
+    OK(tobi_run_output(run, &err));
+    OK(tobi_run_finish(run, "complete", &err));
     check_summary(folder);
     check_history(folder);
     tobi_run_free(run);
@@ -415,22 +388,16 @@ static void files_tell(void **state)
 
 static tobi_world *color_world(const tobi_fill_def *fill, const double core[3], int threads)
 {
-    tobi_world_def w = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_world *world;
-    tobi_error err = { 0 };
-    w.method = "mlsmpm";
-    w.spacing = D;
-    w.threads = threads;
+    solid_setup s = solid_default(3, D, 3);
+    s.fill = *fill;
+    s.world.threads = threads;
     for (int a = 0; a < 3; a++) {
-        w.domain_min[a] = -1;
-        w.domain_max[a] = 3;
-        solid.color[a] = a == 0 ? 200 : 30;
+        s.world.domain_min[a] = -1;
+        s.solid.color[a] = a == 0 ? 200 : 30;
     }
-    memcpy(solid.core_color, core, sizeof solid.core_color);
-    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, fill, 1, &err) ||
-        tobi_world_start(world, &err))
-        fail_msg("%s", err.text);
+    memcpy(s.solid.core_color, core, sizeof s.solid.core_color);
+    tobi_world *world = solid_world(&s);
+    OK(tobi_world_start(world, &err));
     return world;
 }
 
@@ -446,7 +413,6 @@ static int count_core(tobi_world *world)
 static void the_core_is_below_the_skin(void **state)
 {
     (void)state;
-    char path[] = "/tmp/tobiuo_core_XXXXXX";
     tobi_fill_def fill = tobi_default_fill_def();
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, cream, 2), *plain = color_world(&fill, none, 2);
@@ -458,12 +424,9 @@ static void the_core_is_below_the_skin(void **state)
         assert_int_equal(x->w == 1, core);
     }
     /* It survives steps and a restart. */
-    close(mkstemp(path));
-    for (int n = 0; n < 50; n++) assert_int_equal(tobi_world_step(world, 0, NULL, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_save(world, path, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_load(plain, path, NULL), TOBI_OK);
+    solid_step(world, 50);
+    solid_copy(world, plain);
     assert_true(count_core(world) == 216 && count_core(plain) == 216);
-    unlink(path);
     tobi_world_destroy(world);
     tobi_world_destroy(plain);
 
@@ -501,14 +464,13 @@ static char *picture(const double core[3], double gap, size_t *size)
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_output_def output = tobi_default_output_def();
     tobi_run *run;
-    tobi_error err = { 0 };
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, core, 1);
     for (int64_t i = 0; i < 1000; i++)
         if (world->sim.particles.rest[i].x > 1.5f) world->sim.particles.position[i].x += gap;
     assert_non_null(mkdtemp(folder));
     output.frames = 1;
-    if (tobi_run_create(world, &output, folder, 1, NULL, &run, &err)) fail_msg("%s", err.text);
+    OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));
     snprintf(path, sizeof path, "%s/frames/frame_000000.png", folder);
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
@@ -541,12 +503,10 @@ static void other_methods_have_no_pieces(void **state)
     tobi_world_def w = tobi_default_world_def();
     tobi_world *world;
     const tobi_pieces *pieces;
-    tobi_error err = { 0 };
     w.spacing = D;
     for (int a = 0; a < 3; a++) w.domain_max[a] = 1;
-    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_pieces(world, &pieces, &err), TOBI_UNSUPPORTED);
-    assert_non_null(strstr(err.text, "dfsph has no solids, so no pieces"));
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    REFUSED(tobi_world_pieces(world, &pieces, &err), TOBI_UNSUPPORTED, "dfsph has no solids, so no pieces");
     tobi_world_destroy(world);
 }
 

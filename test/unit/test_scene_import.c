@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "calls.h"
 #include "geom/mesh.h"
 #include "scene/scene.h"
 #include "world/params.h"
@@ -389,6 +390,46 @@ static void a_written_scene_is_the_same(void **state)
     rmdir(folder);
 }
 
+/* A scene and its mesh may move together: nothing in the new file names the folder they lie in. */
+static void paths_below_the_new_scene_are_relative(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/tobi_import_XXXXXX", old[64], mesh[64], new[64];
+    static const char scene[] =
+        "{ \"Configuration\": { \"domainEnd\": [3, 3, 3], \"particleRadius\": 0.1,\n"
+        "  \"gravitation\": [0, 0, -9] },\n"
+        "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
+        "\"RigidBodies\": [ { \"objectId\": 1, \"geometryFile\": \"wedge.obj\",\n"
+        "  \"translation\": [1.5, 1.5, 1.5] } ] }";
+    assert_non_null(mkdtemp(folder));
+    snprintf(old, sizeof old, "%s/old.json", folder);
+    snprintf(new, sizeof new, "%s/new.json", folder);
+    snprintf(mesh, sizeof mesh, "%s/wedge.obj", folder);
+    FILE *file = fopen(old, "w");
+    assert_non_null(file);
+    fputs(scene, file);
+    fclose(file);
+    char *table, *text;
+    size_t size;
+    OK(tobi_source_read_file(TOBI_SOURCE_DIR "/test/meshes/wedge.obj", &text, &size, &err));
+    file = fopen(mesh, "w");
+    assert_non_null(file);
+    assert_true(fwrite(text, 1, size, file) == size && fclose(file) == 0);
+    free(text);
+    OK(tobi_scene_import(old, new, 0, &table, NULL, &err));
+    assert_non_null(strstr(table, "-> bodies[0].mesh = \"wedge.obj\"\n"));
+    OK(tobi_source_read_file(new, &text, &size, &err));
+    assert_non_null(strstr(text, "-> bodies[0].mesh = \"wedge.obj\"\n"));
+    assert_null(strstr(text, folder));
+    tobi_scene_free(load(new, NULL));
+    free(text);
+    free(table);
+    unlink(old);
+    unlink(new);
+    unlink(mesh);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -405,6 +446,7 @@ int main(void)
         cmocka_unit_test(later_mistakes),
         cmocka_unit_test(a_tail_that_is_not_clear),
         cmocka_unit_test(a_written_scene_is_the_same),
+        cmocka_unit_test(paths_below_the_new_scene_are_relative),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

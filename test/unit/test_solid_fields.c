@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "solid_rig.h"
 #include "mpm/fields.h"
 #include "tobiuo/run.h"
 #include "tobiuo/types.h"
@@ -106,8 +107,7 @@ static void models_flow_as_they_should(void **state)
 /* A ball of each model in a box, falling and turning. */
 static tobi_world *make_world(int dimension, int transfer, int threads)
 {
-    tobi_error err = { 0 };
-    tobi_world *world = NULL;
+    tobi_world *world;
     tobi_world_def w = tobi_default_world_def();
     tobi_mlsmpm_def m = tobi_default_mlsmpm_def();
     m.transfer = transfer;
@@ -125,7 +125,7 @@ static tobi_world *make_world(int dimension, int transfer, int threads)
         w.gravity[1] = -9.81;
         w.gravity[2] = 0;
     }
-    if (tobi_world_create(&w, &m, &world, &err)) fail_msg("%s", err.text);
+    OK(tobi_world_create(&w, &m, &world, &err));
     for (int model = TOBI_NEO_HOOKEAN; model <= TOBI_SAND; model++) {
         tobi_solid_def solid = tobi_default_solid_def();
         tobi_fill_def fill = tobi_default_fill_def();
@@ -138,25 +138,9 @@ static tobi_world *make_world(int dimension, int transfer, int threads)
         fill.radius = 0.25;
         fill.velocity[dimension - 1] = -1;
         fill.spin[2] = 3;
-        if (tobi_world_add_solid(world, &solid, &fill, 1, &err)) fail_msg("%s", err.text);
+        OK(tobi_world_add_solid(world, &solid, &fill, 1, &err));
     }
     return world;
-}
-
-static void step(tobi_world *world, int steps)
-{
-    tobi_error err = { 0 };
-    for (int k = 0; k < steps; k++)
-        if (tobi_world_step(world, 0, NULL, &err)) fail_msg("%s", err.text);
-}
-
-static double *get(tobi_world *world, const char *field, int components)
-{
-    tobi_error err = { 0 };
-    int64_t n = tobi_world_count(world, TOBI_FLUID);
-    double *out = malloc((size_t)(n*components)*sizeof *out);
-    if (tobi_world_read(world, TOBI_FLUID, field, out, n, &err)) fail_msg("%s", err.text);
-    return out;
 }
 
 static double determinant(const double F[9])
@@ -180,14 +164,15 @@ static void check_fields(int dimension)
 {
     tobi_world *world = make_world(dimension, TOBI_APIC, 2);
     assert_int_equal(tobi_world_start(world, NULL), TOBI_OK);
-    double *first = get(world, "position", 3);
-    step(world, 150);
+    double *first = solid_read(world, "position", 3);
+    solid_step(world, 150);
     int64_t n = tobi_world_count(world, TOBI_FLUID);
-    double *F = get(world, "deformation_gradient", 9), *J = get(world, "J", 1);
-    double *rho = get(world, "density", 1);
-    double *s = get(world, "stress", 6), *p = get(world, "pressure", 1), *mises = get(world, "von_mises", 1);
-    double *rest = get(world, "rest_position", 3), *material = get(world, "material", 1);
-    double *plastic = get(world, "plastic", 1), largest = 0, most_plastic = 0;
+    double *F = solid_read(world, "deformation_gradient", 9), *J = solid_read(world, "J", 1);
+    double *rho = solid_read(world, "density", 1);
+    double *s = solid_read(world, "stress", 6), *p = solid_read(world, "pressure", 1);
+    double *mises = solid_read(world, "von_mises", 1);
+    double *rest = solid_read(world, "rest_position", 3), *material = solid_read(world, "material", 1);
+    double *plastic = solid_read(world, "plastic", 1), largest = 0, most_plastic = 0;
     for (int64_t i = 0; i < n; i++) {
         const double *t = s + 6*i;
         double trace = t[0] + t[1] + t[2], m2 = 0, scale = 1;
@@ -226,25 +211,18 @@ static void fields_agree_with_formulas(void **state)
 static void strain_is_that_of_now(void **state)
 {
     (void)state;
-    tobi_world_def w = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    tobi_world *world;
     tobi_step_info info;
-    w.method = "mlsmpm";
-    w.spacing = 0.05;
-    w.gravity[2] = 0;
+    solid_setup s = solid_default(3, 0.05, 1);
+    s.world.gravity[2] = 0;
     for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = 1;
-        fill.box_min[a] = 0.1;
-        fill.box_max[a] = 0.9;
+        s.fill.box_min[a] = 0.1;
+        s.fill.box_max[a] = 0.9;
     }
-    solid.youngs_modulus = 1e-3;
-    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_start(world, NULL), TOBI_OK);
+    s.solid.youngs_modulus = 1e-3;
+    tobi_world *world = solid_world(&s);
+    OK(tobi_world_start(world, &err));
     int64_t n = tobi_world_count(world, TOBI_FLUID);
-    double *x = get(world, "position", 3), *v = malloc((size_t)n*3*sizeof *v);
+    double *x = solid_read(world, "position", 3), *v = malloc((size_t)n*3*sizeof *v);
     for (int64_t i = 0; i < n; i++) {
         v[3*i] = 0.5*(x[3*i] - 0.5);
         v[3*i + 1] = 0.2*(x[3*i] - 0.5);
@@ -252,7 +230,7 @@ static void strain_is_that_of_now(void **state)
     }
     assert_int_equal(tobi_world_write(world, "velocity", v, n, NULL), TOBI_OK);
     assert_int_equal(tobi_world_step(world, 0, &info, NULL), TOBI_OK);
-    double *F = get(world, "deformation_gradient", 9);
+    double *F = solid_read(world, "deformation_gradient", 9);
     int inner = 0;
     for (int64_t i = 0; i < n; i++) {
         const double *p = x + 3*i, dt = info.dt;
@@ -278,9 +256,9 @@ static void reading_changes_nothing(void **state)
     const tobi_grid *grid;
     tobi_error err = { 0 };
     for (int k = 0; k < 12; k++) {
-        step(quiet, 10);
-        step(watched, 10);
-        free(get(watched, "stress", 6));
+        solid_step(quiet, 10);
+        solid_step(watched, 10);
+        free(solid_read(watched, "stress", 6));
         assert_true(tobi_world_info(watched)->elastic_energy >= 0);
         assert_int_equal(tobi_world_grid(watched, &grid, &err), TOBI_OK);
     }
@@ -297,7 +275,7 @@ static void nodes_have_the_particles_momentum(void **state)
         const tobi_grid *g;
         tobi_error err = { 0 };
         for (int steps = 0; steps <= 60; steps += 60) {
-            step(world, steps);
+            solid_step(world, steps);
             assert_int_equal(tobi_world_grid(world, &g, &err), TOBI_OK);
             const tobi_step_info *info = tobi_world_info(world);
             double mass = 0, sum[3] = { 0 }, expected = info->weight/9.81;
@@ -320,23 +298,17 @@ static void nodes_have_the_particles_momentum(void **state)
 static void blue_noise_is_even(void **state)
 {
     (void)state;
-    tobi_world_def w = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
     tobi_world *world[2];
-    w.method = "mlsmpm";
-    w.spacing = 0.1;
-    for (int a = 0; a < 3; a++) w.domain_max[a] = fill.box_max[a] = 1;
-    solid.seeding = TOBI_SEED_BLUE_NOISE;
+    solid_setup s = solid_default(3, 0.1, 1);
+    s.solid.seeding = TOBI_SEED_BLUE_NOISE;
     for (int k = 0; k < 2; k++) {
-        assert_int_equal(tobi_world_create(&w, NULL, &world[k], NULL), TOBI_OK);
-        assert_int_equal(tobi_world_add_solid(world[k], &solid, &fill, 1, NULL), TOBI_OK);
-        assert_int_equal(tobi_world_start(world[k], NULL), TOBI_OK);
+        world[k] = solid_world(&s);
+        OK(tobi_world_start(world[k], &err));
     }
     assert_true(tobi_world_hash(world[0]) == tobi_world_hash(world[1]));
     assert_int_equal(tobi_world_count(world[0], TOBI_FLUID), 1000);
     assert_true(fabs(tobi_world_info(world[0])->weight - 9810) < 0.01);
-    double *x = get(world[0], "position", 3), mean = 0, least = 1;
+    double *x = solid_read(world[0], "position", 3), mean = 0, least = 1;
     int rows = 0;
     for (int i = 0; i < 1000; i++) {
         double nearest = 1;
@@ -361,21 +333,11 @@ static void blue_noise_is_even(void **state)
 
 static void check_bits(int dimension, int transfer)
 {
-    char path[] = "/tmp/tobiuo_solids_XXXXXX";
-    tobi_error err = { 0 };
-    close(mkstemp(path));
     tobi_world *one = make_world(dimension, transfer, 1), *four = make_world(dimension, transfer, 4);
     tobi_world *later = make_world(dimension, transfer, 2);
-    step(one, 57);                      /* in the middle between two sorts */
-    if (tobi_world_save(one, path, &err) || tobi_world_load(later, path, &err)) fail_msg("%s", err.text);
-    step(one, 60);
-    step(four, 117);
-    step(later, 60);
-    assert_true(tobi_world_hash(one) == tobi_world_hash(four));
-    assert_true(tobi_world_hash(one) == tobi_world_hash(later));
+    solid_check_bits(one, four, later);
     const tobi_step_info *a = tobi_world_info(one), *b = tobi_world_info(later);
     assert_true(a->elastic_energy == b->elastic_energy && a->energy_lost == b->energy_lost);
-    unlink(path);
     tobi_world_destroy(one);
     tobi_world_destroy(four);
     tobi_world_destroy(later);
@@ -391,14 +353,6 @@ static void runs_go_on_with_the_same_bits(void **state)
 }
 
 /* --- what is refused ------------------------------------------------------------------------------- */
-
-#define REFUSED(call, expected, part)                                      \
-    do {                                                                   \
-        tobi_error err = { 0 };                                            \
-        int got = (call);                                                  \
-        if (got != (expected) || !strstr(err.text, part))                  \
-            fail_msg("status %d, '%s' without '%s'", got, err.text, part); \
-    } while (0)
 
 static void calls_are_refused_in_words(void **state)
 {
@@ -427,7 +381,7 @@ static void calls_are_refused_in_words(void **state)
     output.grid = 1;
     REFUSED(tobi_run_create(water, &output, "no_run", 0, NULL, &run, &err), TOBI_INVALID,
             "output.grid: dfsph has no grid");
-    step(world, 1);
+    solid_step(world, 1);
     REFUSED(tobi_world_add_solid(world, &solid, &fill, 1, &err), TOBI_INVALID,
             "a started world takes no more solids");
     tobi_world_destroy(world);
@@ -437,27 +391,19 @@ static void calls_are_refused_in_words(void **state)
 static void many_solids_and_odd_domains(void **state)
 {
     (void)state;
-    tobi_world_def def = tobi_default_world_def();
-    tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
-    tobi_world *world;
-    def.method = "mlsmpm";
-    for (int a = 0; a < 3; a++) def.domain_max[a] = fill.box_max[a] = 1;
-    def.spacing = 0.2;
-    assert_int_equal(tobi_world_create(&def, NULL, &world, NULL), TOBI_OK);
-    for (int k = 0; k < TOBI_SOLID_LIMIT; k++)
-        assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 0, NULL), TOBI_OK);
-    REFUSED(tobi_world_add_solid(world, &solid, &fill, 0, &err), TOBI_UNSUPPORTED, "more than 255 solids");
+    solid_setup s = solid_default(3, 0.2, 1);
+    tobi_world *world = solid_world(&s);
+    for (int k = 1; k < TOBI_SOLID_LIMIT; k++) OK(tobi_world_add_solid(world, &s.solid, &s.fill, 0, &err));
+    REFUSED(tobi_world_add_solid(world, &s.solid, &s.fill, 0, &err), TOBI_UNSUPPORTED,
+            "more than 255 solids");
     tobi_world_destroy(world);
-    def.wall_min[1] = def.wall_max[1] = TOBI_WALL_PERIODIC;
-    assert_int_equal(tobi_world_create(&def, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+    s.world.wall_min[1] = s.world.wall_max[1] = TOBI_WALL_PERIODIC;
+    world = solid_world(&s);
     REFUSED(tobi_world_start(world, &err), TOBI_UNSUPPORTED, "mlsmpm knows no periodic sides yet");
     tobi_world_destroy(world);
-    def.wall_min[1] = def.wall_max[1] = TOBI_WALL_SLIP;
-    def.domain_max[0] = 1e9;
-    assert_int_equal(tobi_world_create(&def, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+    s.world.wall_min[1] = s.world.wall_max[1] = TOBI_WALL_SLIP;
+    s.world.domain_max[0] = 1e9;
+    world = solid_world(&s);
     REFUSED(tobi_world_start(world, &err), TOBI_UNSUPPORTED, "cells along x, allowed are 1e8");
     tobi_world_destroy(world);
 }

@@ -156,6 +156,12 @@ static void bad_solids_are_refused_in_words(void **state)
     refuse(make(text, ""), "s.json:4:11: solids[0].bonded: ", "is a number, must be true or false");
     snprintf(text, sizeof text, "\"model\": \"liquid\", \"surface_friction\": 0.1, %s", ball);
     refuse(make(text, ""), "s.json:4:20: solids[0].surface_friction: ", "is nothing that this model knows");
+    /* 2 G/f (E/f + 0.66)/1.5 = 1e-3 x 100.66/1.5 */
+    snprintf(text, sizeof text, "\"strength\": 1e4,\n\"fracture_energy\": 5, %s", ball);
+    refuse(make(text, ""), "s.json:4:1: solids[0].strength: ",
+           "needs cells smaller than 0.06711 m, they have 0.2 m");
+    snprintf(text, sizeof text, "\"fracture_energy\": 5, %s", ball);
+    refuse(make(text, ""), "s.json:4:1: solids[0].fracture_energy: ", "needs a strength greater than 0 Pa");
     snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s }, { \"name\": \"a\",\n"
              "\"fill\": [ { " BOX("[0.6, 0, 0]", "[1, 1, 1]") " } ] } ] }", start, ball);
     refuse(text, "s.json:3:", "\"a\" is already the name of solids[0]");

@@ -14,7 +14,7 @@ in the contact. Every share of the water above zero is a miss.""")
 SPEED, END, FRONT = 2.0, 0.1, 0.07
 thinnest = None
 for spacing in case.pick((0.01,), (0.01, 0.005)):
-    for thickness in (0.25, 0.5, 1, 2, 3):
+    for thickness in (0.05, 0.25, 0.5, 1, 2, 3):
         thick = thickness*spacing
         out = case.run(f"wing{spacing:g}_{thickness:g}", "--spacing", spacing, "--set", f"bodies[0].box.min[0]={FRONT - thick}")
         points = read_vtu(read_series(out)[-1][1])["Points"]

@@ -1,0 +1,458 @@
+/* Which particles a body touches. Looking at the mesh is dear, so every body has a list of the particles that
+   may come near it, and each of them a distance that it certainly keeps: no particle is looked at before it
+   and the body may have used that up. The contacts are the same as those of looking at all in every step. */
+#include "core/contact.h"
+#include "base/error.h"
+#include "core/cuts.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double IDLE = 0.05;
+
+/* Less `way` of its list, clear is what the particle is at least outside the surface, m; and more by it, most
+   is how far it is at most from it. */
+typedef struct candidate { int32_t particle; float clear, most; } candidate;
+
+/* Particles near one body. */
+struct tobi_contact_near {
+    const tobi_body *body;
+    candidate *list;                 /* in rising order                                          */
+    int64_t count, room;
+    double position[3], orientation[4];  /* of the body when last looked at                      */
+    double drift;                    /* m, of the particles then                                 */
+    double way;                      /* m, by which body and particles may have come nearer since
+                                        the list was made                                        */
+};
+
+/* Contacts, or candidates, that one block of particles or candidates has. */
+struct tobi_contact_run { int64_t block, first, count; };
+
+void tobi_contact_free(tobi_contacts *c)
+{
+    for (int k = 0; k < c->near_room; k++) free(c->near[k].list);
+    free(c->near);
+    free(c->list);
+    free(c->found);
+    free(c->run);
+    free(c->chunk_box);
+    free(c->partial);
+    free(c->shift);
+    memset(c, 0, sizeof *c);
+}
+
+static int64_t count_chunks(int64_t n) { return (n + TOBI_BLOCK - 1)/TOBI_BLOCK; }
+
+static tobi_status fail_memory(int64_t contacts, tobi_error *err)
+{
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts of %lld particles", (long long)contacts);
+}
+
+tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double drift, tobi_exec *x,
+                               tobi_error *err)
+{
+    int64_t chunks = count_chunks(p->count);
+    c->shift_count = 0;
+    c->drift = drift;
+    c->near_next = 0;
+    if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
+    if (chunks > c->chunk_room) {
+        free(c->run);
+        free(c->chunk_box);
+        c->run = malloc((size_t)chunks*sizeof *c->run);
+        c->chunk_box = malloc((size_t)chunks*sizeof *c->chunk_box);
+        c->chunk_room = c->run && c->chunk_box ? chunks : 0;
+        if (!c->chunk_room) return fail_memory(p->count, err);
+    }
+    for (int k = 0; k < c->near_room; k++) c->near[k].body = NULL;
+    #pragma omp parallel for num_threads(tobi_team(x, p->count, 32768))
+    for (int64_t k = 0; k < chunks; k++) {
+        double *box = c->chunk_box[k];
+        for (int a = 0; a < 3; a++) { box[a] = INFINITY; box[3 + a] = -INFINITY; }
+        for (int64_t i = k*TOBI_BLOCK; i < (k + 1)*TOBI_BLOCK && i < p->count; i++)
+            for (int a = 0; a < 3; a++) {
+                double v = (&p->position[i].x)[a];
+                if (v < box[a]) box[a] = v;
+                if (v > box[3 + a]) box[3 + a] = v;
+            }
+    }
+    return TOBI_OK;
+}
+
+/* Where the body is, for one search. */
+typedef struct pose {
+    const tobi_body *body;
+    const tobi_contact_step *step;
+    double matrix[3][3];             /* rest axes to world axes */
+    double box[2][3];                /* m, corners of the mesh: in rest axes about the centre, or of a body
+                                        that bends in world axes */
+    double reach;                    /* m, who is farther outside has no contact */
+} pose;
+
+static void find_pose(const tobi_body *b, const tobi_contact_step *step, pose *at)
+{
+    at->body = b;
+    at->step = step;
+    at->reach = (b->blade ? 2 : 1)*step->radius + step->margin;
+    tobi_quaternion_matrix(b->rigid.orientation, at->matrix);
+    tobi_bvh_box(b->deforms ? b->bvh : b->rest_bvh, at->box[0], at->box[1]);
+}
+
+/* The box around the body in world axes, grown by `more`. */
+static void find_box(const pose *at, double more, double low[3], double high[3])
+{
+    const tobi_body *b = at->body;
+    for (int a = 0; a < 3; a++) {
+        double middle = b->rigid.position[a], half = 0;
+        for (int k = 0; k < 3; k++) {
+            middle += 0.5*at->matrix[a][k]*(at->box[0][k] + at->box[1][k]);
+            half += 0.5*fabs(at->matrix[a][k])*(at->box[1][k] - at->box[0][k]);
+        }
+        low[a] = (b->deforms ? at->box[0][a] : middle - half) - more;
+        high[a] = (b->deforms ? at->box[1][a] : middle + half) + more;
+    }
+}
+
+/* x (m, from the domain's corner) about the body's centre, in world and in rest axes; and how far it is at
+   least from the mesh, by its box, m. */
+static double approach(const pose *at, const double x[3], double arm[3], double local[3])
+{
+    const int deforms = at->body->deforms;
+    double square = 0;
+    vec3_sub(arm, x, at->body->rigid.position);
+    for (int a = 0; a < 3; a++)
+        local[a] = at->matrix[0][a]*arm[0] + at->matrix[1][a]*arm[1] + at->matrix[2][a]*arm[2];
+    for (int a = 0; a < at->step->dimension; a++) {
+        const double v = deforms ? x[a] : local[a];
+        const double below = at->box[0][a] - v, above = v - at->box[1][a];
+        const double d = below > above ? below : above;
+        square += d > 0 ? d*d : 0;
+    }
+    return sqrt(square);
+}
+
+/* What the surface moves at the hit besides the body's rigid motion. */
+static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_contact *c)
+{
+    const int32_t *t = b->mesh.triangles[hit->triangle];
+    double turning[3];
+    vec3_cross(turning, b->rigid.angular_velocity, c->arm);
+    for (int a = 0; a < 3; a++) {
+        c->deforming[a] = b->rigid.kind == TOBI_PRESCRIBED ? -b->rigid.velocity[a] - turning[a] : 0;
+        for (int k = 0; k < 3 && b->rigid.kind == TOBI_PRESCRIBED; k++)
+            c->deforming[a] += hit->barycentric[k]*b->vertex_velocity[t[k]][a];
+    }
+}
+
+/* The side of the cut that blade b is making on which the particle is: -1, 1, or 0 = not cut by it. *depth:
+   m, how far from the cut it was in the material at rest. */
+static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth)
+{
+    for (int k = 0; k < TOBI_CUTS_EACH; k++) {
+        const tobi_float4 *c = &cuts->c[k];
+        if (c->w == 0 || fabs(c->w) != b->rigid.cut) continue;
+        *depth = sqrt((double)c->x*c->x + (double)c->y*c->y + (double)c->z*c->z);
+        return c->w < 0 ? -1 : 1;
+    }
+    return 0;
+}
+
+static int find_closest(const pose *at, const double x[3], const double local[3], double far,
+                        tobi_bvh_hit *hit)
+{
+    const tobi_body *b = at->body;
+    return tobi_bvh_closest(b->deforms ? b->bvh : b->rest_bvh, b->deforms ? x : local, far, hit);
+}
+
+/* What is known of a particle's distance from the surface, see candidate, m. */
+typedef struct bounds { double clear, most; } bounds;
+
+/* Nearest point of the body to x (from the domain's corner). Narrows the bounds. */
+static int touch(const pose *at, const double x[3], const double local[3], tobi_contact *out, bounds *known)
+{
+    const tobi_body *b = at->body;
+    tobi_bvh_hit hit;
+    const double far = fmax(at->reach, at->step->reach), farther = far + at->step->reach;
+    double *clear = &known->clear;
+    if (!(known->most < far && find_closest(at, x, local, known->most, &hit)) &&
+        !find_closest(at, x, local, far, &hit)) {
+        /* Outside its box nobody is inside the body. */
+        if (*clear > 0) *clear = fmax(*clear, far);
+        else if (!find_closest(at, x, local, farther, &hit)) *clear = farther - far + at->reach;
+        else *clear = hit.signed_distance > 0 ? hit.distance : hit.distance - far + at->reach;
+        return 0;
+    }
+    out->gap = hit.signed_distance - at->step->radius;
+    *clear = fmax(*clear, hit.signed_distance);
+    known->most = hit.distance;
+    if (!(hit.signed_distance < at->reach)) return 0;
+    for (int a = 0; a < 3; a++)
+        out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
+    find_deforming(b, &hit, out);
+    return 1;
+}
+
+/* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
+   face of its own side, however thin the blade. What fills the place to the cut is the outermost layer of
+   particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
+   contact. */
+static int touch_blade(const pose *at, const double x[3], const double local[3], const tobi_columns *cuts,
+                       tobi_contact *out, bounds *known)
+{
+    const double radius = at->step->radius, reach = at->step->reach;
+    tobi_blade_place place;
+    double depth = radius;
+    int side = find_side(at->body, cuts, &depth);
+    if (depth > 2*radius) return 0;
+    int found = tobi_blade_locate(at->body, at->step->dimension, local, &place);
+    int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
+    if (!side && near) return 0;
+    if (!touch(at, x, local, out, known)) return 0;
+    double normal[3];
+    for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
+    if (near && vec3_dot(normal, out->normal) < 0.2) {
+        if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
+        out->gap = side*place.aside - radius;
+        memcpy(out->normal, normal, sizeof normal);
+    }
+    out->gap += radius - depth;
+    return out->gap < at->step->margin;
+}
+
+/* Lists the particles of one chunk whose distance from the body's box is less than `far`. */
+static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk, double far,
+                          const double low[3], const double high[3], candidate *out)
+{
+    int64_t n = 0;
+    for (int64_t i = chunk*TOBI_BLOCK; i < (chunk + 1)*TOBI_BLOCK && i < p->count; i++) {
+        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+        double arm[3], local[3];
+        int outside = 0;
+        for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
+        if (outside) continue;
+        const double clear = approach(at, x, arm, local);
+        if (clear < far) out[n++] = (candidate){(int32_t)i, (float)(clear*(1 - 1e-6)), INFINITY};
+    }
+    return n;
+}
+
+static int boxes_meet(const double box[6], const double low[3], const double high[3], int dimension,
+                      double drift)
+{
+    int apart = 0;
+    for (int a = 0; a < dimension; a++) apart |= box[a] > high[a] + drift || box[3 + a] < low[a] - drift;
+    return !apart;
+}
+
+/* The list of candidates anew: all within `far`. */
+static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                                   const tobi_particles *p, double far, tobi_exec *x, tobi_error *err)
+{
+    double low[3], high[3];
+    int64_t runs = 0;
+    find_box(at, far, low, high);
+    for (int64_t k = 0; k < count_chunks(p->count); k++)
+        if (boxes_meet(c->chunk_box[k], low, high, at->step->dimension, c->drift))
+            c->run[runs++] = (struct tobi_contact_run){k, 0, 0};
+    near->way = near->count = 0;
+    if (runs*TOBI_BLOCK > near->room) {
+        free(near->list);
+        near->room = 0;
+        near->list = malloc((size_t)(runs + runs/4 + 1)*TOBI_BLOCK*sizeof *near->list);
+        if (!near->list) return fail_memory(runs*TOBI_BLOCK, err);
+        near->room = (runs + runs/4 + 1)*TOBI_BLOCK;
+    }
+    #pragma omp parallel for num_threads(tobi_team(x, runs, 8)) schedule(dynamic, 1)
+    for (int64_t k = 0; k < runs; k++)
+        c->run[k].count = list_chunk(at, p, c->run[k].block, far, low, high, near->list + k*TOBI_BLOCK);
+    for (int64_t k = 0; k < runs; k++) {
+        memmove(near->list + near->count, near->list + k*TOBI_BLOCK,
+                (size_t)c->run[k].count*sizeof *near->list);
+        near->count += c->run[k].count;
+    }
+    return TOBI_OK;
+}
+
+/* How far a point of the body may have moved since it was last looked at, m. */
+static double find_way(const pose *at, struct tobi_contact_near *near)
+{
+    const tobi_rigid *r = &at->body->rigid;
+    double shift[3], turn = 0, size = 0, sign = 0;
+    vec3_sub(shift, r->position, near->position);
+    for (int a = 0; a < 4; a++) sign += r->orientation[a]*near->orientation[a];
+    for (int a = 0; a < 4; a++) {
+        const double change = r->orientation[a] - (sign < 0 ? -1 : 1)*near->orientation[a];
+        turn += change*change;
+    }
+    for (int a = 0; a < 3; a++) {
+        const double most = fmax(fabs(at->box[0][a]), fabs(at->box[1][a]));
+        size += most*most;
+    }
+    memcpy(near->position, r->position, sizeof near->position);
+    memcpy(near->orientation, r->orientation, sizeof near->orientation);
+    /* The two orientations differ by 2 sin(angle/4), and a point at r goes 2 r sin(angle/2). */
+    return vec3_length(shift) + 2*sqrt(turn*size);
+}
+
+/* Brings the body's list of candidates up to date. */
+static tobi_status find_candidates(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                                   const tobi_particles *p, tobi_exec *x, tobi_error *err)
+{
+    const double skin = at->step->reach;
+    const double way = find_way(at, near) + sqrt(3.0)*(c->drift - near->drift);
+    const int known = near->body == at->body && !at->body->deforms && way >= 0;
+    near->body = at->body;
+    near->drift = c->drift;
+    near->way += way*(1 + 1e-6);
+    if (known && near->way + at->step->margin <= skin) return TOBI_OK;
+    return list_candidates(c, near, at, p, at->reach - at->step->margin + skin, x, err);
+}
+
+/* A contact at which nothing can happen in this step: it did not push in the last one, and the particle, as
+   it moves against the surface, ends farther from it than others could push it by, IDLE times the margin. One
+   that overlaps counts whatever its velocity, so that a wrong guess is made good in the next step. */
+static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *velocity)
+{
+    const tobi_rigid *r = &at->body->rigid;
+    double turning[3], along = 0;
+    if (k->gap <= 0 || velocity->w < 0) return 0;
+    vec3_cross(turning, r->angular_velocity, k->arm);
+    for (int a = 0; a < 3; a++)
+        along += k->normal[a]*((double)(&velocity->x)[a] - r->velocity[a] - turning[a] - k->deforming[a]);
+    return k->gap + along*at->step->dt > IDLE*at->step->margin;
+}
+
+/* Contacts of one block of candidates into `found`; returns how many. */
+static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
+                            int64_t block, tobi_contact found[TOBI_BLOCK])
+{
+    const double slack = 1e-6*at->reach;
+    int64_t n = 0;
+    for (int64_t k = block*TOBI_BLOCK; k < (block + 1)*TOBI_BLOCK && k < near->count; k++) {
+        candidate *one = &near->list[k];
+        if (one->clear - near->way > at->reach + slack) continue;
+        const int64_t i = one->particle;
+        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+        double local[3];
+        tobi_contact *out = &found[n];
+        *out = (tobi_contact){ .particle = (int32_t)i };
+        bounds known = { approach(at, x, out->arm, local), (one->most + near->way)*(1 + 1e-6) + slack };
+        if (known.clear <= at->reach + slack &&
+            (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
+                                        : touch(at, x, local, out, &known)) &&
+            !is_idle(at, out, &p->velocity[i])) {
+            double start = fmax(0, -p->velocity[i].w)*at->step->dt;
+            for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
+            n++;
+        }
+        one->clear = (float)((known.clear + near->way)*(1 - 1e-6));
+        one->most = (float)(known.most - near->way);
+    }
+    return n;
+}
+
+/* Fills `found` and the runs; returns how many contacts there are, more than `room` if that was too short. */
+static int64_t search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                      const tobi_particles *p, tobi_exec *x)
+{
+    const int64_t runs = count_chunks(near->count);
+    int64_t used = 0;
+    #pragma omp parallel for num_threads(tobi_team(x, runs, 4)) schedule(dynamic, 1)
+    for (int64_t k = 0; k < runs; k++) {
+        tobi_contact found[TOBI_BLOCK];
+        struct tobi_contact_run *run = &c->run[k];
+        run->count = search_block(at, p, near, k, found);
+        #pragma omp atomic capture
+        { run->first = used; used += run->count; }
+        if (run->first + run->count <= c->room)
+            memcpy(c->found + run->first, found, (size_t)run->count*sizeof *found);
+    }
+    return used;
+}
+
+static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
+{
+    if (count <= c->room) return TOBI_OK;
+    int64_t room = count + count/4 + 1024, parts = count_chunks(room);
+    tobi_contact *list = realloc(c->list, (size_t)room*sizeof *list);
+    if (list) c->list = list;
+    tobi_contact *found = realloc(c->found, (size_t)room*sizeof *found);
+    if (found) c->found = found;
+    double *partial = realloc(c->partial, (size_t)parts*TOBI_CONTACT_SUMS*sizeof *partial);
+    if (partial) c->partial = partial;
+    if (!list || !found || !partial) return fail_memory(room, err);
+    c->room = room;
+    return TOBI_OK;
+}
+
+static tobi_status reserve_shifts(tobi_contacts *c, tobi_error *err)
+{
+    int64_t need = c->shift_count + c->count;
+    if (need <= c->shift_room) return TOBI_OK;
+    tobi_shift *more = realloc(c->shift, (size_t)(need + need/4)*sizeof *more);
+    if (!more) return fail_memory(need, err);
+    c->shift = more;
+    c->shift_room = need + need/4;
+    return TOBI_OK;
+}
+
+/* Bodies come in the same order in every step. */
+static tobi_status take_near(tobi_contacts *c, struct tobi_contact_near **near, tobi_error *err)
+{
+    if (c->near_next == c->near_room) {
+        const int room = 2*c->near_room + 1;
+        struct tobi_contact_near *more = realloc(c->near, (size_t)room*sizeof *more);
+        if (!more) return fail_memory(0, err);
+        memset(more + c->near_room, 0, (size_t)(room - c->near_room)*sizeof *more);
+        c->near = more;
+        c->near_room = room;
+    }
+    *near = &c->near[c->near_next++];
+    return TOBI_OK;
+}
+
+tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
+                              const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
+{
+    pose at;
+    struct tobi_contact_near *near = NULL;
+    if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
+    TOBI_TRY(take_near(c, &near, err));
+    find_pose(b, step, &at);
+    tobi_blade_bring(b, step->dimension);
+    TOBI_TRY(find_candidates(c, near, &at, p, x, err));
+    while ((c->count = search(c, near, &at, p, x)) > c->room) TOBI_TRY(make_room(c, c->count, err));
+    TOBI_TRY(reserve_shifts(c, err));
+    int64_t n = 0;
+    for (int64_t k = 0; k < count_chunks(near->count); k++) {  /* in this order, whoever was first */
+        memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
+        n += c->run[k].count;
+    }
+    memcpy(c->velocity, b->rigid.velocity, sizeof c->velocity);
+    memcpy(c->spin, b->rigid.angular_velocity, sizeof c->spin);
+    return TOBI_OK;
+}
+
+tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const tobi_blade_piece *piece,
+                                  double full, const tobi_contact_step *step, tobi_error *err)
+{
+    tobi_bvh_hit hit;
+    double local[3], turn[3][3];
+    TOBI_TRY(make_room(c, c->count + 1, err));
+    tobi_contact *k = &c->list[c->count++];
+    *k = (tobi_contact){ .particle = -1, .limit = full*b->edge_resistance*piece->length*step->dt };
+    memcpy(k->normal, piece->normal, sizeof k->normal);
+    memcpy(k->ahead, piece->ahead, sizeof k->ahead);
+    vec3_add_scaled(k->change, b->rigid.edge_share, -vec3_dot(b->rigid.edge_share, k->normal), k->normal);
+    for (int a = 0; a < 3; a++) k->change[a] *= k->limit;
+    vec3_sub(k->arm, piece->middle, b->rigid.position);
+    if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
+    tobi_quaternion_matrix(b->rigid.orientation, turn);
+    for (int a = 0; a < 3; a++)
+        local[a] = turn[0][a]*k->arm[0] + turn[1][a]*k->arm[1] + turn[2][a]*k->arm[2];
+    if (tobi_bvh_closest(b->rest_bvh, local, 0.1*step->radius, &hit) ||      /* most edges lie on the mesh */
+        tobi_bvh_closest(b->rest_bvh, local, INFINITY, &hit))
+        find_deforming(b, &hit, k);
+    return TOBI_OK;
+}

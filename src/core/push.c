@@ -1,0 +1,178 @@
+/* Particles that bodies have caught (docs/theory/boundaries.md, push-out). Where a particle ended says that
+   it is inside, but not through which side it came: of a wing thinner than the way of a step the nearest
+   side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
+   turns within the step is taken to turn about the point nearest to the particle. */
+#include "core/push.h"
+#include "core/simulation.h"
+#include <math.h>
+#include <string.h>
+
+/* Of the spacing: positions nearer to a body are not left. */
+static const double LEAST = 0.2;
+
+static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
+
+/* share: of its speed into the body, that a particle loses. counting: nothing moves, totals are asked for. */
+typedef struct pusher {
+    tobi_simulation *s;
+    const tobi_body *b;
+    int body;
+    double lo[3], hi[3], share;
+    int counting;
+} pusher;
+
+/* Where the surface touched a particle, and where that puts it. */
+typedef struct touch {
+    tobi_bvh_hit hit;
+    double target[3];
+} touch;
+
+static const tobi_near_entry *entry_of(const pusher *p, int64_t i)
+{
+    const tobi_near_entry *entry = p->s->near.entry;
+    int32_t k = p->s->particles.near[i];
+    while (k >= 0 && entry[k].body != p->body) k = entry[k].previous;
+    return k >= 0 && entry[k].triangle >= 0 ? &entry[k] : NULL;
+}
+
+/* Where a particle began the step, as seen from the body: as far from its nearest point as then. */
+static int find_start(const pusher *p, int64_t i, const double x[3], double start[3])
+{
+    const tobi_near_entry *e = entry_of(p, i);
+    if (!e || !(e->distance > 0)) return 0;
+    const int32_t *tri = p->b->mesh.triangles[e->triangle];
+    double way[3];
+    for (int a = 0; a < 3; a++) {
+        start[a] = e->offset[a];
+        for (int c = 0; c < 3; c++) start[a] += e->barycentric[c]*p->b->vertex[tri[c]][a];
+        way[a] = x[a] - start[a];
+    }
+    return 4*dot(way, way) > e->distance*e->distance;      /* else it cannot have reached the surface */
+}
+
+static void place_above(const pusher *p, const double x[3], touch *t)
+{
+    double rise = LEAST*p->s->smoothing.spacing;
+    for (int a = 0; a < 3; a++)
+        t->target[a] = a < p->s->box.dimension ? t->hit.point[a] + rise*t->hit.normal[a] : x[a];
+}
+
+/* The way from start to x ends at the surface: the last point in front of it, by bisection. */
+static int stop_before(const pusher *p, const double start[3], const double x[3], touch *t)
+{
+    double from[3], to[3], middle[3];
+    tobi_bvh_hit hit;
+    memcpy(from, start, sizeof from);
+    memcpy(to, x, sizeof to);
+    for (int k = 0; k < 20; k++) {
+        for (int a = 0; a < 3; a++) middle[a] = 0.5*(from[a] + to[a]);
+        memcpy(tobi_bvh_segment_hits(p->b->bvh, start, middle) ? to : from, middle, sizeof middle);
+    }
+    if (!tobi_bvh_closest(p->b->bvh, from, p->s->smoothing.h, &hit) || hit.signed_distance < 0) return 0;
+    t->hit = hit;
+    place_above(p, x, t);
+    return 1;
+}
+
+/* A particle that a body has caught: where, and its speed along the normal against the body's. */
+static int find_caught(const pusher *p, int64_t i, touch *t, double *along)
+{
+    const tobi_simulation *s = p->s;
+    tobi_double3 q = s->particles.position[i];
+    double x[3] = {q.x, q.y, q.z}, start[3];
+    int caught = tobi_bvh_closest(p->b->bvh, x, s->smoothing.h, &t->hit) &&
+                 t->hit.signed_distance < LEAST*s->smoothing.spacing;
+    if (caught) place_above(p, x, t);
+    if (find_start(p, i, x, start) && tobi_bvh_segment_hits(p->b->bvh, start, caught ? t->target : x))
+        caught |= stop_before(p, start, caught ? t->target : x, t);
+    if (!caught) return 0;
+    const int32_t *tri = p->b->mesh.triangles[t->hit.triangle];
+    const tobi_float4 *v = &s->particles.velocity[i];
+    *along = 0;
+    for (int a = 0; a < 3; a++) {
+        double u = (&v->x)[a];
+        for (int c = 0; c < 3; c++) u -= t->hit.barycentric[c]*p->b->vertex_velocity[tri[c]][a];
+        *along += u*t->hit.normal[a];
+    }
+    return 1;
+}
+
+/* Counts a caught particle that would push a free body in t[0]; t[6]: by how much an impulse of its mass
+   times 1 m/s changes the body's speed at that point. */
+static void count_push(const pusher *p, int64_t i, const double normal[3], const double twist[3], double *t)
+{
+    const tobi_simulation *s = p->s;
+    double shift[3], turn[3][3], answer = 0;
+    tobi_rigid_inverse(&p->b->rigid, shift, turn);
+    for (int a = 0; a < 3; a++) answer += shift[a]*normal[a]*normal[a] + twist[a]*dot(turn[a], twist);
+    answer *= s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+    t[0] += 1;
+    t[6] = fmax(t[6], answer);
+}
+
+/* Puts one particle outside; the impulse it loses goes to t[0..5]. */
+static int push_particle(const pusher *p, int64_t i, double *t)
+{
+    touch c;
+    tobi_simulation *s = p->s;
+    double arm[3], twist[3], into;
+    if (!find_caught(p, i, &c, &into)) return 0;
+    for (int a = 0; a < 3; a++) arm[a] = c.hit.point[a] + p->b->lower[a] - p->b->centre[a];
+    for (int a = 0; a < 3; a++) {
+        int l = (a + 1)%3, r = (a + 2)%3;
+        twist[a] = arm[l]*c.hit.normal[r] - arm[r]*c.hit.normal[l];
+    }
+    if (p->counting) {
+        if (into < 0) count_push(p, i, c.hit.normal, twist, t);
+        return 0;
+    }
+    memcpy(&s->particles.position[i].x, c.target, sizeof c.target);
+    if (into >= 0) return 1;
+    into *= p->share;
+    double mass = s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
+    for (int a = 0; a < 3; a++) {
+        (&s->particles.velocity[i].x)[a] -= (float)(into*c.hit.normal[a]);
+        t[a] += mass*into*c.hit.normal[a];
+        t[3 + a] += mass*into*twist[a];
+    }
+    return 1;
+}
+
+static void push_range(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const pusher *p = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double *x = &p->s->particles.position[i].x;
+        int outside = 0;
+        for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
+        if (outside || !push_particle(p, i, t)) continue;
+        #pragma omp atomic
+        p->s->near.contacts++;      /* all sums are taken; whole numbers add up the same in any order */
+    }
+}
+
+void tobi_push_out(tobi_simulation *s)
+{
+    s->near.contacts = 0;
+    for (int k = 0; k < s->body_count; k++) {
+        double t[TOBI_TOTALS];
+        pusher p = {.s = s, .b = &s->bodies[k], .body = k, .share = 1};
+        tobi_bvh_box(p.b->bvh, p.lo, p.hi);
+        for (int a = 0; a < 3; a++) {
+            p.lo[a] -= s->smoothing.spacing;
+            p.hi[a] += s->smoothing.spacing;
+        }
+        if (p.b->rigid.kind != TOBI_PRESCRIBED) {
+            p.counting = 1;
+            tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
+            p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
+            p.counting = 0;
+        }
+        tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
+        tobi_body_info *info = &s->bodies[k].info;
+        for (int a = 0; a < 3; a++) {
+            info->pressure_force[a] += t[a]/s->dt;
+            info->pressure_torque[a] += t[3 + a]/s->dt;
+        }
+    }
+}

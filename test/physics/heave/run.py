@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+"""Heave decay of a floating sphere against six codes."""
+import csv
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case, read_table
+
+case = Case("heave", "Heave decay of a sphere", """
+A sphere of R = 5 m and 261.8e3 kg floats half submerged in deep water (1000 kg/m3, 9.81 m/s2); lifted by 1 m and let go,
+it heaves, and its waves take the motion away. A quarter of it between two slip walls, moving up and down only, in dfsph
+without viscosity. Against the mean of the six codes of IEA-OES Task 10 [Wendt et al., EWTEC 2017], which differ among
+themselves by 2 % in the period, from the first extremum to the third, and by 3 % in the heights of the extrema. Far walls at 27 m,
+20 m deep (smoke size: 15 and 10 m, where the period is 1 to 2 % longer).""")
+
+R, G, RHO = 5.0, 9.81, 1000
+# Time (s) and height (m) of the first three extrema: mean over ProteusDS, InWave, Marin, NREL CFD, WavEC and InWave+H.
+EXTREMA = [(2.220, -0.875), (4.418, 0.638), (6.588, -0.479)]
+
+
+def write_quarter(path, rings=96, sectors=48):
+    """The quarter x > 0, y > 0 of a sphere round the origin as closed OBJ, volume pi R^3/3."""
+    points = [(0, 0, 1)]
+    for i in range(1, rings):
+        t = math.pi*i/rings
+        points += [(math.sin(t)*math.cos(p), math.sin(t)*math.sin(p), math.cos(t))
+                   for p in (math.pi/2*j/sectors for j in range(sectors + 1))]
+    points += [(0, 0, -1), (0, 0, 0)]
+    bottom, centre, row = len(points) - 2, len(points) - 1, sectors + 1
+    at = lambda i, j: 0 if i == 0 else bottom if i == rings else 1 + (i - 1)*row + j
+    faces = []
+    for i in range(rings):
+        for j in range(sectors):
+            a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+            faces += [f for f in ((a, b, c), (a, c, d)) if len(set(f)) == 3]
+        faces += [(centre, at(i + 1, 0), at(i, 0)), (centre, at(i, sectors), at(i + 1, sectors))]
+    volume = sum(sum(a*b for a, b in zip(points[p], cross(points[q], points[r]))) for p, q, r in faces)/6
+    scale = R*(math.pi/3/volume)**(1/3)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("".join("v %.9g %.9g %.9g\n" % tuple(scale*c for c in p) for p in points)
+                    + "".join("f %d %d %d\n" % tuple(k + 1 for k in f) for f in faces))
+
+
+def cross(a, b):
+    return a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]
+
+
+def extrema(times, heights, count=3):
+    """The first turning points, each by a parabola through its three samples."""
+    found = []
+    for (ta, a), (tb, b), (_, c) in zip(zip(times, heights), zip(times[1:], heights[1:]), zip(times[2:], heights[2:])):
+        if (b - a)*(c - b) < 0 and len(found) < count:
+            bend = a - 2*b + c
+            shift = (a - c)/(2*bend)
+            found.append((tb + shift*(tb - ta), b - (a - c)**2/(8*bend)))
+    return found
+
+
+def heave(across, far, deep):
+    d = R/across
+    mesh = case.out / "quarter.obj"
+    write_quarter(mesh)
+    scene = case.write_scene(f"heave{across}", {
+        "domain": {"min": [0, 0, -deep], "max": [far, far, 8]}, "gravity": [0, 0, -G], "spacing": d, "end_time": 7.4,
+        "fluids": [{"name": "water", "density": RHO, "viscosity": 0, "fill": [{"box": {"min": [0, 0, -deep], "max": [far, far, 0]}}]}],
+        "bodies": [{"name": "sphere", "mesh": str(mesh), "density": 500, "dynamics": "free", "locked": "x,y,turn", "translation": [0, 0, 1]}],
+        "output": {"interval": 0.05, "fields": ["velocity"], "surfaces": False}})
+    table = read_table(case.run(f"out{across}", scene=scene) / "bodies.csv")
+    return table["time"], table["position_z"]
+
+
+curves = []
+for across, far, deep in case.pick(((6, 15, 10),), ((10, 27, 20),)):
+    times, heights = heave(across, far, deep)
+    curves.append((f"R/d = {across}", times, heights, False))
+    found = extrema(times, heights)
+    text = f"R/d = {across}"
+    case.hold(f"{text}: three extrema", len(found) == 3)
+    if len(found) < 3:
+        continue
+    period, expected = found[2][0] - found[0][0], EXTREMA[2][0] - EXTREMA[0][0]
+    case.figure(f"{text}: period {period:.3f} s against {expected:.3f}, deviation", period/expected - 1, "within 0.02",
+                abs(period/expected - 1) <= 0.02)
+    for k, ((_, height), (_, right)) in enumerate(zip(found, EXTREMA)):
+        case.figure(f"{text}: extremum {k + 1}: {height:.3f} m against {right:.3f}, deviation", height/right - 1, "within 0.05",
+                    abs(height/right - 1) <= 0.05)
+data = case.reference_file("floating/oes_task10_sphere_decay_1m.csv")
+if data:
+    rows = [r for r in csv.reader(line for line in data.open() if line[0] != "#")]
+    for name in ("NREL_CFD", "InWave_lin"):
+        column = rows[0].index(name)
+        points = [(float(r[0]), float(r[column])) for r in rows[1:] if float(r[0]) < 7.4]
+        curves.append((name.replace("_", " "), *zip(*points), True))
+case.plot("Heave decay", "t, s", "z, m", curves)
+case.finish()
