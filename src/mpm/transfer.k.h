@@ -132,27 +132,36 @@ TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
     for (int a = 0; a < 3; a++) v[a] = p->velocity[a] + r[a]*left;
 }
 
-/* Sums the tiles over a block of nodes: momentum and mass. */
+/* Adds row `at` of three tiles that follow along z, those that are there, to four nodes. */
+TOBI_FN void mpm_add_row(const tobi_float4 *tiles, const int32_t cover[3], int at, quad to[4])
+{
+    const tobi_float4 *tile = tiles + at, *const before = tile + (int64_t)cover[0]*(MPM_TILE_3D + 8) + 5,
+                      *const own = tile + (int64_t)cover[1]*(MPM_TILE_3D + 8) + 1,
+                      *const after = tile + (int64_t)cover[2]*(MPM_TILE_3D + 8);
+    if (cover[0] >= 0)
+        for (int n = 0; n < 3; n++) to[n] = to[n] + quad_load(&before[n]);
+    if (cover[1] >= 0)
+        for (int n = 0; n < 4; n++) to[n] = to[n] + quad_load(&own[n]);
+    if (cover[2] >= 0) to[3] = to[3] + quad_load(after);
+}
+
+/* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. */
 TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *sum, const int dim)
 {
-    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    const int tile_nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
-    for (int n = 0; n < nodes; n++) sum[n] = quad_set(0);
-    for (int o = 0; o < 27; o++) {
-        if (g->cover[o] < 0) continue;
-        /* From the tile's block this one lies at the opposite offset. */
-        const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*(tile_nodes + 8);
-        const int ox = 1 - o/9, oy = 1 - o/3%3, oz = dim == 3 ? 1 - o%3 : 0;
-        for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
-            for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                const int row = (x - 1 - 4*ox)*4 + (y - 1 - 4*oy);
-                if (dim == 2) sum[row] = sum[row] + quad_load(&tile[x*8 + y]);
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz) && dim == 3; z++) {
-                    const int n = row*4 + (z - 1 - 4*oz);
-                    sum[n] = sum[n] + quad_load(&tile[(x*8 + y)*8 + z]);
-                }
+    for (int x = 0; x < 4; x++)
+        for (int y = 0; y < 4; y++) {
+            quad *to = sum + (dim == 3 ? 16*x + 4*y : 4*x + y);
+            for (int n = 0; n < (dim == 3 ? 4 : 1); n++) to[n] = quad_set(0);
+            for (int pair = 0; pair < 4; pair++) {         /* of the tiles that reach this row, or side by side */
+                const int ox = (x == 3) + (pair >> 1), oy = (y == 3) + (pair & 1);
+                const int32_t *cover = g->cover + 9*ox + 3*oy;
+                const int row = 8*(x + 5 - 4*ox) + (y + 5 - 4*oy);
+                if (dim == 3) mpm_add_row(tiles, cover, 8*row, to);
+                else if (cover[1] >= 0)
+                    *to = *to + quad_load(&tiles[(int64_t)cover[1]*(MPM_TILE_2D + 8) + row]);
             }
-    }
+        }
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
@@ -202,23 +211,22 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     for (int a = 0; a < 3; a++) totals[a] += given[a];
 }
 
-/* The nodes around a block, from the node blocks into one tile. */
-TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile, int dim)
+/* The nodes around a block, from the node blocks into one tile. Rows along z write a node too many, which the
+   next row corrects; the last one reaches into the eight nodes beyond. */
+TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile, const int dim)
 {
-    for (int o = 0; o < 27; o++) {
-        if (dim == 2 && o%3 != 1) continue;
-        const int ox = o/9 - 1, oy = o/3%3 - 1, oz = dim == 3 ? o%3 - 1 : 0;
-        const tobi_float4 *from = node + (int64_t)around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D);
-        for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
-            for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                if (dim == 2) {
-                    tile[x*8 + y] = from[(x - 1 - 4*ox)*4 + (y - 1 - 4*oy)];
-                    continue;
-                }
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz); z++)
-                    tile[(x*8 + y)*8 + z] = from[((x - 1 - 4*ox)*4 + (y - 1 - 4*oy))*4 + (z - 1 - 4*oz)];
+    for (int x = 3; x < 11; x++)                           /* from the node -4 of the block */
+        for (int y = 3; y < 11; y++, tile += dim == 3 ? 8 : 1) {
+            const int32_t *block = around + 9*(x/4) + 3*(y/4);
+            const tobi_float4 *from = node + (dim == 3 ? 16*(x%4) + 4*(y%4) : 4*(x%4) + y%4);
+            if (dim == 2) {
+                *tile = from[(int64_t)block[1]*MPM_NODES_2D];
+                continue;
             }
-    }
+            tile[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
+            row_store(tile + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
+            row_store(tile + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+        }
 }
 
 /* Velocity and its gradient at a particle, from the 3 x 3 rows of nodes it feels; eq. (14). */
