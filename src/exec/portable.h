@@ -66,6 +66,12 @@ TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, l
     to->x = x; to->y = y; to->z = z; to->w = w;
 }
 TOBI_FN lane_int lane_sub_wrap(int32_t a, lane_int b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
+TOBI_FN void lane_load_places(const tobi_double3 *from, double scale, const double shift[3], lane place[3])
+{
+    place[0] = (float)(from->x*scale - shift[0]);
+    place[1] = (float)(from->y*scale - shift[1]);
+    place[2] = (float)(from->z*scale - shift[2]);
+}
 TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x, lane *y, lane *z, lane *w)
 {
     tobi_float4 a = base[*j];
@@ -90,6 +96,22 @@ enum { TOBI_LANES = 8 };
 typedef float   lane     __attribute__((vector_size(32)));
 typedef int32_t lane_int __attribute__((vector_size(32)));
 typedef float   lane_half_ __attribute__((vector_size(16)));
+typedef int32_t lane_half_int_ __attribute__((vector_size(16)));
+
+/* Where a register holds half a lane, gcc 12 takes comparisons, conversions and shuffles of whole lanes apart
+   into single floats: there they are written for halves. */
+#if !defined(__AVX__)
+TOBI_FN lane_half_ lane_half_of_(lane a, int half)
+{
+    lane_half_ h;
+    __builtin_memcpy(&h, (const char *)&a + 16*half, sizeof h);
+    return h;
+}
+TOBI_FN lane_half_int_ lane_half_int_of_(lane_int a, int half)
+{
+    return (lane_half_int_)lane_half_of_((lane)a, half);
+}
+#endif
 
 TOBI_FN lane lane_set(float a) { return (lane){a, a, a, a, a, a, a, a}; }
 TOBI_FN lane_int lane_set_int(int32_t a) { return (lane_int){a, a, a, a, a, a, a, a}; }
@@ -113,24 +135,76 @@ TOBI_FN lane lane_sqrt(lane a)
     return a;
 #endif
 }
-TOBI_FN lane lane_from_int(lane_int a) { return __builtin_convertvector(a, lane); }
+TOBI_FN lane lane_from_int(lane_int a)
+{
+#if defined(__AVX__)
+    return __builtin_convertvector(a, lane);
+#else
+    lane r;
+    for (int k = 0; k < 2; k++) {
+        lane_half_ h = __builtin_convertvector(lane_half_int_of_(a, k), lane_half_);
+        __builtin_memcpy((char *)&r + 16*k, &h, sizeof h);
+    }
+    return r;
+#endif
+}
+/* All bits where a < b, */
+TOBI_FN lane_int lane_less_(lane a, lane b)
+{
+#if defined(__AVX__)
+    return a < b;
+#else
+    lane_int r;
+    for (int k = 0; k < 2; k++) {
+        lane_half_int_ h = lane_half_of_(a, k) < lane_half_of_(b, k);
+        __builtin_memcpy((char *)&r + 16*k, &h, sizeof h);
+    }
+    return r;
+#endif
+}
+/* and where a == b. */
+TOBI_FN lane_int lane_equal_(lane_int a, lane_int b)
+{
+#if defined(__AVX__)
+    return a == b;
+#else
+    lane_int r;
+    for (int k = 0; k < 2; k++) {
+        lane_half_int_ h = lane_half_int_of_(a, k) == lane_half_int_of_(b, k);
+        __builtin_memcpy((char *)&r + 16*k, &h, sizeof h);
+    }
+    return r;
+#endif
+}
 TOBI_FN lane lane_positive(lane a)
 {
 #if defined(__AVX__)
     return (lane)_mm256_max_ps((__m256)a, _mm256_setzero_ps());
 #else
-    return (lane)((lane_int)a & (a > 0));
+    return (lane)((lane_int)a & lane_less_(lane_set(0), a));
 #endif
 }
 TOBI_FN lane lane_where_equal(lane_int a, lane_int b, lane t, lane f)
 {
-    lane_int m = a == b;
+    lane_int m = lane_equal_(a, b);
     return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
 }
-TOBI_FN lane_int lane_to_int(lane a) { return __builtin_convertvector(a, lane_int); }   /* towards 0 */
+TOBI_FN lane_int lane_to_int(lane a)                                                   /* towards 0 */
+{
+#if defined(__AVX__)
+    return __builtin_convertvector(a, lane_int);
+#else
+    lane_int r;
+    for (int k = 0; k < 2; k++) {
+        lane_half_int_ h = __builtin_convertvector(lane_half_of_(a, k), lane_half_int_);
+        __builtin_memcpy((char *)&r + 16*k, &h, sizeof h);
+    }
+    return r;
+#endif
+}
 TOBI_FN lane lane_where_less(lane a, lane b, lane t, lane f)
 {
-    lane_int m = a < b;
+    lane_int m = lane_less_(a, b);
     return (lane)(((lane_int)t & m) | ((lane_int)f & ~m));
 }
 TOBI_FN lane lane_from_bits(lane_int a) { return (lane)a; }
@@ -174,6 +248,49 @@ TOBI_FN lane_int lane_sub_wrap(int32_t a, lane_int b)
     typedef uint32_t lane_uint __attribute__((vector_size(32)));
     return (lane_int)((lane_uint)lane_set_int(a) - (lane_uint)b);
 }
+#if !defined(__AVX__)
+TOBI_FN void lane_transpose_(lane_half_ a[4])
+{
+    lane_half_ p = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5);
+    lane_half_ q = __builtin_shufflevector(a[2], a[3], 0, 4, 1, 5);
+    lane_half_ r = __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7);
+    lane_half_ s = __builtin_shufflevector(a[2], a[3], 2, 6, 3, 7);
+    a[0] = __builtin_shufflevector(p, q, 0, 1, 4, 5);
+    a[1] = __builtin_shufflevector(p, q, 2, 3, 6, 7);
+    a[2] = __builtin_shufflevector(r, s, 0, 1, 4, 5);
+    a[3] = __builtin_shufflevector(r, s, 2, 3, 6, 7);
+}
+/* Loads eight 16-byte rows and transposes them into four lanes. */
+TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x, lane *y, lane *z, lane *w)
+{
+    lane *const to[4] = {x, y, z, w};
+    for (int half = 0; half < 2; half++) {
+        lane_half_ a[4];
+        for (int k = 0; k < 4; k++) __builtin_memcpy(&a[k], base + j[4*half + k], 16);
+        lane_transpose_(a);
+        for (int k = 0; k < 4; k++) __builtin_memcpy((char *)to[k] + 16*half, &a[k], 16);
+    }
+}
+/* Transposes four lanes into rows to[0], to[stride], ..., the first `count` of eight. */
+TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, lane y, lane z, lane w)
+{
+    for (int half = 0; half < 2; half++) {
+        lane_half_ a[4] = {lane_half_of_(x, half), lane_half_of_(y, half), lane_half_of_(z, half),
+                           lane_half_of_(w, half)};
+        lane_transpose_(a);
+        for (int k = 0; k < 4 && 4*half + k < count; k++)
+            __builtin_memcpy(to + (int64_t)(4*half + k)*stride, &a[k], 16);
+    }
+}
+/* Eight places times scale less shift, in double, then transposed: x, y and z. */
+TOBI_FN void lane_load_places(const tobi_double3 *from, double scale, const double shift[3], lane place[3])
+{
+    float part[3][8];
+    for (int k = 0; k < 8; k++)
+        for (int a = 0; a < 3; a++) part[a][k] = (float)((&from[k].x)[a]*scale - shift[a]);
+    __builtin_memcpy(place, part, sizeof part);
+}
+#else
 /* Two 16-byte rows side by side. As integers: machines unpack these at twice the rate of floats. */
 TOBI_FN lane_int lane_load_two_(const void *low, const void *high)
 {
@@ -202,6 +319,30 @@ TOBI_FN void lane_load_float4(const tobi_float4 *base, const int32_t *j, lane *x
     *z = __builtin_shufflevector(t2, t3, 0, 1, 8, 9, 4, 5, 12, 13);
     *w = __builtin_shufflevector(t2, t3, 2, 3, 10, 11, 6, 7, 14, 15);
 }
+/* Eight places times scale less shift, in double, then transposed: x, y and z. */
+TOBI_FN void lane_load_places(const tobi_double3 *from, double scale, const double shift[3], lane place[3])
+{
+    typedef double four __attribute__((vector_size(32)));
+    const double *s = shift;
+    const four less[3] = {{s[0], s[1], s[2], s[0]}, {s[1], s[2], s[0], s[1]}, {s[2], s[0], s[1], s[2]}};
+    const four by = {scale, scale, scale, scale};
+    lane_half_ a[6];
+    for (int k = 0; k < 6; k++) {
+        four d;
+        __builtin_memcpy(&d, (const char *)from + 32*k, sizeof d);
+        a[k] = __builtin_convertvector(d*by - less[k%3], lane_half_);
+    }
+    lane p = __builtin_shufflevector(a[0], a[3], 0, 1, 2, 3, 4, 5, 6, 7);     /* x y z x, twice */
+    lane q = __builtin_shufflevector(a[1], a[4], 0, 1, 2, 3, 4, 5, 6, 7);     /* y z x y */
+    lane r = __builtin_shufflevector(a[2], a[5], 0, 1, 2, 3, 4, 5, 6, 7);     /* z x y z */
+    lane t = __builtin_shufflevector(q, r, 2, 2, 9, 9, 6, 6, 13, 13);
+    lane u = __builtin_shufflevector(p, q, 1, 1, 8, 8, 5, 5, 12, 12);
+    lane w = __builtin_shufflevector(q, r, 3, 3, 10, 10, 7, 7, 14, 14);
+    lane z = __builtin_shufflevector(p, q, 2, 2, 9, 9, 6, 6, 13, 13);
+    place[0] = __builtin_shufflevector(p, t, 0, 3, 8, 10, 4, 7, 12, 14);
+    place[1] = __builtin_shufflevector(u, w, 0, 2, 8, 10, 4, 6, 12, 14);
+    place[2] = __builtin_shufflevector(z, r, 0, 2, 8, 11, 4, 6, 12, 15);
+}
 /* Transposes four lanes into rows to[0], to[stride], ..., the first `count` of eight. */
 TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, lane y, lane z, lane w)
 {
@@ -216,6 +357,7 @@ TOBI_FN void lane_store_float4(tobi_float4 *to, int stride, int count, lane x, l
     for (int k = 0; k < 8 && k < count; k++)
         __builtin_memcpy(to + (int64_t)k*stride, (const float *)&r[k & 3] + 4*(k >> 2), 16);
 }
+#endif
 TOBI_FN void lane_load_record(const tobi_record *base, const int32_t *j, lane_int *x, lane_int *y,
                               lane_int *z, lane *w)
 {

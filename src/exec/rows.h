@@ -35,6 +35,16 @@ TOBI_FN quad row_fold(row a)
     for (int k = 0; k < 4; k++) q.v[k] = (a.v[k] + a.v[k + 8]) + (a.v[k + 4] + a.v[k + 12]);
     return q;
 }
+TOBI_FN row row_sub(row a, row b) { for (int k = 0; k < 16; k++) a.v[k] -= b.v[k]; return a; }
+TOBI_FN row row_fold_four(row a, row b, row c, row d)
+{
+    const quad f[4] = {row_fold(a), row_fold(b), row_fold(c), row_fold(d)};
+    for (int k = 0; k < 16; k++) a.v[k] = f[k >> 2].v[k & 3];
+    return a;
+}
+TOBI_FN quad row_first(row a) { quad q; for (int k = 0; k < 4; k++) q.v[k] = a.v[k]; return q; }
+TOBI_FN row row_take_w(row a, row w) { for (int k = 3; k < 16; k += 4) a.v[k] = w.v[k]; return a; }
+TOBI_FN void row_store_others(void *p, row r) { __builtin_memcpy(p, r.v + 4, 12*sizeof(float)); }
 
 #else
 
@@ -74,6 +84,23 @@ TOBI_FN quad row_fold(row a)
     __m256 s = _mm256_add_ps(_mm512_castps512_ps256((__m512)a), _mm512_extractf32x8_ps((__m512)a, 1));
     return (quad)_mm_add_ps(_mm256_castps256_ps128(s), _mm256_extractf128_ps(s, 1));
 }
+TOBI_FN row row_sub(row a, row b) { return a - b; }
+/* Four such sums side by side. */
+TOBI_FN row row_fold_four(row a, row b, row c, row d)
+{
+    const __m512 p = (__m512)a, q = (__m512)b, r = (__m512)c, s = (__m512)d;
+    __m512 e = _mm512_add_ps(_mm512_shuffle_f32x4(p, q, 0x44), _mm512_shuffle_f32x4(p, q, 0xee));
+    __m512 f = _mm512_add_ps(_mm512_shuffle_f32x4(r, s, 0x44), _mm512_shuffle_f32x4(r, s, 0xee));
+    return (row)_mm512_add_ps(_mm512_shuffle_f32x4(e, f, 0x88), _mm512_shuffle_f32x4(e, f, 0xdd));
+}
+TOBI_FN quad row_first(row a) { return (quad)_mm512_castps512_ps128((__m512)a); }
+/* a, but the last float of each node from w */
+TOBI_FN row row_take_w(row a, row w) { return (row)_mm512_mask_mov_ps((__m512)a, 0x8888, (__m512)w); }
+/* All nodes but the first, at p. */
+TOBI_FN void row_store_others(void *p, row r)
+{
+    _mm512_mask_storeu_ps((float *)p - 4, 0xfff0, (__m512)r);
+}
 
 #else
 
@@ -108,6 +135,11 @@ TOBI_FN row row_add(row a, row b)
     for (int k = 0; k < ROW_PARTS_; k++) a.part[k] = a.part[k] + b.part[k];
     return a;
 }
+TOBI_FN row row_sub(row a, row b)
+{
+    for (int k = 0; k < ROW_PARTS_; k++) a.part[k] = a.part[k] - b.part[k];
+    return a;
+}
 TOBI_FN row row_mul(row a, row b)
 {
     for (int k = 0; k < ROW_PARTS_; k++) a.part[k] = a.part[k]*b.part[k];
@@ -136,6 +168,30 @@ TOBI_FN quad row_fold(row a)
     row_part_ s = a.part[0] + a.part[1];
     return __builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7);
 }
+TOBI_FN row_part_ row_fold_two_(row a, row b)
+{
+    row_part_ p = a.part[0] + a.part[1], q = b.part[0] + b.part[1];
+    return __builtin_shufflevector(p, q, 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(p, q, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+TOBI_FN row row_fold_four(row a, row b, row c, row d)
+{
+    row r = {{row_fold_two_(a, b), row_fold_two_(c, d)}};
+    return r;
+}
+TOBI_FN quad row_first(row a) { return __builtin_shufflevector(a.part[0], a.part[0], 0, 1, 2, 3); }
+TOBI_FN row row_take_w(row a, row w)
+{
+    for (int k = 0; k < 2; k++)
+        a.part[k] = __builtin_shufflevector(a.part[k], w.part[k], 0, 1, 2, 11, 4, 5, 6, 15);
+    return a;
+}
+TOBI_FN void row_store_others(void *p, row r)
+{
+    quad second = __builtin_shufflevector(r.part[0], r.part[0], 4, 5, 6, 7);
+    __builtin_memcpy(p, &second, sizeof second);
+    __builtin_memcpy((float *)p + 4, &r.part[1], sizeof r.part[1]);
+}
 #else
 TOBI_FN row row_repeat(quad a)
 {
@@ -148,6 +204,22 @@ TOBI_FN row row_spread(quad a)
     return r;
 }
 TOBI_FN quad row_fold(row a) { return (a.part[0] + a.part[2]) + (a.part[1] + a.part[3]); }
+TOBI_FN row row_fold_four(row a, row b, row c, row d)
+{
+    row r = {{row_fold(a), row_fold(b), row_fold(c), row_fold(d)}};
+    return r;
+}
+TOBI_FN quad row_first(row a) { return a.part[0]; }
+TOBI_FN row row_take_w(row a, row w)
+{
+    for (int k = 0; k < 4; k++) a.part[k] = __builtin_shufflevector(a.part[k], w.part[k], 0, 1, 2, 7);
+    return a;
+}
+TOBI_FN void row_store_others(void *p, row r)
+{
+    for (int k = 1; k < 4; k++)
+        __builtin_memcpy((float *)p + 4*(k - 1), &r.part[k], sizeof r.part[k]);
+}
 #endif
 
 #endif

@@ -7,8 +7,8 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
 {
     const mpm_block *b = &v->block[number];
     const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
-    tobi_float4 tile[MPM_TILE_3D + 8], *calm = v->calm + number*(nodes + 8);
-    tobi_float4 twin[MPM_TILE_3D + 8], *calm_twin = mpm_twin_tile(b, v->calm, nodes);
+    tobi_float4 tile[MPM_TILE_3D + 8], *calm = mpm_clear_tile(v->calm, number, dim);
+    tobi_float4 twin[MPM_TILE_3D + 8], *calm_twin = mpm_clear_tile(v->calm, b->twin, dim);
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     row g[9];
     (void)totals;
@@ -17,17 +17,16 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     mpm_clear(tile + nodes, 8);
     mpm_clear(twin + nodes, 8);
     if (calm_twin) mpm_copy_tile(v->wave, v->block[b->twin].around, twin, dim);
-    mpm_clear(calm, nodes + 8);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
             const uint32_t hidden = calm_twin ? v->hidden[i + k] : 0;
-            quad u, unused[3], mass = quad_set(v->strain[i + k].c[2].w);
+            quad u, mass = quad_set(v->strain[i + k].c[2].w);
             if (hidden) mpm_load_split(tile, twin, s.first[k], hidden, g, dim);
             else mpm_load_rows(tile, s.first[k], g, dim);
-            mpm_interpolate(g, &s, k, 0, dim, &u, unused);
+            u = row_first(mpm_interpolate(g, &s, k, dim));
             u[3] = 1;
             if (hidden) mpm_add_split(calm, calm_twin, &s, k, hidden, u*mass, zero, dim);
             else mpm_add_calm(calm, &s, k, u*mass, dim);
@@ -56,9 +55,8 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
-    tobi_float4 *calm = v->calm + number*(nodes + 8), *calm_twin = mpm_twin_tile(b, v->calm, nodes);
-    mpm_clear(calm, nodes + 8);
+    tobi_float4 *calm = mpm_clear_tile(v->calm, number, dim),
+                *calm_twin = mpm_clear_tile(v->calm, b->twin, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;

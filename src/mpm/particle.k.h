@@ -17,31 +17,32 @@ typedef struct mpm_stencil {
     int32_t first[MPM_WIDE];           /* node of the tile, the lowest of each                  */
     float   offset[3][MPM_WIDE];       /* cells, from that node: 1/2 to 3/2                      */
     float   weight[3][3][MPM_WIDE];    /* [axis][node]                                          */
+    tobi_float4 along[8];              /* the weights of each particle along a row of nodes, and 0 */
 } mpm_stencil;
 
 /* Weights of quadratic B-splines, eq. (2). Places are clamped to the tile: they lie in it unless a particle
-   strayed more than a cell, which ends the run (mlsmpm.c). */
-TOBI_FN void mpm_find_stencil(const mpm_view *v, const mpm_block *b, int64_t i, int dim, mpm_stencil *s)
+   strayed more than a cell or is no number, which ends the run (mlsmpm.c). */
+TOBI_FN void mpm_find_stencil(const mpm_view *v, const mpm_block *b, int64_t i, const int dim, mpm_stencil *s)
 {
-    float place[3][MPM_WIDE];
+    const double corner[3] = {b->corner[0], b->corner[1], b->corner[2]};
+    lane place[3], w[3];
     lane_int first = lane_set_int(0);
-    for (int k = 0; k < MPM_WIDE; k++) {
-        const tobi_double3 *x = &v->position[i + k];
-        place[0][k] = (float)(x->x*v->inverse_cell - b->corner[0]);
-        place[1][k] = (float)(x->y*v->inverse_cell - b->corner[1]);
-        place[2][k] = (float)(x->z*v->inverse_cell - b->corner[2]);
-    }
+    lane_load_places(v->position + i, v->inverse_cell, corner, place);
     for (int a = 0; a < dim; a++) {
-        lane x = lane_load(place[a]) + 0.5f, low = lane_set(0), high = lane_set(5.9999f);
-        x = lane_where_less(x, low, low, lane_where_less(high, x, high, x));
+        lane x = place[a] + 0.5f, low = lane_set(0), high = lane_set(5.9999f);
+        x = lane_where_less(x, high, x, high);
+        x = lane_where_less(low, x, x, low);
         lane_int node = lane_to_int(x);
         lane f = x - lane_from_int(node) + 0.5f;
         lane p = 1.5f - f, q = f - 1.0f, r = f - 0.5f;
-        lane w[3] = {0.5f*p*p, 0.75f - q*q, 0.5f*r*r};
+        w[0] = 0.5f*p*p;
+        w[1] = 0.75f - q*q;
+        w[2] = 0.5f*r*r;
         first = first*8 + node;
         __builtin_memcpy(s->offset[a], &f, sizeof f);
         for (int n = 0; n < 3; n++) __builtin_memcpy(s->weight[a][n], &w[n], sizeof w[n]);
     }
+    lane_store_float4(s->along, 1, MPM_WIDE, w[0], w[1], w[2], lane_set(0));
     __builtin_memcpy(s->first, &first, sizeof first);
 }
 
@@ -158,10 +159,12 @@ TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t p
     }
 }
 
-/* What a particle gives its nodes: momentum + matrix (node - particle), times the weight; eq. (3). */
+/* What eight particles give their nodes, eq. (3): (base + columns times the distance from the lowest node)
+   times the weight. */
 typedef struct mpm_load {
+    tobi_float4 base[8];               /* kg m/s at the lowest node, and the particle's mass      */
+    tobi_float4 column[3][8];          /* kg m/s per cell                                         */
     tobi_float4 momentum[8];           /* kg m/s at the particle, and its mass                    */
-    tobi_float4 matrix[3][8];          /* kg/s, columns                                           */
 } mpm_load;
 
 /* What damping takes from the kinetic energy of the first `count` particles in this step, J. */
@@ -179,11 +182,34 @@ TOBI_FN double mpm_find_damping(const mpm_view *v, int count, const lane velocit
     return sum;
 }
 
+/* Stress and momentum, with axes as the stencil has them. */
+TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane tau[6],
+                            const lane gradient[9], const lane momentum[4], lane stress, lane carried,
+                            const int dim, mpm_load *load)
+{
+    const int of[3][3] = {{MPM_XX, MPM_XY, MPM_ZX}, {MPM_XY, MPM_YY, MPM_YZ}, {MPM_ZX, MPM_YZ, MPM_ZZ}};
+    const lane zero = lane_set(0);
+    lane base[3] = {momentum[0], momentum[1], momentum[2]};
+    for (int c = 0; c < dim; c++) {
+        const lane offset = lane_load(at->offset[c]);
+        lane column[3];
+        for (int r = 0; r < 3; r++) {
+            column[r] = (stress*tau[of[r][c]] + carried*gradient[3*r + c])*v->cell;
+            base[r] = base[r] - column[r]*offset;
+        }
+        lane_store_float4(load->column[c], 1, 8, column[0], column[1], column[2], zero);
+    }
+    lane_store_float4(load->base, 1, 8, base[0], base[1], base[2], momentum[3]);
+    if (v->calm)
+        lane_store_float4(load->momentum, 1, 8, momentum[0], momentum[1], momentum[2], momentum[3]);
+}
+
 /* Returns the kinetic energy that damping takes, J. */
-TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *load)
+TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, const mpm_stencil *at, const int dim,
+                             mpm_load *load)
 {
     const int32_t next[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    lane velocity[4], gradient[9], e[9], other[3], unused[3], tau[6], keep;
+    lane velocity[4], momentum[4], gradient[9], e[9], other[3], unused[3], tau[6], keep;
     lane_int model;
     uint32_t present;
     mpm_parameters m;
@@ -194,15 +220,11 @@ TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, mpm_load *
     mpm_deform(v->strain_dt, gradient, e);
     mpm_find_stress(&m, model, present, gradient, e, &other[1], tau);
     mpm_store_columns(v->strain + i, count, e, other);
-    lane s = other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell), mass = other[2];
-    lane carried = v->affine_momentum ? mass*keep : lane_set(0);
-    const int at[3][3] = {{MPM_XX, MPM_XY, MPM_ZX}, {MPM_XY, MPM_YY, MPM_YZ}, {MPM_ZX, MPM_YZ, MPM_ZZ}};
-    for (int c = 0; c < 3; c++) {
-        lane column[3];
-        for (int r = 0; r < 3; r++) column[r] = s*tau[at[r][c]] + carried*gradient[3*r + c];
-        lane_store_float4(load->matrix[c], 1, 8, column[0], column[1], column[2], lane_set(0));
-    }
-    lane moving = mass*keep;
-    lane_store_float4(load->momentum, 1, 8, moving*velocity[0], moving*velocity[1], moving*velocity[2], mass);
+    const lane mass = other[2], moving = mass*keep;
+    for (int a = 0; a < 3; a++) momentum[a] = moving*velocity[a];
+    momentum[3] = mass;
+    mpm_store_load(v, at, tau, gradient, momentum,
+                   other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell),
+                   v->affine_momentum ? moving : lane_set(0), dim, load);
     return v->damped ? mpm_find_damping(v, count, velocity, gradient, mass, keep) : 0;
 }

@@ -5,10 +5,6 @@
 #include "exec/rows.h"
 #include "mpm/particle.k.h"
 
-/* Nodes of a tile that belong to the node block at offset -1, 0 or 1 along an axis. */
-TOBI_FN int mpm_span_first(int offset) { return offset < 0 ? 0 : offset == 0 ? 1 : 5; }
-TOBI_FN int mpm_span_last(int offset) { return offset < 0 ? 0 : offset == 0 ? 4 : 7; }
-
 /* 1 for each of the three nodes of a row that the bits name, and for the fourth that carries nothing. */
 TOBI_FN quad mpm_take(uint32_t bits)
 {

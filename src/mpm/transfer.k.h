@@ -11,22 +11,63 @@ TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
     for (int n = 0; n < nodes; n++) tile[n] = (tobi_float4){0, 0, 0, 0};
 }
 
-TOBI_FN void mpm_add_rows(float *tile, int32_t first, row *sum, int dim)
+/* The rows of nodes of one cell, as long as its particles follow one another. */
+typedef struct mpm_cell {
+    row sum[9];
+    int32_t first;                     /* node of the tile; -1 = none                             */
+} mpm_cell;
+
+TOBI_FN void mpm_clear_cell(mpm_cell *c)
 {
-    const int rows = dim == 3 ? 9 : 3;
-    for (int r = 0; r < rows; r++) {
-        float *at = tile + 4*(first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r));
-        row_store(at, row_add(row_load(at), sum[r]));
-        sum[r] = row_set(0);
+    for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
+    c->first = -1;
+}
+
+/* Adds the cell's sums to the tile. */
+TOBI_FN void mpm_leave_cell(tobi_float4 *tile, mpm_cell *c, const int dim)
+{
+    if (c->first < 0) return;
+    for (int r = 0; r < (dim == 3 ? 9 : 3); r++) {
+        tobi_float4 *at = tile + c->first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
+        row_store(at, row_add(row_load(at), c->sum[r]));
+        c->sum[r] = row_set(0);
+    }
+}
+
+/* Adds particle k of eight to the sums. */
+TOBI_FN void mpm_add_particle(tobi_float4 *tile, mpm_cell *c, const mpm_stencil *s, const mpm_load *load,
+                              int k, const int dim)
+{
+    const int last = dim - 1, rows = dim == 3 ? 3 : 1;
+    const quad step = {0, 1, 2, 0};
+    if (s->first[k] != c->first) {
+        mpm_leave_cell(tile, c, dim);
+        c->first = s->first[k];
+    }
+    const row w = row_spread(quad_load(&s->along[k]));
+    const row d0 = row_mul(row_repeat(quad_load(&load->column[0][k])), w),
+              d1 = dim == 3 ? row_mul(row_repeat(quad_load(&load->column[1][k])), w) : w;
+    row x = row_mul(row_fma(row_repeat(quad_load(&load->column[last][k])), row_spread(step),
+                            row_repeat(quad_load(&load->base[k]))), w);
+    for (int n = 0; n < 3; n++) {
+        row wx = row_set(s->weight[0][n][k]), t = row_mul(x, wx), u = row_mul(d1, wx);
+        row y0 = dim == 3 ? row_set(s->weight[1][0][k]) : row_set(1);
+        c->sum[rows*n] = row_fma(t, y0, c->sum[rows*n]);
+        if (dim == 3) {
+            t = row_add(t, u);
+            c->sum[3*n + 1] = row_fma(t, row_set(s->weight[1][1][k]), c->sum[3*n + 1]);
+            t = row_add(t, u);
+            c->sum[3*n + 2] = row_fma(t, row_set(s->weight[1][2][k]), c->sum[3*n + 2]);
+        }
+        x = row_add(x, d0);
     }
 }
 
 /* One particle's momentum alone, without stress: FLIP's changes are measured against it. */
 TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad momentum, const int dim)
 {
-    const int last = dim - 1, rows = dim == 3 ? 3 : 1;
-    quad along = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
-    row x = row_mul(row_repeat(momentum), row_spread(along));
+    const int rows = dim == 3 ? 3 : 1;
+    const row x = row_mul(row_repeat(momentum), row_spread(quad_load(&s->along[k])));
     for (int n = 0; n < 3; n++)
         for (int r = 0; r < rows; r++) {
             tobi_float4 *at = tile + s->first[k] + (dim == 3 ? 64*n + 8*r : 8*n);
@@ -35,77 +76,80 @@ TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad m
         }
 }
 
-/* The cleared tile of a block's twin, NULL = no twin. */
-TOBI_FN tobi_float4 *mpm_twin_tile(const mpm_block *b, tobi_float4 *tiles, int nodes)
+/* The cleared tile of block `number`, NULL = no such block. */
+TOBI_FN tobi_float4 *mpm_clear_tile(tobi_float4 *tiles, int64_t number, const int dim)
 {
-    if (b->twin < 0) return NULL;
-    tobi_float4 *tile = tiles + (int64_t)b->twin*(nodes + 8);
-    mpm_clear(tile, nodes + 8);
-    return tile;
+    const int nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
+    if (!tiles || number < 0) return NULL;
+    mpm_clear(tiles + number*nodes, nodes);
+    return tiles + number*nodes;
 }
 
-/* Momentum and mass of a block's particles into its tile. totals: 0 energy taken by damping, J. */
-TOBI_FN void mpm_scatter(const mpm_view *v, int64_t number, double *totals, const int dim)
+/* Where a block's particles add to beside its own tile, each NULL = nowhere. */
+typedef struct mpm_targets {
+    tobi_float4 *calm, *twin, *calm_twin;  /* without stress: FLIP and XPIC; across a cut          */
+    const float *side;                     /* sides of the nodes at cuts                           */
+} mpm_targets;
+
+TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, mpm_targets *t, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, last = dim - 1, rows = dim == 3 ? 3 : 1;
-    float *tile = (float *)(v->tile + number*(nodes + 8));
-    row sum[9];
-    int32_t cell = -1;
-    const quad step = {0, 1, 2, 0}, zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
-    tobi_float4 *calm = v->old ? v->calm + number*(nodes + 8) : NULL;      /* FLIP and XPIC */
-    tobi_float4 *twin = mpm_twin_tile(b, v->tile, nodes);
-    tobi_float4 *calm_twin = calm ? mpm_twin_tile(b, v->calm, nodes) : NULL;
-    mpm_clear(v->tile + number*(nodes + 8), nodes + 8);
-    if (calm) mpm_clear(calm, nodes + 8);
-    const float *side = twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
-    for (int r = 0; r < 9; r++) sum[r] = row_set(0);
+    t->calm = mpm_clear_tile(v->old ? v->calm : NULL, number, dim);
+    t->twin = mpm_clear_tile(v->tile, b->twin, dim);
+    t->calm_twin = mpm_clear_tile(v->old ? v->calm : NULL, b->twin, dim);
+    t->side = t->twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
+}
+
+/* The same for particle i, k of eight, where there are other targets. */
+TOBI_FN void mpm_add_apart(const mpm_view *v, tobi_float4 *tile, const mpm_targets *t, mpm_cell *c,
+                           const mpm_stencil *s, const mpm_load *load, int64_t i, int k, const int dim)
+{
+    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)}, momentum = quad_load(&load->momentum[k]);
+    const uint32_t hidden = t->twin ? mpm_find_hidden(v, i, t->side, s->first[k], dim) : 0;
+    if (t->twin) v->hidden[i] = hidden;
+    if (t->calm && hidden) mpm_add_split(t->calm, t->calm_twin, s, k, hidden, momentum, zero, dim);
+    else if (t->calm) mpm_add_calm(t->calm, s, k, momentum, dim);
+    if (hidden) {
+        const quad columns[3] = {quad_load(&load->column[0][k]), quad_load(&load->column[1][k]),
+                                 dim == 3 ? quad_load(&load->column[2][k]) : zero[0]};
+        mpm_add_split(tile, t->twin, s, k, hidden, quad_load(&load->base[k]), columns, dim);
+    } else mpm_add_particle(tile, c, s, load, k, dim);
+}
+
+/* plain: no other targets than the tile. Returns the kinetic energy that damping takes, J. */
+TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
+                             const int dim, const int plain)
+{
+    double taken = 0;
+    mpm_cell cell;
+    mpm_clear_cell(&cell);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
-        totals[0] += mpm_find_load(v, i, count, &load);
-        for (int k = 0; k < count; k++) {
-            uint32_t hidden = twin ? mpm_find_hidden(v, i + k, side, s.first[k], dim) : 0;
-            if (twin) v->hidden[i + k] = hidden;
-            if (calm && hidden)
-                mpm_add_split(calm, calm_twin, &s, k, hidden, quad_load(&load.momentum[k]), zero, dim);
-            else if (calm)
-                mpm_add_calm(calm, &s, k, quad_load(&load.momentum[k]), dim);
-            const quad unit = quad_set(v->cell);
-            quad a0 = quad_load(&load.matrix[0][k])*unit, a1 = quad_load(&load.matrix[1][k])*unit,
-                 a2 = quad_load(&load.matrix[last][k])*unit, base = quad_load(&load.momentum[k]);
-            base = base - a0*quad_set(s.offset[0][k]);
-            if (dim == 3) base = base - a1*quad_set(s.offset[1][k]);
-            base = base - a2*quad_set(s.offset[last][k]);
-            if (hidden) {
-                const quad columns[3] = {a0, a1, a2};
-                mpm_add_split((tobi_float4 *)(void *)tile, twin, &s, k, hidden, base, columns, dim);
-                continue;
-            }
-            if (s.first[k] != cell) {
-                if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
-                cell = s.first[k];
-            }
-            quad along = {s.weight[last][0][k], s.weight[last][1][k], s.weight[last][2][k], 0};
-            row w = row_spread(along), d0 = row_mul(row_repeat(a0), w), d1 = row_mul(row_repeat(a1), w);
-            row x = row_mul(row_fma(row_repeat(a2), row_spread(step), row_repeat(base)), w);
-            for (int n = 0; n < 3; n++) {
-                row wx = row_set(s.weight[0][n][k]), t = row_mul(x, wx), u = row_mul(d1, wx);
-                row y0 = dim == 3 ? row_set(s.weight[1][0][k]) : row_set(1);
-                sum[rows*n] = row_fma(t, y0, sum[rows*n]);
-                if (dim == 3) {
-                    t = row_add(t, u);
-                    sum[3*n + 1] = row_fma(t, row_set(s.weight[1][1][k]), sum[3*n + 1]);
-                    t = row_add(t, u);
-                    sum[3*n + 2] = row_fma(t, row_set(s.weight[1][2][k]), sum[3*n + 2]);
-                }
-                x = row_add(x, d0);
-            }
-        }
+        taken += mpm_find_load(v, i, count, &s, dim, &load);
+        for (int k = 0; k < count; k++)
+            if (plain) mpm_add_particle(tile, &cell, &s, &load, k, dim);
+            else mpm_add_apart(v, tile, t, &cell, &s, &load, i + k, k, dim);
     }
-    if (cell >= 0) mpm_add_rows(tile, cell, sum, dim);
+    mpm_leave_cell(tile, &cell, dim);
+    return taken;
+}
+
+/* Momentum and mass of a block's particles into its tile. totals: 0 energy taken by damping, J. */
+TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, const int dim)
+{
+    const mpm_view v = *view;      /* a copy, or every store could change it for all the compiler knows */
+    const mpm_block *b = &v.block[number];
+    const int nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
+    tobi_float4 tile[MPM_TILE_3D + 8];
+    mpm_targets targets;
+    mpm_clear(tile, nodes);
+    mpm_find_targets(&v, number, &targets, dim);
+    if (!targets.calm && !targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 1);
+    else totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 0);
+    __builtin_memcpy(v.tile + number*nodes, tile, (size_t)nodes*sizeof *tile);
 }
 
 /* Coulomb contact of a node with a plane, eq. (13); v becomes the velocity after. */
@@ -132,27 +176,42 @@ TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
     for (int a = 0; a < 3; a++) v[a] = p->velocity[a] + r[a]*left;
 }
 
-/* Sums the tiles over a block of nodes: momentum and mass. */
+/* Node `first` of a tile; number -1 = no such tile, any address. */
+TOBI_FN const tobi_float4 *mpm_tile_at(const tobi_float4 *tiles, int32_t number, int first)
+{
+    return tiles + (int64_t)(number < 0 ? 0 : number)*(MPM_TILE_3D + 8) + first;
+}
+
+/* Adds row `at` of three tiles that follow along z, those that are there, to four nodes. */
+TOBI_FN void mpm_add_row(const tobi_float4 *tiles, const int32_t cover[3], int at, quad to[4])
+{
+    const tobi_float4 *const before = mpm_tile_at(tiles, cover[0], at + 5),
+                      *const own = mpm_tile_at(tiles, cover[1], at + 1),
+                      *const after = mpm_tile_at(tiles, cover[2], at);
+    if (cover[0] >= 0)
+        for (int n = 0; n < 3; n++) to[n] = to[n] + quad_load(&before[n]);
+    if (cover[1] >= 0)
+        for (int n = 0; n < 4; n++) to[n] = to[n] + quad_load(&own[n]);
+    if (cover[2] >= 0) to[3] = to[3] + quad_load(after);
+}
+
+/* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. */
 TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *sum, const int dim)
 {
-    const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    const int tile_nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
-    for (int n = 0; n < nodes; n++) sum[n] = quad_set(0);
-    for (int o = 0; o < 27; o++) {
-        if (g->cover[o] < 0) continue;
-        /* From the tile's block this one lies at the opposite offset. */
-        const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*(tile_nodes + 8);
-        const int ox = 1 - o/9, oy = 1 - o/3%3, oz = dim == 3 ? 1 - o%3 : 0;
-        for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
-            for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                const int row = (x - 1 - 4*ox)*4 + (y - 1 - 4*oy);
-                if (dim == 2) sum[row] = sum[row] + quad_load(&tile[x*8 + y]);
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz) && dim == 3; z++) {
-                    const int n = row*4 + (z - 1 - 4*oz);
-                    sum[n] = sum[n] + quad_load(&tile[(x*8 + y)*8 + z]);
-                }
+    for (int x = 0; x < 4; x++)
+        for (int y = 0; y < 4; y++) {
+            quad *to = sum + (dim == 3 ? 16*x + 4*y : 4*x + y);
+            for (int n = 0; n < (dim == 3 ? 4 : 1); n++) to[n] = quad_set(0);
+            for (int pair = 0; pair < 4; pair++) {         /* of tiles that reach this row */
+                const int ox = (x == 3) + (pair >> 1), oy = (y == 3) + (pair & 1);
+                const int32_t *cover = g->cover + 9*ox + 3*oy;
+                const int row = 8*(x + 5 - 4*ox) + (y + 5 - 4*oy);
+                if (dim == 3) mpm_add_row(tiles, cover, 8*row, to);
+                else if (cover[1] >= 0)
+                    *to = *to + quad_load(&tiles[(int64_t)cover[1]*(MPM_TILE_2D + 8) + row]);
             }
-    }
+        }
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
@@ -202,30 +261,35 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     for (int a = 0; a < 3; a++) totals[a] += given[a];
 }
 
-/* The nodes around a block, from the node blocks into one tile. */
-TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile, int dim)
+/* The nodes around a block, from the node blocks into one tile. Rows along z write a node too many, which the
+   next row corrects; the last one reaches into the eight nodes beyond. */
+TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile,
+                           const int dim)
 {
-    for (int o = 0; o < 27; o++) {
-        if (dim == 2 && o%3 != 1) continue;
-        const int ox = o/9 - 1, oy = o/3%3 - 1, oz = dim == 3 ? o%3 - 1 : 0;
-        const tobi_float4 *from = node + (int64_t)around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D);
-        for (int x = mpm_span_first(ox); x <= mpm_span_last(ox); x++)
-            for (int y = mpm_span_first(oy); y <= mpm_span_last(oy); y++) {
-                if (dim == 2) {
-                    tile[x*8 + y] = from[(x - 1 - 4*ox)*4 + (y - 1 - 4*oy)];
-                    continue;
-                }
-                for (int z = mpm_span_first(oz); z <= mpm_span_last(oz); z++)
-                    tile[(x*8 + y)*8 + z] = from[((x - 1 - 4*ox)*4 + (y - 1 - 4*oy))*4 + (z - 1 - 4*oz)];
+    for (int x = 3; x < 11; x++)                           /* from the node -4 of the block */
+        for (int y = 3; y < 11; y++, tile += dim == 3 ? 8 : 1) {
+            const int32_t *block = around + 9*(x/4) + 3*(y/4);
+            const tobi_float4 *from = node + (dim == 3 ? 16*(x%4) + 4*(y%4) : 4*(x%4) + y%4);
+            if (dim == 2) {
+                *tile = from[(int64_t)block[1]*MPM_NODES_2D];
+                continue;
             }
-    }
+            tile[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
+            row_store(tile + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
+            row_store(tile + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+        }
 }
 
-/* Velocity and its gradient at a particle, from the 3 x 3 rows of nodes it feels; eq. (14). */
-TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float scale, int dim, quad *velocity,
-                             quad gradient[3])
+TOBI_FN void mpm_load_rows(const tobi_float4 *tile, int32_t first, row *g, int dim)
 {
-    const int last = dim - 1;
+    const int rows = dim == 3 ? 9 : 3;
+    for (int r = 0; r < rows; r++) g[r] = row_load(tile + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r));
+}
+
+/* Sums over the nodes that particle k feels, from their 3 x 3 rows: of the velocity, and of the velocity
+   times the nodes' distance from the lowest along x, y and z. */
+TOBI_FN row mpm_interpolate(const row *g, const mpm_stencil *s, int k, const int dim)
+{
     const quad step = {0, 1, 2, 0};
     row w[3], u[3], y[3];
     for (int n = 0; n < 3; n++) {
@@ -237,26 +301,11 @@ TOBI_FN void mpm_interpolate(const row *g, const mpm_stencil *s, int k, float sc
             y[n] = row_fma(g[3*n + 2], row_add(y2, y2), b);
         } else u[n] = g[n];
     }
-    quad z = {s->weight[last][0][k], s->weight[last][1][k], s->weight[last][2][k], 0};
-    row along = row_spread(z), m2 = row_mul(u[2], w[2]), m12 = row_fma(u[1], w[1], m2);
-    row t0 = row_mul(row_fma(u[0], w[0], m12), along), t1 = row_mul(row_add(m12, m2), along);
-    row t3 = row_mul(t0, row_spread(step));
-    quad v = row_fold(t0), factor = quad_set(scale);
-    gradient[0] = factor*(row_fold(t1) - v*quad_set(s->offset[0][k]));
-    gradient[1] = quad_set(0);
-    gradient[2] = quad_set(0);
-    if (dim == 3) {
-        row t2 = row_mul(row_fma(y[2], w[2], row_fma(y[1], w[1], row_mul(y[0], w[0]))), along);
-        gradient[1] = factor*(row_fold(t2) - v*quad_set(s->offset[1][k]));
-    }
-    gradient[last] = factor*(row_fold(t3) - v*quad_set(s->offset[last][k]));
-    *velocity = v;
-}
-
-TOBI_FN void mpm_load_rows(const tobi_float4 *tile, int32_t first, row *g, int dim)
-{
-    const int rows = dim == 3 ? 9 : 3;
-    for (int r = 0; r < rows; r++) g[r] = row_load(tile + first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r));
+    row along = row_spread(quad_load(&s->along[k])), m2 = row_mul(u[2], w[2]), m12 = row_fma(u[1], w[1], m2);
+    row t0 = row_mul(row_fma(u[0], w[0], m12), along), t1 = row_mul(row_add(m12, m2), along), t2 = row_set(0);
+    if (dim == 3) t2 = row_mul(row_fma(y[2], w[2], row_fma(y[1], w[1], row_mul(y[0], w[0]))), along);
+    const row t3 = row_mul(t0, row_spread(step));
+    return dim == 3 ? row_fold_four(t0, t1, t2, t3) : row_fold_four(t0, t1, t3, t2);
 }
 
 /* 1 if a particle had to be brought back. */
@@ -274,85 +323,153 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
     return out;
 }
 
-/* The w of the velocity: the force of a contact in this step is kept for the next, and only that long. The
-   w of the gradient: where the particle is at home, for mpm_grid_restore. */
-TOBI_FN void mpm_store_motion(tobi_float4 *velocity, tobi_columns *affine, quad u, const quad gradient[3],
-                              quad home)
+/* The nodes around a block as its particles feel them: velocity, and what replaces their own. */
+typedef struct mpm_around {
+    tobi_float4 now[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8];
+    tobi_float4 now_twin[MPM_TILE_3D + 8], old_twin[MPM_TILE_3D + 8];
+} mpm_around;
+
+TOBI_FN void mpm_copy_nodes(const mpm_view *v, const mpm_block *b, mpm_around *t, const int dim)
 {
-    u[3] = velocity->w > 0 ? -velocity->w : 0;
-    quad_store(velocity, u);
-    for (int c = 0; c < 3; c++) {
-        quad column = gradient[c];
-        column[3] = home[c];
-        quad_store(&affine->c[c], column);
+    const int beyond = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, split = b->twin >= 0, flip = v->old != NULL;
+    mpm_copy_tile(v->node, b->around, t->now, dim);
+    if (flip) mpm_copy_tile(v->old, b->around, t->old, dim);
+    if (split) mpm_copy_tile(v->node, v->block[b->twin].around, t->now_twin, dim);
+    if (split && flip) mpm_copy_tile(v->old, v->block[b->twin].around, t->old_twin, dim);
+    mpm_clear(t->now + beyond, 8);                         /* what the last rows read beyond the tile */
+    mpm_clear(t->old + beyond, 8);
+    mpm_clear(t->now_twin + beyond, 8);
+    mpm_clear(t->old_twin + beyond, 8);
+}
+
+/* Eight particles in motion. */
+typedef struct mpm_motion {
+    tobi_float4 turn[8];               /* 0, and where they stand between nodes along x, y, z      */
+    tobi_float4 moved[8], speed[8];    /* m/s: what moves them, and what they keep                 */
+    lane way2[3], speed2, wrong;       /* largest squares so far, and NaN if there was one         */
+} mpm_motion;
+
+TOBI_FN void mpm_begin_motion(mpm_motion *m)
+{
+    mpm_clear(m->moved, 8);
+    mpm_clear(m->speed, 8);
+    for (int a = 0; a < 3; a++) m->way2[a] = lane_set(0);
+    m->speed2 = m->wrong = lane_set(0);
+}
+
+TOBI_FN void mpm_find_turn(const mpm_stencil *s, mpm_motion *m, const int dim)
+{
+    const lane zero = lane_set(0), z = dim == 3 ? lane_load(s->offset[2]) : zero;
+    lane_store_float4(m->turn, 1, MPM_WIDE, zero, lane_load(s->offset[0]), lane_load(s->offset[1]), z);
+}
+
+/* Raises the largest squares by those of eight particles. */
+TOBI_FN void mpm_note_speed(mpm_motion *m, const int plain)
+{
+    const int32_t next[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    lane u[4], square = lane_set(0);
+    lane_load_float4(m->moved, next, &u[0], &u[1], &u[2], &u[3]);
+    for (int a = 0; a < 3; a++) m->way2[a] = lane_where_less(m->way2[a], u[a]*u[a], u[a]*u[a], m->way2[a]);
+    lane_load_float4(plain ? m->moved : m->speed, next, &u[0], &u[1], &u[2], &u[3]);
+    square = u[0]*u[0] + u[1]*u[1] + u[2]*u[2];
+    m->speed2 = lane_where_less(m->speed2, square, square, m->speed2);
+    m->wrong = m->wrong + (square - square);
+}
+
+/* totals: 6 largest speed squared, infinite if one is no number, 7 largest way along an axis, m. */
+TOBI_FN void mpm_end_motion(const mpm_motion *m, double dt, double *totals)
+{
+    for (int k = 0; k < MPM_WIDE; k++) {
+        const float speed2 = lane_at(m->wrong, k) == 0 ? lane_at(m->speed2, k) : INFINITY;
+        if (speed2 > totals[6]) totals[6] = speed2;
+        for (int a = 0; a < 3; a++) {
+            const double way = sqrtf(lane_at(m->way2[a], k))*dt;
+            if (way > totals[7]) totals[7] = way;
+        }
     }
 }
 
-/* Velocities, their gradients and new positions of a block's particles.
-   totals: 0 particles that had to be kept inside the domain, 6 largest speed squared, 7 largest way along an
-   axis, m. */
-TOBI_FN void mpm_gather(const mpm_view *v, int64_t number, double *totals, const int dim)
+/* The rows of nodes that a particle feels; hidden: those from the twin's tile. */
+TOBI_FN void mpm_find_rows(const tobi_float4 *tile, const tobi_float4 *twin, int32_t first, uint32_t hidden,
+                           row *g, const int dim)
 {
-    const mpm_block *b = &v->block[number];
-    const int beyond = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, flip = v->old != NULL;
-    const float scale = (float)(4*v->inverse_cell), dt = v->dt;
-    const quad home = {(float)b->corner[0], (float)b->corner[1], (float)b->corner[2], 0};
-    /* Locals, because what is stored below could be the view for all the compiler knows. */
-    tobi_float4 *const velocity = v->velocity;
-    tobi_columns *const affine = v->affine;
-    tobi_double3 *const position = v->position;
-    tobi_float4 tile[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8], twin[MPM_TILE_3D + 8], old_twin[MPM_TILE_3D + 8];
-    const int split = b->twin >= 0;
-    row g[9], h[9];
-    quad far = quad_set(0);
-    for (int r = 0; r < 9; r++) g[r] = h[r] = row_set(0);
-    float fast = 0;
-    int32_t cell = -1;
-    int edge = 0;
-    for (int a = 0; a < dim; a++) edge |= b->corner[a] < 2 || (b->corner[a] + 8)*(double)v->cell > v->size[a];
-    mpm_copy_tile(v->node, b->around, tile, dim);
-    if (flip) mpm_copy_tile(v->old, b->around, old, dim);
-    if (split) mpm_copy_tile(v->node, v->block[b->twin].around, twin, dim);
-    if (split && flip) mpm_copy_tile(v->old, v->block[b->twin].around, old_twin, dim);
-    for (int n = beyond; n < beyond + 8; n++)              /* what the last rows read beyond the tile */
-        tile[n] = old[n] = twin[n] = old_twin[n] = (tobi_float4){0, 0, 0, 0};
+    if (hidden) mpm_load_split(tile, twin, first, hidden, g, dim);
+    else mpm_load_rows(tile, first, g, dim);
+}
+
+/* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. hidden: nodes across a cut.
+   plain: no FLIP, no cuts. The w of the velocity: the force of a contact in this step is kept for the next,
+   and only that long. The w of the gradient: where the particle is at home, for mpm_grid_restore. */
+TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil *s, int k, int64_t i,
+                      uint32_t hidden, quad home, mpm_motion *m, const int dim, const int plain)
+{
+    const float scale = (float)(4*v->inverse_cell);
+    const quad factor = {1, scale, scale, scale};
+    tobi_double3 *const position = v->position + i;
+    tobi_float4 *const velocity = v->velocity + i;
+    row g[9];
+    mpm_find_rows(t->now, t->now_twin, s->first[k], plain ? 0 : hidden, g, dim);
+    row all = mpm_interpolate(g, s, k, dim);
+    quad u = row_first(all);
+    all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
+    row_store_others(v->affine + i, row_take_w(row_mul(all, row_spread(factor)), row_spread(home)));
+    position->x += (double)u[0]*v->dt;
+    position->y += (double)u[1]*v->dt;
+    if (dim == 3) position->z += (double)u[2]*v->dt;
+    quad_store(&m->moved[k], u);
+    if (!plain && v->old) {
+        const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own);
+        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, g, dim);
+        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(g, s, k, dim)));
+    }
+    if (!plain) quad_store(&m->speed[k], u);
+    u[3] = velocity->w > 0 ? -velocity->w : 0;
+    quad_store(velocity, u);
+}
+
+TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_around *t, mpm_motion *m,
+                            const int dim, const int plain)
+{
+    const quad home = {0, (float)b->corner[0], (float)b->corner[1], (float)b->corner[2]};
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
+        mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
-            const mpm_material *material = &v->material[v->solid[i + k]];
-            quad u, gradient[3];
-            if (material->model == TOBI_STATIONARY) continue;
-            if (split && v->hidden[i + k]) {
-                cell = -1;
-                mpm_load_split(tile, twin, s.first[k], v->hidden[i + k], g, dim);
-                if (flip) mpm_load_split(old, old_twin, s.first[k], v->hidden[i + k], h, dim);
-            } else if (s.first[k] != cell) {
-                cell = s.first[k];
-                mpm_load_rows(tile, cell, g, dim);
-                if (flip) mpm_load_rows(old, cell, h, dim);
-            }
-            mpm_interpolate(g, &s, k, scale, dim, &u, gradient);
-            position[i + k].x += (double)u[0]*dt;
-            position[i + k].y += (double)u[1]*dt;
-            if (dim == 3) position[i + k].z += (double)u[2]*dt;
-            if (edge) totals[0] += mpm_keep_inside(&position[i + k], v, dim);
-            far = quad_larger(far, u*u);
-            if (flip) {
-                quad before, unused[3], own = quad_load(&velocity[i + k])*quad_set(material->keep*v->own);
-                mpm_interpolate(h, &s, k, scale, dim, &before, unused);
-                u = u + quad_set(v->flip)*(own - before);
-            }
-            quad square = u*u;
-            float speed2 = square[0] + square[1] + square[2];
-            if (!(speed2 <= fast)) fast = speed2;          /* NaN stays */
-            mpm_store_motion(&velocity[i + k], &affine[i + k], u, gradient, home);
+            if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
+            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] : 0, home, m, dim, plain);
         }
+        mpm_note_speed(m, plain);
     }
-    if (!(fast <= totals[6])) totals[6] = fast;
-    for (int a = 0; a < 3; a++)
-        if (sqrtf(far[a])*(double)dt > totals[7]) totals[7] = sqrtf(far[a])*(double)dt;
+}
+
+/* Returns how many particles had to be brought back into the domain, in blocks at its sides. */
+TOBI_FN int64_t mpm_keep_block_inside(const mpm_view *v, const mpm_block *b, const int dim)
+{
+    int edge = 0;
+    int64_t kept = 0;
+    for (int a = 0; a < dim; a++) edge |= b->corner[a] < 2 || (b->corner[a] + 8)*(double)v->cell > v->size[a];
+    for (int64_t i = b->begin; i < b->end && edge; i++)
+        if (v->material[v->solid[i]].model != TOBI_STATIONARY)
+            kept += mpm_keep_inside(&v->position[i], v, dim);
+    return kept;
+}
+
+/* Velocities, their gradients and new positions of a block's particles.
+   totals: 0 particles that had to be kept inside the domain, 6 and 7 see mpm_end_motion. */
+TOBI_FN void mpm_gather(const mpm_view *view, int64_t number, double *totals, const int dim)
+{
+    const mpm_view v = *view;      /* a copy, or every store could change it for all the compiler knows */
+    const mpm_block *b = &v.block[number];
+    mpm_around around;
+    mpm_motion motion;
+    mpm_copy_nodes(&v, b, &around, dim);
+    mpm_begin_motion(&motion);
+    if (!v.old && b->twin < 0) mpm_move_block(&v, b, &around, &motion, dim, 1);
+    else mpm_move_block(&v, b, &around, &motion, dim, 0);
+    totals[0] += (double)mpm_keep_block_inside(&v, b, dim);
+    mpm_end_motion(&motion, v.dt, totals);
 }
 
 /* Kernels over blocks, as tobi_launch wants them. */
