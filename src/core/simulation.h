@@ -10,7 +10,7 @@
 #include "core/still.h"
 #include "tobiuo/tobiuo.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16 };
+enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16, TOBI_RECALL_ROW = 8 };
 
 typedef struct tobi_fluid {
     char name[64];
@@ -95,6 +95,11 @@ typedef struct tobi_method {
     void (*derive)(tobi_simulation *s, void *state, const char *field);
     /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
     int (*memory)(void *state, double **values);
+    /* Optional, the same of a size that changes: rows of TOBI_RECALL_ROW numbers, which the caller frees. */
+    tobi_status (*keep)(const tobi_simulation *s, const void *state, double **rows, int64_t *count,
+                        tobi_error *err);
+    /* Optional, after a load: takes such rows over. */
+    void (*recall)(void *state, double *rows, int64_t count);
     /* Bytes that the state has allocated; NULL = few. */
     int64_t (*bytes)(const void *state);
     void (*free)(void *state);

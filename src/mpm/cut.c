@@ -19,6 +19,7 @@ void mpm_cut_free(mpm_cut *c)
     free(c->face);
     free(c->hidden);
     free(c->marked);
+    free(c->rows);
     memset(c, 0, sizeof *c);
 }
 
@@ -400,23 +401,70 @@ static void list_seams(mpm_cut *c, const mpm_grid *g)
         }
 }
 
-tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g, const mpm_view *v)
 {
-    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    find_faces(c, s, v);
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
         c->marked[k] = 0;
         for (int64_t i = g->block[k].begin; i < g->block[k].end; i++) c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
-    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = find_sides(c, g, v, k);
+}
+
+/* Twins of the blocks that need them, once the sides are known. */
+static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v,
+                                tobi_error *err)
+{
     number_patches(g);
     list_seams(c, g);
     TOBI_TRY(find_split(c, g, v, &s->exec, err));
     make_twins(g);
-    c->moved = 0;
     return TOBI_OK;
+}
+
+tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+{
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
+    find_faces(c, s, v);
+    look_at_blocks(c, s, g, v);
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
+    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = find_sides(c, g, v, k);
+    return split_blocks(c, s, g, v, err);
+}
+
+tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err)
+{
+    *count = c->rows ? c->row_count : c->seam_count;       /* loaded and not run since */
+    *rows = malloc((size_t)(*count + 1)*TOBI_RECALL_ROW*sizeof **rows);
+    if (!*rows)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities",
+                         (long long)*count);
+    if (c->rows) memcpy(*rows, c->rows, (size_t)*count*TOBI_RECALL_ROW*sizeof **rows);
+    for (int64_t k = 0; k < *count && !c->rows; k++) {
+        const mpm_seam *m = &c->seam[k];
+        const double row[TOBI_RECALL_ROW] = {m->first, c->side[m->first], m->normal[0], m->normal[1],
+                                             m->normal[2], m->gap, m->friction};
+        memcpy(*rows + TOBI_RECALL_ROW*k, row, sizeof row);
+    }
+    return TOBI_OK;
+}
+
+tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+{
+    const int nodes = nodes_of(g);
+    TOBI_TRY(reserve(c, g, s->particles.capacity, err));
+    memset(c->side, 0, (size_t)(g->patch_count*nodes)*sizeof *c->side);
+    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = 0;
+    for (int64_t i = 0; i < c->row_count; i++) {
+        const double *row = c->rows + TOBI_RECALL_ROW*i;
+        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes))) continue;      /* not ours */
+        const int64_t k = (int64_t)row[0];
+        g->patch[k/nodes].twin = 1;
+        c->side[k] = (float)row[1];
+        c->seam[k] = (mpm_seam){ .normal = {(float)row[2], (float)row[3], (float)row[4]},
+                                 .gap = (float)row[5], .friction = (float)row[6] };
+    }
+    look_at_blocks(c, s, g, v);
+    return split_blocks(c, s, g, v, err);
 }
 
 /* A seam and the two velocities it couples. */

@@ -24,7 +24,8 @@ typedef struct mpm_cut {
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
     char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
     int64_t node_room, particle_room, block_room;
-    double moved;                      /* m, since sides and gaps were found                      */
+    double *rows;                      /* of a checkpoint, for the next step; NULL = none         */
+    int64_t row_count;
 } mpm_cut;
 
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
@@ -38,4 +39,8 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
 void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
+/* The nodes with two velocities as they are now, for a checkpoint: rows of TOBI_RECALL_ROW numbers, the
+   caller's to free; and back from c->rows, after the blocks are built, instead of finding them. */
+tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err);
+tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 void mpm_cut_free(mpm_cut *c);

@@ -17,7 +17,7 @@
 
 /* What a restart needs besides the particles. */
 enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, CUTS, FRACTURE,
-       FRICTION, DAMPING, SIDES, STEPS, FLOW, MEMORY };
+       FRICTION, DAMPING, SIDES, STEPS, FLOW, MOVED, MEMORY };
 
 #define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
@@ -228,10 +228,17 @@ static int is_stale(const mlsmpm *m)
     return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
 }
 
-static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, tobi_error *err)
+static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_error *err)
 {
-    mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
-    TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
+    if (stale || m->memory[MOVED] > 0.1*m->cell) {
+        mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
+        TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
+        m->memory[MOVED] = 0;
+    } else if (m->cut.rows) {
+        TOBI_TRY(mpm_cut_recall(&m->cut, s, &m->grid, &m->view, err));
+    }
+    free(m->cut.rows);
+    m->cut.rows = NULL;
     m->view.sides = m->cut.tile;
     m->view.hidden = m->cut.hidden;
     return TOBI_OK;
@@ -269,7 +276,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
-    if (m->blades && (m->fresh || m->cut.moved > 0.1*m->cell)) TOBI_TRY(find_cuts(s, m, err));
+    if (m->blades) TOBI_TRY(find_cuts(s, m, stale, err));
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }
@@ -356,7 +363,7 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     s->info.contacts += (int64_t)t[0];
     s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
     m->memory[DRIFT] += t[7];
-    m->cut.moved += t[7] + s->body_speed*s->dt;
+    m->memory[MOVED] += t[7] + s->body_speed*s->dt;
     m->memory[STRAIN_DT] = s->dt;
     tobi_stage_end(&s->stages, "to particles", clock);
 }
@@ -526,13 +533,28 @@ static void measure(tobi_simulation *s, const void *state)
     s->info.step_work = m->memory[STEPS] - m->memory[FLOW] - t[0] - t[3];
 }
 
-/* After a load the blocks are built anew. */
 static int list_memory(void *state, double **values)
 {
-    mlsmpm *m = state;
-    m->built = 0;
-    *values = m->memory;
+    *values = ((mlsmpm *)state)->memory;
     return MEMORY;
+}
+
+static tobi_status keep_rows(const tobi_simulation *s, const void *state, double **rows, int64_t *count,
+                             tobi_error *err)
+{
+    const mlsmpm *m = state;
+    (void)s;
+    return mpm_cut_keep(&m->cut, rows, count, err);
+}
+
+/* After a load the blocks are built anew. */
+static void recall_rows(void *state, double *rows, int64_t count)
+{
+    mlsmpm *m = state;
+    free(m->cut.rows);
+    m->cut.rows = rows;
+    m->cut.row_count = count;
+    m->built = 0;
 }
 
 static int64_t count_bytes(const void *state) { return mpm_grid_bytes(&((const mlsmpm *)state)->grid); }
@@ -563,6 +585,8 @@ const tobi_method tobi_mlsmpm = {
     .nodes = find_nodes,
     .measure = measure,
     .memory = list_memory,
+    .keep = keep_rows,
+    .recall = recall_rows,
     .bytes = count_bytes,
     .free = free_state,
 };

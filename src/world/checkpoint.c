@@ -4,7 +4,33 @@
 #include "world/bodies.h"
 #include "world/world.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* What the method keeps besides. */
+static tobi_status put_rows(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    double *rows = NULL;
+    int64_t count = 0;
+    if (!w->method->keep) return TOBI_OK;
+    TOBI_TRY(w->method->keep(&w->sim, w->method_state, &rows, &count, err));
+    tobi_status status = tobi_store_put(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
+    free(rows);
+    return status;
+}
+
+static tobi_status get_rows(tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    int64_t count;
+    if (!w->method->recall) return TOBI_OK;
+    TOBI_TRY(tobi_store_rows(f, "rows", &count, err));
+    double *rows = malloc((size_t)(count + 1)*TOBI_RECALL_ROW*sizeof *rows);
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)count);
+    tobi_status status = tobi_store_get(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
+    if (status == TOBI_OK) w->method->recall(w->method_state, rows, count);
+    else free(rows);
+    return status;
+}
 
 /* A state field as columns of a basic type. */
 static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
@@ -32,7 +58,8 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     TOBI_TRY(tobi_world_put_bodies(w, f, err));
-    return tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err);
+    TOBI_TRY(tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err));
+    return put_rows(w, f, err);
 }
 
 tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
@@ -103,6 +130,7 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     if (status == TOBI_OK) {
         w->sim.particles.count = n;
         status = tobi_world_get_bodies(w, f, err);
+        if (status == TOBI_OK) status = get_rows(w, f, err);
     }
     tobi_store_close(f);
     w->fresh = 0;
