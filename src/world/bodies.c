@@ -85,7 +85,6 @@ tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
         char name[32];
         name_body(k, "", name);
         TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
-        if (b->rigid.kind == TOBI_PRESCRIBED) continue;
         name_body(k, "_state", name);
         TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, TOBI_RIGID_STATE(&b->rigid), err));
     }
@@ -124,8 +123,10 @@ tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
         tobi_body *b = &w->sim.bodies[k];
         char name[32];
         name_body(k, "", name);
-        if (b->rigid.kind != TOBI_PRESCRIBED) TOBI_TRY(get_state(b, k, f, err));
+        TOBI_TRY(get_state(b, k, f, err));
+        const tobi_rigid rigid = b->rigid;
         TOBI_TRY(tobi_body_place(b, w->sim.time, err));
+        b->rigid = rigid;            /* placing a prescribed body forgets its velocities */
         TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
     }
     return w->dynamics ? get_contacts(w, f, err) : TOBI_OK;

@@ -299,6 +299,16 @@ got=0; wait $pid || got=$?
 check "solids, SIGINT: exit code 130 (was $got)" test $got = 130
 expect 0 "" resume solids_int --quiet --threads 2
 check "solids, SIGINT + resume = run" same_solids solids solids_int
+# A blade: neither checkpoints nor a restart may make it find its cut anew.
+slicing=${TOBIUO_SOURCE:-$here/../..}/scenes/slicing
+cut() { expect 0 "" run "$slicing" --quiet --spacing 0.007 --set end_time=0.2 --threads 1 "$@"; }
+same_cut() { cmp "$1/history.csv" "$2/history.csv" && cmp "$1/bodies.csv" "$2/bodies.csv" && same_hash "$1" "$2"; }
+cut --out cut_whole
+cut --out cut_halves --until 0.1
+expect 0 "" resume cut_halves --quiet --until 0.2 --threads 2
+check "cut: run = run + resume" same_cut cut_whole cut_halves
+cut --out cut_often --set output.checkpoint_interval=0.003
+check "cut: checkpoints change nothing" same_cut cut_whole cut_often
 vtk=0
 /usr/bin/python3 "$here/read_vtk.py" solids/grid/grid_000010.vtu \
     'arrays={"velocity": 3, "mass": 1, "stress": 6}' > out.txt || vtk=$?
