@@ -36,7 +36,7 @@ tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *er
 void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */
 void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
-/* New positions, accel holding the shift; returns the largest speed, m/s. */
+/* New positions, accel holding the shift; returns the largest speed, m/s, that of lone drops times 0.4. */
 double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
 /* The bodies' new pose; particles that it caught are put outside. */
 tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err);

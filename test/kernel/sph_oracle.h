@@ -308,7 +308,8 @@ static void oracle_advance(const oracle *o, const row *in, row *out, double *t)
             slow = o->speed_cap/sqrt(speed2);
             t[4] += 1;
         }
-        t[6] = fmax(t[6], speed2*slow*slow);
+        int lone = in[i][RHO] < o->volume*o->w_scale*oracle_w(o, 0) + 0.25;
+        t[6] = fmax(t[6], speed2*slow*slow*(lone ? 0.4*0.4 : 1));
         for (int a = 0; a < 3; a++) {
             out[i][VEL + a] *= slow;
             out[i][POS + a] += o->dt*out[i][VEL + a] + o->dt*o->dt*in[i][ACC + a];
