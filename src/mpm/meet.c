@@ -1,5 +1,6 @@
 #include "mpm/meet.h"
 #include "geom/vec3.h"
+#include "mpm/spline.h"
 #include "tobiuo/types.h"
 #include <math.h>
 #include <string.h>
@@ -180,13 +181,6 @@ static void say_how_far(const scene *s, int64_t i, double radius, const double d
     }
 }
 
-/* Weight of a quadratic B-spline at x cells from its node, eq. (2) of docs/theory/mlsmpm.md. */
-static double weigh(double x)
-{
-    const double far = fabs(x);
-    return far < 0.5 ? 0.75 - far*far : far < 1.5 ? 0.5*(1.5 - far)*(1.5 - far) : 0;
-}
-
 /* One particle speaks at the nodes that feel it, or soon may: what it is or, once it is decided who meets,
    how far it reaches. */
 static void say(const scene *s, int64_t i, const range *r, const float *side, meeting *meetings, int decided)
@@ -211,7 +205,7 @@ static void say(const scene *s, int64_t i, const range *r, const float *side, me
                     continue;
                 }
                 double w = 1;
-                for (int k = 0; k < s->g->dimension; k++) w *= weigh(d[k]*s->v->inverse_cell);
+                for (int k = 0; k < s->g->dimension; k++) w *= mpm_spline_at(d[k]*s->v->inverse_cell);
                 say_what(s, i, w, d, &meetings[n]);
             }
 }

@@ -4,6 +4,13 @@
 #include <math.h>
 #include <stdint.h>
 
+/* At x cells from its node. */
+static inline double mpm_spline_at(double x)
+{
+    const double far = fabs(x);
+    return far < 0.5 ? 0.75 - far*far : far < 1.5 ? 0.5*(1.5 - far)*(1.5 - far) : 0;
+}
+
 /* x: in cells. Returns the lowest of the three nodes. */
 static inline int64_t mpm_spline(double x, double w[3])
 {
