@@ -71,7 +71,7 @@ typedef struct tobi_world_def {
 typedef struct tobi_dfsph_def {
     int    kernel;                    /* tobi_smoothing                                               */
     int    still_water;               /* 1: the pressure that water at rest has is not solved for     */
-    double support;                   /* support radius in spacings, 2 to 4                           */
+    double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double density_tolerance;         /* 1, mean |density error| at which the density solve may stop  */
     double divergence_tolerance;      /* 1, mean |div v| dt at which the divergence solve may stop    */
     double pressure_tolerance;        /* 1, relative pressure residual both solves must also reach    */
@@ -84,7 +84,7 @@ typedef struct tobi_dfsph_def {
 /* Parameters of the WCSPH method. */
 typedef struct tobi_wcsph_def {
     int    kernel;                    /* tobi_smoothing                                               */
-    double support;                   /* support radius in spacings, 2 to 4                           */
+    double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double stiffness;                 /* Pa, B of p = B ((rho/rho0)^exponent - 1)                     */
     double exponent;                  /* 1                                                            */
     double damping;                   /* 1, bulk viscosity over density, speed of sound and spacing   */

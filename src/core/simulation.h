@@ -70,8 +70,9 @@ typedef struct tobi_method {
     int fields;                                                  /* particle fields besides TOBI_ALL */
     int free_bodies;                                             /* 1: bodies may move by forces   */
     int planes;                                                  /* 1: it knows planes in the domain */
-    /* Smoothing kernel and support radius the parameters ask for. */
-    void (*smoothing)(const void *def, int *shape, double *support);
+    /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a
+       vessel full of liquid. */
+    void (*smoothing)(const void *def, int stirred, int *shape, double *support);
     tobi_status (*create)(tobi_simulation *s, const void *def, void **state, tobi_error *err);
     tobi_status (*step)(tobi_simulation *s, void *state, double max_dt, tobi_error *err);
     /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. NULL:

@@ -41,9 +41,10 @@ typedef struct mlsmpm {
     int blades;                        /* 1: nodes may have two velocities                         */
 } mlsmpm;
 
-static void choose_smoothing(const void *def, int *shape, double *support)
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
 {
     (void)def;
+    (void)stirred;
     *shape = TOBI_KERNEL_WENDLAND_C2;
     *support = 2;
 }

@@ -103,6 +103,7 @@ void tobi_bind_default(const tobi_param *row, char *text, size_t size)
 
 static int is_allowed(const tobi_param *row, double v)
 {
+    if (v == 0 && row->text) return 1;      /* the word's value */
     return isfinite(v) && !(row->positive && !(v > 0)) && !(v < row->min) && !(v > row->max);
 }
 

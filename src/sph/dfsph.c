@@ -19,6 +19,9 @@
 /* Share of the kernel average in the pressure a step starts from. */
 static const double PRESSURE_SMOOTHING = 0.02;
 
+/* Spacings: the shortest support at which particle shifting closes cavities instead of stirring. */
+static const double SHIFTING_SUPPORT = 2.5;
+
 typedef struct dfsph {
     tobi_dfsph_def def;
     sph_view view;
@@ -53,11 +56,12 @@ static void launch(tobi_simulation *s, dfsph *m, tobi_kernel k, double *totals)
     tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
 }
 
-static void choose_smoothing(const void *def, int *shape, double *support)
+/* Shifting, without which cavities open, wants more neighbours than the shortest support reaches. */
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
 {
     const tobi_dfsph_def *d = def;
     *shape = d->kernel;
-    *support = d->support;
+    *support = d->support > 0 ? d->support : stirred ? SHIFTING_SUPPORT : 2;
 }
 
 /* The level of still water for the step at hand, by the surface of the last. */
@@ -237,7 +241,9 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
 /* The shift of the position solve, with particle shifting where the vessel is full. */
 static void shift_positions(tobi_simulation *s, dfsph *m)
 {
-    double d = s->smoothing.spacing, strength = m->memory.vessel == SPH_VESSEL_FULL ? m->def.shifting : 0;
+    double d = s->smoothing.spacing;
+    int shifts = m->memory.vessel == SPH_VESSEL_FULL && s->smoothing.h > (SHIFTING_SUPPORT - 1e-6)*d;
+    double strength = shifts ? m->def.shifting : 0;
     m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
     launch(s, m, m->kernel->sph_shift, NULL);
 }

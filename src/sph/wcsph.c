@@ -27,11 +27,12 @@ static void launch(tobi_simulation *s, wcsph *m, tobi_kernel k, double *totals)
     tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
 }
 
-static void choose_smoothing(const void *def, int *shape, double *support)
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
 {
     const tobi_wcsph_def *d = def;
+    (void)stirred;
     *shape = d->kernel;
-    *support = d->support;
+    *support = d->support > 0 ? d->support : 2;
 }
 
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)

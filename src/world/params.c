@@ -34,8 +34,10 @@
 #define SMOOTHING(type_)                                                              \
     { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(type_, kernel),      \
       .doc = "Smoothing kernel." },                                                   \
-    { .key = "support", REAL, AT(type_, support), .def = { 2 }, RANGE(2, 4), .unit = "spacings", \
-      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate." }
+    { .key = "support", REAL, AT(type_, support), RANGE(2, 4), .unit = "spacings",      \
+      .text = "automatic",                                                            \
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate. Automatic is 2; dfsph "      \
+             "takes 2.5 where liquid fills the domain and a motion or a side stirs it." }
 
 static const tobi_param world_rows[] = {
     { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "method", .text = "dfsph",
@@ -114,9 +116,10 @@ static const tobi_param dfsph_rows[] = {
     { .key = "filter", REAL, AT(tobi_dfsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
       .text = "off",
       .doc = "Share of particle-scale motion taken out per step; longer waves are left alone." },
-    { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0 }, RANGE(0, 1), .unit = "1",
-      .text = "off",
-      .doc = "Strength of particle shifting in a vessel full of liquid; a free surface turns it off." },
+    { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0.5 }, RANGE(0, 1),
+      .unit = "1", .text = "off",
+      .doc = "Strength of particle shifting in a vessel full of liquid, where without it cavities open "
+             "behind moving bodies; off with a free surface, and with a support below 2.5." },
     { .key = "still_water", BOOL, AT(tobi_dfsph_def, still_water), .def = { 1 },
       .doc = "Take the pressure that water at rest has, some layers below the free surface, from gravity and "
              "solve for the rest: slow bodies and waves then lose far less to the disorder of particles." },

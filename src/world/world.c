@@ -66,22 +66,48 @@ static tobi_status check_open(const tobi_world_def *d, const tobi_method *method
     return TOBI_OK;
 }
 
+/* Whether a motion or a side stirs a domain that the regions fill: not half a layer of particles is missing
+   over its smallest side. */
+static int is_stirred_vessel(const tobi_world *w)
+{
+    const tobi_world_def *d = &w->sim.def;
+    double domain = 1, longest = 0, filled = 0;
+    int stirred = w->sim.wall_speed > 0;
+    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
+    for (int a = 0; a < d->dimension; a++) {
+        double side = d->domain_max[a] - d->domain_min[a];
+        domain *= side;
+        longest = fmax(longest, side);
+    }
+    for (int k = 0; k < w->region_count; k++) filled += w->regions[k].volume;
+    return stirred && filled > domain*(1 - 0.5*d->spacing/longest);
+}
+
+/* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
+static void set_smoothing(tobi_world *w)
+{
+    tobi_simulation *s = &w->sim;
+    const tobi_world_def *d = &s->def;
+    int shape, periodic[3];
+    double support;
+    w->method->smoothing(w->method_def, is_stirred_vessel(w), &shape, &support);
+    if (s->smoothing.h == support*d->spacing) return;
+    tobi_smoothing_init(&s->smoothing, shape, d->dimension, d->spacing, support);
+    for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
+    tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
+}
+
 static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    int shape, periodic[3];
-    double support;
     s->def = *def;
     if (def->dimension == 2) s->def.gravity[2] = 0;
     memcpy(s->gravity, s->def.gravity, sizeof s->gravity);
     TOBI_TRY(tobi_exec_init(&s->exec, def->threads, err));
-    w->method->smoothing(w->method_def, &shape, &support);
-    tobi_smoothing_init(&s->smoothing, shape, def->dimension, def->spacing, support);
     for (int a = 0; a < def->dimension; a++)
         s->wall_speed = fmax(s->wall_speed, fmax(length(def->wall_velocity_min[a]),
                                                  length(def->wall_velocity_max[a])));
-    for (int a = 0; a < 3; a++) periodic[a] = def->wall_min[a] == TOBI_WALL_PERIODIC;
-    tobi_box_init(&s->box, def->dimension, def->domain_min, def->domain_max, periodic, s->smoothing.h);
+    set_smoothing(w);
     return TOBI_OK;
 }
 
@@ -234,6 +260,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
 {
     int64_t fluid = 0, body = 0;
     (void)err;
+    if (!w->started) set_smoothing(w);
     for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
     for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
     if (w->started) fluid = w->sim.particles.count;

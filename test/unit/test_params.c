@@ -144,7 +144,7 @@ static void defaults_are_water_on_earth(void **state)
     assert_true(w.wall_min[0] == TOBI_WALL_SLIP && w.wall_max[2] == TOBI_WALL_SLIP &&
                 w.threads == 0);
     tobi_dfsph_def d = tobi_default_dfsph_def();
-    assert_true(d.kernel == TOBI_KERNEL_WENDLAND_C2 && d.support == 2 &&
+    assert_true(d.kernel == TOBI_KERNEL_WENDLAND_C2 && d.support == 0 &&
                 d.density_tolerance == 5e-4);
     assert_true(d.density_iterations_min == 1 && d.divergence_iterations_min == 1 &&
                 d.filter == 1);
