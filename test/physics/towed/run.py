@@ -11,12 +11,12 @@ case = Case("towed", "Towed sphere", """
 A sphere D = 40 mm is towed at 0.1 m/s through liquid (1000 kg/m3, 0.04 Pa s): Re = 100. Steadiness: the standard
 deviation over the mean of the drag in the last half of the run. Drag coefficient: the mean over rho U^2 / 2
 pi D^2 / 4; 1.09 in an unbounded liquid (Roos & Willmarth 1971 and the textbook curve). Reference size: box of
-10 x 6 x 6 D, periodic along the way, 10 particles across the sphere; the last half of 7 D of way.""")
+15 x 10 x 10 D, periodic along the way, 8 particles across the sphere; the last half of 7 D of way.""")
 
 D, U, RHO = 0.04, 0.1, 1000
 end = case.pick(0.8, 2.8)
 box, place, spacing = case.pick(("[0.24, 0.12, 0.12]", "[0.06, 0.06, 0.06]", 0.008),
-                                ("[0.4, 0.24, 0.24]", "[0.06, 0.12, 0.12]", 0.004))
+                                ("[0.6, 0.4, 0.4]", "[0.06, 0.2, 0.2]", 0.005))
 out = case.run("sphere", "--until", end, "--spacing", spacing, "--set", f"domain.max={box}",
                "--set", f"fluids[0].fill[0].box.max={box}", "--set", f"bodies[0].translation={place}")
 bodies = read_table(out / "bodies.csv")
