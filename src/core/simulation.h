@@ -52,6 +52,7 @@ typedef struct tobi_simulation {
     int64_t step;
     double gravity[3];              /* m/s2, what particles feel: see tobi_simulation_fill_up  */
     tobi_still still;               /* less what still water holds                             */
+    double open;                    /* particles at a surface beyond doubt, in full vessels as well */
     double lowest;                  /* m, drop of the lowest particle at a free surface         */
     double still_volume;            /* m3 of fluid times the share of gravity so held          */
     double wall_speed;              /* m/s, fastest side of the domain                       */

@@ -92,11 +92,12 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->surface[i] = flagged && !(tobi_still_pressure(&v->still, &v->position[i].x) > 0);
     /* edges of the box and disorder lower div x as well, but on all sides alike */
     float nx = 0.5f*(sx - k*g.x), ny = 0.5f*(sy - k*g.y), nz = 0.5f*(sz - k*g.z), n2 = nx*nx + ny*ny + nz*nz;
-    int sure = flagged && (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
+    int sure = div < v->open_limit &&
+               (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
-    double drop = sure ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
+    double drop = sure && flagged ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
     v->delta[i] = (float)drop;      /* free until the solve */
     totals[7] = drop > totals[7] ? drop : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);

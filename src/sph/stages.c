@@ -62,8 +62,8 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;
     v->dimension = c->dimension;
-    v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f
-                                                 : (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->open_limit = (c->dimension == 3 ? 0.87f : 0.80f)*(float)c->dimension;
+    v->surface_limit = vessel == SPH_VESSEL_FULL ? -1e30f : v->open_limit;
     v->sheet_limit = 0.6f*(float)c->dimension;
     v->surface_gradient = 0.4f*c->plane.sigma[(int)(0.5*c->spacing/c->h*TOBI_PLANE_SAMPLES)];
     v->table = &c->plane;
@@ -159,6 +159,7 @@ double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k
     s->info.density_error_mean = t[0]/count;
     s->info.density_error_max = t[6];
     s->lowest = t[7];
+    s->open = t[3];
     double diagonal = t[2]/count;
     v->isolated = (float)(ISOLATED*diagonal);
     tobi_stage_end(&s->stages, "density", clock);

@@ -32,7 +32,8 @@ typedef struct sph_view {
     float wall_share, wall_lattice;           /* eq. (5b) */
     float spacing, volume;
     int   dimension;
-    float surface_limit;                      /* div x below this marks a free surface */
+    float open_limit;                         /* div x below this: neighbours are missing       */
+    float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */
     float surface_gradient;                   /* 1/m: so does a gradient of this size  */
     /* fluids, by index */

@@ -83,6 +83,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     }
     v->dt = 1e-3f; v->inverse_dt = 1000; v->speed_cap = 1.2f;
     v->smooth = 0.02f; v->filter = 1e-6f; v->alpha = 0.3f; v->beta = 0.4f; v->mean = 0.2f;
+    v->open_limit = v->surface_limit;
     v->sheet_limit = 0.6f*(float)k->dimension; v->surface_gradient = (float)(0.5/g->c.h);
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
