@@ -37,7 +37,7 @@
     { .key = "support", REAL, AT(type_, support), RANGE(2, 4), .unit = "spacings",      \
       .text = "automatic",                                                            \
       .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate. Automatic is 2; dfsph "      \
-             "takes 2.5 where liquid fills the domain and a motion or a side stirs it." }
+             "takes 2.5 where liquid fills the domain and a body or a side moves." }
 
 static const tobi_param world_rows[] = {
     { .key = "method", TEXT, AT(tobi_world_def, method), .unit = "method", .text = "dfsph",

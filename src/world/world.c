@@ -66,14 +66,15 @@ static tobi_status check_open(const tobi_world_def *d, const tobi_method *method
     return TOBI_OK;
 }
 
-/* Whether a motion or a side stirs a domain that the regions fill: not half a layer of particles is missing
+/* Whether a body or a side moves in a domain that the regions fill: not half a layer of particles is missing
    over its smallest side. */
 static int is_stirred_vessel(const tobi_world *w)
 {
     const tobi_world_def *d = &w->sim.def;
     double domain = 1, longest = 0, filled = 0;
     int stirred = w->sim.wall_speed > 0;
-    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
+    for (int k = 0; k < w->sim.body_count; k++)
+        stirred |= w->sim.bodies[k].motion != NULL || w->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
     for (int a = 0; a < d->dimension; a++) {
         double side = d->domain_max[a] - d->domain_min[a];
         domain *= side;

@@ -1,0 +1,21 @@
+#!/usr/bin/python3
+"""A rigid body without forces."""
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from harness import Case
+
+case = Case("top", "Free rigid body", """
+A body with three different moments of inertia (1, 2, 3.5 kg m2 and products of inertia) spins without forces, omega dt = 0.05,
+1e5 steps: energy and angular momentum stay. A symmetric top precesses about its momentum by |L|/I: the phase is of second order.""")
+
+text = case.unit("test_rigid")
+energy, momentum, length = (float(v) for v in re.search(r"energy (\S+), momentum (\S+), \|q\|\^2 - 1 (\S+)", text).groups())
+case.figure("largest change of the energy, relative", energy, "<= 1e-12", energy <= 1e-12)
+case.figure("change of the angular momentum, relative", momentum, "<= 1e-15", momentum <= 1e-15)
+case.state("length of the quaternion squared less 1", length)
+order = float(re.search(r"order ([0-9.]+)", text).group(1))
+case.figure("order of the precession's phase", order, "2 within 0.1", abs(order - 2) <= 0.1)
+case.finish()
