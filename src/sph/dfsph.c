@@ -65,6 +65,11 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     *support = d->support > 0 ? d->support : stirred ? SHIFTING_SUPPORT : 2;
 }
 
+static int reaches_far(const tobi_simulation *s)
+{
+    return s->smoothing.h > (SHIFTING_SUPPORT - 1e-6)*s->smoothing.spacing;
+}
+
 /* The level of still water for the step at hand, by the surface of the last. */
 static void move_level(tobi_simulation *s, dfsph *m)
 {
@@ -77,6 +82,7 @@ static void bind_view(tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
+    v->axis = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? s->particles.axis : NULL;
     for (int a = 0; a < 3; a++) {
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
@@ -244,8 +250,7 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
 static void shift_positions(tobi_simulation *s, dfsph *m)
 {
     double d = s->smoothing.spacing;
-    int shifts = m->memory.vessel == SPH_VESSEL_FULL && s->smoothing.h > (SHIFTING_SUPPORT - 1e-6)*d;
-    double strength = shifts ? m->def.shifting : 0;
+    double strength = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? m->def.shifting : 0;
     m->view.background = (float)(strength*d*d*s->fluid[0].density/(2*s->dt*s->dt));
     launch(s, m, m->kernel->sph_shift, NULL);
 }
@@ -337,6 +342,7 @@ const tobi_method tobi_dfsph = {
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .def_size = sizeof(tobi_dfsph_def),
     .fields = TOBI_SPH,
+    .stirred_fields = TOBI_FULL,
     .free_bodies = 1,
     .smoothing = choose_smoothing,
     .create = create,

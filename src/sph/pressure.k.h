@@ -6,23 +6,39 @@
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
+#include "sph/axis.k.h"
 #include "sph/view.h"
 
 /* a(p) for the payload p of the records, eq. (8). */
-typedef struct sph_pressure_accel_acc { lane p, x, y, z; } sph_pressure_accel_acc;
+typedef struct sph_pressure_accel_acc { lane p, x, y, z; sph_axis n; } sph_pressure_accel_acc;
 
 TOBI_FN void sph_pressure_accel_start(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
 {
     a->p = lane_set(v->record[i].w);
     a->x = a->y = a->z = lane_set(0);
+    a->n = sph_axis_of(v, i);
+}
+
+/* What (7b) adds to (8): both particles' pressures along their own walls. */
+TOBI_FN void sph_pressure_along(const sph_view *v, const tobi_near *n, sph_pressure_accel_acc *a, lane f)
+{
+    lane x, y, z, lack, own = f*a->p*a->n.lack;
+    lane_load_float4(v->axis, n->j, &x, &y, &z, &lack);
+    lane other = f*n->w*lack, both = own + other;
+    own *= a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz;
+    other *= x*n->dx + y*n->dy + z*n->dz;
+    a->x += both*n->dx - own*a->n.x - other*x;
+    a->y += both*n->dy - own*a->n.y - other*y;
+    a->z += both*n->dz - own*a->n.z - other*z;
 }
 
 TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n,
                                      sph_pressure_accel_acc *a, const int shape)
 {
-    lane r = lane_sqrt(n->r2), f = (a->p + n->w)*smoothing_falloff(shape, r*v->inverse_h, r);
+    lane r = lane_sqrt(n->r2), fall = smoothing_falloff(shape, r*v->inverse_h, r), f = (a->p + n->w)*fall;
     (void)i;
     a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
+    if (v->axis) sph_pressure_along(v, n, a, fall);
 }
 
 TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
@@ -56,14 +72,14 @@ TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure
     totals[0] += (double)sqrtf(f.x * f.x + f.y * f.y + f.z * f.z) / v->inverse_density[v->fluid[i]];
 }
 
-/* C u for a float4 array u, eq. (7). */
-typedef struct sph_compression_acc { lane ux, uy, uz, sum; } sph_compression_acc;
+/* C u for a float4 array u, eq. (7), (7b). */
+typedef struct sph_compression_acc { lane ux, uy, uz, sum; sph_axis n; } sph_compression_acc;
 
 TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression_acc *a,
                                    const tobi_float4 *field)
 {
     tobi_float4 u = field[i];
-    (void)v;
+    a->n = sph_axis_of(v, i);
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
     a->sum = lane_set(0);
 }
@@ -73,7 +89,12 @@ TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_com
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane_load_float4(field, n->j, &x, &y, &z, &w);
-    a->sum += f*((x - a->ux)*n->dx + (y - a->uy)*n->dy + (z - a->uz)*n->dz);
+    x -= a->ux; y -= a->uy; z -= a->uz;
+    lane rate = x*n->dx + y*n->dy + z*n->dz;
+    if (v->axis)
+        rate += a->n.lack*(rate - (a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz)*
+                                      (a->n.x*x + a->n.y*y + a->n.z*z));
+    a->sum += f*rate;
 }
 
 TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compression_acc *a,
@@ -269,33 +290,32 @@ TOBI_FN void sph_center_pressure(const sph_view *v, int64_t i, double *totals)
     v->record[i].w = v->pressure[i];
 }
 
-/* The shift of positions over dt^2, eq. (12): a(phi) with phi the payload plus a uniform background (particle
+/* The shift of positions over dt^2, eq. (12): a(phi) with phi the payload, a uniform background (particle
    shifting, Xu et al. 2009), and pairs nearer than the core pushed apart. */
-typedef struct sph_shift_acc { lane p, x, y, z, cx, cy, cz; } sph_shift_acc;
+typedef struct sph_shift_acc { sph_pressure_accel_acc accel; lane x, y, z, cx, cy, cz; } sph_shift_acc;
 TOBI_FN void sph_shift_start(const sph_view *v, int64_t i, sph_shift_acc *a)
 {
-    a->p = lane_set(v->record[i].w + 2*v->background);
+    sph_pressure_accel_start(v, i, &a->accel);
     a->x = a->y = a->z = a->cx = a->cy = a->cz = lane_set(0);
 }
 TOBI_FN void sph_shift_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_shift_acc *a,
                             const int shape)
 {
-    lane r = lane_sqrt(n->r2), f = (a->p + n->w)*smoothing_falloff(shape, r*v->inverse_h, r);
+    lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane c = lane_positive(v->core/(r + 1e-3f*v->core) - 1);
-    (void)i;
+    sph_pressure_accel_pair(v, i, n, &a->accel, shape);
     a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
     a->cx += c*n->dx; a->cy += c*n->dy; a->cz += c*n->dz;
 }
 TOBI_FN void sph_shift_finish(const sph_view *v, int64_t i, sph_shift_acc *a, double *totals)
 {
-    tobi_float4 w = v->wall[i], out, sum = lane_sum4(a->x, a->y, a->z, lane_set(0)),
+    tobi_float4 w = v->wall[i], out = sph_pressure_accel_value(v, i, &a->accel),
+                sum = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                 core = lane_sum4(a->cx, a->cy, a->cz, lane_set(0));
-    float k = v->inverse_density[v->fluid[i]], p2 = 2*(v->record[i].w + v->background);
-    float c = v->push*v->inverse_dt*v->inverse_dt;
+    float b = 2*v->inverse_density[v->fluid[i]]*v->background, c = v->push*v->inverse_dt*v->inverse_dt;
     (void)totals;
-    out.x = k*(v->slope*sum.x - p2*w.x) + c*core.x;
-    out.y = k*(v->slope*sum.y - p2*w.y) + c*core.y;
-    out.z = k*(v->slope*sum.z - p2*w.z) + c*core.z;
-    out.w = 0;
+    out.x += b*(v->slope*sum.x - w.x) + c*core.x;
+    out.y += b*(v->slope*sum.y - w.y) + c*core.y;
+    out.z += b*(v->slope*sum.z - w.z) + c*core.z;
     v->accel[i] = out;
 }

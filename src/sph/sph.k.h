@@ -4,6 +4,7 @@
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
+#include "sph/axis.k.h"
 #include "sph/view.h"
 
 /* Linear interpolation in a plane table at distance s. */
@@ -52,15 +53,31 @@ TOBI_FN float sph_wall_density(const sph_view *v, float share)
     return share < 0.5f ? full + (share - at)*(0.5f - full)/(0.5f - at) : share;
 }
 
+/* Along a wall the sums of (7) lack the neighbours behind it. Eq. (7b): the wall's normal; w = L/(1 - L) with
+   the share L that a lattice lacks, at most that of a particle almost on the wall: edges have more. */
+TOBI_FN tobi_float4 sph_wall_axis(const sph_view *v, tobi_float4 gradient, float share)
+{
+    float size2 = gradient.x*gradient.x + gradient.y*gradient.y + gradient.z*gradient.z;
+    float unit = size2 > 0 ? 1/sqrtf(size2) : 0, lack = sph_wall_density(v, share);
+    lack = lack < 0.45f ? lack : 0.45f;
+    tobi_float4 axis = {unit*gradient.x, unit*gradient.y, unit*gradient.z, lack/(1 - lack)};
+    return axis;
+}
+
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
    sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
    totals: error, surface particles, diagonal, those at a surface beyond doubt; maxima: error, and how deep
    the latter reach, which delta keeps for each, m. */
-typedef struct sph_density_acc { lane rho, pressure, gx, gy, gz, g2, div; } sph_density_acc;
+typedef struct sph_density_acc {
+    lane rho, pressure, gx, gy, gz, g2, div, across;
+    sph_axis n;
+} sph_density_acc;
 
 TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
 {
-    (void)v; (void)i;
+    if (v->axis) v->axis[i] = sph_wall_axis(v, v->wall[i], v->density[i]);
+    a->n = sph_axis_of(v, i);
+    a->across = lane_set(0);
     a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
 }
 
@@ -76,6 +93,22 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     lane f2 = f*n->r2;
     a->g2 += f*f2;
     a->div += f2;
+    if (!v->axis) return;
+    lane across = f*(a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz);
+    a->across += across*across;
+}
+
+/* The diagonal, eq. (9): of C^T C, with k*g = -sum V grad W and the sum of squares g2. */
+TOBI_FN float sph_diagonal(const sph_view *v, int64_t i, tobi_float4 g, float g2, float across)
+{
+    tobi_float4 w = v->wall[i], n = {0, 0, 0, 0};
+    float k = v->slope;
+    if (v->axis) n = v->axis[i];
+    float kept = 1 + n.w, along = n.w*(g.x*n.x + g.y*n.y + g.z*n.z);
+    float sx = 2*w.x - k*(kept*g.x - along*n.x), sy = 2*w.y - k*(kept*g.y - along*n.y),
+          sz = 2*w.z - k*(kept*g.z - along*n.z);
+    g2 += (kept*kept - 1)*(g2 - across);
+    return v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*g2);
 }
 
 TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a, double *totals)
@@ -83,7 +116,6 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     float share = v->density[i], k = v->slope;
     tobi_float4 w = v->wall[i], g = lane_sum4(a->gx, a->gy, a->gz, a->rho);
     float fluid = v->weight*(1 + g.w), rho = fluid + sph_wall_density(v, share);
-    float sx = 2*w.x - k*g.x, sy = 2*w.y - k*g.y, sz = 2*w.z - k*g.z;
     float div = k*lane_sum(a->div) + (float)v->dimension*share;
     /* The kernel average of the pressure is what users read; a little of it, away from walls, damps the
        layer-by-layer mode that a collocated pressure leaves free. */
@@ -91,7 +123,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     /* in still water nothing is at a surface: that is how its level was chosen */
     v->surface[i] = flagged && !(tobi_still_pressure(&v->still, &v->position[i].x) > 0);
     /* edges of the box and disorder lower div x as well, but on all sides alike */
-    float nx = 0.5f*(sx - k*g.x), ny = 0.5f*(sy - k*g.y), nz = 0.5f*(sz - k*g.z), n2 = nx*nx + ny*ny + nz*nz;
+    float nx = w.x - k*g.x, ny = w.y - k*g.y, nz = w.z - k*g.z, n2 = nx*nx + ny*ny + nz*nz;
     int sure = div < v->open_limit &&
                (div < v->sheet_limit || n2 > v->surface_gradient*v->surface_gradient);
     totals[3] += sure;
@@ -104,7 +136,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
-    v->diagonal[i] = v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*lane_sum(a->g2));
+    v->diagonal[i] = sph_diagonal(v, i, g, lane_sum(a->g2), lane_sum(a->across));
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;
     totals[1] += v->surface[i];

@@ -16,6 +16,7 @@ typedef struct sph_view {
     tobi_record *TOBI_RESTRICT record;
     tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall,
                 *TOBI_RESTRICT normal;
+    tobi_float4 *TOBI_RESTRICT axis;          /* eq. (7b), NULL without it */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */

@@ -9,13 +9,15 @@
 /* One row per particle: everything a kernel may read or write, in double. */
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
-    FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET, COLUMNS
+    FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
+    AXIS, LACK = AXIS + 3, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
-    "residual", "product", "delta", "pressure", "surface", "wetness"
+    "residual", "product", "delta", "pressure", "surface", "wetness",
+    "axis x", "axis y", "axis z", "lack"
 };
 
 enum { TABLE = 4000 };
@@ -26,6 +28,7 @@ typedef struct oracle {
     double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
     double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
+    int along;                           /* 1: eq. (7b) */
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
@@ -174,22 +177,40 @@ static double oracle_fill(const oracle *o, double share)
     return share > 0.5 ? share : share < at ? o->behind*share/at : 0.5 - slope*(0.5 - share);
 }
 
+/* Eq. (7b): T x for the wall of a row, T = n n^T + (I - n n^T)/(1 - L). */
+static void tilt(const oracle *o, const row *in, int i, const double x[3], double out[3])
+{
+    const double *n = &in[i][AXIS];
+    double across = n[0]*x[0] + n[1]*x[1] + n[2]*x[2], rate = o->along ? 1 + in[i][LACK] : 1;
+    for (int c = 0; c < 3; c++) out[c] = o->along ? across*n[c] + rate*(x[c] - across*n[c]) : x[c];
+}
+
+static void oracle_axis(const oracle *o, row *out, int i)
+{
+    double size = 0, lack = fmin(oracle_fill(o, out[i][RHO]), 0.45);
+    for (int c = 0; c < 3; c++) size += out[i][WALL + c]*out[i][WALL + c];
+    for (int c = 0; c < 3; c++) out[i][AXIS + c] = size > 0 ? out[i][WALL + c]/sqrt(size) : 0;
+    out[i][LACK] = lack/(1 - lack);
+}
+
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
         double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
-        double slant[3];
+        double slant[3], tilted[3];
+        if (o->along) oracle_axis(o, out, i);
         for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
             mean += ww*oracle_w(o, r)*in[j][PAYLOAD];
+            tilt(o, (const row *)out, i, x, tilted);
             for (int a = 0; a < 3; a++) {
-                double g = -gg*oracle_f(o, r)*x[a];      /* V grad W */
-                own[a] += g;
+                double g = -gg*oracle_f(o, r)*x[a], own_g = -gg*oracle_f(o, r)*tilted[a];      /* V grad W */
+                own[a] += own_g;
                 slant[a] += g;
-                rest += g*g;
+                rest += own_g*own_g;
                 div -= g*x[a];
             }
         }

@@ -6,9 +6,13 @@ static void pressure_accel(const oracle *o, const row *in, int i, double a[3])
 {
     double p = in[i][PAYLOAD];
     for (int c = 0; c < 3; c++) a[c] = 2*p*in[i][WALL + c];
-    EACH_NEIGHBOUR(o, in, i, j, x, r)
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double own[3], other[3];
+        tilt(o, in, i, x, own);
+        tilt(o, in, j, x, other);
         for (int c = 0; c < 3; c++)
-            a[c] += (p + in[j][PAYLOAD])*-o->volume*o->g_scale*oracle_f(o, r)*x[c];
+            a[c] += (p*own[c] + in[j][PAYLOAD]*other[c])*-o->volume*o->g_scale*oracle_f(o, r);
+    }
     for (int c = 0; c < 3; c++) a[c] /= -o->rho0[o->fluid[i]];
 }
 
@@ -50,9 +54,12 @@ static double compression(const oracle *o, const row *in, int i, int field, doub
 {
     double sum = -2*flux;
     for (int a = 0; a < 3; a++) sum += 2*in[i][WALL + a]*in[i][field + a];
-    EACH_NEIGHBOUR(o, in, i, j, x, r)
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double own[3];
+        tilt(o, in, i, x, own);
         for (int a = 0; a < 3; a++)
-            sum += -o->volume*o->g_scale*oracle_f(o, r)*x[a]*(in[i][field + a] - in[j][field + a]);
+            sum += -o->volume*o->g_scale*oracle_f(o, r)*own[a]*(in[i][field + a] - in[j][field + a]);
+    }
     return sum;
 }
 

@@ -13,6 +13,7 @@ typedef struct rig_case {
     int fluids;           /* 1 or 2                                 */
     double jitter;        /* in spacings                            */
     double origin;        /* world coordinate of the lower corner   */
+    int along;            /* 1: with eq. (7b)                       */
 } rig_case;
 
 typedef struct rig {
@@ -88,6 +89,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
+    v->axis = k->along ? p->axis : NULL;
     v->normal = p->normal; v->capillary = p->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -134,6 +136,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->count = (int)p->count; o->dimension = k->dimension; o->shape = k->shape;
     o->d = g->c.spacing; o->h = g->c.h;
     o->fluid = p->fluid;
+    o->along = k->along;
     o->plane_count = v->plane_count;
     memcpy(o->plane, v->plane, sizeof o->plane);
     for (int a = 0; a < 3; a++) {
@@ -173,7 +176,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION, err)) return 1;
+    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION | TOBI_FULL, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);
@@ -205,6 +208,7 @@ static void rig_get(const rig *g, row *s)
         }
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&p->wall[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&p->normal[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][AXIS + a] = (&p->axis[i].x)[a];
         s[i][BAND] = p->accel[i].w; s[i][CAPILLARY] = p->capillary[i];
         s[i][PAYLOAD] = p->record[i].w;
         s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
@@ -226,6 +230,7 @@ static void rig_set(rig *g, const row *s)
         p->velocity[i].w = (float)s[i][WET];
         for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&p->normal[i].x)[a] = (float)s[i][NORMAL + a];
+        for (int a = 0; a < 4; a++) (&p->axis[i].x)[a] = (float)s[i][AXIS + a];
         p->accel[i].w = (float)s[i][BAND]; p->capillary[i] = (float)s[i][CAPILLARY];
         p->record[i].w = (float)s[i][PAYLOAD];
         p->density[i] = (float)s[i][RHO]; p->diagonal[i] = (float)s[i][DIAG];

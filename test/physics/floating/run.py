@@ -37,11 +37,6 @@ def free_fall(density):
     return (RHO - density)*G/(density + RHO/2)
 
 
-def late_start(ratio, added, in_vessel, dimension, across):
-    """Share of the acceleration in theory that is left to a body that acts half a spacing larger (decision 26)."""
-    return (ratio + added)/(ratio + in_vessel*(1 + 1/across)**dimension) - 0.03
-
-
 # --- a sphere in a full vessel, and one with a free surface above it ------------------------------
 mesh = {"mesh": str(case.folder.parents[1] / "meshes" / "sphere.obj"), "scale": SIDE}
 curves = []
@@ -53,8 +48,8 @@ for density, end in (500, 0.1), (2000, 0.1), (50, 0.04):
         share = table["velocity_z"][-1]/(free_fall(density)*end)
         case.figure(f"full vessel, density ratio {density/RHO}, {across} across: velocity over theory", share,
                     "1 within 0.05", abs(share - 1) <= 0.05)
-        low = late_start(density/RHO, 0.5, 0.524, 3, across)
-        case.hold(f"full vessel, density ratio {density/RHO}: between {low:.2f} and 1.05 of theory", low <= share <= 1.05)
+        # Six spacings across, drag takes a tenth by then; the first 20 ms are within 6 % (decision 27).
+        case.hold(f"full vessel, density ratio {density/RHO}: within 20 % of theory", abs(share - 1) <= 0.2)
         side = max(abs(table[f"velocity_{a}"][-1]) for a in "xy")/abs(table["velocity_z"][-1])
         # Six spacings across: nothing but the lattice points aside.
         case.hold(f"full vessel, density ratio {density/RHO}: goes straight up or down, {side:.2g} aside", side <= 0.05)
@@ -73,8 +68,7 @@ for density in 500, 2000:
         share = table["velocity_y"][-1]/((RHO - density)*G/(density + RHO)*0.1)
         case.figure(f"cylinder, full vessel, 2-D, density ratio {density/RHO}, {across} across: velocity over theory", share,
                     "1 within 0.05", abs(share - 1) <= 0.05)
-        low = late_start(density/RHO, 1, 1.03, 2, across)
-        case.hold(f"cylinder, density ratio {density/RHO}: between {low:.2f} and 1.05 of theory", low <= share <= 1.05)
+        case.hold(f"cylinder, density ratio {density/RHO}: within 10 % of theory", abs(share - 1) <= 0.1)
 case.plot("Sphere in a full vessel", "t, s", "velocity over acceleration in theory, s", curves)
 for density in case.pick((500,), (500, 2000)):
     for across in case.pick((6,), (8, 12)):
