@@ -27,6 +27,10 @@ for re, expected in case.pick(((40, 1.52),), ((40, 1.52), (100, 1.33))):
     value = mean([c for t, c in zip(table["time"], drag) if t > 2/3*end])
     case.figure(f"Re {re}: drag coefficient {value:.3f} against {expected}, deviation", value/expected - 1, "within 0.05",
                 abs(value/expected - 1) <= 0.05)
+    # Vortices that are shed pull to either side; a symmetric wake does not.
+    side = [p + v for t, p, v in zip(table["time"], table["mean_pressure_force_y"], table["mean_viscous_force_y"]) if t > 2/3*end]
+    case.state(f"Re {re}: side force over drag, root mean square (0.17 where vortices are shed at Re 100)",
+               mean([f*f for f in side])**0.5/(value*RHO*U*U*D/2))
     # A cavity behind the cylinder (decision 26) compresses the rest; without one the density is right to 0.2 %.
     error = mean(read_table(out / "history.csv")["density_error_mean"][-3:])
     case.state(f"Re {re}: mean density error at the end", error)
