@@ -2,6 +2,7 @@
    C u = sum_j V grad W . (u_i - u_j) + 2 G . (u_i - u_wall)   is the rate of relative compression,
    a(p) = -(1/rho) C^T p = -(1/rho) [ sum_j (p_i + p_j) V grad W + 2 p_i G ]   the pressure acceleration,
    A = -C a = C (1/rho) C^T the operator: symmetric, so momentum is exact and CG applies.
+   Beside walls of full vessels both have T grad W in place of grad W, eq. (7b) of docs/theory/boundaries.md.
    Equation numbers: docs/theory/dfsph.md. */
 #pragma once
 #include "core/smoothing.k.h"
