@@ -170,11 +170,12 @@ static int add_point(void *user, int32_t k)
     return 0;
 }
 
-/* Under pressure the body holds the whole hydrostatic field, as a fluid in its place would; a film that only
-   slides along it is held off along the normal alone, equation (6b). */
+/* Under pressure the body holds the whole hydrostatic field, as a fluid in its place would; a film that
+   only slides along it is held off along the normal alone, eq. (6b). With (7b) nothing is missing there. */
 static void blend_lift(const look *l, int32_t i)
 {
     const tobi_simulation *s = l->s;
+    if (s->particles.axis) return;
     const double *g = l->gravity;
     tobi_near_entry *e = l->entry;
     double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*
@@ -336,6 +337,24 @@ void tobi_near_cut_pairs(tobi_simulation *s)
     for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
+
+void tobi_near_mark_beside(tobi_simulation *s)
+{
+    const tobi_particles *p = &s->particles;
+    if (!p->beside) return;
+    memset(p->beside, 0, (size_t)p->count);
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    for (int64_t k = 0; k < s->near.count; k++) {
+        int64_t i = s->near.entry[k].particle;
+        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
+        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+            #pragma omp atomic write
+            p->beside[list[g]] = 1;
+        }
+        #pragma omp atomic write
+        p->beside[i] = 1;
+    }
+}
 
 void tobi_near_add_gradients(tobi_simulation *s)
 {

@@ -43,6 +43,8 @@ struct tobi_simulation;
 tobi_status tobi_near_find(struct tobi_simulation *s, tobi_error *err);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
 void tobi_near_cut_pairs(struct tobi_simulation *s);
+/* Writes particles.beside, if there is one. After cutting pairs. */
+void tobi_near_mark_beside(struct tobi_simulation *s);
 /* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the
  * planes' part). */
 void tobi_near_add_gradients(struct tobi_simulation *s);

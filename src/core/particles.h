@@ -9,8 +9,8 @@
    fields are recomputed every step. */
 enum { TOBI_STATE, TOBI_SCRATCH };
 /* Who needs a field: every method, the SPH methods, those with surface tension, the material point
-   method, scenes with blades, full vessels. The fields of the others are NULL. */
-enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8, TOBI_BLADES = 16, TOBI_FULL = 32 };
+   method, scenes with blades, liquids with bodies in them. The fields of the others are NULL. */
+enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8, TOBI_BLADES = 16, TOBI_WETTED = 32 };
 
 /* Three columns of a 3x3 matrix; the w of each column is free for a number that goes with it. */
 typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
@@ -29,7 +29,8 @@ typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
     X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",    "fixed-point position, payload") \
     X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2", "acceleration of the pass") \
     X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",  "wall gradient G; w = G . v_wall") \
-    X(tobi_float4,  axis,         TOBI_SCRATCH, TOBI_FULL,    "1",    "normal of the wall; w: eq. (7b)") \
+    X(tobi_float4,  axis,         TOBI_SCRATCH, TOBI_WETTED,  "1",    "normal of the wall; w: eq. (7b)") \
+    X(uint8_t,      beside,       TOBI_SCRATCH, TOBI_WETTED,  "1",    "1: it or a neighbour sees a body") \
     X(float,        density,      TOBI_SCRATCH, TOBI_SPH,     "1",    "density over rest density") \
     X(float,        diagonal,     TOBI_SCRATCH, TOBI_SPH,     "m/kg", "diagonal of the pressure operator") \
     X(float,        precondition, TOBI_SCRATCH, TOBI_SPH,     "kg/m", "1/diagonal, 0 where p is held") \

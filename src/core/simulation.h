@@ -69,8 +69,8 @@ typedef struct tobi_method {
     const char *doc;
     size_t def_size;                                             /* of the parameter struct        */
     int fields;                                                  /* particle fields besides TOBI_ALL */
-    int stirred_fields;                                          /* and where something moves in a
-                                                                    vessel full of liquid            */
+    int body_fields;                                             /* and where there are bodies, or
+                                                                    something moves in a full vessel */
     int free_bodies;                                             /* 1: bodies may move by forces   */
     int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a

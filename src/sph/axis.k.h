@@ -4,12 +4,13 @@
 #include "exec/pairs.h"
 #include "sph/view.h"
 
-typedef struct sph_axis { lane x, y, z, lack; } sph_axis;
+typedef struct sph_axis { lane x, y, z, lack; int due; } sph_axis;
 
 TOBI_FN sph_axis sph_axis_of(const sph_view *v, int64_t i)
 {
     tobi_float4 n = {0, 0, 0, 0};
-    if (v->axis) n = v->axis[i];
-    sph_axis axis = {lane_set(n.x), lane_set(n.y), lane_set(n.z), lane_set(n.w)};
+    int due = v->axis && (v->full || v->beside[i]);
+    if (due) n = v->axis[i];
+    sph_axis axis = {lane_set(n.x), lane_set(n.y), lane_set(n.z), lane_set(n.w), due};
     return axis;
 }

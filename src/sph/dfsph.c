@@ -82,7 +82,6 @@ static void bind_view(tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
-    v->axis = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? s->particles.axis : NULL;
     for (int a = 0; a < 3; a++) {
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
@@ -342,7 +341,7 @@ const tobi_method tobi_dfsph = {
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .def_size = sizeof(tobi_dfsph_def),
     .fields = TOBI_SPH,
-    .stirred_fields = TOBI_FULL,
+    .body_fields = TOBI_WETTED,
     .free_bodies = 1,
     .smoothing = choose_smoothing,
     .create = create,

@@ -2,7 +2,8 @@
    C u = sum_j V grad W . (u_i - u_j) + 2 G . (u_i - u_wall)   is the rate of relative compression,
    a(p) = -(1/rho) C^T p = -(1/rho) [ sum_j (p_i + p_j) V grad W + 2 p_i G ]   the pressure acceleration,
    A = -C a = C (1/rho) C^T the operator: symmetric, so momentum is exact and CG applies.
-   Beside walls of full vessels both have T grad W in place of grad W, eq. (7b) of docs/theory/boundaries.md.
+   Beside bodies, and in full vessels sides, both have T grad W in place of grad W, eq. (7b) of
+   docs/theory/boundaries.md.
    Equation numbers: docs/theory/dfsph.md. */
 #pragma once
 #include "core/smoothing.k.h"
@@ -39,7 +40,7 @@ TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_ne
     lane r = lane_sqrt(n->r2), fall = smoothing_falloff(shape, r*v->inverse_h, r), f = (a->p + n->w)*fall;
     (void)i;
     a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
-    if (v->axis) sph_pressure_along(v, n, a, fall);
+    if (a->n.due) sph_pressure_along(v, n, a, fall);
 }
 
 TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
@@ -92,7 +93,7 @@ TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_com
     lane_load_float4(field, n->j, &x, &y, &z, &w);
     x -= a->ux; y -= a->uy; z -= a->uz;
     lane rate = x*n->dx + y*n->dy + z*n->dz;
-    if (v->axis)
+    if (a->n.due)
         rate += a->n.lack*(rate - (a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz)*
                                       (a->n.x*x + a->n.y*y + a->n.z*z));
     a->sum += f*rate;

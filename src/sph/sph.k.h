@@ -53,6 +53,12 @@ TOBI_FN float sph_wall_density(const sph_view *v, float share)
     return share < 0.5f ? full + (share - at)*(0.5f - full)/(0.5f - at) : share;
 }
 
+/* (7b) is for bodies, and in full vessels for sides as well. */
+TOBI_FN int sph_sees_wall(const sph_view *v, int64_t i)
+{
+    return v->full || (v->near && v->near[i] >= 0);
+}
+
 /* Along a wall the sums of (7) lack the neighbours behind it. Eq. (7b): the wall's normal; w = L/(1 - L) with
    the share L that a lattice lacks, at most that of a particle almost on the wall: edges have more. */
 TOBI_FN tobi_float4 sph_wall_axis(const sph_view *v, tobi_float4 gradient, float share)
@@ -75,7 +81,8 @@ typedef struct sph_density_acc {
 
 TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
 {
-    if (v->axis) v->axis[i] = sph_wall_axis(v, v->wall[i], v->density[i]);
+    if (v->axis)
+        v->axis[i] = sph_wall_axis(v, v->wall[i], sph_sees_wall(v, i) ? v->density[i] : 0);
     a->n = sph_axis_of(v, i);
     a->across = lane_set(0);
     a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
@@ -93,7 +100,7 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     lane f2 = f*n->r2;
     a->g2 += f*f2;
     a->div += f2;
-    if (!v->axis) return;
+    if (!a->n.due) return;
     lane across = f*(a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz);
     a->across += across*across;
 }
@@ -181,10 +188,12 @@ TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_ac
     v->accel[i] = out;
 }
 
-/* Eq. (6b), 0 .. 1: the pressure there is to continue into a wall, over that of two spacings of depth. */
+/* Eq. (6b), 0 .. 1: the pressure there is to continue into a wall, over that of two spacings of depth; none
+   where (7b) misses nothing along it. */
 TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 {
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
+    if (v->axis && v->axis[i].w > 0) return 0;
     float full = 2*v->spacing*(float)sqrt(g2)/v->inverse_density[v->fluid[i]];
     float p = v->pressure[i] + (float)tobi_still_pressure(&v->still, &v->position[i].x);
     return p >= full ? 1 : p > 0 ? p/full : 0;

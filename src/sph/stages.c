@@ -49,11 +49,14 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     const tobi_smoothing_constants *c = &s->smoothing;
     v->count = p->count;
     v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
+    v->axis = p->axis; v->beside = p->beside;
     v->wall = p->wall; v->normal = p->normal; v->capillary = p->capillary;
     v->density = p->density;
     v->diagonal = p->diagonal;
     v->precondition = p->precondition;
     v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
+    v->full = vessel == SPH_VESSEL_FULL;
+    v->near = s->body_count > 0 ? p->near : NULL;
     v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
     v->list = s->cells.list;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
@@ -129,6 +132,7 @@ tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k,
     if (s->body_count > 0) {
         TOBI_TRY(tobi_near_find(s, err));
         tobi_near_cut_pairs(s);
+        tobi_near_mark_beside(s);
         tobi_near_add_gradients(s);
     }
     tobi_stage_end(&s->stages, "walls and bodies", clock);

@@ -16,7 +16,9 @@ typedef struct sph_view {
     tobi_record *TOBI_RESTRICT record;
     tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall,
                 *TOBI_RESTRICT normal;
-    tobi_float4 *TOBI_RESTRICT axis;          /* eq. (7b), NULL without it */
+    tobi_float4 *TOBI_RESTRICT axis;          /* eq. (7b); it and beside: NULL without it */
+    const uint8_t *TOBI_RESTRICT beside;
+    const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
@@ -33,6 +35,7 @@ typedef struct sph_view {
     float wall_share, wall_lattice;           /* eq. (5b) */
     float spacing, volume;
     int   dimension;
+    int   full;                               /* 1: a vessel without a free surface          */
     float open_limit;                         /* div x below this: neighbours are missing       */
     float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */

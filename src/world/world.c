@@ -244,7 +244,7 @@ static int needed_fields(const tobi_world *w)
         if (w->sim.fluid[f].tension > 0) owners |= TOBI_TENSION;
     for (int k = 0; k < w->sim.body_count; k++)
         if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (is_stirred_vessel(w)) owners |= w->method->stirred_fields;
+    if (w->sim.body_count > 0 || is_stirred_vessel(w)) owners |= w->method->body_fields;
     return owners;
 }
 

@@ -28,7 +28,8 @@ typedef struct oracle {
     double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
     double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
-    int along;                           /* 1: eq. (7b) */
+    int along;                           /* not 0: eq. (7b) */
+    const int32_t *near;                 /* >= 0: with it, NULL: all */
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
@@ -187,7 +188,7 @@ static void tilt(const oracle *o, const row *in, int i, const double x[3], doubl
 
 static void oracle_axis(const oracle *o, row *out, int i)
 {
-    double size = 0, lack = fmin(oracle_fill(o, out[i][RHO]), 0.45);
+    double size = 0, lack = o->near && o->near[i] < 0 ? 0 : fmin(oracle_fill(o, out[i][RHO]), 0.45);
     for (int c = 0; c < 3; c++) size += out[i][WALL + c]*out[i][WALL + c];
     for (int c = 0; c < 3; c++) out[i][AXIS + c] = size > 0 ? out[i][WALL + c]/sqrt(size) : 0;
     out[i][LACK] = lack/(1 - lack);
@@ -253,11 +254,12 @@ static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t
     for (int i = 0; i < o->count; i++) laplacian(o, in, i, VEL, &out[i][ACC]);
 }
 
-/* Eq. (6b): 0 .. 1 by pressure, 1 from that of two spacings of depth on. */
+/* Eq. (6b): 0 .. 1 by pressure, 1 from that of two spacings of depth on; none with (7b). */
 static double wetness(const oracle *o, const row *in, int i)
 {
     double g = sqrt(o->gravity[0]*o->gravity[0] + o->gravity[1]*o->gravity[1] + o->gravity[2]*o->gravity[2]);
     double p = in[i][PRES] + still_pressure(&o->still, &in[i][POS], 0);
+    if (o->along && in[i][LACK] > 0) return 0;
     return fmin(fmax(p/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
 }
 

@@ -13,7 +13,7 @@ typedef struct rig_case {
     int fluids;           /* 1 or 2                                 */
     double jitter;        /* in spacings                            */
     double origin;        /* world coordinate of the lower corner   */
-    int along;            /* 1: with eq. (7b)                       */
+    int along;            /* with eq. (7b), 1: at all walls, 2: for every third particle */
 } rig_case;
 
 typedef struct rig {
@@ -90,6 +90,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
     v->axis = k->along ? p->axis : NULL;
+    v->beside = p->beside; v->near = p->near; v->full = k->along == 1;
     v->normal = p->normal; v->capillary = p->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -137,6 +138,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->d = g->c.spacing; o->h = g->c.h;
     o->fluid = p->fluid;
     o->along = k->along;
+    o->near = k->along == 2 ? p->near : NULL;
     o->plane_count = v->plane_count;
     memcpy(o->plane, v->plane, sizeof o->plane);
     for (int a = 0; a < 3; a++) {
@@ -159,6 +161,18 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     oracle_normalise(o);
 }
 
+/* Walls stand for a body that every third particle sees. */
+static void rig_hide_walls(rig *g)
+{
+    tobi_particles *p = &g->p;
+    for (int64_t i = 0; i < p->count; i++) p->near[i] = p->id[i]%3 == 0 ? 0 : -1;
+    for (int64_t i = 0; i < p->count; i++) {
+        p->beside[i] = p->near[i] >= 0;
+        for (int n = 0; n < 8*p->list_groups[i]; n++)
+            p->beside[i] |= p->near[g->cells.list[8*(int64_t)p->list_start[i] + n]] >= 0;
+    }
+}
+
 /* 0 = ok. 3-D: 9 x 8 x 8 particles, 2-D: 26 x 24; one support radius of air above if not closed. */
 static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
 {
@@ -176,12 +190,13 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION | TOBI_FULL, err)) return 1;
+    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION | TOBI_WETTED, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);
     tobi_cells_sort(&g->cells, &g->box, &g->p, &g->exec);
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
+    if (k->along == 2) rig_hide_walls(g);
     rig_bind(g, k, rho, nu);
     rig_bind_oracle(g, k, rho, nu);
     rig_bind_still(g, k);

@@ -60,12 +60,12 @@ static tobi_kernel kernel_at(const sph_kernels *table, int k)
 static const rig_case cases[] = {
     {3, TOBI_SHAPE_WENDLAND, 2.0, {0, 0, 0}, 0, 1, 0.2, 0, 0},
     {3, TOBI_SHAPE_CUBIC,    2.0, {0, 0, 0}, 0, 2, 0.2, -3, 0},
-    {3, TOBI_SHAPE_WENDLAND, 2.4, {1, 0, 0}, 0, 2, 0.2, 10000, 1},
+    {3, TOBI_SHAPE_WENDLAND, 2.4, {1, 0, 0}, 0, 2, 0.2, 10000, 2},
     {3, TOBI_SHAPE_CUBIC,    2.5, {1, 1, 1}, 1, 1, 0.2, 0, 0},
     {2, TOBI_SHAPE_WENDLAND, 3.0, {0, 0, 0}, 0, 2, 0.2, 0, 0},
     {2, TOBI_SHAPE_CUBIC,    4.0, {1, 0, 0}, 0, 1, 0.2, -7, 0},
     {2, TOBI_SHAPE_WENDLAND, 2.0, {1, 1, 0}, 1, 2, 0.2, 0, 0},
-    {2, TOBI_SHAPE_CUBIC,    2.0, {0, 0, 0}, 0, 1, 0.2, 0, 0},
+    {2, TOBI_SHAPE_CUBIC,    2.0, {0, 0, 0}, 0, 1, 0.2, 0, 2},
     {2, TOBI_SHAPE_WENDLAND, 2.5, {0, 0, 0}, 1, 1, 0.2, 0, 1},
     {3, TOBI_SHAPE_WENDLAND, 2.5, {0, 0, 0}, 1, 1, 0.2, 0, 1},
 };
