@@ -478,7 +478,10 @@ tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mp
     for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = 0;
     for (int64_t i = 0; i < c->row_count; i++) {
         const double *row = c->rows + TOBI_RECALL_ROW*i;
-        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes))) continue;      /* not ours */
+        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes)))
+            return tobi_fail(err, TOBI_DAMAGED,
+                             "the checkpoint remembers a cut at node %g, the grid has %lld", row[0],
+                             (long long)(g->patch_count*nodes));
         const int64_t k = (int64_t)row[0];
         g->patch[k/nodes].twin = 1;
         c->side[k] = (float)row[1];

@@ -7,6 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* To be raised whenever what a checkpoint holds changes; 0: from before there was a number. */
+enum { FORMAT = 1 };
+
+static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
+{
+    int64_t format = 0;
+    tobi_error none;
+    if (tobi_store_get_int(f, "format", &format, &none) == TOBI_OK && format == FORMAT) return TOBI_OK;
+    return tobi_fail(err, TOBI_UNSUPPORTED,
+                     "%s: a checkpoint of format %lld, written by another version of tobiuo; this one "
+                     "goes on from format %d",
+                     path, (long long)format, FORMAT);
+}
+
 /* What the method keeps besides. */
 static tobi_status put_rows(tobi_world *w, tobi_store *f, tobi_error *err)
 {
@@ -50,6 +64,7 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     tobi_simulation *s = &w->sim;
     double *memory;
     int n = w->method->memory(w->method_state, &memory);
+    TOBI_TRY(tobi_store_put_int(f, "format", FORMAT, err));
     TOBI_TRY(tobi_store_put_text(f, "method", w->method->name, err));
     TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
     TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
@@ -112,7 +127,8 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     tobi_store *f;
     TOBI_TRY(tobi_store_open(path, &f, err));
     int64_t n = 0;
-    tobi_status status = tobi_store_rows(f, "id", &n, err);
+    tobi_status status = check_format(f, path, err);
+    if (status == TOBI_OK) status = tobi_store_rows(f, "id", &n, err);
     if (status == TOBI_OK)
         status =
             n <= w->sim.particles.capacity

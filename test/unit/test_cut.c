@@ -389,6 +389,14 @@ static void same_bits(void **state)
     assert_true(tobi_world_hash(one) == tobi_world_hash(four));
     assert_true(tobi_world_hash(one) == tobi_world_hash(later));
     assert_true(memcmp(one->sim.particles.cuts, later->sim.particles.cuts, COUNT*sizeof(tobi_columns)) == 0);
+    tobi_error why = { 0 };
+    double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);
+    assert_non_null(nowhere);
+    nowhere[0] = 1e9;
+    OK(tobi_world_load(later, path, &err));
+    later->method->recall(later->method_state, nowhere, 1);
+    assert_int_equal(tobi_world_step(later, 0, NULL, &why), TOBI_DAMAGED);
+    assert_non_null(strstr(why.text, "the checkpoint remembers a cut at node 1e+09"));
     unlink(path);
     tobi_world_destroy(one);
     tobi_world_destroy(four);

@@ -247,6 +247,13 @@ static void checkpoints_of_others(void **state)
     assert_int_equal(tobi_world_add_fluid(world, &fluid, &small, 1, NULL), TOBI_OK);
     REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID,
             "other.h5: holds 150 particles, the scene at most 60");
+    tobi_store *store;
+    assert_int_equal(tobi_store_create("other.h5", &store, NULL), TOBI_OK);
+    assert_int_equal(tobi_store_put_int(store, "format", 1000, NULL), TOBI_OK);
+    assert_int_equal(tobi_store_commit(store, NULL), TOBI_OK);
+    REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_UNSUPPORTED,
+            "other.h5: a checkpoint of format 1000, written by another version of tobiuo; this one goes on "
+            "from format");
     tobi_world_destroy(world);
     remove("other.h5");
 }
