@@ -44,7 +44,9 @@ static void print_end(const drive_options *o, const counts *c, double time, doub
                  (long long)c->steps);
     if (c->last.density_error_mean > WRONG_DENSITY)
         complain("at the end the density of particles is off by %.1f %% on average (density_error_mean in "
-                 "history.csv): the liquid has cavities or is compressed", 100*c->last.density_error_mean);
+                 "history.csv): the liquid has cavities or is compressed, or its layers did not "
+                 "fit (tobiuo check)",
+                 100*c->last.density_error_mean);
     if (c->last.particles_lost)
         complain("%lld particles left the domain", (long long)c->last.particles_lost);
     if (o->quiet) return;
