@@ -4,8 +4,8 @@
 #        ./test.sh NAME            only the tests whose name matches (a regular expression)
 #        ./test.sh --slow [CASE] [--reference DIR]
 #                                  physics cases at reference size; rows and plots go to docs/validation.
-#                                  DIR: published data for dam_break (default: $TOBIUO_REFERENCE), else the few
-#                                  values that stand in test/physics/dam_break/run.py
+#                                  DIR: published data (default: $TOBIUO_REFERENCE), curves of plots; without it the
+#                                  few values that stand in the cases' run.py
 # The exit code is 0 only if everything passed. Closing lines: those of ctest, then "N passed, N failed".
 set -uo pipefail
 from=$PWD      # where a relative folder starts

@@ -71,6 +71,12 @@ class Case:
         self.referred = True
         return found
 
+    def measured(self, label, path, x, y):
+        """A curve of published data to plot beside ours; no curve without the file."""
+        found = self.reference_file(path)
+        table = read_table(found) if found else {}
+        return [(label, table[x], table[y], False)] if found else []
+
     def run(self, label, *options, scene=None, may_fail=False):
         """Runs a scene (the case's own by default); returns the folder of the results (None: it failed)."""
         scene = scene or self.folder / "scene.json"
@@ -180,8 +186,8 @@ def write_index():
     """docs/validation/README.md: the rows of all case pages in one table."""
     lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
              "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
-             "dam_break uses the few values that stand in its run.py. Every figure stands here, met or missed; those without a",
-             "goal are stated.", "",
+             "cases use the few values that stand in their run.py. Every figure stands here, met or missed; those without a goal",
+             "are stated.", "",
              "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
     for page in sorted(VALIDATION.glob("*.md")):
         text = page.read_text()

@@ -57,7 +57,8 @@ for name, expected in IMPULSE.items():
         case.state(text, value/expected - 1)
     else:
         case.figure(text, value/expected - 1, "within 0.15", abs(value/expected - 1) <= 0.15)
-    case.plot(f"Pressure {name}", "T", "p / rho g H", [("tobiuo", T, signal, False)])
+    case.plot(f"Pressure {name}", "T", "p / rho g H", [("tobiuo", T, signal, False)] +
+              case.measured("Lobovsky et al. 2014", "dambreak/lobovsky2014_H300_pressure.csv", "T", name))
     # The water's momentum is turned at this wall: half or double its impulse would be another physics.
     case.hold(f"{name}: impulse between half and double", 0.5 < value/expected < 2)
 case.finish()

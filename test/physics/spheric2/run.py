@@ -17,6 +17,7 @@ Experiment: K. M. T. Kleefsman, G. Fekken, A. E. P. Veldman, B. Iwanowski, B. Bu
 ARRIVAL = {"H1": 0.250, "H2": 0.410, "H3": 0.935}
 IMPULSE = {"P1": 1395.5, "P2": 1131.5, "P3": 914.4, "P4": 795.7}
 LEVEL = {"H1": 0.155, "H2": 0.179, "H3": 0.151, "H4": 0.279}
+GAUGE = {"H1": 1.488, "H2": 0.992, "H3": 0.496, "H4": 2.638}      # x, m
 PEAK = {"P1": 11239, "P2": 8127, "P3": 6564, "P4": 7203}
 IMPACT = 0.415
 
@@ -43,8 +44,11 @@ for name, expected in IMPULSE.items():
     # At reference size P4 sees a sheet that runs up the face, thinner than the spacing: a goal only.
     if name != "P4" or case.smoke:
         case.hold(f"{name}: impulse between a third and three times", 1/3 < value/expected < 3)
-    case.plot(f"Pressure {name}", "t, s", "Pa", [("tobiuo", time, p, False)])
+    case.plot(f"Pressure {name}", "t, s", "Pa", [("tobiuo", time, p, False)] +
+              case.measured("MARIN", "dambreak/spheric2_pressure.csv", "t_s", f"{name}_Pa"))
 for name, expected in LEVEL.items():
     h = interpolate(time, table[f"{name}_level"], 1.0)
     case.state(f"{name}: level at 1 s; measured {expected} m", h)
+    case.plot(f"Level {name}", "t, s", "m", [("tobiuo", time, table[f"{name}_level"], False)] +
+              case.measured("MARIN", "dambreak/spheric2_levels.csv", "t_s", f"h_x{GAUGE[name]}"))
 case.finish()
