@@ -102,16 +102,17 @@ static const tobi_old_key fluid_block_keys[] = {
     { .param.key = NULL }
 };
 
+/* Of bodies that are not dynamic; the remarks about others are in import_objects.c. */
 static const char *const dynamic_remark = "fixed, or moved by its motion";
 static const char *const still_remark = "a body that is not dynamic never moved by it, and does not now";
 
 static const tobi_old_key rigid_block_keys[] = {
     { K("objectId"), B(object), INT(0, 1000000), BECOMES(".name"), SAY("a number became a name") },
     BLOCK_KEYS,
-    { K("velocity"), B(velocity), VEC3, UNIT("m/s"), .param.doc = still_remark },
+    { K("velocity"), B(velocity), VEC3, UNIT("m/s"), BECOMES(".velocity"), .param.doc = still_remark },
     { K("density"), B(density), POSITIVE, UNIT("kg/m3"), BECOMES(".density"), SAY("for mass and inertia") },
     { K("color"), B(color), COLOR, BECOMES(".color"), SAY("in pictures") },
-    { K("isDynamic"), B(dynamic), BOOL, .param.doc = dynamic_remark },
+    { K("isDynamic"), B(dynamic), BOOL, BECOMES(".dynamics"), .param.doc = dynamic_remark },
     { .param.key = NULL }
 };
 
@@ -132,10 +133,10 @@ static const tobi_old_key rigid_body_keys[] = {
       SAY("about the mean of the vertices, as before: the translation is corrected, since a native turn is "
           "about the mesh's origin") },
     { K("scale"), R(scale), SCALE, BECOMES(".scale"), SAY("applied first") },
-    { K("velocity"), R(velocity), VEC3, UNIT("m/s"), .param.doc = still_remark },
+    { K("velocity"), R(velocity), VEC3, UNIT("m/s"), BECOMES(".velocity"), .param.doc = still_remark },
     { K("density"), R(density), POSITIVE, UNIT("kg/m3"), BECOMES(".density"), SAY("for mass and inertia") },
     { K("color"), R(color), COLOR, BECOMES(".color"), SAY("in pictures") },
-    { K("isDynamic"), R(dynamic), BOOL, .param.doc = dynamic_remark },
+    { K("isDynamic"), R(dynamic), BOOL, BECOMES(".dynamics"), .param.doc = dynamic_remark },
     FISH("fishLength", length, "m", "of the fish"),
     FISH("fishWidth", width, "m", "of the fish's body"),
     FISH("LEPos", lead, "m", "leading edge of the wings, ahead of the middle of the fish"),

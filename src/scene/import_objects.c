@@ -101,13 +101,29 @@ void tobi_import_fluids(tobi_import *im)
 
 /* --- bodies ------------------------------------------------------------------------------- */
 
-static void refuse_dynamic(tobi_import *im, int dynamic, const tobi_place *place)
+/* A body that the water moves is a free one. velocity: NULL if it is not given. */
+static void set_free(tobi_import *im, json_t *body, const double *velocity, int fish, const tobi_place *place)
 {
     tobi_place at = { place, "isDynamic", 0 };
-    if (dynamic)
+    if (im->config.method == 0)
         tobi_source_mistake(im->source, &at,
-                            "is true: bodies that the water moves are not built yet; false fixes the body, "
-                            "and a native scene can move it by a motion");
+                            "is true: the water moves bodies in simulationMethod 4 (DFSPH), not in 0 "
+                            "(WCSPH); false fixes the body");
+    if (fish)
+        tobi_source_mistake(im->source, &at,
+                            "is true, but the keys from fishLength to pitchAngle say how the body swims; "
+                            "false lets it swim, and without those keys the water moves it");
+    tobi_import_set(im, body, "dynamics", json_string("free"));
+    if (velocity) tobi_import_set(im, body, "velocity", tobi_import_vector(velocity));
+}
+
+/* After the rows about the body were added. */
+static void tell_free(tobi_import *im, int has_density, int has_velocity)
+{
+    tobi_import_remark(im, "isDynamic", "moved by gravity, the water and what it touches: there "
+                       "restitution is 0 and friction_coefficient 0.5, unless the scene gives others%s",
+                       has_density ? "" : "; its density is not given, 1000 kg/m3 is taken");
+    if (has_velocity) tobi_import_remark(im, "velocity", "of the centre of mass at the start");
 }
 
 static int is_taken(json_t *bodies, const char *name)
@@ -153,15 +169,18 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
     uint64_t given = tobi_import_read(im, section, object, place, &b);
     char name[32], native[64];
     json_t *body = json_object();
-    refuse_dynamic(im, b.dynamic, place);
+    int has_velocity = tobi_import_has(section, given, "velocity");
+    int has_density = tobi_import_has(section, given, "density");
+    if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, 0, place);
     snprintf(name, sizeof name, "block_%d", b.object);
     name_body(im, bodies, body, name, strlen(name));
     set_box(im, body, &b);
-    set_looks(im, body, tobi_import_has(section, given, "density") ? &b.density : NULL,
+    set_looks(im, body, has_density ? &b.density : NULL,
               tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
+    if (b.dynamic) tell_free(im, has_density, has_velocity);
 }
 
 /* directory/path, absolute, if there is such a file. */
@@ -296,7 +315,6 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     uint64_t given = tobi_import_read(im, section, object, place, &b);
     const char *path = json_string_value(json_object_get(object, "geometryFile")), *remark;
     if (!path || !path[0]) return;               /* told by its table, or empty: told below */
-    refuse_dynamic(im, b.dynamic, place);
     int fish = check_fish(im, given, place);
     char *mesh = choose_mesh(im, path, fish, &remark), native[64];
     double translation[3];
@@ -309,9 +327,12 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
     tobi_import_set(im, body, "translation", tobi_import_vector(translation));
     if (fish) set_motion(im, body, &b, object, place);
+    int has_velocity = tobi_import_has(section, given, "velocity");
+    if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, fish, place);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
+    if (b.dynamic) tell_free(im, tobi_import_has(section, given, "density"), has_velocity);
     if (remark) tobi_import_remark(im, "geometryFile", "%s", remark);
     if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "
                                  "formula did; motion.params.lagAngle changes it");

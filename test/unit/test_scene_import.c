@@ -144,6 +144,39 @@ static void rigid_blocks_are_boxes(void **state)
     tobi_scene_free(scene);
 }
 
+/* Dynamic bodies are free ones: a box and a mesh fall, the box enters the water. */
+static void the_water_moves_dynamic_bodies(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "RigidBodies[0].isDynamic", "-> bodies[0].dynamics = \"free\"", "1000 kg/m3 is taken",
+        "-> bodies[1].dynamics = \"free\"", "-> bodies[1].velocity = [0.0, -1.5, 0.0] m/s",
+        "of the centre of mass at the start", "-> bodies[1].density = 400.0 kg/m3",
+    };
+    tobi_scene *scene = load(OLD "falling_box.json", NULL);
+    for (size_t i = 0; i < sizeof lines/sizeof *lines; i++)
+        assert_non_null(strstr(tobi_scene_import_table(scene), lines[i]));
+    assert_null(strstr(tobi_scene_import_table(scene), "never moved by it"));
+    assert_int_equal(scene->body_count, 2);
+    assert_true(scene->bodies[0].def.dynamics == TOBI_FREE && scene->bodies[1].def.dynamics == TOBI_FREE);
+    assert_true(scene->bodies[1].def.density == 400);
+    assert_vector(scene->bodies[1].def.velocity, 0, -1.5, 0);
+    tobi_world *world;
+    tobi_body_info before, after;
+    OK(tobi_scene_build(scene, &world, &err));
+    OK(tobi_world_start(world, &err));
+    OK(tobi_world_body(world, 1, &before));
+    for (int i = 0; i < 20; i++) OK(tobi_world_step(world, 0, NULL, &err));
+    OK(tobi_world_body(world, 1, &after));
+    double fallen = before.position[1] - after.position[1];
+    assert_true(fallen > 0.01 && fallen < 0.03);                      /* 0.03 m without the water */
+    assert_true(after.velocity[1] > -1.4 && after.velocity[1] < 0);
+    OK(tobi_world_body(world, 0, &after));
+    assert_true(fabs(after.velocity[1] + 9.81*0.02) < 1e-3);          /* free fall above the water */
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
 static const char body_text[] =
     "{ \"Configuration\": { \"domainEnd\": [9, 9, 9], \"particleRadiusFluid\": 0.25,\n"
     "  \"gravitation\": [0, -9.81, 0] %s },\n"
@@ -299,8 +332,13 @@ static void mistakes_of_the_configuration(void **state)
 static void mistakes_of_bodies(void **state)
 {
     (void)state;
-    EXPECT(make("", "\"isDynamic\": true"),
-           "RigidBodies[0].isDynamic: is true: bodies that the water moves are not built yet");
+    EXPECT(make(", \"simulationMethod\": 0", "\"isDynamic\": true"),
+           "RigidBodies[0].isDynamic: is true: the water moves bodies in simulationMethod 4 (DFSPH)");
+    EXPECT(make("", "\"fishLength\": 0.2, \"fishWidth\": 0.1, \"LEPos\": 0.1, \"wingspan\": 0.1,\n"
+                    "\"wingchord\": 1, \"waveLength\": 1, \"freq\": 1, \"amplitude\": 1, \"relax\": 1,\n"
+                    "\"startPosition\": [0, 0, 0], \"swimmingPosition\": [0, 0, 0], \"pitchAngle\": 3,\n"
+                    "\"isDynamic\": true"),
+           "RigidBodies[0].isDynamic: is true, but the keys from fishLength to pitchAngle say how");
     EXPECT(make("", "\"fishLength\": 0.2, \"fishWidth\": 0.1, \"LEPos\": 0.1, \"wingspan\": 0.1,\n"
                     "\"wingchord\": 1, \"waveLength\": 1, \"freq\": 1, \"amplitude\": 1, \"relax\": 1,\n"
                     "\"startPosition\": [0, 0, 0], \"pitchAngle\": 3"),
@@ -309,7 +347,8 @@ static void mistakes_of_bodies(void **state)
            "RigidBodies[0].rotationAngle: is the text \"x\"",
            "RigidBodies[0].density: is 0, allowed is greater than 0");
     EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
-           "\"particleRadius\": 0.1 }, \"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
+           "\"particleRadius\": 0.1, \"simulationMethod\": 0 },\n"
+           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
            "\"RigidBodies\": [ { }, { \"geometryFile\": \"\" }, { \"geometryFile\": 3 } ],\n"
            "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1], \"isDynamic\": true } ] }",
            "RigidBodies[0].geometryFile: is missing", "RigidBodies[1].geometryFile: is empty",
@@ -437,6 +476,7 @@ int main(void)
         cmocka_unit_test(the_table_tells_every_key),
         cmocka_unit_test(blocks_with_their_own_values),
         cmocka_unit_test(rigid_blocks_are_boxes),
+        cmocka_unit_test(the_water_moves_dynamic_bodies),
         cmocka_unit_test(a_turn_is_about_the_mean_of_the_vertices),
         cmocka_unit_test(the_clock),
         cmocka_unit_test(the_other_solver),
