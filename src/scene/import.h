@@ -98,8 +98,9 @@ void tobi_import_clear(tobi_import *im);
 /* import_objects.c */
 void tobi_import_fluids(tobi_import *im);
 void tobi_import_bodies(tobi_import *im);
-/* The absolute path of a mesh that an old scene names; NULL if it is nowhere. Owned by the caller. */
-char *tobi_import_find_mesh(const tobi_import *im, const char *path);
+/* The absolute path of a mesh that an old scene names; NULL if it is nowhere (or memory was short, which
+   is remembered). Owned by the caller. */
+char *tobi_import_find_mesh(tobi_import *im, const char *path);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);
 

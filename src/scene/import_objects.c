@@ -3,6 +3,7 @@
 #include "scene/import.h"
 #include "geom/mesh.h"
 #include <ctype.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -184,27 +185,33 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
 }
 
 /* directory/path, absolute, if there is such a file. */
-static char *existing_file(const char *directory, const char *path)
+static char *existing_file(tobi_import *im, const char *directory, const char *path)
 {
     char *joined = NULL, *found = NULL;
-    if (asprintf(&joined, "%s/%s", directory, path) < 0) return NULL;
-    if (access(joined, F_OK) == 0) found = realpath(joined, NULL);
-    free(joined);
+    int length = asprintf(&joined, "%s/%s", directory, path);
+    int exists = length >= 0 && access(joined, F_OK) == 0;
+    if (exists) found = realpath(joined, NULL);
+    im->no_memory |= length < 0 || (exists && !found && errno == ENOMEM);
+    if (length >= 0) free(joined);
     return found;
 }
 
 /* Beside the scene; where the program was started, as the old one did; in the folders above the scene, since
    old scenes lie in data/scenes and name data/models. NULL if it is nowhere. */
-char *tobi_import_find_mesh(const tobi_import *im, const char *path)
+char *tobi_import_find_mesh(tobi_import *im, const char *path)
 {
     char above[PATH_MAX];
-    if (path[0] == '/') return access(path, F_OK) == 0 ? strdup(path) : NULL;
-    char *found = existing_file(im->binder.directory, path), *slash;
-    if (!found) found = existing_file(".", path);
+    if (path[0] == '/') {
+        char *same = access(path, F_OK) == 0 ? strdup(path) : NULL;
+        im->no_memory |= !same && errno == ENOMEM;
+        return same;
+    }
+    char *found = existing_file(im, im->binder.directory, path), *slash;
+    if (!found) found = existing_file(im, ".", path);
     snprintf(above, sizeof above, "%s", im->binder.directory);
     while (!found && (slash = strrchr(above, '/')) && slash > above) {
         *slash = '\0';
-        found = existing_file(above, path);
+        found = existing_file(im, above, path);
     }
     return found;
 }
@@ -247,7 +254,7 @@ static void set_motion(tobi_import *im, json_t *body, const tobi_old_body *b, js
     tobi_import_set(im, params, "translation", tobi_import_vector(b->translation));
     for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++)
         if (is_fish_key(k->param.key))
-            json_object_set(params, k->param.key, json_object_get(object, k->param.key));
+            tobi_import_set(im, params, k->param.key, json_incref(json_object_get(object, k->param.key)));
     tobi_import_set(im, params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle */
     free(script);
 }
@@ -283,11 +290,11 @@ static void correct_turn(tobi_import *im, const tobi_old_body *b, const char *fi
 }
 
 /* The file of a body and, for a fish without one, the shipped fish; owned by the caller. */
-static char *choose_mesh(const tobi_import *im, const char *given, int fish, const char **remark)
+static char *choose_mesh(tobi_import *im, const char *given, int fish, const char **remark)
 {
     char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
-    if (!file && fish && (file = tobi_shipped_scene_file("flying_fish/meshes/fish.obj")))
+    if (!file && !im->no_memory && fish && (file = tobi_shipped_scene_file("flying_fish/meshes/fish.obj")))
         *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
                   "0.2 m from tip to tip, as in the scene that these keys come from";
     return file;

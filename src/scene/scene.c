@@ -235,6 +235,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     json_t *value = json_object_get(scene->root, "output");
     if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
     TOBI_TRY(read_references(scene, &binder, &root));
+    if (scene->texts.failed) return TOBI_NO_MEMORY;
     tobi_scene_check(scene, source);
     return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
 }
