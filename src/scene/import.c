@@ -369,12 +369,13 @@ static void check_top(tobi_import *im)
 }
 
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
-                                  char **table)
+                                  char **table, json_t **stand_ins)
 {
     tobi_import im = { .source = source, .binder = { source, texts, directory, 3 }, .closing =
         "The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
         "Walls and bodies are slip, as they were; water starts where the scene says.\n" };
     *table = NULL;
+    *stand_ins = im.stand_ins = json_object();
     im.native = json_object();
     int64_t before = tobi_report_total(source->report);
     check_top(&im);
@@ -383,7 +384,7 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
     tobi_import_bodies(&im);
     build_output(&im);
     tobi_status status = tobi_report_total(source->report) > before ? TOBI_INVALID : TOBI_OK;
-    if (im.no_memory || !im.native) status = TOBI_NO_MEMORY;
+    if (im.no_memory || !im.native || !im.stand_ins) status = TOBI_NO_MEMORY;
     if (status == TOBI_OK) status = tobi_import_finish(&im, table);
     tobi_import_clear(&im);
     return status;

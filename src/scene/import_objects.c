@@ -252,9 +252,10 @@ static void set_motion(tobi_import *im, json_t *body, const tobi_old_body *b, js
         tobi_source_mistake(im->source, place, "swims, but the program of its motion, "
                             "scenes/flying_fish/motion.lua, is not where Tobiuo was installed");
     tobi_import_set(im, params, "translation", tobi_import_vector(b->translation));
-    for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++)
-        if (is_fish_key(k->param.key))
-            tobi_import_set(im, params, k->param.key, json_incref(json_object_get(object, k->param.key)));
+    for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++) {
+        json_t *value = json_object_get(object, k->param.key);      /* NULL: told by check_fish */
+        if (value && is_fish_key(k->param.key)) tobi_import_set(im, params, k->param.key, json_incref(value));
+    }
     tobi_import_set(im, params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle */
     free(script);
 }
@@ -294,7 +295,7 @@ static char *choose_mesh(tobi_import *im, const char *given, int fish, const cha
 {
     char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
-    if (!file && !im->no_memory && fish && (file = tobi_shipped_scene_file("flying_fish/meshes/fish.obj")))
+    if (!file && !im->no_memory && fish && (file = tobi_shipped_scene_file(TOBI_STAND_IN)))
         *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
                   "0.2 m from tip to tip, as in the scene that these keys come from";
     return file;
@@ -333,6 +334,8 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     name_body(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
     tobi_import_set(im, body, "translation", tobi_import_vector(translation));
+    const char *name = json_string_value(json_object_get(body, "name"));
+    if (remark && name) tobi_import_set(im, im->stand_ins, name, json_string(path));
     if (fish) set_motion(im, body, &b, object, place);
     int has_velocity = tobi_import_has(section, given, "velocity");
     if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, fish, place);

@@ -4,6 +4,7 @@
 #include "scene/import.h"
 #include "scene/scene.h"
 #include "scene/write.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -52,6 +53,34 @@ static char *shorten_table(const char *table, const char *directory)
     return out;
 }
 
+/* Adds a line about a file of `object` that is named by an absolute path; 0 without memory. */
+static int tell_absolute(char **table, json_t *object, const char *key)
+{
+    const char *path = json_string_value(json_object_get(object, key));
+    char *longer;
+    if (!path || path[0] != '/') return 1;
+    if (asprintf(&longer, "%sAbsolute path: %s. To move the new scene, copy this file beside it and name it "
+                 "from there.\n", *table, path) < 0) return 0;
+    free(*table);
+    *table = longer;
+    return 1;
+}
+
+static int tell_absolutes(char **table, json_t *root)
+{
+    size_t i;
+    int whole = 1;
+    json_t *body;
+    json_array_foreach(json_object_get(root, "bodies"), i, body) {
+        whole &= tell_absolute(table, body, "mesh");
+        whole &= tell_absolute(table, json_object_get(body, "motion"), "script");
+        whole &= tell_absolute(table, json_object_get(body, "control"), "script");
+    }
+    json_array_foreach(json_object_get(root, "solids"), i, body)
+        whole &= tell_absolute(table, json_array_get(json_object_get(body, "fill"), 0), "mesh");
+    return whole;
+}
+
 static tobi_status write_scene(const tobi_scene *scene, const char *from, const char *path, char **table,
                                tobi_error *err)
 {
@@ -60,7 +89,7 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
     int whole = root && shorten_paths(root, directory);
     char *text = whole ? tobi_write_json(root) : NULL;
     *table = text ? shorten_table(scene->import_table, directory) : NULL;
-    if (!*table) {
+    if (!*table || !tell_absolutes(table, root)) {
         free(text);
         text = NULL;
     }

@@ -52,6 +52,7 @@ struct tobi_scene {
     int probe_count;
     tobi_output_def output;
     char *import_table;            /* what old keys became; NULL: it was native   */
+    json_t *stand_ins;             /* of a translated scene, see import.h         */
     tobi_reference_def *references;
     int reference_count;
 };

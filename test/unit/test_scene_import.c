@@ -79,6 +79,28 @@ static void the_flying_fish_of_the_users(void **state)
     tobi_scene_free(scene);
 }
 
+/* A misspelt mesh must not become the shipped fish in silence. */
+static void a_run_notes_the_shipped_fish(void **state)
+{
+    (void)state;
+    const char *overrides[] = { "spacing=0.02", "bodies[0].spacing=0.02", NULL, NULL, NULL };
+    for (int right = 0; right < 2; right++) {
+        tobi_world *world;
+        if (right) overrides[3] = "bodies[0].scale=0.05";
+        if (right) overrides[2] = "bodies[0].mesh=" TOBI_SOURCE_DIR "/test/meshes/wedge.obj";
+        tobi_scene *scene = load(OLD "fish.json", overrides);
+        OK(tobi_scene_build(scene, &world, &err));
+        const char *note;
+        int found = 0;
+        for (int i = 0; (note = tobi_world_note(world, i)); i++)
+            found |= strstr(note, "body 'fishbodyWithWing': there is no mesh ") &&
+                     strstr(note, "the fish that comes with Tobiuo is taken");
+        assert_int_equal(found, !right);
+        tobi_world_destroy(world);
+        tobi_scene_free(scene);
+    }
+}
+
 /* What the table must say, key by key. */
 static void the_table_tells_every_key(void **state)
 {
@@ -406,6 +428,7 @@ static void a_written_scene_is_the_same(void **state)
         if (status != TOBI_OK) print_error("%s\n", err.text);
         assert_int_equal(status, TOBI_OK);
         assert_non_null(strstr(table, "Configuration.domainEnd"));
+        assert_int_equal(i == 0, strstr(table, "flying_fish/motion.lua. To move the new scene") != NULL);
         free(table);
         tobi_scene *old = load(names[i], NULL), *new = load(path, NULL);
         assert_null(tobi_scene_import_table(new));
@@ -460,6 +483,7 @@ static void paths_below_the_new_scene_are_relative(void **state)
     OK(tobi_source_read_file(new, &text, &size, &err));
     assert_non_null(strstr(text, "-> bodies[0].mesh = \"wedge.obj\"\n"));
     assert_null(strstr(text, folder));
+    assert_null(strstr(table, "Absolute path"));
     tobi_scene_free(load(new, NULL));
     free(text);
     free(table);
@@ -473,6 +497,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_flying_fish_of_the_users),
+        cmocka_unit_test(a_run_notes_the_shipped_fish),
         cmocka_unit_test(the_table_tells_every_key),
         cmocka_unit_test(blocks_with_their_own_values),
         cmocka_unit_test(rigid_blocks_are_boxes),
