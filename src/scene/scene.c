@@ -62,7 +62,7 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
     const char *also[TOBI_PARTS];
     tobi_part_keys("fluid", also);
     fluid->def = tobi_default_fluid_def();
-    tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
+    fluid->bound = tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
     return read_fills(binder, value, place, "fluid", &fluid->fills, &fluid->fill_count);
 }
 

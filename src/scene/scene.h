@@ -11,6 +11,7 @@ typedef struct tobi_scene_fill {
 
 typedef struct tobi_scene_fluid {
     tobi_fluid_def def;
+    tobi_bound bound;              /* rows of the fluid table that the file gives */
     tobi_scene_fill *fills;
     int fill_count;
 } tobi_scene_fluid;

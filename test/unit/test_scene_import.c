@@ -126,14 +126,15 @@ static void the_table_tells_every_key(void **state)
 static void blocks_with_their_own_values(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5", NULL };
+    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5",
+                                "fluids[1].viscosity=0.5", NULL };
     tobi_scene *scene = load(OLD "blocks_y_up.json", overrides);
     assert_true(tobi_scene_world_def(scene)->spacing == 0.05);       /* overrides are native */
     assert_vector(tobi_scene_world_def(scene)->gravity, 0, -9.81, 0);
     assert_int_equal(scene->fluid_count, 2);                         /* one per colour */
     assert_int_equal(scene->fluids[0].fill_count, 2);
     assert_int_equal(scene->fluids[1].fill_count, 1);
-    assert_true(scene->fluids[0].def.viscosity == 0.5 && scene->fluids[1].def.viscosity == 0);
+    assert_true(scene->fluids[0].def.viscosity == 0.5 && scene->fluids[1].def.viscosity == 0.5);
     const tobi_fill_def *fill = &scene->fluids[0].fills[0].def;
     assert_vector(fill->box_min, 0, 0, 0);
     assert_vector(fill->box_max, 0.2, 0.4, 0.4);
@@ -351,6 +352,17 @@ static void mistakes_of_the_configuration(void **state)
            "Configuration.invisibleObjects: is a number, must be a list", "FluidBlocks: is missing or empty");
 }
 
+static void blocks_of_another_material(void **state)
+{
+    (void)state;
+    EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
+           "\"particleRadius\": 0.1 },\n"
+           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [0.4, 1, 1] },\n"
+           "  { \"start\": [0.6, 0, 0], \"end\": [1, 1, 1], \"density\": 800 } ] }",
+           "old.json:4:56: FluidBlocks[1].density (here fluids[1].density): is 800 kg/m3 and that of "
+           "fluids[0] is 1000 kg/m3; dfsph carries one material");
+}
+
 static void mistakes_of_bodies(void **state)
 {
     (void)state;
@@ -507,6 +519,7 @@ int main(void)
         cmocka_unit_test(the_other_solver),
         cmocka_unit_test(wrapped_comments),
         cmocka_unit_test(mistakes_of_the_configuration),
+        cmocka_unit_test(blocks_of_another_material),
         cmocka_unit_test(mistakes_of_bodies),
         cmocka_unit_test(later_mistakes),
         cmocka_unit_test(a_tail_that_is_not_clear),
