@@ -13,6 +13,7 @@ char *tobi_texts_keep(tobi_texts *texts, char *text)
 {
     struct tobi_text_node *node = text ? malloc(sizeof *node) : NULL;
     if (!node) {
+        texts->failed = 1;
         free(text);
         return NULL;
     }

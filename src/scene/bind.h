@@ -5,9 +5,9 @@
 #include "base/param.h"
 
 /* Texts that must outlive the JSON they were made from. */
-typedef struct tobi_texts { struct tobi_text_node *first; } tobi_texts;
+typedef struct tobi_texts { struct tobi_text_node *first; int failed; } tobi_texts;     /* 1: no memory */
 void tobi_texts_free(tobi_texts *texts);
-/* Keeps a malloc'd text (NULL is fine) and returns it. */
+/* Keeps a malloc'd text and returns it; NULL, the text of a malloc that failed, is remembered in failed. */
 char *tobi_texts_keep(tobi_texts *texts, char *text);
 
 typedef struct tobi_binder {

@@ -184,12 +184,35 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
                             method->name);
 }
 
+/* The methods carry one material: tobi_world_add_fluid would say the same, but not where. */
+static void check_material(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+{
+    const tobi_scene_fluid *first = &scene->fluids[0], *fluid = &scene->fluids[entry->index];
+    const tobi_method *method = tobi_method_find(scene->world.method);
+    const struct { const char *key, *unit; double value, other; } values[] = {
+        { "density", "kg/m3", fluid->def.density, first->def.density },
+        { "viscosity", "Pa s", fluid->def.viscosity, first->def.viscosity },
+        { "surface_tension", "N/m", fluid->def.surface_tension, first->def.surface_tension },
+    };
+    if (!method || !(method->fields & TOBI_SPH) || fluid->bound.good != fluid->bound.given ||
+        first->bound.good != first->bound.given) return;
+    for (size_t k = 0; k < sizeof values/sizeof *values; k++) {
+        tobi_place place = { entry, values[k].key, 0 };
+        if (values[k].value == values[k].other) continue;
+        tobi_source_mistake(source, &place, "is %.10g %s and that of fluids[0] is %.10g %s; %s carries one "
+                            "material, so all fluids have the same %s", values[k].value, values[k].unit,
+                            values[k].other, values[k].unit, method->name, values[k].key);
+        return;                        /* others may follow from it, as in translated scenes */
+    }
+}
+
 static void check_fluids(const tobi_scene *scene, tobi_source *source)
 {
     tobi_place fluids = { &root, "fluids", 0 };
     for (int i = 0; i < scene->fluid_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &fluids, NULL, (size_t)i };
         check_name(scene, source, &entry, FLUIDS);
+        check_material(scene, source, &entry);
         tobi_check_fills(scene, source, &entry, scene->fluids[i].fills, scene->fluids[i].fill_count);
     }
 }

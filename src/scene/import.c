@@ -102,16 +102,17 @@ static const tobi_old_key fluid_block_keys[] = {
     { .param.key = NULL }
 };
 
+/* Of bodies that are not dynamic; the remarks about others are in import_objects.c. */
 static const char *const dynamic_remark = "fixed, or moved by its motion";
 static const char *const still_remark = "a body that is not dynamic never moved by it, and does not now";
 
 static const tobi_old_key rigid_block_keys[] = {
     { K("objectId"), B(object), INT(0, 1000000), BECOMES(".name"), SAY("a number became a name") },
     BLOCK_KEYS,
-    { K("velocity"), B(velocity), VEC3, UNIT("m/s"), .param.doc = still_remark },
+    { K("velocity"), B(velocity), VEC3, UNIT("m/s"), BECOMES(".velocity"), .param.doc = still_remark },
     { K("density"), B(density), POSITIVE, UNIT("kg/m3"), BECOMES(".density"), SAY("for mass and inertia") },
     { K("color"), B(color), COLOR, BECOMES(".color"), SAY("in pictures") },
-    { K("isDynamic"), B(dynamic), BOOL, .param.doc = dynamic_remark },
+    { K("isDynamic"), B(dynamic), BOOL, BECOMES(".dynamics"), .param.doc = dynamic_remark },
     { .param.key = NULL }
 };
 
@@ -132,10 +133,10 @@ static const tobi_old_key rigid_body_keys[] = {
       SAY("about the mean of the vertices, as before: the translation is corrected, since a native turn is "
           "about the mesh's origin") },
     { K("scale"), R(scale), SCALE, BECOMES(".scale"), SAY("applied first") },
-    { K("velocity"), R(velocity), VEC3, UNIT("m/s"), .param.doc = still_remark },
+    { K("velocity"), R(velocity), VEC3, UNIT("m/s"), BECOMES(".velocity"), .param.doc = still_remark },
     { K("density"), R(density), POSITIVE, UNIT("kg/m3"), BECOMES(".density"), SAY("for mass and inertia") },
     { K("color"), R(color), COLOR, BECOMES(".color"), SAY("in pictures") },
-    { K("isDynamic"), R(dynamic), BOOL, .param.doc = dynamic_remark },
+    { K("isDynamic"), R(dynamic), BOOL, BECOMES(".dynamics"), .param.doc = dynamic_remark },
     FISH("fishLength", length, "m", "of the fish"),
     FISH("fishWidth", width, "m", "of the fish's body"),
     FISH("LEPos", lead, "m", "leading edge of the wings, ahead of the middle of the fish"),
@@ -368,12 +369,13 @@ static void check_top(tobi_import *im)
 }
 
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
-                                  char **table)
+                                  char **table, json_t **stand_ins)
 {
     tobi_import im = { .source = source, .binder = { source, texts, directory, 3 }, .closing =
         "The water has its whole mass: the old program placed 0.8 of it, and the level sank.\n"
         "Walls and bodies are slip, as they were; water starts where the scene says.\n" };
     *table = NULL;
+    *stand_ins = im.stand_ins = json_object();
     im.native = json_object();
     int64_t before = tobi_report_total(source->report);
     check_top(&im);
@@ -382,7 +384,7 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
     tobi_import_bodies(&im);
     build_output(&im);
     tobi_status status = tobi_report_total(source->report) > before ? TOBI_INVALID : TOBI_OK;
-    if (im.no_memory || !im.native) status = TOBI_NO_MEMORY;
+    if (im.no_memory || !im.native || !im.stand_ins) status = TOBI_NO_MEMORY;
     if (status == TOBI_OK) status = tobi_import_finish(&im, table);
     tobi_import_clear(&im);
     return status;

@@ -56,6 +56,7 @@ typedef struct tobi_import {
     uint64_t given;           /* keys of Configuration: bits of its table                */
     tobi_old_row *rows;
     int row_count, row_room;
+    json_t *stand_ins;        /* body name: mesh file that was named but is not there    */
     const char *closing;      /* lines below the table                                   */
     int no_memory;
 } tobi_import;
@@ -63,9 +64,12 @@ typedef struct tobi_import {
 /* Whether the root of a scene is one of these. */
 int tobi_import_applies(const json_t *root);
 /* Replaces the source's root by the native scene, so that mistakes found later name the old keys. *table:
-   what became of each key, for people; owned by the caller. TOBI_INVALID with the mistakes in the report. */
+   what became of each key, for people. *stand_ins: for bodies that got TOBI_STAND_IN, name: the mesh that the
+   scene names. Both owned by the caller. TOBI_INVALID with the mistakes in the report. */
 tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const char *directory,
-                                  char **table);
+                                  char **table, json_t **stand_ins);
+/* The shipped mesh of a fish whose own is not there. */
+#define TOBI_STAND_IN "flying_fish/meshes/fish.obj"
 
 /* import_cut.c: the same for the parameter file of the program that cuts an apple (parameters.py). */
 tobi_status tobi_import_translate_cut(tobi_source *source, tobi_texts *texts, const char *directory,
@@ -98,8 +102,9 @@ void tobi_import_clear(tobi_import *im);
 /* import_objects.c */
 void tobi_import_fluids(tobi_import *im);
 void tobi_import_bodies(tobi_import *im);
-/* The absolute path of a mesh that an old scene names; NULL if it is nowhere. Owned by the caller. */
-char *tobi_import_find_mesh(const tobi_import *im, const char *path);
+/* The absolute path of a mesh that an old scene names; NULL if it is nowhere (or memory was short, which
+   is remembered). Owned by the caller. */
+char *tobi_import_find_mesh(tobi_import *im, const char *path);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);
 

@@ -3,6 +3,7 @@
 #include "scene/import.h"
 #include "geom/mesh.h"
 #include <ctype.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,13 +102,29 @@ void tobi_import_fluids(tobi_import *im)
 
 /* --- bodies ------------------------------------------------------------------------------- */
 
-static void refuse_dynamic(tobi_import *im, int dynamic, const tobi_place *place)
+/* A body that the water moves is a free one. velocity: NULL if it is not given. */
+static void set_free(tobi_import *im, json_t *body, const double *velocity, int fish, const tobi_place *place)
 {
     tobi_place at = { place, "isDynamic", 0 };
-    if (dynamic)
+    if (im->config.method == 0)
         tobi_source_mistake(im->source, &at,
-                            "is true: bodies that the water moves are not built yet; false fixes the body, "
-                            "and a native scene can move it by a motion");
+                            "is true: the water moves bodies in simulationMethod 4 (DFSPH), not in 0 "
+                            "(WCSPH); false fixes the body");
+    if (fish)
+        tobi_source_mistake(im->source, &at,
+                            "is true, but the keys from fishLength to pitchAngle say how the body swims; "
+                            "false lets it swim, and without those keys the water moves it");
+    tobi_import_set(im, body, "dynamics", json_string("free"));
+    if (velocity) tobi_import_set(im, body, "velocity", tobi_import_vector(velocity));
+}
+
+/* After the rows about the body were added. */
+static void tell_free(tobi_import *im, int has_density, int has_velocity)
+{
+    tobi_import_remark(im, "isDynamic", "moved by gravity, the water and what it touches: there "
+                       "restitution is 0 and friction_coefficient 0.5, unless the scene gives others%s",
+                       has_density ? "" : "; its density is not given, 1000 kg/m3 is taken");
+    if (has_velocity) tobi_import_remark(im, "velocity", "of the centre of mass at the start");
 }
 
 static int is_taken(json_t *bodies, const char *name)
@@ -153,39 +170,48 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
     uint64_t given = tobi_import_read(im, section, object, place, &b);
     char name[32], native[64];
     json_t *body = json_object();
-    refuse_dynamic(im, b.dynamic, place);
+    int has_velocity = tobi_import_has(section, given, "velocity");
+    int has_density = tobi_import_has(section, given, "density");
+    if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, 0, place);
     snprintf(name, sizeof name, "block_%d", b.object);
     name_body(im, bodies, body, name, strlen(name));
     set_box(im, body, &b);
-    set_looks(im, body, tobi_import_has(section, given, "density") ? &b.density : NULL,
+    set_looks(im, body, has_density ? &b.density : NULL,
               tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
+    if (b.dynamic) tell_free(im, has_density, has_velocity);
 }
 
 /* directory/path, absolute, if there is such a file. */
-static char *existing_file(const char *directory, const char *path)
+static char *existing_file(tobi_import *im, const char *directory, const char *path)
 {
     char *joined = NULL, *found = NULL;
-    if (asprintf(&joined, "%s/%s", directory, path) < 0) return NULL;
-    if (access(joined, F_OK) == 0) found = realpath(joined, NULL);
-    free(joined);
+    int length = asprintf(&joined, "%s/%s", directory, path);
+    int exists = length >= 0 && access(joined, F_OK) == 0;
+    if (exists) found = realpath(joined, NULL);
+    im->no_memory |= length < 0 || (exists && !found && errno == ENOMEM);
+    if (length >= 0) free(joined);
     return found;
 }
 
 /* Beside the scene; where the program was started, as the old one did; in the folders above the scene, since
    old scenes lie in data/scenes and name data/models. NULL if it is nowhere. */
-char *tobi_import_find_mesh(const tobi_import *im, const char *path)
+char *tobi_import_find_mesh(tobi_import *im, const char *path)
 {
     char above[PATH_MAX];
-    if (path[0] == '/') return access(path, F_OK) == 0 ? strdup(path) : NULL;
-    char *found = existing_file(im->binder.directory, path), *slash;
-    if (!found) found = existing_file(".", path);
+    if (path[0] == '/') {
+        char *same = access(path, F_OK) == 0 ? strdup(path) : NULL;
+        im->no_memory |= !same && errno == ENOMEM;
+        return same;
+    }
+    char *found = existing_file(im, im->binder.directory, path), *slash;
+    if (!found) found = existing_file(im, ".", path);
     snprintf(above, sizeof above, "%s", im->binder.directory);
     while (!found && (slash = strrchr(above, '/')) && slash > above) {
         *slash = '\0';
-        found = existing_file(above, path);
+        found = existing_file(im, above, path);
     }
     return found;
 }
@@ -226,9 +252,10 @@ static void set_motion(tobi_import *im, json_t *body, const tobi_old_body *b, js
         tobi_source_mistake(im->source, place, "swims, but the program of its motion, "
                             "scenes/flying_fish/motion.lua, is not where Tobiuo was installed");
     tobi_import_set(im, params, "translation", tobi_import_vector(b->translation));
-    for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++)
-        if (is_fish_key(k->param.key))
-            json_object_set(params, k->param.key, json_object_get(object, k->param.key));
+    for (const tobi_old_key *k = tobi_old_rigid_body.keys; k->param.key; k++) {
+        json_t *value = json_object_get(object, k->param.key);      /* NULL: told by check_fish */
+        if (value && is_fish_key(k->param.key)) tobi_import_set(im, params, k->param.key, json_incref(value));
+    }
     tobi_import_set(im, params, "lagAngle", json_integer(72));      /* 0.8 of every point's angle */
     free(script);
 }
@@ -264,11 +291,11 @@ static void correct_turn(tobi_import *im, const tobi_old_body *b, const char *fi
 }
 
 /* The file of a body and, for a fish without one, the shipped fish; owned by the caller. */
-static char *choose_mesh(const tobi_import *im, const char *given, int fish, const char **remark)
+static char *choose_mesh(tobi_import *im, const char *given, int fish, const char **remark)
 {
     char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
-    if (!file && fish && (file = tobi_shipped_scene_file("flying_fish/meshes/fish.obj")))
+    if (!file && !im->no_memory && fish && (file = tobi_shipped_scene_file(TOBI_STAND_IN)))
         *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
                   "0.2 m from tip to tip, as in the scene that these keys come from";
     return file;
@@ -296,7 +323,6 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     uint64_t given = tobi_import_read(im, section, object, place, &b);
     const char *path = json_string_value(json_object_get(object, "geometryFile")), *remark;
     if (!path || !path[0]) return;               /* told by its table, or empty: told below */
-    refuse_dynamic(im, b.dynamic, place);
     int fish = check_fish(im, given, place);
     char *mesh = choose_mesh(im, path, fish, &remark), native[64];
     double translation[3];
@@ -308,10 +334,15 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
     name_body(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
     tobi_import_set(im, body, "translation", tobi_import_vector(translation));
+    const char *name = json_string_value(json_object_get(body, "name"));
+    if (remark && name) tobi_import_set(im, im->stand_ins, name, json_string(path));
     if (fish) set_motion(im, body, &b, object, place);
+    int has_velocity = tobi_import_has(section, given, "velocity");
+    if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, fish, place);
     snprintf(native, sizeof native, "bodies[%zu]", json_array_size(bodies));
     im->no_memory |= json_array_append_new(bodies, body) != 0;
     tobi_import_note(im, section, object, place, native, "");
+    if (b.dynamic) tell_free(im, tobi_import_has(section, given, "density"), has_velocity);
     if (remark) tobi_import_remark(im, "geometryFile", "%s", remark);
     if (fish) tobi_import_remark(im, "pitchAngle", "nose up. The wings fold by 72 degrees, as the old "
                                  "formula did; motion.params.lagAngle changes it");

@@ -23,13 +23,13 @@ static tobi_old_row *add_row(tobi_import *im)
     return row;
 }
 
-/* "0.002 m2/s". */
+/* "0.002 m2/s"; NULL without memory. */
 static char *value_text(const json_t *value, const char *unit)
 {
     char *text = NULL;
-    char *json = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(10)) : NULL;
+    char *json = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(10));
     const char *behind = unit && strcmp(unit, "1") != 0 && strcmp(unit, "path") != 0 ? unit : "";
-    int length = asprintf(&text, "%s%s%s", json ? json : "", behind[0] ? " " : "", behind);
+    int length = json ? asprintf(&text, "%s%s%s", json, behind[0] ? " " : "", behind) : -1;
     free(json);
     return length < 0 ? NULL : text;
 }
@@ -72,13 +72,14 @@ void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *
 void tobi_import_remark(tobi_import *im, const char *key, const char *format, ...)
 {
     for (int i = im->row_count - 1; i >= 0; i--) {
-        const char *dot = strrchr(im->rows[i].from, '.');
+        const char *from = im->rows[i].from, *dot = from ? strrchr(from, '.') : NULL;   /* NULL: no memory */
         if (!dot || strcmp(dot + 1, key) != 0) continue;
         char *remark = NULL;
         va_list args;
         va_start(args, format);
         int length = vasprintf(&remark, format, args);
         va_end(args);
+        im->no_memory |= length < 0;
         if (length < 0) return;
         free(im->rows[i].remark);
         im->rows[i].remark = remark;
@@ -108,7 +109,8 @@ static json_t *find_value(json_t *node, const char *path)
 
 static int limit(size_t length, int most) { return length > (size_t)most ? most : (int)length; }
 
-static void write_row(FILE *out, const tobi_import *im, const tobi_old_row *row, const int width[2])
+/* 0 without memory. */
+static int write_row(FILE *out, const tobi_import *im, const tobi_old_row *row, const int width[2])
 {
     json_t *value = row->path ? find_value(im->native, row->path) : NULL;
     char *text = value ? value_text(value, json_is_string(value) ? NULL : row->unit) : NULL;
@@ -117,6 +119,7 @@ static void write_row(FILE *out, const tobi_import *im, const tobi_old_row *row,
     else fprintf(out, "nothing\n");
     if (row->remark[0]) fprintf(out, "    %s\n", row->remark);
     free(text);
+    return !value || text;
 }
 
 static char *write_table(const tobi_import *im)
@@ -131,9 +134,13 @@ static char *write_table(const tobi_import *im)
         if (from > width[0]) width[0] = from;
         if (value > width[1]) width[1] = value;
     }
-    for (int i = 0; i < im->row_count; i++) write_row(out, im, &im->rows[i], width);
-    fputs(im->closing, out);
-    return fclose(out) == 0 ? text : NULL;
+    int whole = 1;
+    for (int i = 0; i < im->row_count; i++) whole &= write_row(out, im, &im->rows[i], width);
+    whole &= fputs(im->closing, out) >= 0 && !ferror(out);      /* the memory may be too small in between */
+    whole &= fclose(out) == 0;
+    if (whole) return text;
+    free(text);
+    return NULL;
 }
 
 tobi_status tobi_import_finish(tobi_import *im, char **table)

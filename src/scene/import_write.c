@@ -4,32 +4,35 @@
 #include "scene/import.h"
 #include "scene/scene.h"
 #include "scene/write.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-/* "directory/a/b" becomes "a/b"; other paths stay. */
-static void shorten(json_t *object, const char *key, const char *directory)
+/* "directory/a/b" becomes "a/b"; other paths stay. 0 without memory. */
+static int shorten(json_t *object, const char *key, const char *directory)
 {
     const char *path = json_string_value(json_object_get(object, key));
     size_t n = strlen(directory);
-    if (path && strncmp(path, directory, n) == 0 && path[n] == '/' && n > 1)
-        json_object_set_new(object, key, json_string(path + n + 1));
+    if (!path || strncmp(path, directory, n) != 0 || path[n] != '/' || n < 2) return 1;
+    return json_object_set_new(object, key, json_string(path + n + 1)) == 0;
 }
 
-static void shorten_paths(json_t *root, const char *directory)
+static int shorten_paths(json_t *root, const char *directory)
 {
     size_t i;
+    int whole = 1;
     json_t *body;
     json_array_foreach(json_object_get(root, "bodies"), i, body) {
-        shorten(body, "mesh", directory);
-        shorten(json_object_get(body, "motion"), "script", directory);
-        shorten(json_object_get(body, "control"), "script", directory);
+        whole &= shorten(body, "mesh", directory);
+        whole &= shorten(json_object_get(body, "motion"), "script", directory);
+        whole &= shorten(json_object_get(body, "control"), "script", directory);
     }
     json_array_foreach(json_object_get(root, "solids"), i, body) {
         json_t *fill = json_array_get(json_object_get(body, "fill"), 0);
-        shorten(fill, "mesh", directory);
+        whole &= shorten(fill, "mesh", directory);
     }
+    return whole;
 }
 
 /* The table with the paths that the new scene has; owned by the caller, NULL without memory. */
@@ -50,15 +53,43 @@ static char *shorten_table(const char *table, const char *directory)
     return out;
 }
 
+/* Adds a line about a file of `object` that is named by an absolute path; 0 without memory. */
+static int tell_absolute(char **table, json_t *object, const char *key)
+{
+    const char *path = json_string_value(json_object_get(object, key));
+    char *longer;
+    if (!path || path[0] != '/') return 1;
+    if (asprintf(&longer, "%sAbsolute path: %s. To move the new scene, copy this file beside it and name it "
+                 "from there.\n", *table, path) < 0) return 0;
+    free(*table);
+    *table = longer;
+    return 1;
+}
+
+static int tell_absolutes(char **table, json_t *root)
+{
+    size_t i;
+    int whole = 1;
+    json_t *body;
+    json_array_foreach(json_object_get(root, "bodies"), i, body) {
+        whole &= tell_absolute(table, body, "mesh");
+        whole &= tell_absolute(table, json_object_get(body, "motion"), "script");
+        whole &= tell_absolute(table, json_object_get(body, "control"), "script");
+    }
+    json_array_foreach(json_object_get(root, "solids"), i, body)
+        whole &= tell_absolute(table, json_array_get(json_object_get(body, "fill"), 0), "mesh");
+    return whole;
+}
+
 static tobi_status write_scene(const tobi_scene *scene, const char *from, const char *path, char **table,
                                tobi_error *err)
 {
     char *directory = tobi_scene_find_directory(path);
     json_t *root = directory ? json_deep_copy(scene->root) : NULL;
-    if (root) shorten_paths(root, directory);
-    char *text = root ? tobi_write_json(root) : NULL;
+    int whole = root && shorten_paths(root, directory);
+    char *text = whole ? tobi_write_json(root) : NULL;
     *table = text ? shorten_table(scene->import_table, directory) : NULL;
-    if (!*table) {
+    if (!*table || !tell_absolutes(table, root)) {
         free(text);
         text = NULL;
     }
@@ -92,7 +123,7 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
     if (report) *report = NULL;
     if (!force && access(new_path, F_OK) == 0)
         return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
-                         "force to replace it)", new_path);
+                         "--force to replace it)", new_path);
     TOBI_TRY(tobi_scene_load(old_path, NULL, &scene, report, err));
     tobi_status status = TOBI_OK;
     if (!scene->import_table)

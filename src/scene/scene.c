@@ -8,6 +8,7 @@
 #include "world/params.h"
 #include "world/world.h"
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,7 +62,7 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
     const char *also[TOBI_PARTS];
     tobi_part_keys("fluid", also);
     fluid->def = tobi_default_fluid_def();
-    tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
+    fluid->bound = tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
     return read_fills(binder, value, place, "fluid", &fluid->fills, &fluid->fill_count);
 }
 
@@ -235,6 +236,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     json_t *value = json_object_get(scene->root, "output");
     if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
     TOBI_TRY(read_references(scene, &binder, &root));
+    if (scene->texts.failed) return TOBI_NO_MEMORY;
     tobi_scene_check(scene, source);
     return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
 }
@@ -269,7 +271,8 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
     if (source->python)
         status = tobi_import_translate_cut(source, &scene->texts, scene->directory, &scene->import_table);
     else if (tobi_import_applies(source->root))
-        status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table);
+        status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table,
+                                       &scene->stand_ins);
     scene->root = json_incref(source->root);
     if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));
     if (status == TOBI_OK) status = read_scene(scene, source);
@@ -337,6 +340,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->references);
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
+    json_decref(scene->stand_ins);
     json_decref(scene->root);
     free(scene->directory);
     free(scene->import_table);
@@ -370,6 +374,19 @@ static tobi_status add_solid(tobi_world *world, const tobi_scene_solid *solid, t
     return status;
 }
 
+/* A body, and a note if its mesh is not the one that an old scene names; --set may have put that right. */
+static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const tobi_body_def *def,
+                            tobi_error *err)
+{
+    const char *named = json_string_value(json_object_get(scene->stand_ins, def->name));
+    TOBI_TRY(tobi_world_add_body(world, def, err));
+    if (!named || !def->mesh || !strstr(def->mesh, TOBI_STAND_IN)) return TOBI_OK;
+    char text[512];
+    snprintf(text, sizeof text, "there is no mesh %.300s, so the fish that comes with Tobiuo is taken\n",
+             named);
+    return tobi_world_add_notes(world, "body", def->name, text, err);
+}
+
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {
     tobi_world *world;
@@ -377,7 +394,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
     for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
-        status = tobi_world_add_body(world, &scene->bodies[i].def, err);
+        status = add_body(scene, world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
         status = add_fluid(world, &scene->fluids[i], err);
     for (int i = 0; i < scene->solid_count && status == TOBI_OK; i++)

@@ -11,6 +11,7 @@ typedef struct tobi_scene_fill {
 
 typedef struct tobi_scene_fluid {
     tobi_fluid_def def;
+    tobi_bound bound;              /* rows of the fluid table that the file gives */
     tobi_scene_fill *fills;
     int fill_count;
 } tobi_scene_fluid;
@@ -52,6 +53,7 @@ struct tobi_scene {
     int probe_count;
     tobi_output_def output;
     char *import_table;            /* what old keys became; NULL: it was native   */
+    json_t *stand_ins;             /* of a translated scene, see import.h         */
     tobi_reference_def *references;
     int reference_count;
 };

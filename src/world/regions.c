@@ -110,6 +110,23 @@ static tobi_status add_regions(tobi_world *w, const char *kind, const char *name
     return TOBI_OK;
 }
 
+/* All fluids must be of one material. */
+static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
+{
+    const tobi_fluid *first = &w->sim.fluid[0];
+    const char *what = NULL;
+    double value = 0, other = 0;
+#define COMPARE(name_, a_, b_) if (!what && (a_) != (b_)) what = name_, value = (a_), other = (b_)
+    COMPARE("a density in kg/m3", def->density, first->density);
+    COMPARE("a viscosity in Pa s", def->viscosity, first->viscosity);
+    COMPARE("a surface tension in N/m", def->surface_tension, first->tension);
+#undef COMPARE
+    if (!what) return TOBI_OK;
+    return tobi_fail(err, TOBI_UNSUPPORTED, "fluid '%s' differs from '%s': %s of %.10g, there %.10g; %s "
+                     "carries one material, allowed are several fluids with the same values",
+                     def->name ? def->name : "", first->name, what, value, other, w->method->name);
+}
+
 tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
                                  const tobi_fill_def *fills, int fill_count, tobi_error *err)
 {
@@ -119,15 +136,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     if (!(w->method->fields & TOBI_SPH))
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes solids, not fluids; a solid of model liquid is one",
                          w->method->name);
-    if (s->fluid_count > 0 &&
-        (def->density != s->fluid[0].density || def->viscosity != s->fluid[0].viscosity ||
-         def->surface_tension != s->fluid[0].tension))
-        return tobi_fail(
-            err, TOBI_UNSUPPORTED,
-            "fluid '%s' differs from '%s' in density or viscosity or surface tension; "
-            "%s carries one material, "
-            "allowed are several fluids with the same values",
-            def->name ? def->name : "", s->fluid[0].name, w->method->name);
+    if (s->fluid_count > 0) TOBI_TRY(check_material(w, def, err));
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     TOBI_TRY(note_support(w, def, err));

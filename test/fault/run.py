@@ -10,6 +10,8 @@ the middle, once without a fault and then once for each n (every few n, unless -
                 is the reference's or a whole beginning of it; `resume` without a fault ends with the
                 reference's results (or, with nothing to resume, says so in words);
   anything else (a signal, a hang, another code) is a failure.
+A scene of the Taichi program is checked and imported in the same way: after exit code 0 the table or the new
+scene is the reference's, after exit code 1 there is no new scene.
 Prints one line per failure and the counts; exits 1 if there was one.
 """
 import argparse, concurrent.futures, json, os, pathlib, re, shutil, subprocess, sys, tempfile
@@ -28,6 +30,7 @@ SWEEPS = {
     "read-short": ("read", {"FAIL_ERRNO": "5", "FAIL_SHORT": "1"}, 6),
     "libraries": ("libraries", {}, 0),      # by hand: HDF5 1.10 cannot, see docs/architecture.md
 }
+OLD_SWEEPS = {"own": 40, "libraries": 20}      # of check and import, which hold no HDF5
 SCENE = """{ "domain": {"min": [0, 0, 0], "max": [0.3, 0.3, 0.3]}, "spacing": 0.05, "end_time": 0.03,
 "gravity": [0, 0, -9.81], "threads": 1,
 "fluids": [{"name": "water", "density": 1000, "viscosity": 0.001,
@@ -35,6 +38,13 @@ SCENE = """{ "domain": {"min": [0, 0, 0], "max": [0.3, 0.3, 0.3]}, "spacing": 0.
 "bodies": [{"name": "box", "mesh": "box.obj", "translation": [0.15, 0.15, 0.15], "density": 1000,
             "motion": {"script": "swing.lua", "params": {"way": 0.02}}}],
 "output": {"interval": 0.01, "checkpoint_interval": 0.01, "compression": "zlib"} }
+"""
+OLD = """{ "Configuration": { "domainEnd": [0.3, 0.3, 0.3], "particleRadius": 0.025, "viscosity": 1e-6,
+  "gravitation": [0, 0, -9.81], "timeStepSize": 0.001, "cameraPosition": [1, 1, 1] },
+"FluidBlocks": [ { "objectId": 0, "start": [0, 0, 0], "end": [0.3, 0.3, 0.15], "color": [1, 2, 3] } ],
+"RigidBlocks": [ { "start": [0.1, 0.1, 0.16], "end": [0.2, 0.2, 0.2], "isDynamic": true, "density": 500 } ],
+"RigidBodies": [ { "geometryFile": "box.obj", "translation": [0.15, 0.15, 0.24], "velocity": [0, 0, 0],
+  "rotationAngle": 30, "isDynamic": true } ] }
 """
 TIMED = {"summary.json"}
 
@@ -46,6 +56,7 @@ def write_scene(folder):
                                     "".join("f %s\n" % f for f in faces))
     (folder / "swing.lua").write_text("function place(t) return params.way*math.sin(20*t), 0, 0 end\n")
     (folder / "scene.json").write_text(SCENE)
+    (folder / "old.json").write_text(OLD)
 
 
 class Checker:
@@ -60,6 +71,7 @@ class Checker:
         end = json.loads((self.stopped / "resolved.json").read_text())
         end["end_time"] = 0.03
         (self.stopped / "resolved.json").write_text(json.dumps(end))
+        self.old = {c: self.translate(c, folder / "new.json")[1:] for c in ("check", "import")}
         self.files = {p.relative_to(self.reference): p.read_bytes()
                       for p in self.reference.rglob("*") if p.is_file()}
 
@@ -76,6 +88,30 @@ class Checker:
         if must is not None and code != must:
             sys.exit(f"without a fault: tobiuo {' '.join(map(str, arguments))} ended with {code}: {text}")
         return code, text
+
+    def translate(self, command, new, fault=None):
+        """(code, what is to be like the reference, stderr) of `check` or `import` of the old scene."""
+        environment = dict(self.base, **(fault or {}))
+        if fault: environment["LD_PRELOAD"] = str(self.options.preload)
+        arguments = [command, "old.json"] + (["--out", str(new), "--quiet"] if command == "import" else [])
+        done = subprocess.run([str(self.options.tobiuo), *arguments], cwd=self.folder, env=environment,
+                              timeout=100, capture_output=True, stdin=subprocess.DEVNULL)
+        result = new.read_bytes() if new.is_file() else done.stdout if command == "check" else b""
+        if not fault and (done.returncode or not result):
+            sys.exit(f"without a fault: {command} ended with {done.returncode}: {done.stderr}")
+        return done.returncode, result, done.stderr.decode(errors="replace")
+
+    def judge_old(self, command, new, fault):
+        """(code, what is wrong) of `check` or `import` with a fault."""
+        try: code, result, text = self.translate(command, new, fault)
+        except subprocess.TimeoutExpired: return 1, "no end"
+        lines, left = text.splitlines(), [p.name for p in self.folder.glob(f"{new.name}*")]
+        new.unlink(missing_ok=True)
+        if code == 0: return 0, None if result == self.old[command][0] else "exit 0, but the result differs"
+        if code != 1 or not lines: return code, f"exit {code}: {text.strip()[:200]}"
+        if len(lines) > 3 or any(not line.startswith("tobiuo: ") for line in lines):
+            return 1, f"message: {text.strip()[:300]}"
+        return 1, f"{left[0]} is left" if left else None
 
     def differs(self, folder):
         """Names of reference files that the finished folder lacks or has otherwise."""
@@ -132,13 +168,15 @@ class Checker:
         folder = self.folder / f"{command}_{sweep}_{n}"
         log = self.folder / f"{command}_{sweep}_{n}.log"
         fault = dict(extra, FAIL_KIND=kind, FAIL_AT=str(n), FAIL_LOG=str(log))
-        if command == "resume":
+        if command in ("check", "import"):
+            code, wrong = self.judge_old(command, folder.with_suffix(".json"), fault)
+        elif command == "resume":
             shutil.copytree(self.stopped, folder)
             code, text = self.run(["resume", folder], fault)
         else:
             code, text = self.run(["run", "scene.json", "--out", folder, *FRAMES], fault)
         count, call = (log.read_text().split() + ["?", "?"])[:2] if log.is_file() else ("?", "?")
-        wrong = self.judge(code, text, folder)
+        if command in ("run", "resume"): wrong = self.judge(code, text, folder)
         if not self.options.keep:
             shutil.rmtree(folder, ignore_errors=True)
             log.unlink(missing_ok=True)
@@ -164,8 +202,10 @@ def main():
     checker = Checker(options, folder.resolve())
     failures = runs = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for command in ("run", "resume"):
+        for command in ("run", "resume", "check", "import"):
             for sweep, (_, _, wanted) in SWEEPS.items():
+                if command in ("check", "import"): wanted = OLD_SWEEPS.get(sweep)
+                if wanted is None: continue
                 if only and only not in (sweep, f"{command}-{sweep}"): continue
                 if not only and not wanted: continue
                 code, total, _, wrong = checker.one(command, sweep, 0)

@@ -79,6 +79,28 @@ static void the_flying_fish_of_the_users(void **state)
     tobi_scene_free(scene);
 }
 
+/* A misspelt mesh must not become the shipped fish in silence. */
+static void a_run_notes_the_shipped_fish(void **state)
+{
+    (void)state;
+    const char *overrides[] = { "spacing=0.02", "bodies[0].spacing=0.02", NULL, NULL, NULL };
+    for (int right = 0; right < 2; right++) {
+        tobi_world *world;
+        if (right) overrides[3] = "bodies[0].scale=0.05";
+        if (right) overrides[2] = "bodies[0].mesh=" TOBI_SOURCE_DIR "/test/meshes/wedge.obj";
+        tobi_scene *scene = load(OLD "fish.json", overrides);
+        OK(tobi_scene_build(scene, &world, &err));
+        const char *note;
+        int found = 0;
+        for (int i = 0; (note = tobi_world_note(world, i)); i++)
+            found |= strstr(note, "body 'fishbodyWithWing': there is no mesh ") &&
+                     strstr(note, "the fish that comes with Tobiuo is taken");
+        assert_int_equal(found, !right);
+        tobi_world_destroy(world);
+        tobi_scene_free(scene);
+    }
+}
+
 /* What the table must say, key by key. */
 static void the_table_tells_every_key(void **state)
 {
@@ -104,14 +126,15 @@ static void the_table_tells_every_key(void **state)
 static void blocks_with_their_own_values(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5", NULL };
+    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5",
+                                "fluids[1].viscosity=0.5", NULL };
     tobi_scene *scene = load(OLD "blocks_y_up.json", overrides);
     assert_true(tobi_scene_world_def(scene)->spacing == 0.05);       /* overrides are native */
     assert_vector(tobi_scene_world_def(scene)->gravity, 0, -9.81, 0);
     assert_int_equal(scene->fluid_count, 2);                         /* one per colour */
     assert_int_equal(scene->fluids[0].fill_count, 2);
     assert_int_equal(scene->fluids[1].fill_count, 1);
-    assert_true(scene->fluids[0].def.viscosity == 0.5 && scene->fluids[1].def.viscosity == 0);
+    assert_true(scene->fluids[0].def.viscosity == 0.5 && scene->fluids[1].def.viscosity == 0.5);
     const tobi_fill_def *fill = &scene->fluids[0].fills[0].def;
     assert_vector(fill->box_min, 0, 0, 0);
     assert_vector(fill->box_max, 0.2, 0.4, 0.4);
@@ -140,6 +163,39 @@ static void rigid_blocks_are_boxes(void **state)
     assert_int_equal(tobi_world_body(world, 0, &info), TOBI_OK);
     assert_true(fabs(info.volume - 0.1*0.2*0.2) < 1e-12 && fabs(info.mass - 8) < 1e-9);
     assert_true(fabs(info.position[1] - 0.12) < 1e-12);
+    tobi_world_destroy(world);
+    tobi_scene_free(scene);
+}
+
+/* Dynamic bodies are free ones: a box and a mesh fall, the box enters the water. */
+static void the_water_moves_dynamic_bodies(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "RigidBodies[0].isDynamic", "-> bodies[0].dynamics = \"free\"", "1000 kg/m3 is taken",
+        "-> bodies[1].dynamics = \"free\"", "-> bodies[1].velocity = [0.0, -1.5, 0.0] m/s",
+        "of the centre of mass at the start", "-> bodies[1].density = 400.0 kg/m3",
+    };
+    tobi_scene *scene = load(OLD "falling_box.json", NULL);
+    for (size_t i = 0; i < sizeof lines/sizeof *lines; i++)
+        assert_non_null(strstr(tobi_scene_import_table(scene), lines[i]));
+    assert_null(strstr(tobi_scene_import_table(scene), "never moved by it"));
+    assert_int_equal(scene->body_count, 2);
+    assert_true(scene->bodies[0].def.dynamics == TOBI_FREE && scene->bodies[1].def.dynamics == TOBI_FREE);
+    assert_true(scene->bodies[1].def.density == 400);
+    assert_vector(scene->bodies[1].def.velocity, 0, -1.5, 0);
+    tobi_world *world;
+    tobi_body_info before, after;
+    OK(tobi_scene_build(scene, &world, &err));
+    OK(tobi_world_start(world, &err));
+    OK(tobi_world_body(world, 1, &before));
+    for (int i = 0; i < 20; i++) OK(tobi_world_step(world, 0, NULL, &err));
+    OK(tobi_world_body(world, 1, &after));
+    double fallen = before.position[1] - after.position[1];
+    assert_true(fallen > 0.01 && fallen < 0.03);                      /* 0.03 m without the water */
+    assert_true(after.velocity[1] > -1.4 && after.velocity[1] < 0);
+    OK(tobi_world_body(world, 0, &after));
+    assert_true(fabs(after.velocity[1] + 9.81*0.02) < 1e-3);          /* free fall above the water */
     tobi_world_destroy(world);
     tobi_scene_free(scene);
 }
@@ -296,11 +352,27 @@ static void mistakes_of_the_configuration(void **state)
            "Configuration.invisibleObjects: is a number, must be a list", "FluidBlocks: is missing or empty");
 }
 
+static void blocks_of_another_material(void **state)
+{
+    (void)state;
+    EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
+           "\"particleRadius\": 0.1 },\n"
+           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [0.4, 1, 1] },\n"
+           "  { \"start\": [0.6, 0, 0], \"end\": [1, 1, 1], \"density\": 800 } ] }",
+           "old.json:4:56: FluidBlocks[1].density (here fluids[1].density): is 800 kg/m3 and that of "
+           "fluids[0] is 1000 kg/m3; dfsph carries one material");
+}
+
 static void mistakes_of_bodies(void **state)
 {
     (void)state;
-    EXPECT(make("", "\"isDynamic\": true"),
-           "RigidBodies[0].isDynamic: is true: bodies that the water moves are not built yet");
+    EXPECT(make(", \"simulationMethod\": 0", "\"isDynamic\": true"),
+           "RigidBodies[0].isDynamic: is true: the water moves bodies in simulationMethod 4 (DFSPH)");
+    EXPECT(make("", "\"fishLength\": 0.2, \"fishWidth\": 0.1, \"LEPos\": 0.1, \"wingspan\": 0.1,\n"
+                    "\"wingchord\": 1, \"waveLength\": 1, \"freq\": 1, \"amplitude\": 1, \"relax\": 1,\n"
+                    "\"startPosition\": [0, 0, 0], \"swimmingPosition\": [0, 0, 0], \"pitchAngle\": 3,\n"
+                    "\"isDynamic\": true"),
+           "RigidBodies[0].isDynamic: is true, but the keys from fishLength to pitchAngle say how");
     EXPECT(make("", "\"fishLength\": 0.2, \"fishWidth\": 0.1, \"LEPos\": 0.1, \"wingspan\": 0.1,\n"
                     "\"wingchord\": 1, \"waveLength\": 1, \"freq\": 1, \"amplitude\": 1, \"relax\": 1,\n"
                     "\"startPosition\": [0, 0, 0], \"pitchAngle\": 3"),
@@ -309,7 +381,8 @@ static void mistakes_of_bodies(void **state)
            "RigidBodies[0].rotationAngle: is the text \"x\"",
            "RigidBodies[0].density: is 0, allowed is greater than 0");
     EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
-           "\"particleRadius\": 0.1 }, \"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
+           "\"particleRadius\": 0.1, \"simulationMethod\": 0 },\n"
+           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
            "\"RigidBodies\": [ { }, { \"geometryFile\": \"\" }, { \"geometryFile\": 3 } ],\n"
            "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1], \"isDynamic\": true } ] }",
            "RigidBodies[0].geometryFile: is missing", "RigidBodies[1].geometryFile: is empty",
@@ -367,6 +440,7 @@ static void a_written_scene_is_the_same(void **state)
         if (status != TOBI_OK) print_error("%s\n", err.text);
         assert_int_equal(status, TOBI_OK);
         assert_non_null(strstr(table, "Configuration.domainEnd"));
+        assert_int_equal(i == 0, strstr(table, "flying_fish/motion.lua. To move the new scene") != NULL);
         free(table);
         tobi_scene *old = load(names[i], NULL), *new = load(path, NULL);
         assert_null(tobi_scene_import_table(new));
@@ -421,6 +495,7 @@ static void paths_below_the_new_scene_are_relative(void **state)
     OK(tobi_source_read_file(new, &text, &size, &err));
     assert_non_null(strstr(text, "-> bodies[0].mesh = \"wedge.obj\"\n"));
     assert_null(strstr(text, folder));
+    assert_null(strstr(table, "Absolute path"));
     tobi_scene_free(load(new, NULL));
     free(text);
     free(table);
@@ -434,14 +509,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_flying_fish_of_the_users),
+        cmocka_unit_test(a_run_notes_the_shipped_fish),
         cmocka_unit_test(the_table_tells_every_key),
         cmocka_unit_test(blocks_with_their_own_values),
         cmocka_unit_test(rigid_blocks_are_boxes),
+        cmocka_unit_test(the_water_moves_dynamic_bodies),
         cmocka_unit_test(a_turn_is_about_the_mean_of_the_vertices),
         cmocka_unit_test(the_clock),
         cmocka_unit_test(the_other_solver),
         cmocka_unit_test(wrapped_comments),
         cmocka_unit_test(mistakes_of_the_configuration),
+        cmocka_unit_test(blocks_of_another_material),
         cmocka_unit_test(mistakes_of_bodies),
         cmocka_unit_test(later_mistakes),
         cmocka_unit_test(a_tail_that_is_not_clear),

@@ -109,7 +109,7 @@ static void fluids(void **state)
     fluid.density = 800;
     fluid.name = "oil";
     REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_UNSUPPORTED,
-            "fluid 'oil' differs from 'fluid' in density or viscosity");
+            "fluid 'oil' differs from 'fluid': a density in kg/m3 of 800, there 1000; ");
     fluid.density = 1000;
     REFUSED((world->sim.fluid_count = TOBI_FLUID_LIMIT,
              tobi_world_add_fluid(world, &fluid, NULL, 0, &err)), TOBI_UNSUPPORTED, "more than 8 fluids");
