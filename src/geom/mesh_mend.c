@@ -1,11 +1,16 @@
 /* Mending a surface whose edges do not belong to two triangles each, without moving what is closed.
 
    Only vertices on borders are welded, so that thin parts keep their thickness. Edges where several
-   solids touch are taken apart by angle: two triangles with the material between them stay together. */
+   solids, or parts of one, touch are taken apart by angle: two triangles with the material between them
+   stay together. Where the parts hang together around both ends of the edge, doubling its ends would
+   not part them, so all pairs of triangles but one get a middle vertex of their own. Drawback: a few
+   more triangles. */
 #include "geom/mesh_mend.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
 #include <string.h>
+
+#define TURN 6.28318530717958647692
 
 /* Border tolerances tried, as parts of the box: single precision, six and four digits of a text file,
    the chord error of a coarse tessellation. */
@@ -179,24 +184,36 @@ static void measure_angle(const tobi_mesh *mesh, spoke *s)
     s->angle = atan2(vec3_dot(r, y), vec3_dot(r, x));
 }
 
-/* Pairs the triangles around one edge: outward triangles that run along it have their material on the
-   side of smaller angles, so each goes with the nearest one below that runs against it. */
-static void pair_spokes(const spoke *s, int64_t n, int32_t *opposite)
+/* Pairs outward triangles that run along an edge with the nearest one below (way -1, the side of their
+   material) or above (way 1, the side of the air) that runs against it. Returns the widest angle within a
+   pair. */
+static double pair_spokes(const spoke *s, int64_t n, int way, int32_t *opposite)
 {
-    int64_t balance = 0;
-    for (int64_t i = 0; i < n; i++) balance += s[i].along ? 1 : -1;
-    if (balance || n < 4) return;
+    double widest = 0;
     for (int64_t i = 0; i < n; i++) {
         if (!s[i].along) continue;
         int64_t depth = 0, j = i;
         do {
             depth += s[j].along ? 1 : -1;
             if (!depth) break;
-            j = (j + n - 1) % n;
+            j = (j + n + way) % n;
         } while (j != i);
         opposite[s[i].half] = s[j].half;
         opposite[s[j].half] = s[i].half;
+        double angle = way*(s[j].angle - s[i].angle);
+        widest = fmax(widest, angle < 0 ? angle + TURN : angle);
     }
+    return widest;
+}
+
+/* The pseudonormal of a pair of triangles tells inside from outside around their edge only for the pair's
+   own wedge, so that is the narrow one: material, or air if a part has more than 180 degrees there. */
+static void pair_edge(const spoke *s, int64_t n, int32_t *opposite)
+{
+    int64_t balance = 0;
+    for (int64_t i = 0; i < n; i++) balance += s[i].along ? 1 : -1;
+    if (balance || n < 4) return;
+    if (pair_spokes(s, n, -1, opposite) > TURN/2) pair_spokes(s, n, 1, opposite);
 }
 
 /* Gives every fan of triangles that hang together around a vertex a vertex of its own. */
@@ -244,11 +261,15 @@ static tobi_status split_vertices(tobi_mesh *mesh, const int32_t *opposite)
     return TOBI_OK;
 }
 
-static tobi_status split_crowded(tobi_mesh *mesh, int32_t (*opposite)[3], int64_t crowded)
+/* The half-edges of crowded edges, by edge and by angle around it; *out is malloced. */
+static tobi_status find_spokes(const tobi_mesh *mesh, const int32_t (*opposite)[3], spoke **out,
+                               int64_t *count)
 {
     int64_t n = 0;
     for (int64_t h = 0; h < 3*mesh->triangle_count; h++) n += opposite[h/3][h % 3] == TOBI_EDGE_CROWDED;
     spoke *s = malloc((size_t)(n + 1)*sizeof *s);
+    *out = s;
+    *count = n;
     if (!s) return TOBI_NO_MEMORY;
     n = 0;
     for (int64_t h = 0; h < 3*mesh->triangle_count; h++) {
@@ -258,14 +279,93 @@ static tobi_status split_crowded(tobi_mesh *mesh, int32_t (*opposite)[3], int64_
         measure_angle(mesh, &s[n++]);
     }
     qsort(s, (size_t)n, sizeof *s, compare_edges);
+    return TOBI_OK;
+}
+
+static int64_t end_of_edge(const spoke *s, int64_t i, int64_t n)
+{
+    int64_t j = i + 1;
+    while (j < n && s[j].low == s[i].low && s[j].high == s[i].high) j++;
+    return j;
+}
+
+/* Parts the edges by doubling the vertices at their ends; opposite receives the pairs of triangles. */
+static tobi_status split_edges(tobi_mesh *mesh, int32_t (*opposite)[3])
+{
+    spoke *s;
+    int64_t n;
+    TOBI_TRY(find_spokes(mesh, (const int32_t (*)[3])opposite, &s, &n));
     for (int64_t i = 0, j; i < n; i = j) {
-        for (j = i + 1; j < n && s[j].low == s[i].low && s[j].high == s[i].high; j++) {}
-        pair_spokes(s + i, j - i, &opposite[0][0]);
+        j = end_of_edge(s, i, n);
+        pair_edge(s + i, j - i, &opposite[0][0]);
     }
     free(s);
-    tobi_mesh_note(mesh, "%lld edges with more than two triangles taken apart: parts that touch there "
-                   "are separate solids", (long long)crowded);
     return split_vertices(mesh, &opposite[0][0]);
+}
+
+/* Cuts a triangle from the middle m of its half-edge to the corner across. */
+static void cut_triangle(tobi_mesh *mesh, int32_t half, int32_t m)
+{
+    int32_t *t = mesh->triangles[half/3], *new = mesh->triangles[mesh->triangle_count++];
+    int k = half % 3, next = (k + 1) % 3;
+    new[0] = m;
+    new[1] = t[next];
+    new[2] = t[(k + 2) % 3];
+    t[next] = m;
+}
+
+/* Parts the edges that still are crowded (now) by middle vertices for all pairs (paired) but the first. A
+   triangle is cut once in a call; *cuts is how many pairs were. */
+static tobi_status cut_edges(tobi_mesh *mesh, const int32_t (*now)[3], const int32_t *paired, int64_t *cuts)
+{
+    spoke *s;
+    int64_t n, room = mesh->triangle_count;
+    *cuts = 0;
+    TOBI_TRY(find_spokes(mesh, now, &s, &n));
+    char *touched = calloc((size_t)room + 1, 1);
+    int32_t (*triangles)[3] = realloc(mesh->triangles, (size_t)(room + n + 1)*sizeof *triangles);
+    if (triangles) mesh->triangles = triangles;
+    double (*vertices)[3] = realloc(mesh->vertices, (size_t)(mesh->vertex_count + n + 1)*sizeof *vertices);
+    if (vertices) mesh->vertices = vertices;
+    int fits = touched && triangles && vertices && 3*(room + n) <= INT32_MAX;
+    for (int64_t i = 0, j; fits && i < n; i = j) {
+        j = end_of_edge(s, i, n);
+        for (int64_t k = i, pairs = 0; k < j; k++) {
+            int32_t h = s[k].half, g = paired[h];
+            if (!s[k].along || g < 0 || !pairs++ || touched[h/3] || touched[g/3]) continue;
+            int32_t m = (int32_t)mesh->vertex_count++;
+            const double *a = mesh->vertices[s[k].low], *b = mesh->vertices[s[k].high];
+            for (int c = 0; c < 3; c++) mesh->vertices[m][c] = 0.5*(a[c] + b[c]);
+            cut_triangle(mesh, h, m);
+            cut_triangle(mesh, g, m);
+            touched[h/3] = touched[g/3] = 1;
+            ++*cuts;
+        }
+    }
+    free(touched);
+    free(s);
+    return fits ? TOBI_OK : TOBI_NO_MEMORY;
+}
+
+/* Takes edges apart until none is crowded, or only such where no pairs can be made. opposite is that of
+   the mesh and is freed. */
+static tobi_status part_crowded(tobi_mesh *mesh, int32_t (*opposite)[3], tobi_edge_report report)
+{
+    tobi_status status = TOBI_OK;
+    tobi_mesh_note(mesh, "%lld edges with more than two triangles taken apart: parts that touch there stay "
+                   "apart", (long long)report.crowded);
+    for (int64_t cuts = 1; status == TOBI_OK && report.crowded && cuts;) {
+        int32_t (*now)[3] = NULL;
+        cuts = 0;
+        status = split_edges(mesh, opposite);
+        if (status == TOBI_OK) status = count_faults(mesh, &now, &report);
+        if (status == TOBI_OK && report.crowded)
+            status = cut_edges(mesh, (const int32_t (*)[3])now, &opposite[0][0], &cuts);
+        free(now);
+        if (status == TOBI_OK && cuts) status = count_faults(mesh, &opposite, &report);
+    }
+    free(opposite);
+    return status;
 }
 
 tobi_status tobi_mesh_mend(tobi_mesh *mesh)
@@ -282,7 +382,7 @@ tobi_status tobi_mesh_mend(tobi_mesh *mesh)
         if (status == TOBI_OK) status = drop_double_triangles(mesh);
         if (status == TOBI_OK) status = count_faults(mesh, &opposite, &report);
     }
-    if (status == TOBI_OK && report.crowded) status = split_crowded(mesh, opposite, report.crowded);
+    if (status == TOBI_OK && report.crowded) return part_crowded(mesh, opposite, report);
     free(opposite);
     return status;
 }

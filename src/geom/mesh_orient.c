@@ -68,9 +68,8 @@ static tobi_status fail_crowded(const tobi_mesh *mesh, const char *name, const t
     const double *a = mesh->vertices[r->ends[0]], *b = mesh->vertices[r->ends[1]];
     return tobi_fail(err, TOBI_INVALID, "mesh '%s' does not say what is inside: %lld edges with more than "
                      "two triangles and %lld with one, the first from (%.6g, %.6g, %.6g) to "
-                     "(%.6g, %.6g, %.6g): sheets without thickness? A closed surface is needed (%lld "
-                     "triangles were read)", name, (long long)r->crowded, (long long)r->open, a[0], a[1],
-                     a[2], b[0], b[1], b[2], (long long)mesh->triangle_count);
+                     "(%.6g, %.6g, %.6g): sheets without thickness? A closed surface is needed",
+                     name, (long long)r->crowded, (long long)r->open, a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
 /* True if half-edges h and g run from the same vertex, that is, if their triangles disagree. */

@@ -11,6 +11,8 @@
 #include <sys/types.h>
 
 #define DEGREE (3.14159265358979323846/180)
+/* Bound of all numbers and rates: cubes of such numbers are finite, so the curve is. */
+#define LARGEST 1e30
 enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64 };
 
 typedef enum column {
@@ -19,6 +21,10 @@ typedef enum column {
 
 static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
                                                   "ax",   "ay", "az", "angle", "roll", "pitch", "yaw"};
+
+/* The units that a column's name may bring along, as in "x [m]". */
+static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
+static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
 
 typedef struct keyframe {
     double time, shift[3], turn[4];     /* s, m, unit quaternion                       */
@@ -101,10 +107,42 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     return TOBI_OK;
 }
 
+static const char *const *column_units(column c)
+{
+    if (c == TIME) return time_units;
+    if (c <= Z) return length_units;
+    return c < ANGLE ? plain_units : angle_units;
+}
+
+/* "x [m]" becomes "x"; returns "m]", or NULL if the name brings no unit. */
+static char *split_unit(char *field)
+{
+    char *unit = strchr(field, '['), *end = unit;
+    if (!unit) return NULL;
+    while (end > field && end[-1] == ' ') end--;
+    *end = 0;
+    return unit + 1;
+}
+
+/* Another unit than the column's own would be misread, so it is refused. */
+static tobi_status check_unit(const reader *r, char *unit, column c, tobi_error *err)
+{
+    const char *const *units = column_units(c);
+    size_t n = strlen(unit);
+    if (n < 2 || unit[n - 1] != ']') return fail_here(r, err, "no ] after the unit [", unit);
+    unit[n - 1] = 0;
+    for (int k = 0; units[k]; k++)
+        if (strcmp(unit, units[k]) == 0) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: column %s is in [%.40s]; allowed is [%s] or no "
+                     "unit", r->path, (long long)r->line, column_names[c], unit, units[0]);
+}
+
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
 {
     char *rest = line;
     for (char *field; (field = next_field(&rest)) != NULL;) {
+        char *unit = split_unit(field);
+        if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
         for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
             if (strcasecmp(field, column_names[c]) == 0) found = c;
@@ -112,6 +150,7 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
             return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: there is no column \"%.40s\"; allowed "
                              "are time (s), x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, "
                              "pitch, yaw (degrees)", r->path, (long long)r->line, field);
+        if (unit) TOBI_TRY(check_unit(r, unit, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
     }
@@ -129,6 +168,10 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
         if (end == field || *end || !isfinite(x))
             return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: \"%.40s\" in column %s is no finite "
                              "number", r->path, (long long)r->line, field, column_names[r->meaning[n]]);
+        if (fabs(x) > LARGEST)
+            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: %.4g in column %s is too large; allowed "
+                             "is up to %g", r->path, (long long)r->line, x, column_names[r->meaning[n]],
+                             LARGEST);
         value[r->meaning[n]] = x;
     }
     if (n == r->fields && !field) return TOBI_OK;
@@ -160,6 +203,32 @@ static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[
     return TOBI_OK;
 }
 
+/* Mean rates of the piece from row i to the next. */
+static void mean_rates(const keyframe *k, double velocity[3], double spin[3])
+{
+    double h = k[1].time - k[0].time;
+    between(k[0].turn, k[1].turn, spin);
+    for (int a = 0; a < 3; a++) {
+        velocity[a] = (k[1].shift[a] - k[0].shift[a])/h;
+        spin[a] /= h;
+    }
+}
+
+/* Rows so close in time, or so far apart in space, that the rate between them is no useful number. */
+static tobi_status check_rates(const reader *r, const keyframe *k, tobi_error *err)
+{
+    double velocity[3], spin[3];
+    mean_rates(k, velocity, spin);
+    for (int a = 0; a < 3; a++) {
+        if (fabs(velocity[a]) <= LARGEST && fabs(spin[a]) <= LARGEST) continue;
+        int turns = fabs(velocity[a]) <= LARGEST;
+        return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: from %.10g s of the row before to %.10g s "
+                         "the body %s too fast; allowed is up to %g %s", r->path, (long long)r->line,
+                         k[0].time, k[1].time, turns ? "turns" : "moves", LARGEST, turns ? "rad/s" : "m/s");
+    }
+    return TOBI_OK;
+}
+
 static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, char *line, tobi_error *err)
 {
     double value[COLUMNS] = {0};
@@ -180,7 +249,7 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
         *room = 2**room + 64;
     }
     f->rows[f->count++] = row;
-    return TOBI_OK;
+    return f->count > 1 ? check_rates(r, f->rows + f->count - 2, err) : TOBI_OK;
 }
 
 static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_error *err)
@@ -194,7 +263,8 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
         r->line++;
         if (r->line == 1 && n >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) text += 3;   /* byte order mark */
         text += strspn(text, " \r\n");
-        if (strlen(line) != (size_t)n) status = fail_here(r, err, "holds a zero byte: not a text file", "");
+        if (strlen(line) != (size_t)n)
+            status = fail_here(r, err, "holds a zero byte: no plain text, or UTF-16; save it as UTF-8", "");
         else if (!*text || *text == '#') continue;
         else if (!r->fields) status = read_header(r, text, err);
         else status = add_row(f, &room, r, text, err);
@@ -211,17 +281,6 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
 /* --- slopes and curves -------------------------------------------------------------------- */
 
 static int is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
-
-/* Mean rates of the piece from row i to the next. */
-static void mean_rates(const keyframe *k, double velocity[3], double spin[3])
-{
-    double h = k[1].time - k[0].time;
-    between(k[0].turn, k[1].turn, spin);
-    for (int a = 0; a < 3; a++) {
-        velocity[a] = (k[1].shift[a] - k[0].shift[a])/h;
-        spin[a] /= h;
-    }
-}
 
 /* Slope of the parabola through three rows at the middle one, from the mean rates beside it; 0 next to a
    piece that stands still. */

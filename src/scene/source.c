@@ -431,6 +431,13 @@ static size_t find_duplicates(tobi_source *source, const tobi_place *place, size
     return at + (text[at] == '}');
 }
 
+/* Windows editors call it "Unicode"; with its mark, or a first letter of two bytes without one. */
+static int is_utf16(const char *text, size_t size)
+{
+    if (size < 2) return 0;
+    return memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0 || (!text[0] != !text[1]);
+}
+
 /* The text as plain JSON. */
 static tobi_status take_text(tobi_source *source, const char *text, size_t size, tobi_error *err)
 {
@@ -455,6 +462,10 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     *source = (tobi_source){ .report = report, .python = tobi_python_applies(name) };
     source->name = strdup(name);
     if (!source->name) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
+    if (is_utf16(text, size)) {
+        tobi_report_add(report, 0, "%s:1:1: the file is in UTF-16; a scene must be saved as UTF-8", name);
+        return TOBI_INVALID;
+    }
     TOBI_TRY(take_text(source, text, size, err));
     size = source->size;
 
@@ -464,7 +475,8 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
         tobi_report_add(report, 0, "%s:%d:%d: not valid JSON: %s%s", name,
                         mistake.line > 0 ? mistake.line : 1,
                         mistake.column > 0 ? mistake.column : 1, mistake.text,
-                        hint_at_line(source->text, size, mistake.line));
+                        strstr(mistake.text, "unable to decode") ? "; a scene must be saved as UTF-8"
+                            : hint_at_line(source->text, size, mistake.line));
         return TOBI_INVALID;
     }
     tobi_place root = { 0 };

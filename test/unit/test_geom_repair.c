@@ -283,20 +283,168 @@ static void double_triangles_and_touching_solids(void **state)
     tobi_mesh_free(&mesh);
 }
 
-/* Cubes on a grid of 2 x 2 x 3, the middle layer only on one diagonal: they touch along an edge whose ends
-   lie within the solid, so no vertex there can be doubled. */
-static void an_edge_that_cannot_be_taken_apart_is_refused(void **state)
+/* Cubes of side 1 where solid is set, as one surface without the walls between them. */
+static tobi_mesh make_voxels(const int size[3], const char *solid)
+{
+    tobi_mesh all = {0};
+    for (int i = 0; i < size[0]*size[1]*size[2]; i++) {
+        double low[3] = {i % size[0], i/size[0] % size[1], i/size[0]/size[1]};
+        if (solid[i]) all = join_meshes(all, make_box(low, (double[3]){low[0] + 1, low[1] + 1, low[2] + 1}));
+    }
+    return rebuild(all);
+}
+
+static void is_closed(const tobi_mesh *mesh)
+{
+    tobi_edge_report report;
+    int32_t (*opposite)[3] = malloc((size_t)mesh->triangle_count*sizeof *opposite);
+    OK(tobi_edges_match(mesh->vertex_count, mesh->triangle_count, (const int32_t (*)[3])mesh->triangles,
+                        opposite, &report));
+    assert_int_equal(report.open + report.crowded, 0);
+    free(opposite);
+}
+
+/* Eight cubes in a chain around an edge of which two touch, but only along it: one solid, and the vertices
+   at both ends of the edge hang together, so that doubling them would not part it. */
+static void a_solid_may_touch_itself_along_an_edge(void **state)
 {
     (void)state;
-    static const char solid[3][2][2] = {{{1, 1}, {1, 1}}, {{1, 0}, {0, 1}}, {{1, 1}, {1, 1}}};
-    tobi_mesh all = {0}, mesh;
-    for (int i = 0; i < 12; i++) {
-        double low[3] = {i % 2, i/2 % 2, i/4}, high[3] = {low[0] + 1, low[1] + 1, low[2] + 1};
-        if (solid[i/4][i/2 % 2][i % 2]) all = join_meshes(all, make_box(low, high));
+    static const char chain[] = {1, 0, 1, 1,  1, 0, 0, 1,  1, 1, 0, 1};
+    tobi_mesh mesh = make_voxels((int[3]){2, 2, 3}, chain);
+    OK(tobi_mesh_orient(&mesh, "chain", &err));
+    is_closed(&mesh);
+    has_volume(&mesh, 8, 1e-14);
+    assert_false(mesh.overlapping);
+    says(&mesh, "1 edges with more than two triangles taken apart");
+    OK(tobi_mesh_refine(&mesh, 0.3, &err));
+    is_closed(&mesh);
+    has_volume(&mesh, 8, 1e-13);
+    tobi_mesh_free(&mesh);
+}
+
+/* Of each of n^3 cubes six tetrahedra, from (0, 0, 0) along the axes in one order each; those where solid
+   is set, as one surface without the walls between them. */
+static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
+
+static tobi_mesh make_sponge(int n, const char *solid)
+{
+    static const int32_t face[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+    int64_t count = 6*n*n*n, kept = 0;
+    double (*v)[3] = calloc((size_t)(4*count), sizeof *v);
+    int32_t (*t)[3] = calloc((size_t)(4*count), sizeof *t);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t cell = i/6;
+        if (!solid[i]) continue;
+        for (int k = 0; k < 4; k++) {
+            double *x = v[4*kept + k];
+            memcpy(x, (double[3]){cell % n, cell/n % n, cell/n/n}, sizeof *v);
+            for (int a = 0; a < k; a++) x[orders[i % 6][a]]++;
+            int32_t *f = t[4*kept + k];
+            for (int c = 0; c < 3; c++) f[c] = (int32_t)(4*kept) + face[k][c];
+            if (i % 6 >= 3) turn(f);      /* an odd order mirrors the tetrahedron */
+        }
+        kept++;
     }
-    mesh = rebuild(all);
-    REFUSED(tobi_mesh_orient(&mesh, "grid", &err), TOBI_INVALID,
-            "1 edges with more than two triangles and 0");
+    tobi_mesh mesh;
+    OK(tobi_mesh_build("sponge", 4*kept, (const double (*)[3])v, 4*kept, (const int32_t (*)[3])t, &mesh,
+                       &err));
+    free(v);
+    free(t);
+    return mesh;
+}
+
+/* Which tetrahedron of make_sponge holds x. */
+static int find_tetrahedron(int n, const double x[3])
+{
+    int cell = 0, order = 0;
+    double r[3];
+    for (int k = 2; k >= 0; k--) {
+        cell = n*cell + (int)x[k];
+        r[k] = x[k] - (int)x[k];
+    }
+    for (; order < 5; order++) {
+        const int *axis = orders[order];
+        if (r[axis[0]] >= r[axis[1]] && r[axis[1]] >= r[axis[2]]) break;
+    }
+    return 6*cell + order;
+}
+
+/* A sponge of tetrahedra touches itself along many edges, with two and three pairs of triangles, with wedges
+   above 180 degrees, and with several such edges of one triangle; whichever way its triangles look. */
+static void sponges_keep_their_volume(void **state)
+{
+    (void)state;
+    enum { N = 6 };
+    uint64_t seed = 11;
+    for (int round = 0; round < 8; round++) {
+        char solid[6*N*N*N];
+        int count = 0;
+        for (int i = 0; i < 6*N*N*N; i++) count += solid[i] = random_number(&seed) < 0.2*(round % 4) - 0.1;
+        tobi_mesh mesh = make_sponge(N, solid);
+        tobi_bvh *bvh;
+        for (int64_t t = 0; round >= 4 && t < mesh.triangle_count; t++) turn(mesh.triangles[t]);
+        OK(tobi_mesh_orient(&mesh, "sponge", &err));
+        is_closed(&mesh);
+        has_volume(&mesh, count/6., 1e-13);
+        assert_false(mesh.overlapping);
+        OK(tobi_bvh_build(mesh.vertex_count, (const double (*)[3])mesh.vertices, mesh.triangle_count,
+                          (const int32_t (*)[3])mesh.triangles, &bvh, &err));
+        for (int i = 0; i < 3000; i++) {
+            double x[3];
+            random_point(&seed, 0.5*N, x);
+            for (int k = 0; k < 3; k++) x[k] += 0.5*N;
+            int in = solid[find_tetrahedron(N, x)];
+            assert_int_equal(tobi_bvh_winding(bvh, x), in);
+            assert_int_equal(tobi_bvh_inside(bvh, x), in);
+        }
+        tobi_bvh_free(bvh);
+        tobi_mesh_free(&mesh);
+    }
+}
+
+/* A blade whose edge lies in the inner corner of an L, whose own edge there has 270 degrees: near it the
+   nearest feature may be of the blade or of the L, and both must tell inside from outside. */
+static void a_blade_in_a_corner(void **state)
+{
+    (void)state;
+    static const char corner[] = {1, 1, 1, 0};
+    static const double v[6][3] = {{1, 1, 0}, {2, 1.2, 0}, {1.2, 2, 0}, {1, 1, 1}, {2, 1.2, 1}, {1.2, 2, 1}};
+    static const int32_t t[8][3] = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                                    {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+    tobi_mesh mesh, blade;
+    tobi_bvh *bvh;
+    uint64_t seed = 5;
+    OK(tobi_mesh_build("blade", 6, v, 8, t, &blade, &err));
+    mesh = rebuild(join_meshes(make_voxels((int[3]){2, 2, 1}, corner), blade));
+    OK(tobi_mesh_orient(&mesh, "corner", &err));
+    is_closed(&mesh);
+    has_volume(&mesh, 3 + 0.48, 1e-14);
+    OK(tobi_bvh_build(mesh.vertex_count, (const double (*)[3])mesh.vertices, mesh.triangle_count,
+                      (const int32_t (*)[3])mesh.triangles, &bvh, &err));
+    for (int i = 0; i < 20000; i++) {
+        double x[3];
+        random_point(&seed, 0.5, x);
+        double a = x[0], b = x[1];      /* from the edge */
+        int in_blade = 5*b > a && 5*a > b && a + b < 1.2;
+        for (int k = 0; k < 3; k++) x[k] += k < 2 ? 1 : 0.5;
+        assert_int_equal(tobi_bvh_inside(bvh, x), a < 0 || b < 0 || in_blade);
+    }
+    tobi_bvh_free(bvh);
+    tobi_mesh_free(&mesh);
+}
+
+/* A wall without thickness between two rooms: three triangles at its edges, and a second surface over it
+   when the rooms are closed. */
+static void sheets_within_a_solid_are_refused(void **state)
+{
+    (void)state;
+    tobi_mesh mesh = rebuild(join_meshes(make_cube(1), make_box((double[3]){1, -1, -1},
+                                                                (double[3]){3, 1, 1})));
+    /* make_box's triangles 8 and 9 close the lower x */
+    memmove(mesh.triangles + 20, mesh.triangles + 22, 2*sizeof *mesh.triangles);
+    mesh.triangle_count = 22;
+    REFUSED(tobi_mesh_orient(&mesh, "wall", &err), TOBI_INVALID,
+            "1 edges with more than two triangles and 0 with one, the first from (1, 1, -1)");
     tobi_mesh_free(&mesh);
 }
 
@@ -333,7 +481,10 @@ int main(void)
         cmocka_unit_test(borders_that_nearly_meet_are_welded),
         cmocka_unit_test(cracks_between_tessellations_are_closed),
         cmocka_unit_test(double_triangles_and_touching_solids),
-        cmocka_unit_test(an_edge_that_cannot_be_taken_apart_is_refused),
+        cmocka_unit_test(a_solid_may_touch_itself_along_an_edge),
+        cmocka_unit_test(sponges_keep_their_volume),
+        cmocka_unit_test(a_blade_in_a_corner),
+        cmocka_unit_test(sheets_within_a_solid_are_refused),
         cmocka_unit_test(odd_sizes_ask_about_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

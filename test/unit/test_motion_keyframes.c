@@ -108,6 +108,18 @@ static void standing_still_is_exact(void **state)
     tobi_motion_free(m);
 }
 
+static void names_may_bring_their_units(void **state)
+{
+    (void)state;
+    tobi_motion *m = load("time [s],\"x [m]\",Y[m],qw [1],qx,qy,qz [1]\n"
+                          "0,0,0,1,0,0,0\n2,1,4,1,0,0,0\n", NULL);
+    AT(m, 0.5, 0, 0, 0, 0.25, 1, 0);
+    tobi_motion_free(m);
+    m = load("t [s]\troll [deg]\tyaw  [degrees]\n0\t90\t0\n", NULL);
+    AT(m, 0, 0, 1, 0, 0, 0, 1);
+    tobi_motion_free(m);
+}
+
 /* Rates of both sides of a row agree, for turns about changing axes too. */
 static void rates_do_not_jump_at_rows(void **state)
 {
@@ -179,6 +191,18 @@ static void bad_files_are_named_with_their_line(void **state)
         {"time,x\n0,1\n0,2\n", "rows.csv:3: time 0 s does not come after 0 s"},
         {"time,qw,qx,qy,qz\n0,0,0,0,0\n", "no length"},
         {"time,ax,ay,az,angle\n0,0,0,0,5\n", "no length"},
+        {"time,x,\n0,1\n", "rows.csv:1: an empty column name (a comma too many?)"},
+        {"time [s],x [mm]\n0,1\n", "rows.csv:1: column x is in [mm]; allowed is [m] or no unit"},
+        {"time [ms],x\n0,1\n", "column time is in [ms]; allowed is [s]"},
+        {"time,yaw [rad]\n0,1\n", "column yaw is in [rad]; allowed is [degrees]"},
+        {"time,x [m\n0,1\n", "rows.csv:1: no ] after the unit [m"},
+        {"time,[m]\n0,1\n", "rows.csv:1: an empty column name"},
+        {"time,x\n0,1\n1,-2e30\n", "rows.csv:3: -2e+30 in column x is too large; allowed is up to 1e+30"},
+        {"time,x\n0,0\n1e-200,1e25\n1,0\n", "rows.csv:3: from 0 s of the row before to 1e-200 s the body "
+         "moves too fast; allowed is up to 1e+30 m/s"},
+        {"time,x\n0,0\n1e-310,1e-10\n", "rows.csv:3: from 0 s"},
+        {"time,yaw\n0,0\n1e-40,90\n", "rows.csv:3: from 0 s of the row before to 1e-40 s the body turns too "
+         "fast; allowed is up to 1e+30 rad/s"},
     };
     const double none[3] = {0, 0, 0};
     tobi_motion *m;
@@ -192,6 +216,11 @@ static void bad_files_are_named_with_their_line(void **state)
             fail_msg("<%s>: \"%s\" does not say \"%s\"", bad[i].text, err.text, bad[i].says);
         assert_null(m);
     }
+    FILE *f = fopen("rows.csv", "w");
+    fwrite("t\0,\0x\0\n\0", 1, 8, f);
+    fclose(f);
+    assert_int_equal(tobi_motion_keyframes("rows.csv", none, &m, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "rows.csv:1: holds a zero byte: no plain text, or UTF-16"));
     assert_int_equal(tobi_motion_keyframes("nowhere.csv", none, &m, &err), TOBI_NOT_FOUND);
 }
 
@@ -202,6 +231,7 @@ int main(void)
         cmocka_unit_test(a_constant_turn_is_met_exactly),
         cmocka_unit_test(roll_comes_before_pitch_before_yaw),
         cmocka_unit_test(standing_still_is_exact),
+        cmocka_unit_test(names_may_bring_their_units),
         cmocka_unit_test(rates_do_not_jump_at_rows),
         cmocka_unit_test(finer_rows_come_closer),
         cmocka_unit_test(bad_files_are_named_with_their_line),

@@ -441,7 +441,13 @@ static void syntax(void **state)
     SYNTAX("{ \"a\": 1e999 }", "s.json:1:12: not valid JSON: real number overflow");
     SYNTAX("{ \"a\": 99999999999999999999999999 }", "s.json:1:");
     SYNTAX("{ \"a\": NaN }", "s.json:1:");
-    SYNTAX("{\n \"a\": \"\xFF\xFE\" }", "s.json:2:");
+    SYNTAX("{\n \"a\": \"\xFF\xFE\" }",
+           "s.json:2:7: not valid JSON: unable to decode byte 0xff near '\"'; a scene must be "
+           "saved as UTF-8");
+    SYNTAX("\xFF\xFE{\0 \0}\0", "s.json:1:1: the file is in UTF-16; a scene must be saved as UTF-8");
+    SYNTAX("\xFE\xFF\0{\0 \0}", "s.json:1:1: the file is in UTF-16");
+    SYNTAX("{\0 \0}\0", "s.json:1:1: the file is in UTF-16");
+    SYNTAX("\0{\0 \0}", "s.json:1:1: the file is in UTF-16");
     SYNTAX("{ \"a\": \"\\u0000\" }", "s.json:1:");
     SYNTAX("{ \"a\": 1 }\0{ }", "s.json:1:");
     SYNTAX("{ } x", "s.json:1:");
