@@ -52,7 +52,7 @@ class Case:
         self.folder = pathlib.Path(__file__).resolve().parent / name
         self.begin = time.monotonic()
         self.rows, self.broken, self.commands, self.plots = [], 0, [], []
-        self.referred = False
+        self.referred = self.writes_scenes = False
         self.temporary = None
         if self.args.out:
             self.out = pathlib.Path(self.args.out)
@@ -110,6 +110,7 @@ class Case:
     def write_scene(self, label, content):
         """A scene made by the case, for run(): a dictionary."""
         self.out.mkdir(parents=True, exist_ok=True)
+        self.writes_scenes = True
         path = self.out / f"{label}.json"
         path.write_text(json.dumps(content, indent=1))
         return path
@@ -162,6 +163,8 @@ class Case:
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
                   *["    " + c for c in self.commands], "",
+                  *([f"`test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR` leaves the scenes that it writes in DIR.",
+                     ""] if self.writes_scenes else []),
                   f"Commit: {self.commit}. Machine: {self.machine}."]
         (VALIDATION / f"{self.name}.md").write_text("\n".join(lines) + "\n")
 

@@ -13,7 +13,7 @@ Levels at x = 300, 865, 1114 and 1362.5 mm: arrival is the first level above 20 
 or until the same time after the computed arrival as after the measured one, so that a lead in time does not count
 twice. Experiment: L. Lobovsky, E. Botia-Vera, F. Castellana, J. Mas-Soler, A. Souto-Iglesias, Ocean Eng. 82 (2014) 150,
 two campaigns averaged for the levels, the event with the median peak of P1 for the pressures. P1 sits 3 mm above the
-floor, below the lowest particle of this run: stated only. Its goal is for a 2-D run at 5 mm (smoke size: 10 mm), without the friction of side walls.""")
+floor, below the lowest particle of this run: stated only. Its goal is for a 2-D run at 5 mm (smoke size: 10 mm).""")
 
 H, G = 0.3, 9.81
 TO_T = (G/H)**0.5
