@@ -4,24 +4,32 @@
 
 enum { PAD_ROWS = 16 };
 
+static size_t bytes_of(int64_t rows, size_t row) { return (((size_t)rows + PAD_ROWS)*row + 63)/64*64; }
+
+static void *make_zero(int64_t rows, size_t row)
+{
+    void *data = aligned_alloc(64, bytes_of(rows, row));
+    if (data) memset(data, 0, bytes_of(rows, row));
+    return data;
+}
+
+static tobi_status give_up(tobi_particles *p, int64_t rows, int owners, tobi_error *err)
+{
+    tobi_particles_free(p);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)", (long long)rows,
+                     (long long)tobi_particles_row_bytes(owners));
+}
+
 tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err)
 {
+    int failed = 0;
     memset(p, 0, sizeof *p);
     p->capacity = capacity;
-    size_t rows = (size_t)capacity + PAD_ROWS;
-    int failed = 0;
 #define X(type, name, life, owner, unit, doc)                                          \
-    if ((owner) & owners) {                                                       \
-        p->name = aligned_alloc(64, (rows*sizeof(type) + 63)/64*64);            \
-        if (p->name) memset(p->name, 0, (rows*sizeof(type) + 63)/64*64);        \
-        else failed = 1;                                                        \
-    }
+    if ((owner) & owners) failed |= !(p->name = make_zero(capacity, sizeof(type)));
     TOBI_PARTICLE_FIELDS(X)
 #undef X
-    if (!failed) return TOBI_OK;
-    tobi_particles_free(p);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)",
-                     (long long)capacity, (long long)tobi_particles_row_bytes(owners));
+    return failed ? give_up(p, capacity, owners, err) : TOBI_OK;
 }
 
 void tobi_particles_free(tobi_particles *p)
@@ -32,19 +40,45 @@ void tobi_particles_free(tobi_particles *p)
     memset(p, 0, sizeof *p);
 }
 
-tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err)
+tobi_status tobi_particles_reserve(tobi_particles *p, int64_t capacity, int owners, tobi_error *err)
 {
-    tobi_particles fitted;
-    if (p->capacity == p->count) return TOBI_OK;
-    TOBI_TRY(tobi_particles_create(&fitted, p->count, owners, err));
-#define X(type, name, life, owner, unit, doc) \
-    if (p->name) memcpy(fitted.name, p->name, (size_t)p->count*sizeof(type));
+    int failed = 0;
+    memset(p, 0, sizeof *p);
+    p->capacity = capacity;
+#define X(type, name, life, owner, unit, doc)                                          \
+    if ((owner) & owners && (life) == TOBI_STATE)                                      \
+        failed |= !(p->name = aligned_alloc(64, bytes_of(capacity, sizeof(type))));
     TOBI_PARTICLE_FIELDS(X)
 #undef X
-    fitted.count = p->count;
-    tobi_particles_free(p);
-    *p = fitted;
-    return TOBI_OK;
+    return failed ? give_up(p, capacity, owners, err) : TOBI_OK;
+}
+
+int64_t tobi_particles_add(tobi_particles *p)
+{
+    int64_t i = p->count++;
+#define X(type, name, life, owner, unit, doc)                                          \
+    if (p->name) memset(&p->name[i], 0, sizeof(type));
+    TOBI_PARTICLE_FIELDS(X)
+#undef X
+    return i;
+}
+
+/* One field after the other, so that no more than one is there twice. */
+tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err)
+{
+    int failed = 0;
+#define X(type, name, life, owner, unit, doc)                                          \
+    if ((owner) & owners) {                                                            \
+        type *made = make_zero(p->count, sizeof(type));                                \
+        if (made && p->name) memcpy(made, p->name, (size_t)p->count*sizeof(type));     \
+        free(p->name);                                                                 \
+        p->name = made;                                                                \
+        failed |= !made;                                                               \
+    }
+    TOBI_PARTICLE_FIELDS(X)
+#undef X
+    p->capacity = p->count;
+    return failed ? give_up(p, p->count, owners, err) : TOBI_OK;
 }
 
 int64_t tobi_particles_row_bytes(int owners)

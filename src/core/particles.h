@@ -55,7 +55,12 @@ typedef struct tobi_particles {
 /* Allocates the fields of `owners` (a sum) for `capacity` particles; count becomes 0. */
 tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err);
 void tobi_particles_free(tobi_particles *p);
-/* Gives back what lies beyond count: capacity becomes count. On failure nothing has changed. */
+/* Room for at most `capacity` particles that tobi_particles_add places: state fields only, and memory only
+   for those that are placed. tobi_particles_fit then makes all fields, for as many as there are: capacity
+   becomes count. On failure nothing is left to free. */
+tobi_status tobi_particles_reserve(tobi_particles *p, int64_t capacity, int owners, tobi_error *err);
+/* A new particle, all zero: its number. There must be room. */
+int64_t tobi_particles_add(tobi_particles *p);
 tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err);
 /* Bytes per particle of the fields of `owners`, without neighbour lists. */
 int64_t tobi_particles_row_bytes(int owners);

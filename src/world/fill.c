@@ -68,7 +68,7 @@ static int behind_plane(const tobi_simulation *s, const double x[3])
 static void add_particle(tobi_simulation *s, const tobi_region *r, const double x[3])
 {
     tobi_particles *p = &s->particles;
-    int64_t i = p->count++;
+    int64_t i = tobi_particles_add(p);
     double arm[3], v[3];
     for (int a = 0; a < 3; a++) arm[a] = x[a] + s->box.lower[a] - 0.5*(r->lower[a] + r->upper[a]);
     for (int a = 0; a < 3; a++) {

@@ -327,7 +327,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a fluid region or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_create(&s->particles, room, needed_fields(w), err));
+    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
