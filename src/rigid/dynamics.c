@@ -206,7 +206,7 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
 static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double dt, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
-    double force[3], torque[3], keep = exp(-r->air_resistance*dt);
+    double force[3], torque[3], keep = exp(-r->air_resistance*dt), span = r->span > 0 ? r->span : dt;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
     if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
@@ -214,12 +214,13 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
         double dv = dt*(d->world.gravity[a] + force[a]/r->mass) + r->impulse[a]/r->mass;
         r->velocity[a] = keep*(r->velocity[a] + dv);
         r->momentum[a] = keep*(r->momentum[a] + dt*torque[a] + r->twist[a]);
-        r->contact_force[a] = r->impulse[a]/dt;
-        r->contact_torque[a] = r->twist[a]/dt;
+        r->contact_force[a] = r->impulse[a]/span;
+        r->contact_torque[a] = r->twist[a]/span;
         r->impulse[a] = r->twist[a] = 0;
         r->pull[a] = d->world.gravity[a] + force[a]/r->mass;
         r->pull_torque[a] = torque[a];
     }
+    r->span = 0;
     tobi_rigid_settle(r);
     return TOBI_OK;
 }
