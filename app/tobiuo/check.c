@@ -78,7 +78,7 @@ static int check_world(tobi_scene *scene)
         printf("\nA scene of the Taichi program. What became of its keys:\n\n%s\n",
                tobi_scene_import_table(scene));
     double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    printf("%s particles  %lld\n", solids ? "solid" : "fluid", (long long)fluid);
+    if (fluid > 0) printf("%s particles  %lld\n", solids ? "solid" : "fluid", (long long)fluid);
     printf("body particles   %lld\n", (long long)bodies);
     printf("memory           %.1f MB of %.0f MB\n", (double)bytes * 1e-6, machine * 1e-6);
     if (fluid + bodies == 0) return complain("there is no particle at all");

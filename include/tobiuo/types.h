@@ -212,8 +212,10 @@ typedef struct tobi_body_def {
     double angular_velocity[3]; /* rad/s at the start                                                */
     double force[3], torque[3]; /* N, N m, constant, in world axes                                   */
     double air_resistance;      /* 1/s, c: velocities decay like exp(-c t)                           */
-    double restitution;         /* 1, of collisions; of two bodies the larger one counts             */
-    double friction_coefficient;/* 1, Coulomb; of two bodies the square root of the product counts   */
+    double restitution;         /* 1, of collisions; of two bodies the larger one counts, against sides,
+                                   planes and solids the body's alone                                */
+    double friction_coefficient;/* 1, Coulomb; of two bodies, and with a separate plane, the square root
+                                   of the product counts, against sides and solids the body's alone  */
     int    blade;               /* 1: its edge cuts solids of mlsmpm                                 */
     double edge_resistance;     /* J/m2, to make new surface with the edge                           */
     double edge_angle;          /* degrees, at most between the faces that meet at its edge          */

@@ -220,10 +220,11 @@ typedef union outcome {
         double edge[3], edge_limit;        /* N s, of the edge's pieces, and what they may be at most  */
         double pushing;                    /* contacts                                                 */
         double fracture, rubbing, material;    /* J, taken by each; on the material by its velocity    */
+        double mass;                       /* kg, of the material that answers                         */
     };
-    double all[20];
+    double all[21];
 } outcome;
-_Static_assert(sizeof(outcome) == 20*sizeof(double), "the struct and its array are the same numbers");
+_Static_assert(sizeof(outcome) == 21*sizeof(double), "the struct and its array are the same numbers");
 _Static_assert(sizeof(outcome) <= SUMS*sizeof(double), "fits its place in partial");
 
 static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *sum)
@@ -242,6 +243,7 @@ static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *
     find_relative(k, c->velocity, c->spin, relative);
     *(edge ? &sum->fracture : &sum->rubbing) -= vec3_dot(k->impulse, relative);
     sum->material += vec3_dot(k->impulse, k->velocity);
+    if (!edge && normal > 0) sum->mass += 1/k->mobility;
     sum->pushing += edge ? vec3_dot(k->impulse, k->impulse) > 0 : normal > 0;
     if (!edge) return;
     for (int a = 0; a < 3; a++) sum->edge[a] -= k->impulse[a];
@@ -282,6 +284,14 @@ static void list_shifts(tobi_contacts *c, const tobi_contact_step *step, double 
     }
 }
 
+/* A resting contact answers what has brought the two together: the body's pull, given after the last step and
+   over its length, and the material's stress, over this one; each counts as the other's mass lets it. */
+static double find_span(const tobi_body *b, const outcome *total, const tobi_contact_step *step)
+{
+    double share = b->rigid.mass/(b->rigid.mass + total->mass);
+    return step->before > 0 ? share*step->dt + (1 - share)*step->before : step->dt;
+}
+
 static void give_to_body(tobi_body *b, const outcome *total, double dt)
 {
     for (int a = 0; a < 3; a++) {
@@ -306,6 +316,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     work->friction += total.rubbing;
     work->bodies += total.fracture + total.rubbing + total.material;
     give_to_body(b, &total, step->dt);
+    b->rigid.span = find_span(b, &total, step);
     /* Touched, it moves as it will, or a resting body would fall into the material in every step. */
     if (b->rigid.kind != TOBI_PRESCRIBED && total.pushing > 0)
         tobi_body_correct(b, c->velocity, c->spin, step->dt);

@@ -58,7 +58,7 @@ typedef struct tobi_contacts {
 typedef struct tobi_contact_work { double fracture, friction, bodies; } tobi_contact_work;
 
 typedef struct tobi_contact_step {
-    double dt;                       /* s                                                        */
+    double dt, before;               /* s, of this step and the one before, 0 in the first         */
     double radius;                   /* m, half a particle spacing                               */
     double reach;                    /* m, how deep inside a body a particle is still found      */
     double margin;                   /* m, how far from touching a particle is looked at         */

@@ -74,24 +74,42 @@ int tobi_rigid_axes(const char *words, char unknown[32])
     return sum;
 }
 
-/* A body's own moments obey the triangle inequality; a scene's numbers must be positive definite. */
+/* Is tr(I)/2 - I, the second moments of the mass, free of negative ones? So that no principal moment is
+   larger than the sum of the other two; thin plates and rods are on the limit. */
+static int is_of_mass(const double m[9])
+{
+    double half = 0.5*(m[0] + m[4] + m[8]), second[9], unused[9];
+    for (int k = 0; k < 9; k++) second[k] = (k%4 ? 0 : half*(1 + 1e-6)) - m[k];
+    double minor = second[0]*second[4] - second[1]*second[3];
+    return second[0] > 0 && minor > 0 && invert(second, unused);
+}
+
+/* A mesh gives an inertia that a body can have; numbers of the scene may not. */
 static tobi_status set_inertia(tobi_rigid *r, const tobi_body_def *def, const tobi_massprops *rest,
                                int dimension, tobi_error *err)
 {
     const double *d = def->inertia, *o = def->inertia_products;
     double density = r->mass/rest->volume;
+    const int given = d[0] != 0 || d[1] != 0 || d[2] != 0;
     for (int k = 0; k < 9; k++) r->inertia[k] = density*rest->inertia[k];
-    if (d[0] == 0 && d[1] == 0 && d[2] == 0 && (o[0] != 0 || o[1] != 0 || o[2] != 0))
+    if (!given && (o[0] != 0 || o[1] != 0 || o[2] != 0))
         return tobi_fail(err, TOBI_INVALID, "body '%s': products of inertia need the inertia, too",
                          def->name ? def->name : "");
-    if (d[0] != 0 || d[1] != 0 || d[2] != 0) {
-        double given[9] = { d[0], o[0], o[1], o[0], d[1], o[2], o[1], o[2], d[2] };
-        memcpy(r->inertia, given, sizeof given);
+    if (given) {
+        double matrix[9] = { d[0], o[0], o[1], o[0], d[1], o[2], o[1], o[2], d[2] };
+        memcpy(r->inertia, matrix, sizeof matrix);
     }
     if (r->kind == TOBI_PRESCRIBED) return TOBI_OK;
     const double *m = r->inertia;
     double minor = m[0]*m[4] - m[1]*m[3];
-    if (dimension == 2 ? m[8] > 0 : m[0] > 0 && minor > 0 && invert(m, r->inverse)) return TOBI_OK;
+    if (dimension == 2 && m[8] > 0) return TOBI_OK;
+    if (dimension == 3 && m[0] > 0 && minor > 0 && invert(m, r->inverse)) {
+        if (!given || is_of_mass(m)) return TOBI_OK;
+        return tobi_fail(err, TOBI_INVALID,
+                         "body '%s': no body has the inertia (%g, %g, %g) kg m2 with products (%g, %g, %g): "
+                         "each of its principal moments must be at most the sum of the other two",
+                         def->name ? def->name : "", m[0], m[4], m[8], m[1], m[2], m[5]);
+    }
     return tobi_fail(err, TOBI_INVALID,
                      "body '%s': the inertia (%g, %g, %g) kg m2 with products (%g, %g, %g) is not positive "
                      "definite", def->name ? def->name : "", m[0], m[4], m[8], m[1], m[2], m[5]);

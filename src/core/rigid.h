@@ -36,6 +36,7 @@ typedef struct tobi_rigid {
 
     double next_position[3];         /* at the end of the step that is being made                       */
     double next_orientation[4];
+    double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
     /* Within the step of a liquid, core/couple.h: */
     double foreseen[3], foreseen_spin[3];         /* m/s, rad/s: at the end of the step                 */

@@ -378,7 +378,7 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
     for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
     double way = (m->memory[SPEED] + s->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
-        .dt = s->dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
+        .dt = s->dt, .before = m->memory[STRAIN_DT], .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
     TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory[DRIFT],
                               err));

@@ -1,6 +1,7 @@
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
 #include "rigid/broad.h"
+#include "rigid/overlap.h"
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,7 +69,7 @@ static void note(char *notes, size_t room, const char *line)
     if (used + strlen(line) + 2 < room) snprintf(notes + used, room - used, "%s\n", line);
 }
 
-/* How deep two bodies are in each other, m; INFINITY if one has corners far inside the other. */
+/* How deep contact sees two bodies in each other, m; what it leaves alone does not count. */
 static double find_overlap(tobi_dynamics_state *d, int a, int b)
 {
     double deepest = 0;
@@ -78,23 +79,21 @@ static double find_overlap(tobi_dynamics_state *d, int a, int b)
     for (int64_t k = 0; k < d->contacts.count; k++)
         if (-d->contacts.at[k].gap > 2*d->contacts.at[k].slop)
             deepest = fmax(deepest, -d->contacts.at[k].gap);
-    for (int side = 0; side < 2 && deepest == 0; side++) {
-        int i = side ? b : a, j = side ? a : b;
-        const tobi_facets *f = &d->shapes[i].facets;
-        const tobi_body *other = &d->bodies[j];
-        double least = 0.02*fmin(d->shapes[a].thickness, d->shapes[b].thickness);
-        for (int64_t k = 0; k < f->corner_count && deepest == 0; k++) {
-            double x[3];
-            tobi_bvh_hit hit;
-            memcpy(x, d->bodies[i].vertex[f->corner[k]], sizeof x);
-            vec3_sub(x, x, other->rigid.position);
-            tobi_broad_turn_back(&other->rigid, x);
-            if (tobi_bvh_inside(d->shapes[j].facets.bvh, x) &&
-                tobi_bvh_closest(d->shapes[j].facets.bvh, x, INFINITY, &hit) && hit.distance > least)
-                deepest = hit.distance;
-        }
-    }
     return deepest;
+}
+
+/* Overlaps that contact does not see, or not as deep as they are, would last, and bodies fall through each
+   other. Between balls it sees all. */
+static tobi_status check_overlap(const tobi_dynamics_state *d, int a, int b, double seen, tobi_error *err)
+{
+    const tobi_shape *sa = &d->shapes[a], *sb = &d->shapes[b];
+    double least = TOBI_TOUCH_DEEPEST*fmin(sa->thickness, sb->thickness);
+    double deep = tobi_overlap_depth(&d->bodies[a], sa, &d->bodies[b], sb, least);
+    if (seen >= 0.8*deep) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID,
+                     "bodies '%s' and '%s' overlap by %.3g m at the start; contact can part these two from "
+                     "at most %.3g m: move one of them, or make them one mesh", d->bodies[a].name,
+                     d->bodies[b].name, deep, least);
 }
 
 static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t room, tobi_error *err)
@@ -106,6 +105,7 @@ static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t roo
     for (int64_t k = 0; k < d->broad.pair_count; k++) {
         int a = d->broad.pairs[k].a, b = d->broad.pairs[k].b;
         double deep = find_overlap(d, a, b);
+        TOBI_TRY(check_overlap(d, a, b, deep, err));
         if (deep == 0 || ++found > NAMED) continue;
         snprintf(line, sizeof line, "overlaps body '%s' by %.3g m at the start; contact pushes them apart",
                  d->bodies[b].name, deep);
@@ -206,7 +206,7 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
 static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double dt, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
-    double force[3], torque[3], keep = exp(-r->air_resistance*dt);
+    double force[3], torque[3], keep = exp(-r->air_resistance*dt), span = r->span > 0 ? r->span : dt;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
     if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
@@ -214,12 +214,13 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
         double dv = dt*(d->world.gravity[a] + force[a]/r->mass) + r->impulse[a]/r->mass;
         r->velocity[a] = keep*(r->velocity[a] + dv);
         r->momentum[a] = keep*(r->momentum[a] + dt*torque[a] + r->twist[a]);
-        r->contact_force[a] = r->impulse[a]/dt;
-        r->contact_torque[a] = r->twist[a]/dt;
+        r->contact_force[a] = r->impulse[a]/span;
+        r->contact_torque[a] = r->twist[a]/span;
         r->impulse[a] = r->twist[a] = 0;
         r->pull[a] = d->world.gravity[a] + force[a]/r->mass;
         r->pull_torque[a] = torque[a];
     }
+    r->span = 0;
     tobi_rigid_settle(r);
     return TOBI_OK;
 }

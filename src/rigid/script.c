@@ -79,13 +79,18 @@ static const char DRIVER[] =
     "        error('endless loop? stopped after ' .. limit .. ' turns and calls', 2)\n"
     "    end\n"
     "end\n"
-    "local function seal()\n"
-    "    local meta = {}\n"
-    "    function meta.__index(_, k) error(\"unknown name '\" .. tostring(k) .. \"'\", 2) end\n"
-    "    function meta.__newindex(_, k)\n"
-    "        error(\"assignment to the global '\" .. tostring(k) .. \"': write local\", 2)\n"
-    "    end\n"
-    "    setmetatable(user, meta)\n"
+    /* The names move to another table, so that assigning to one that exists is seen, too. */
+    "local function seal(remembered)\n"
+    "    local names = {}\n"
+    "    for k, v in pairs(user) do names[k] = v end\n"
+    "    for k in pairs(names) do user[k] = nil end\n"
+    "    setmetatable(names, { __index = function(_, k)\n"
+    "        error(\"unknown name '\" .. tostring(k) .. \"'\", 2)\n"
+    "    end })\n"
+    "    setmetatable(user, { __index = names, __newindex = function(_, k)\n"
+    "        error(\"assignment to the global '\" .. tostring(k) .. \"': write local; from one time \" ..\n"
+    "              \"to the next \" .. remembered .. \" is remembered\", 2)\n"
+    "    end })\n"
     "end\n"
     "local f, g, h\n"
     "local function bind(deform, place, control) f, g, h = deform, place, control end\n"
@@ -114,14 +119,19 @@ static const char DRIVER[] =
     "        into[first + k - 1] = value[k]\n"
     "    end\n"
     "end\n"
+    "local inputs = { __index = function(_, k)\n"
+    "    error(\"body has no '\" .. tostring(k) .. \"'; it has position, orientation, velocity, \" ..\n"
+    "          'angular_velocity, contact_force, contact_torque, mass, phase and phase_time', 2)\n"
+    "end }\n"
     "local function control(from, into)\n"
     "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
     "    count, look = 0, 256\n"
     "    local function three(k) return { from[k], from[k + 1], from[k + 2] } end\n"
-    "    local answer = h(from[0], { position = three(1),\n"
+    "    local answer = h(from[0], setmetatable({ position = three(1),\n"
     "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8),\n"
     "        angular_velocity = three(11), contact_force = three(14),\n"
-    "        contact_torque = three(17), mass = from[20], phase = from[21], phase_time = from[22] })\n"
+    "        contact_torque = three(17), mass = from[20], phase = from[21],\n"
+    "        phase_time = from[22] }, inputs))\n"
     "    if answer == nil then return end\n"
     "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
     "    for key in pairs(answer) do\n"
@@ -290,7 +300,9 @@ static int load_protected(lua_State *lua)
     job->script->rigid = places;
     lua_call(lua, 3, 0);
     lua_pushvalue(lua, seal);
-    lua_call(lua, 0, 0);
+    lua_pushstring(lua, job->script->role == TOBI_CONTROL_SCRIPT ? "only the phase that control returns"
+                                                                 : "nothing");
+    lua_call(lua, 1, 0);
     return 0;
 }
 

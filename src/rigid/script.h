@@ -22,9 +22,10 @@
    Every key of the answer may be left out, and no answer at all is no force. body has position (m),
    orientation (w, x, y, z), velocity, angular_velocity (rad/s), contact_force (N) and contact_torque (N m) of
    the last step as lists, and the numbers mass, phase and phase_time (s since the phase began). The
-   force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and then
-   what the script answered last: the only memory a script may have. hold names the axes that stand still in
-   this step, like `locked` of a body.
+   force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and then what the
+   script answered last: the only memory a script may have, since a restart begins with it; globals cannot be
+   assigned after loading, tables and locals outside control are not watched. hold names the axes that stand
+   still in this step, like `locked` of a body.
 
    The script sees `params` (motion.params or control.params of the scene: numbers, texts, true/false,
    arrays from 1, objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring,

@@ -12,7 +12,6 @@
 #define SKEW 0.004         /* sine of the angle between edges below which they count as parallel         */
 #define EDGE_BAND 0.004    /* of the reach: how far beside a face a corner still rests on it; at SKEW two
                               equal faces overhang by half of that                                       */
-#define DEEPEST 0.3        /* of the thickness: an overlap beyond this is no contact but a mistake       */
 #define SLOP 0.005         /* of the thickness                                                           */
 
 enum { CORNER_FACE = 1, FACE_CORNER = 2, EDGE_EDGE = 3, BALL = 4, SIDE = 5, KIND_SHIFT = 60, HALF = 30 };
@@ -431,7 +430,7 @@ static void touch_ordered(pair *p, const tobi_body *a, const tobi_body *b)
 {
     set_frames(p, &a->rigid, &b->rigid);
     double thickness = fmin(p->a->thickness, p->b->thickness);
-    p->deepest = DEEPEST*thickness;
+    p->deepest = TOBI_TOUCH_DEEPEST*thickness;
     p->around = fmax(p->margin, p->deepest);
     p->skin = 2*SLOP*thickness;
     p->band = fmax(EDGE_BAND*fmin(p->a->facets.reach, p->b->facets.reach), p->skin);

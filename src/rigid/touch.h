@@ -31,6 +31,8 @@ typedef struct tobi_shape {
     int solid;                   /* 0: nothing touches it, since it deforms                             */
 } tobi_shape;
 
+#define TOBI_TOUCH_DEEPEST 0.3   /* of the lesser thickness: overlaps beyond this are seen as none     */
+
 /* Sides: 0 lower x, 1 upper x, 2 lower y, ...; then the planes of the scene. */
 enum { TOBI_SIDES = 6 };
 

@@ -10,7 +10,9 @@ static const tobi_param rows[] = {
       .doc = "A Lua file with a function control(t, body) that returns { force = {x, y, z}, torque = "
              "{x, y, z}, phase = 2, hold = \"z,turn\" }, all of them optional; body has position, "
              "orientation, velocity, angular_velocity, contact_force, contact_torque, mass, phase and "
-             "phase_time." },
+             "phase_time. phase, a whole number that begins with 1, is all that is kept from step to step "
+             "and by a resumed run: globals cannot be assigned in control, and what it keeps in tables or "
+             "locals outside of itself is lost on resume." },
     { 0 }
 };
 const tobi_param_table tobi_control_table = {

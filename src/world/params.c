@@ -314,7 +314,8 @@ static const tobi_param body_rows[] = {
       .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
     { .key = "inertia", VEC3, AT(tobi_body_def, inertia), FROM(0), .unit = "kg m2", .text = "mesh",
       .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain "
-             "as the body starts; mesh takes that of the mesh, for the mass it has." },
+             "as the body starts; no principal moment may be larger than the sum of the other two. mesh "
+             "takes that of the mesh, for the mass it has." },
     { .key = "inertia_products", VEC3, AT(tobi_body_def, inertia_products), ANY, .unit = "kg m2",
       .doc = "Entries xy, xz, yz of a given inertia matrix." },
     { .key = "velocity", VEC3, AT(tobi_body_def, velocity), ANY, .unit = "m/s",
@@ -328,12 +329,12 @@ static const tobi_param body_rows[] = {
     { .key = "air_resistance", REAL, AT(tobi_body_def, air_resistance), FROM(0), .unit = "1/s",
       .text = "none", .doc = "Its velocity and its angular momentum decay like exp(-air_resistance t)." },
     { .key = "restitution", REAL, AT(tobi_body_def, restitution), RANGE(0, 1), .unit = "1",
-      .doc = "Speed after over speed before a collision; of two bodies the larger value counts, at a side of "
-             "the domain the body's." },
+      .doc = "Speed after over speed before a collision; of two bodies the larger value counts, against a "
+             "side of the domain, a plane or a solid of mlsmpm the body's alone." },
     { .key = "friction_coefficient", REAL, AT(tobi_body_def, friction_coefficient), .def = { 0.5 }, FROM(0),
       .unit = "1",
-      .doc = "Coulomb friction; of two bodies the square root of the product counts, at a side of the domain "
-             "the body's." },
+      .doc = "Coulomb friction; of two bodies, and of a body with a separate plane, the square root of the "
+             "product counts, against a side of the domain or a solid of mlsmpm the body's alone." },
     { .key = "blade", BOOL, AT(tobi_body_def, blade),
       .doc = "Whether the body's edge cuts solids of mlsmpm; what is cut stays cut." },
     { .key = "edge_resistance", REAL, AT(tobi_body_def, edge_resistance), FROM(0), .unit = "J/m2",

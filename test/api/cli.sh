@@ -82,6 +82,10 @@ rm -rf out
 # --- check ------------------------------------------------------------------------------------------
 expect 0 "" check tank.json
 check "check counts particles" grep -q "fluid particles  [1-9]" out.txt
+expect 0 "" check tank.json --set method=mlsmpm --set 'fluids=[]' \
+    --set 'bodies=[{"name": "a", "box": {"min": [0, 0, 0.1], "max": [0.05, 0.05, 0.15]}, "dynamics": "free"}]'
+check "check leaves out particles that a scene has none of" test -z "$(grep '^[a-z]* particles  0' out.txt)"
+expect 0 "" check tank.json
 check "a good mesh needs no note" test -z "$(grep ^note out.txt)"
 grep -v "^f 1 3 4 2" box.obj > open.obj
 sed 's/box\.obj/open.obj/' tank.json > open.json

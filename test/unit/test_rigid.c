@@ -43,7 +43,7 @@ static void test_top(void **state)
     (void)state;
     tobi_body_def def = free_def();
     tobi_rigid r;
-    memcpy(def.inertia, (double[3]){ 1, 2, 3.5 }, sizeof def.inertia);
+    memcpy(def.inertia, (double[3]){ 1.5, 2, 2.9 }, sizeof def.inertia);
     memcpy(def.inertia_products, (double[3]){ 0.2, -0.1, 0.3 }, sizeof def.inertia_products);
     memcpy(def.angular_velocity, (double[3]){ 0.3, 0.9, 0.3162 }, sizeof def.angular_velocity);
     make(&r, &def);
@@ -118,7 +118,7 @@ static void test_locks(void **state)
     tobi_body_def def = free_def();
     tobi_rigid r;
     def.locked = "z,turn_x,turn_y";
-    memcpy(def.inertia, (double[3]){ 1, 2, 4 }, sizeof def.inertia);
+    memcpy(def.inertia, (double[3]){ 2, 2, 4 }, sizeof def.inertia);
     memcpy(def.velocity, (double[3]){ 1, 2, 3 }, sizeof def.velocity);
     memcpy(def.angular_velocity, (double[3]){ 1, 1, 0.25 }, sizeof def.angular_velocity);
     make(&r, &def);
@@ -158,12 +158,25 @@ static void test_mistakes(void **state)
 {
     (void)state;
     tobi_body_def def = free_def();
+    tobi_massprops rest = { .volume = 1, .inertia = { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
+    const double centre[3] = { 0, 0, 0 };
+    tobi_rigid plate;
+    tobi_error err = { 0 };
     memcpy(def.inertia, (double[3]){ 1, -1, 1 }, sizeof def.inertia);
     refuse(&def, "not positive definite");
     memcpy(def.inertia, (double[3]){ 1, 1, 1 }, sizeof def.inertia);
     def.inertia_products[0] = 1.5;
     refuse(&def, "not positive definite");
+    def.inertia_products[0] = 0.5;       /* moments 0.5, 1, 1.5: a thin plate */
+    assert_int_equal(tobi_rigid_init(&plate, &def, &rest, centre, 3, &err), TOBI_OK);
+    def.inertia_products[0] = 0.6;
+    refuse(&def, "no body has the inertia (1, 1, 1) kg m2 with products (0.6, 0, 0)");
+    def.inertia_products[0] = 0;
+    memcpy(def.inertia, (double[3]){ 1, 1, 5 }, sizeof def.inertia);
+    refuse(&def, "no body has the inertia (1, 1, 5) kg m2 with products (0, 0, 0): each of its principal "
+                 "moments must be at most the sum of the other two");
     memset(def.inertia, 0, sizeof def.inertia);
+    def.inertia_products[0] = 1;
     refuse(&def, "products of inertia need");
     def = free_def();
     def.locked = "x,roll";

@@ -149,6 +149,11 @@ static void test_control_script(void **state)
         { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },
         { "function control() while true do end end", "endless loop" },
         { "function control() count = 1 end", "assignment to the global 'count'" },
+        { "count = 0 function control() count = count + 1 end",
+          "ask.lua:1: assignment to the global 'count': write local; from one time to the next only the "
+          "phase that control returns is remembered" },
+        { "function control(t, body)\n return { force = { body.speed, 0, 0 } } end",
+          "ask.lua:2: body has no 'speed'; it has position, orientation, velocity" },
     };
     for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
         assert_int_equal(ask(bad[k].text, &out, &err), TOBI_SCRIPT);
@@ -313,6 +318,86 @@ static void test_overlap(void **state)
     rig_close(&g);
 }
 
+enum { FREE, NOTED, REFUSED };
+
+/* Two boxes, the first at the middle: how tobi_rigid_start takes them. */
+static int meet_boxes(rig *g, const double side[2][3], const double shift[3], double degrees, tobi_error *err)
+{
+    const double down[3] = { 0, 0, -9.81 };
+    rig_open(g, 10, down);
+    for (int k = 0; k < 2; k++) {
+        tobi_body_def def = rig_def();
+        double middle[3];
+        if (k == 0) def.dynamics = TOBI_PRESCRIBED;
+        else def.rotation_angle = degrees;
+        for (int a = 0; a < 3; a++) middle[a] = 5 + k*shift[a];
+        rig_box(g, def, side[k], middle);
+    }
+    tobi_status status = tobi_rigid_start(g->bodies, g->count, &g->world, g->notes, sizeof g->notes,
+                                          &g->state, err);
+    return status != TOBI_OK ? REFUSED : strstr(g->notes, "overlaps") ? NOTED : FREE;
+}
+
+/* Coinciding faces, equal boxes, bars that cross and a box in a box have no corner strictly inside; contact
+   sees none of them, since they are deeper than 0.3 of the thickness. What only touches is no overlap. */
+static void test_deep_overlap(void **state)
+{
+    (void)state;
+    static const struct { double side[2][3], shift[3], degrees; int outcome; double depth; } cases[] = {
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { .38, 0, 0 }, 0, NOTED, .02 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { .1, 0, .19 }, 0, NOTED, .01 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { .1, 0, .17 }, 0, REFUSED, .03 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { 0, 0, .15 }, 0, REFUSED, .05 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { .1, .03, .15 }, 0, REFUSED, .05 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { 0, 0, 0 }, 0, REFUSED, .2 },
+        { { { .4, .2, .2 }, { .04, .02, .02 } }, { .1, .05, 0 }, 0, REFUSED, .02 },
+        { { { 1, .1, .1 }, { .1, 1, .1 } }, { 0, 0, .02 }, 0, REFUSED, .08 },
+        { { { 1, .1, .1 }, { .1, 1, .14 } }, { 0, 0, 0 }, 0, REFUSED, .1 },
+        { { { 1, .1, .1 }, { 1, .1, .1 } }, { 0, 0, .02 }, 30, REFUSED, .08 },
+        { { { 1, .1, .1 }, { 1, .1, .1 } }, { 0, 0, .09 }, 30, NOTED, .01 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { 0, 0, .2 }, 0, FREE, 0 },
+        { { { .4, .2, .2 }, { .4, .2, .2 } }, { .4, .1, .1 }, 0, FREE, 0 },
+        { { { 1, .1, .1 }, { 1, .1, .1 } }, { 0, 0, .1 }, 30, FREE, 0 },
+        { { { .5, .5, .01 }, { .5, .5, .01 } }, { .1, .2, .01 }, 45, FREE, 0 },
+    };
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        rig g;
+        tobi_error err = { 0 };
+        int outcome = meet_boxes(&g, cases[k].side, cases[k].shift, cases[k].degrees, &err);
+        const char *told = outcome == REFUSED ? err.text : g.notes, *by = strstr(told, "by ");
+        print_message("%s%s", told, outcome == REFUSED ? "\n" : "");
+        assert_int_equal(outcome, cases[k].outcome);
+        if (outcome != FREE) assert_true(by && fabs(atof(by + 3) - cases[k].depth) < 0.1*cases[k].depth);
+        if (outcome == REFUSED) assert_non_null(strstr(told, "bodies 'b0' and 'b1' overlap"));
+        rig_close(&g);
+    }
+}
+
+/* Balls are parted from wherever they are, but not out of a box that holds their middle. */
+static void test_balls_overlap(void **state)
+{
+    (void)state;
+    const double none[3] = { 0, 0, 0 };
+    for (int boxed = 0; boxed < 2; boxed++) {
+        rig g;
+        tobi_error err = { 0 };
+        rig_open(&g, 10, none);
+        rig_ball(&g, rig_def(), 0.1, (double[3]){ 5, 5, 5 });
+        if (boxed) rig_box(&g, rig_def(), (double[3]){ 1, 1, 1 }, (double[3]){ 5, 5, 5 });
+        else rig_ball(&g, rig_def(), 0.2, (double[3]){ 5, 5, 5.1 });
+        tobi_status status = tobi_rigid_start(g.bodies, g.count, &g.world, g.notes, sizeof g.notes, &g.state,
+                                              &err);
+        print_message("%s%s\n", g.notes, err.text);
+        assert_int_equal(status, boxed ? TOBI_INVALID : TOBI_OK);
+        if (!boxed) {
+            assert_non_null(strstr(g.notes, "overlaps body 'b1' by 0.2 m"));
+            for (int k = 0; k < 600; k++) rig_step(&g, 1.0/60);
+            assert_true(g.bodies[1].rigid.position[2] - g.bodies[0].rigid.position[2] > 0.295);
+        }
+        rig_close(&g);
+    }
+}
+
 /* Two squares and a disc in 2-D fall on each other and rest. */
 static void test_plane(void **state)
 {
@@ -438,7 +523,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
-        cmocka_unit_test(test_overlap), cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_overlap), cmocka_unit_test(test_deep_overlap),
+        cmocka_unit_test(test_balls_overlap), cmocka_unit_test(test_plane),
         cmocka_unit_test(test_projectile), cmocka_unit_test(test_free_fall),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;

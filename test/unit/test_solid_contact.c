@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <math.h>
 #include "tobiuo/tobiuo.h"
 
 /* From a height of two spacings: who looks for contacts only where the body was at the start finds none. */
@@ -37,8 +38,67 @@ static void a_falling_box_is_caught(void **state)
     tobi_world_destroy(world);
 }
 
+/* What a control program is told of the contact force, and of the steps, after `from`. */
+typedef struct told { double from, time, least, most, shortest, longest; } told;
+
+static tobi_status listen(void *user, const tobi_control_input *in, tobi_control_output *out, tobi_error *err)
+{
+    told *k = user;
+    (void)err;
+    out->force[2] = -10;
+    if (in->time > k->from) {
+        k->least = fmin(k->least, in->contact_force[2]);
+        k->most = fmax(k->most, in->contact_force[2]);
+        k->shortest = fmin(k->shortest, in->time - k->time);
+        k->longest = fmax(k->longest, in->time - k->time);
+    }
+    k->time = in->time;
+    return TOBI_OK;
+}
+
+/* A body at rest on a solid feels its load whatever the steps: a step half as long as the one before told
+   1.7 times as much, since the contact answers the pull of the step before. */
+static void shortened_steps_tell_the_same_force(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def body = tobi_default_body_def();
+    told k = { .from = 0.8, .least = INFINITY, .shortest = INFINITY };
+    tobi_world *world;
+    tobi_error err = { 0 };
+    w.method = "mlsmpm";
+    w.spacing = 0.05;
+    w.gravity[2] = -9.81;
+    solid.youngs_modulus = 1e5;
+    solid.damping = 20;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = a == 2 ? 0.6 : 0.4;
+        fill.box_max[a] = a == 2 ? 0.2 : 0.4;
+        body.box_min[a] = a == 2 ? 0.21 : 0.1;
+        body.box_max[a] = a == 2 ? 0.4 : 0.3;
+    }
+    body.name = "weight";
+    body.dynamics = TOBI_CONTROLLED;
+    body.mass = 2;
+    body.control = listen;
+    body.control_user = &k;
+    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+    if (tobi_world_add_body(world, &body, &err)) fail_msg("%s", err.text);
+    for (int n = 1; n <= 68; n++)
+        if (tobi_world_advance(world, 0.0177*n, NULL, &err)) fail_msg("%s", err.text);
+    print_message("contact force %.2f to %.2f N in steps of %.3g to %.3g ms; the load is 29.62 N\n", k.least,
+                  k.most, 1e3*k.shortest, 1e3*k.longest);
+    assert_true(k.shortest < 0.7*k.longest);
+    assert_true(k.least > 0.95*29.62 && k.most < 1.05*29.62);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(a_falling_box_is_caught) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(a_falling_box_is_caught),
+                                        cmocka_unit_test(shortened_steps_tell_the_same_force) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
