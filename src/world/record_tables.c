@@ -49,6 +49,7 @@
     H("speed_max",                  real, i->speed_max)                             \
     H("fluid_particles",            int,  i->fluid_particles)                       \
     H("particles_lost",             int,  i->particles_lost)                        \
+    H("put_back",                   int,  i->put_back)                              \
     H("capped",                     int,  i->capped)                 \
     H("contacts",                   int,  i->contacts)                              \
     H("pieces",                     int,  pieces->count)                            \
