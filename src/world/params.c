@@ -161,8 +161,8 @@ static const tobi_param mlsmpm_rows[] = {
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
     { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
       .doc = "Sum up in every step what the way to the grid and back, time steps and plastic flow cost, for "
-             "transfer_dissipation, step_work and plastic_work in history.csv; steps take up to 5 times as "
-             "long, where material flows 20 times." },
+             "transfer_dissipation, step_work and plastic_work in history.csv, which are 0 without it; steps "
+             "take up to 5 times as long, where material flows 20 times." },
     { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
       .doc = "What becomes of particles that get past a side: they are put back to it and counted (put_back "
              "in history.csv), or removed (particles_lost); those past an open side are removed." },
