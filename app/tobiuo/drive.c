@@ -49,6 +49,10 @@ static void print_end(const drive_options *o, const counts *c, double time, doub
                  100*c->last.density_error_mean);
     if (c->last.particles_lost)
         complain("%lld particles left the domain", (long long)c->last.particles_lost);
+    if (c->last.put_back)
+        complain("particles got past a side of the domain and were put back to it %lld times (put_back in "
+                 "history.csv); mlsmpm.leaving says what becomes of them",
+                 (long long)c->last.put_back);
     if (o->quiet) return;
     printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done",
            time, (long long)c->steps, duration_text(wall, text), o->dir);

@@ -64,8 +64,8 @@ TOBI_API const char *tobi_world_note(const tobi_world *world, int note);
 TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,
                                          int64_t *body_particles, int64_t *bytes, tobi_error *err);
 /* Places the particles; no fluid or body may be added after it. Called by the first step if not
-   called before. TOBI_INVALID if there is no particle at all, TOBI_NO_MEMORY before allocating more
-   than the machine has. */
+   called before. TOBI_INVALID if there is no particle at all, or none in a fluid or solid that has regions;
+   TOBI_NO_MEMORY before allocating more than the machine has. */
 TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
 
 /* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. */
@@ -81,7 +81,8 @@ TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_bod
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
 TOBI_API int     tobi_world_solid_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_solid(const tobi_world *world, int solid, tobi_solid_info *info);
-/* The longest step that the stiffness of the solids allows at rest, s; 0 = there are none. */
+/* The longest step that the stiffness of the solids and their speed at the start allow, s; 0 = there are
+   none. */
 TOBI_API double  tobi_world_stable_step(const tobi_world *world);
 TOBI_API int     tobi_world_probe_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_info *info, tobi_error *err);

@@ -300,6 +300,7 @@ typedef struct tobi_step_info {
     double  speed_max;            /* m/s                                                              */
     int64_t fluid_particles;
     int64_t particles_lost;       /* left the domain so far                                           */
+    int64_t put_back;             /* times that a particle of mlsmpm was put back into it so far      */
     int64_t capped;               /* particles slowed to the speed cap in this step                   */
     int64_t contacts;             /* particles held back at a surface by position in this step        */
 } tobi_step_info;
@@ -317,7 +318,7 @@ typedef struct tobi_solid_info {
     const char *name;             /* owned by the world                                               */
     int64_t particles;
     double density, volume, mass; /* kg/m3, m3, kg of the regions at the start; 2-D: m2, kg/m         */
-    double time_step;             /* s, the longest that its stiffness and viscosity allow at rest    */
+    double time_step;             /* s, the longest that it and gravity allow at rest                 */
 } tobi_solid_info;
 
 /* A connected piece of a solid. Particles are linked within 1.5 spacings unless a cut lies between them. */

@@ -88,8 +88,8 @@ typedef struct tobi_method {
        it takes all. */
     tobi_status (*accept)(const tobi_simulation *s, const void *def, int solid, char note[200],
                           tobi_error *err);
-    /* The longest step that a solid's material allows at rest, s; NULL: there are no solids. */
-    double (*stable_dt)(const tobi_simulation *s, const void *def, int solid);
+    /* The longest step that a solid's material allows at this speed, m/s, in s; NULL: there are no solids. */
+    double (*stable_dt)(const tobi_simulation *s, const void *def, int solid, double speed);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */
     tobi_status (*nodes)(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err);
     /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */

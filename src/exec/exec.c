@@ -28,7 +28,11 @@ tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err)
     x->threads = threads > 0 ? threads : omp_get_num_procs();
     x->isa = find_isa();
     const char *wish = getenv("TOBIUO_ISA");   /* tests compare instruction sets with this */
-    if (wish && atoi(wish) >= 2 && atoi(wish) < x->isa) x->isa = atoi(wish);
+    if (wish && !wish[0]) wish = NULL;
+    if (wish && (wish[0] < '2' || wish[0] > '4' || wish[1]))
+        return tobi_fail(err, TOBI_INVALID, "the environment variable TOBIUO_ISA is \"%.20s\", allowed is 2, "
+                         "3 or 4: the instructions of x86-64-v2, -v3 and -v4", wish);
+    if (wish && wish[0] - '0' < x->isa) x->isa = wish[0] - '0';
     return tobi_exec_reserve(x, TOBI_BLOCK, err);
 }
 

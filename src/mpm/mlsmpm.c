@@ -8,6 +8,7 @@
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
+#include "mpm/material.h"
 #include "mpm/nodes.h"
 #include "mpm/touch.h"
 #include "tobiuo/types.h"
@@ -17,7 +18,7 @@
 
 /* What a restart needs besides the particles. */
 enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, CUTS, FRACTURE,
-       FRICTION, DAMPING, SIDES, STEPS, FLOW, MOVED, MEMORY };
+       FRICTION, DAMPING, SIDES, STEPS, FLOW, MOVED, SQUEEZED, MEMORY };
 
 #define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
@@ -33,6 +34,7 @@ typedef struct mlsmpm {
     mpm_material material[TOBI_SOLID_LIMIT + 1];
     double damping[TOBI_SOLID_LIMIT + 1];
     double sound;                      /* m/s, the fastest of the materials                        */
+    double liquid_sound;               /* m/s, the slowest of the liquids; infinite: there are none */
     double viscous_dt;                 /* s                                                        */
     double cell;                       /* m                                                        */
     double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
@@ -47,36 +49,6 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     (void)stirred;
     *shape = TOBI_KERNEL_WENDLAND_C2;
     *support = 2;
-}
-
-/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; in plane strain,
-   where the stress out of the plane is the mean of the others in flow, theirs there. */
-static double find_cone(const tobi_solid_def *d, int dimension)
-{
-    double sine = sin(d->friction_angle*acos(-1)/180);
-    return dimension == 2 ? sqrt(2.0)/3*sine : sqrt(2.0/3)*2*sine/(3 - sine);
-}
-
-/* Constants of a material, and how fast sound is in it; hardened snow is up to e^2 times as stiff. */
-static mpm_material describe_material(const tobi_solid_def *d, int dimension, double *sound)
-{
-    double mu = d->youngs_modulus/(2*(1 + d->poissons_ratio));
-    double lambda = d->youngs_modulus*d->poissons_ratio/((1 + d->poissons_ratio)*(1 - 2*d->poissons_ratio));
-    double stiffness = d->model == TOBI_LIQUID ? d->bulk_modulus : lambda + 2*mu;
-    if (d->model == TOBI_SNOW && d->hardening > 0) stiffness *= exp(2);
-    *sound = d->model == TOBI_STATIONARY ? 0 : sqrt(stiffness/d->density);
-    return (mpm_material){
-        .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
-        .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
-        .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)find_cone(d, dimension), .cut_friction = (float)d->cut_friction,
-        .surface_friction = d->model == TOBI_LIQUID ? 0 : (float)d->surface_friction, .keep = 1 };
-}
-
-static double viscous_limit(const tobi_solid_def *d, double cell)
-{
-    int viscous = d->model == TOBI_LIQUID && d->viscosity > 0;
-    return viscous ? 0.1*cell*cell*d->density/d->viscosity : INFINITY;
 }
 
 static void add_fixed_planes(const tobi_simulation *s, mpm_view *v)
@@ -166,7 +138,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->cell = m->def.cell*s->smoothing.spacing;
     m->kernels = mpm_kernels_for(s->exec.isa, s->box.dimension);
     m->memory[AGE] = -1;
-    m->viscous_dt = INFINITY;
+    m->viscous_dt = m->liquid_sound = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
         status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->exec, err);
@@ -180,40 +152,38 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
         m->touch.cell_mass = fmin(m->touch.cell_mass, d->density*pow(m->cell, s->box.dimension));
-        m->material[k] = describe_material(d, s->box.dimension, &sound);
+        m->material[k] = mpm_material_describe(d, s->box.dimension, &sound);
         mpm_damage_describe(d, m->cell, &m->material[k]);
         m->damping[k] = d->damping;
         m->view.damped |= d->damping > 0;
         m->material[k].group = d->bonded ? 0 : k + 1;
         m->view.apart |= !d->bonded;
         m->sound = fmax(m->sound, sound);
-        m->viscous_dt = fmin(m->viscous_dt, viscous_limit(d, m->cell));
+        if (d->model == TOBI_LIQUID) m->liquid_sound = fmin(m->liquid_sound, sound);
+        m->viscous_dt = fmin(m->viscous_dt, mpm_material_viscous_dt(d, m->cell));
     }
     bind_particles(s, m);
     m->touch.cut = m->blades ? &m->cut : NULL;
     return TOBI_OK;
 }
 
-/* Eq. (15): sound and particles cross less than a cell; a body at rest does not fall further in one step. */
 static double choose_dt(const tobi_simulation *s, const mlsmpm *m)
 {
-    double g = 0, speed = fmax(m->memory[SPEED], s->body_speed);
-    for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
-    double dt = fmin(m->def.cfl*m->cell/(m->sound + speed + 1e-30), m->viscous_dt);
-    dt = fmin(dt, 0.5*sqrt(m->cell/(sqrt(g) + 1e-30)));
-    dt = fmin(dt, 0.1);
+    const double speed = fmax(m->memory[SPEED], s->body_speed);
+    double dt = mpm_material_dt(s, &m->def, fmax(m->sound, m->memory[SQUEEZED]), speed);
+    dt = fmin(fmin(dt, m->viscous_dt), 0.1);
     if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
     if (s->def.time_step > 0) dt = s->def.time_step/ceil(s->def.time_step/dt*(1 - 1e-9));
     return dt;
 }
 
-static double limit_dt(const tobi_simulation *s, const void *def, int solid)
+static double limit_dt(const tobi_simulation *s, const void *def, int solid, double speed)
 {
-    const tobi_mlsmpm_def *m = def;
     const tobi_solid_def *d = &s->solids[solid].def;
-    double cell = m->cell*s->smoothing.spacing, sound;
-    describe_material(d, s->box.dimension, &sound);
-    return fmin(m->cfl*cell/(sound + 1e-30), viscous_limit(d, cell));
+    double sound;
+    mpm_material_describe(d, s->box.dimension, &sound);
+    return fmin(mpm_material_dt(s, def, sound, speed),
+                mpm_material_viscous_dt(d, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing));
 }
 
 static tobi_status accept_solid(const tobi_simulation *s, const void *def, int solid, char note[200],
@@ -365,6 +335,7 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     double t[TOBI_TOTALS];
     tobi_launch_each(&s->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
     s->info.contacts += (int64_t)t[0];
+    s->info.put_back += (int64_t)t[0];
     s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
     m->memory[DRIFT] += t[7];
     m->memory[MOVED] += t[7] + s->body_speed*s->dt;
@@ -404,6 +375,16 @@ static mpm_view look_back(const mlsmpm *m)
     mpm_view v = m->view;
     v.strain_dt = (float)m->memory[STRAIN_DT];
     return v;
+}
+
+/* How fast sound is where a liquid is squeezed, for the next step. What moves slower than 0.3 of the speed of
+   sound does not squeeze it that much, so that calm liquids do not pay for the look. */
+static void measure_squeeze(tobi_simulation *s, mlsmpm *m)
+{
+    const double speed = fmax(m->memory[SPEED], s->body_speed);
+    if (speed < 0.3*m->liquid_sound && m->memory[SQUEEZED] <= m->sound) return;
+    const mpm_view v = look_back(m);
+    m->memory[SQUEEZED] = mpm_material_squeezed_sound(s, &v);
 }
 
 /* totals: elastic energy, kinetic, potential; spent on cracks. */
@@ -488,6 +469,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
         measure_nodes(s, m);
         grid_to_particles(s, m, &clock);
         measure_flow(s, m);
+        measure_squeeze(s, m);
         tobi_contact_shift(&s->contacts, &s->particles);
         m->memory[AGE]++;
     }

@@ -104,7 +104,7 @@ void tobi_bind_default(const tobi_param *row, char *text, size_t size)
 
 static int is_allowed(const tobi_param *row, double v)
 {
-    if (v == 0 && row->text) return 1;      /* the word's value */
+    if (v == 0 && row->text && !row->positive) return 1;      /* the word's value */
     return isfinite(v) && !(row->positive && !(v > 0)) && !(v < row->min) && !(v > row->max);
 }
 
@@ -154,7 +154,7 @@ static void bind_real(const slot *s)
 {
     double v;
     if (!read_number(s, &v)) report_kind(s, "a number");
-    else if (check_range(s, s->place, v)) memcpy(s->member, &v, sizeof v);
+    else if (json_is_string(s->value) || check_range(s, s->place, v)) memcpy(s->member, &v, sizeof v);
 }
 
 static void bind_int(const slot *s)

@@ -107,7 +107,7 @@ static const char head[] =
     "entries of lists are named by number or by name. The value is JSON; what is not JSON is a text.\n"
     "\n"
     "```\n"
-    "tobiuo run scene.json --set spacing=0.02 --set dfsph.support=3\n"
+    "tobiuo run scene.json --set spacing=0.01 --set dfsph.support=3\n"
     "tobiuo run scene.json --set fluids.water.viscosity=0.1 --set 'fluids[0].density=998'\n"
     "tobiuo run scene.json --set 'domain.walls.y=[\"slip\", \"no-slip\"]' --set bodies=[]\n"
     "```\n"

@@ -470,6 +470,7 @@ static json_t *write_body(const tobi_scene_body *body)
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
+    if (scene->method == &tobi_mlsmpm_table) json_object_del(root, "cfl");          /* it has its own */
     json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
            *probes = json_array(), *references = json_array();
     int failed = json_object_set_new(root, scene->method->name,

@@ -196,6 +196,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
         else if (behind_plane(s, x)) r->behind++;
         else add_particle(s, r, x);
     }
+    r->placed = s->particles.count - first;
     set_volumes(s, r, first, count);
     mark_core(s, r, tree, first);
     return TOBI_OK;

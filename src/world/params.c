@@ -81,7 +81,8 @@ static const tobi_param world_rows[] = {
       .text = "none", .doc = "Longest step that the adaptive choice may take." },
     { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 }, .min = 0, .max = 1,
       .positive = true, .unit = "1",
-      .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step." },
+      .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step of dfsph and "
+             "wcsph; mlsmpm has its own." },
     { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit), FROM(0), .unit = "m/s",
       .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
     { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1",
@@ -160,10 +161,11 @@ static const tobi_param mlsmpm_rows[] = {
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
     { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
       .doc = "Sum up in every step what the way to the grid and back, time steps and plastic flow cost, for "
-             "transfer_dissipation, step_work and plastic_work in history.csv; steps take up to 5 times as "
-             "long, where material flows 20 times." },
+             "transfer_dissipation, step_work and plastic_work in history.csv, which are 0 without it; steps "
+             "take up to 5 times as long, where material flows 20 times." },
     { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
-      .doc = "What becomes of particles that get past a side; those past an open side are removed." },
+      .doc = "What becomes of particles that get past a side: they are put back to it and counted (put_back "
+             "in history.csv), or removed (particles_lost); those past an open side are removed." },
     { 0 }
 };
 
@@ -174,7 +176,7 @@ static const tobi_param solid_rows[] = {
       AT(tobi_solid_def, model), .doc = "What its stress depends on." },
     { .key = "density", REAL, AT(tobi_solid_def, density), .def = { 1000 }, POSITIVE, .unit = "kg/m3",
       .doc = "Density at the start." },
-    { .key = "mass", REAL, AT(tobi_solid_def, mass), FROM(0), .unit = "kg", .text = "by density",
+    { .key = "mass", REAL, AT(tobi_solid_def, mass), POSITIVE, .unit = "kg", .text = "by density",
       .doc = "Mass of all regions together, instead of a density; per metre of depth in 2-D." },
     { .key = "youngs_modulus", REAL, AT(tobi_solid_def, youngs_modulus), .def = { 1e6 }, POSITIVE,
       .unit = "Pa", .doc = "Young's modulus of small strains; liquids have a bulk modulus instead." },
@@ -310,7 +312,7 @@ static const tobi_param body_rows[] = {
     { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
       .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
              "program." },
-    { .key = "mass", REAL, AT(tobi_body_def, mass), FROM(0), .unit = "kg", .text = "by density",
+    { .key = "mass", REAL, AT(tobi_body_def, mass), POSITIVE, .unit = "kg", .text = "by density",
       .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
     { .key = "inertia", VEC3, AT(tobi_body_def, inertia), FROM(0), .unit = "kg m2", .text = "mesh",
       .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain "

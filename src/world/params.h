@@ -6,7 +6,8 @@
    - "key[0]", "key[1]" are the entries of one list in a scene; one value alone stands for all.
    - TOBI_PARAM_TEXT: unit "name", "method" (the name of one), "path" (a file, looked up beside the
      scene), "names" (a list, of particle fields) or "text" (anything in one line).
-   - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all").
+   - Numbers: text, if set, is a word that may be written for the value 0 ("adaptive", "all"); of a
+     number that must be positive only the word stands for it, and a written 0 is refused.
    - TOBI_PARAM_VEC3: text, if set, is a word for the default, which may lie out of the range
      ("automatic" for a colour).
    - TOBI_PARAM_VEC3 that must be positive (a scale) may be written as one number. */

@@ -89,13 +89,13 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
         "fluid_particles", (json_int_t)tobi_world_count(run->world, TOBI_FLUID),
         "body_particles", (json_int_t)tobi_world_count(run->world, TOBI_BODIES),
         "particle_steps_per_s", number(rate));
-    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:i, s:I, s:s, s:o}",
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:I, s:s, s:o}",
         "density_iterations_mean", number(mean(t->density_iterations, t)),
         "divergence_iterations_mean", number(mean(t->divergence_iterations, t)),
         "density_error_mean", number(mean(t->density_error_mean, t)),
         "density_error_max", number(t->density_error_max),
         "unconverged_steps", (json_int_t)t->unconverged,
-        "particles_lost", (json_int_t)info->particles_lost,
+        "particles_lost", (json_int_t)info->particles_lost, "put_back", (json_int_t)info->put_back,
         "world_bytes", (json_int_t)tobi_world_bytes(run->world), "peak_rss_bytes", peak_rss(),
         "threads", run->world->sim.exec.threads, "outputs", (json_int_t)run->outputs, "state_hash", hash,
         "stages_s", make_stages(run));

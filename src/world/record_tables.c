@@ -10,7 +10,7 @@
    sums since the last output. Means are over the steps since the last output; other values are of
    the last step. wall_force_ratio: force of the fluid on the walls along gravity / its weight; 1 in a
    settled tank. Work and energies of solids are sums since the
-   start, see tobi_step_info. pieces and fragments: see tobi_pieces. */
+   start, see tobi_step_info; what is not measured is 0. pieces and fragments: see tobi_pieces. */
 #define HISTORY(H)                                                                  \
     H("time",                       real, i->time)                                  \
     H("step",                       int,  i->step)                                  \
@@ -49,6 +49,7 @@
     H("speed_max",                  real, i->speed_max)                             \
     H("fluid_particles",            int,  i->fluid_particles)                       \
     H("particles_lost",             int,  i->particles_lost)                        \
+    H("put_back",                   int,  i->put_back)                              \
     H("capped",                     int,  i->capped)                 \
     H("contacts",                   int,  i->contacts)                              \
     H("pieces",                     int,  pieces->count)                            \

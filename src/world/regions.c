@@ -50,8 +50,9 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
     return TOBI_OK;
 }
 
-static tobi_status measure_region(const tobi_world *w, const tobi_fill_def *f, tobi_region *r,
-                                  tobi_error *err)
+/* `name`: fluid or solid, in messages. */
+static tobi_status measure_region(const tobi_world *w, const char *name, const tobi_fill_def *f,
+                                  tobi_region *r, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
     int flat = s->box.dimension == 2;
@@ -68,11 +69,13 @@ static tobi_status measure_region(const tobi_world *w, const tobi_fill_def *f, t
     }
     for (int a = 0; a < s->box.dimension; a++) {
         if (!(r->upper[a] > r->lower[a]))
-            return tobi_fail(err, TOBI_INVALID, "box of a region: max %g is not above min %g along %c",
-                             r->upper[a], r->lower[a], "xyz"[a]);
+            return tobi_fail(err, TOBI_INVALID, "%s: box of fill[%d]: max %g is not above min %g along %c",
+                             name, r->number, r->upper[a], r->lower[a], "xyz"[a]);
         if (r->upper[a] <= s->box.lower[a] || r->lower[a] >= s->box.lower[a] + s->box.size[a])
             return tobi_fail(err, TOBI_INVALID,
-                             "a region (%g to %g m along %c) lies outside the domain (%g to %g m)",
+                             "%s: fill[%d], %s, reaches from %g to %g m along %c and lies outside the "
+                             "domain, %g to %g m",
+                             name, r->number, f->mesh ? f->mesh : f->radius > 0 ? "a sphere" : "a box",
                              r->lower[a], r->upper[a], "xyz"[a], s->box.lower[a],
                              s->box.lower[a] + s->box.size[a]);
     }
@@ -93,13 +96,15 @@ static tobi_status add_regions(tobi_world *w, const char *kind, const char *name
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for regions");
     w->regions = more;
     int first = w->region_count;
+    char whose[160];
+    snprintf(whose, sizeof whose, "%s '%s'", kind, name ? name : "");
     *volume = 0;
     for (int k = 0; k < count; k++) {
         tobi_region *r = &w->regions[w->region_count];
         memset(r, 0, sizeof *r);
         r->owner = owner;
         r->number = k;
-        tobi_status status = measure_region(w, &fills[k], r, err);
+        tobi_status status = measure_region(w, whose, &fills[k], r, err);
         w->region_count++;
         *volume += r->volume;
         if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
@@ -192,28 +197,59 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* A line per solid or fluid and cause: what was cut off at the domain, by bodies and by planes. */
+/* What an owner's regions could not place: inside bodies, behind planes, outside the domain. */
+enum { COVERED, BEHIND, OUTSIDE, LOSSES };
+
+/* A solid or fluid without a particle is left out of the run altogether, which nobody asks for. */
+static tobi_status check_placed(const char *kind, const char *name, int64_t placed,
+                                const int64_t lost[LOSSES], tobi_error *err)
+{
+    const long long all = lost[COVERED] + lost[BEHIND] + lost[OUTSIDE];
+    if (placed > 0) return TOBI_OK;
+    if (all == 0)
+        return tobi_fail(err, TOBI_INVALID,
+                         "no particles at all in %s '%s': its regions are smaller than the distance of "
+                         "particles, spacing; allowed are regions of a spacing or more", kind, name);
+    return tobi_fail(err, TOBI_INVALID,
+                     "no particles at all in %s '%s': of the %lld that it would start with, %lld lie inside "
+                     "bodies, %lld behind planes and %lld outside the domain; allowed is a %s of which a "
+                     "part lies free", kind, name, all, (long long)lost[COVERED], (long long)lost[BEHIND],
+                     (long long)lost[OUTSIDE], kind);
+}
+
+/* A line per cause: what was cut off at the domain, by bodies and by planes. */
+static tobi_status note_losses(tobi_world *w, const char *kind, const char *name,
+                               const int64_t lost[LOSSES], tobi_error *err)
+{
+    static const char *const what[LOSSES] = { "inside bodies were cut out", "behind planes were cut out",
+                                              "outside the domain were left out" };
+    for (int c = 0; c < LOSSES; c++) {
+        char text[200];
+        snprintf(text, sizeof text, "%lld particles that would start %s\n", (long long)lost[c], what[c]);
+        if (lost[c] > 0) TOBI_TRY(tobi_world_add_notes(w, kind, name, text, err));
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
 {
     const tobi_simulation *s = &w->sim;
     TOBI_TRY(check_blades(w, err));
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
     for (int k = 0; k < owners; k++) {
-        int64_t lost[3] = { 0, 0, 0 };
-        static const char *const what[3] = { "inside bodies were cut out", "behind planes were cut out",
-                                             "outside the domain were left out" };
+        const char *kind = solids ? "solid" : "fluid", *name = solids ? s->solids[k].name : s->fluid[k].name;
+        int64_t lost[LOSSES] = { 0 }, placed = 0;
+        int regions = 0;
         for (int r = 0; r < w->region_count; r++) {
             if (w->regions[r].owner != k) continue;
-            lost[0] += w->regions[r].covered;
-            lost[1] += w->regions[r].behind;
-            lost[2] += w->regions[r].outside;
+            lost[COVERED] += w->regions[r].covered;
+            lost[BEHIND] += w->regions[r].behind;
+            lost[OUTSIDE] += w->regions[r].outside;
+            placed += w->regions[r].placed;
+            regions++;
         }
-        const char *name = solids ? s->solids[k].name : s->fluid[k].name;
-        for (int c = 0; c < 3; c++) {
-            char text[200];
-            snprintf(text, sizeof text, "%lld particles that would start %s\n", (long long)lost[c], what[c]);
-            if (lost[c] > 0) TOBI_TRY(tobi_world_add_notes(w, solids ? "solid" : "fluid", name, text, err));
-        }
+        if (regions > 0) TOBI_TRY(check_placed(kind, name, placed, lost, err));
+        TOBI_TRY(note_losses(w, kind, name, lost, err));
     }
     return TOBI_OK;
 }

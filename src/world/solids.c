@@ -17,6 +17,7 @@ int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
 {
     int64_t most = tobi_region_count(&w->sim, r);
     double about = floor(r->volume/cell_of(w) + 0.5);
+    if (r->radius > 0) about = fmax(about, 1);           /* the middle of the lattice is in it */
     return (r->shape.triangle_count || r->radius > 0) && about < (double)most ? (int64_t)about : most;
 }
 
@@ -31,7 +32,7 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
         if (!w->started) info->particles += tobi_world_guess_particles(w, &w->regions[k]);
     }
     info->mass = info->density*info->volume;
-    if (w->method->stable_dt) info->time_step = w->method->stable_dt(s, w->method_def, solid);
+    if (w->method->stable_dt) info->time_step = w->method->stable_dt(s, w->method_def, solid, 0);
     if (!w->started) return TOBI_OK;
     info->mass = 0;
     for (int64_t i = 0; i < s->particles.count; i++) {
@@ -42,21 +43,30 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
     return TOBI_OK;
 }
 
-double tobi_world_stable_step(const tobi_world *w)
+static double find_step(const tobi_world *w, double speed)
 {
     double least = INFINITY;
     for (int k = 0; k < w->sim.solid_count && w->method->stable_dt; k++)
-        least = fmin(least, w->method->stable_dt(&w->sim, w->method_def, k));
+        least = fmin(least, w->method->stable_dt(&w->sim, w->method_def, k, speed));
     return isfinite(least) ? least : 0;
+}
+
+double tobi_world_stable_step(const tobi_world *w)
+{
+    return find_step(w, fmax(tobi_world_start_speed(w), w->sim.wall_speed));
 }
 
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
 {
-    double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w);
-    char text[160];
+    const double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w), rest = find_step(w, 0),
+                 parts = ceil(wish/stable*(1 - 1e-9));
+    char text[240], speed[80] = "";
     if (!(stable > 0) || wish <= stable) return TOBI_OK;
-    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids allows: "
-             "each is cut into %.0f or more\n", wish, stable, ceil(wish/stable*(1 - 1e-9)));
+    if (stable < 0.99*rest)
+        snprintf(speed, sizeof speed, ", their %.3g m/s at the start",
+                 fmax(tobi_world_start_speed(w), w->sim.wall_speed));
+    snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids%s and "
+             "gravity allow: each is cut into %.9g or more\n", wish, stable, speed, parts);
     return tobi_world_add_notes(w, "world", "time_step", text, err);
 }
 

@@ -301,8 +301,8 @@ static double start_head(const tobi_world *w)
     return head;
 }
 
-/* The fastest point of a region: its velocity, and its spin at the farthest corner. */
-static double start_speed(const tobi_world *w)
+/* Of a region: its velocity, and its spin at the farthest corner. */
+double tobi_world_start_speed(const tobi_world *w)
 {
     double fastest = 0;
     for (int k = 0; k < w->region_count; k++) {
@@ -324,7 +324,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->region_count; k++) room += tobi_region_count(s, &w->regions[k]);
     if (room + body == 0)
         return tobi_fail(err, TOBI_INVALID,
-                         "no particles at all: the scene needs a fluid region or a body");
+                         "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w), err));
@@ -332,8 +332,6 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
-    if (n + body == 0)
-        return tobi_fail(err, TOBI_INVALID, "no particles at all: the fluid regions hold none");
     TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));
     tobi_cells_free(&s->cells);
     if (w->method->fields & TOBI_SPH)
@@ -344,7 +342,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     if (!w->method_state) TOBI_TRY(w->method->create(s, w->method_def, &w->method_state, err));
     double *memory;
     w->method->memory(w->method_state, &memory);
-    memory[0] = s->start_speed = start_speed(w);
+    memory[0] = s->start_speed = tobi_world_start_speed(w);
     s->start_head = start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
     /* How fast the bodies start: their motion around time 0. */
@@ -356,10 +354,20 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Which key of the scene makes steps shorter, and its value. */
+static const char *name_cfl(const tobi_world *w, double *value)
+{
+    const tobi_world_def *d = &w->sim.def;
+    const int mpm = (w->method->fields & TOBI_MPM) != 0;
+    *value = mpm ? ((const tobi_mlsmpm_def *)w->method_def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
+    return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
+}
+
 static tobi_status check_runaway(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
-    double limit = s->def.speed_limit;
+    double limit = s->def.speed_limit, cfl;
+    const char *key = name_cfl(w, &cfl);
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         if (s->info.speed_max < 1e14 && s->info.capped <= 20 + s->particles.count/200) return TOBI_OK;
@@ -371,17 +379,23 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
         tobi_float4 v = s->particles.velocity[i];
         tobi_double3 x = s->particles.position[i];
         double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
-        if (speed < limit) continue;   /* NaN goes on */
+        if (speed < limit || speed == 0) continue;   /* NaN goes on */
+        if (!isfinite(speed))
+            return tobi_fail(err, TOBI_DIVERGED,
+                             "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
+                             "is no number any more; a %s smaller than %g may help",
+                             s->time, (long long)s->step, (long long)s->particles.id[i], key, cfl);
         return tobi_fail(err, TOBI_DIVERGED,
                          "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
-                         "%g, %g) m moves at %g m/s, the limit is %g m/s",
+                         "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
+                         "help",
                          s->time, (long long)s->step, (long long)s->particles.id[i],
                          x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
-                         limit);
+                         limit, key, cfl);
     }
     return tobi_fail(err, TOBI_DIVERGED,
-                     "the simulation diverged at t = %.9g s: a speed reached %g m/s", s->time,
-                     s->info.speed_max);
+                     "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
+                     "may help", s->time, s->info.speed_max, key, cfl);
 }
 
 static void measure(tobi_world *w)

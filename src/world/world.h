@@ -36,8 +36,10 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 
 /* Particles of a region: exact for boxes, from the volume for others. */
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
-/* Notes what the filling of the regions left out. */
+/* Notes what the filling of the regions left out; refuses a fluid or solid of which nothing is left. */
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
+/* The fastest point of a region at the start, m/s. */
+double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 

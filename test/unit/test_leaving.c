@@ -106,6 +106,7 @@ static int64_t throw_at_side(int leaving)
     tobi_world *world = solid_world(&s);
     OK(tobi_world_advance(world, 5, NULL, &err));
     int64_t lost = tobi_world_info(world)->particles_lost;
+    assert_int_equal(tobi_world_info(world)->put_back > 0, leaving == TOBI_KEEP);
     assert_int_equal(tobi_world_count(world, TOBI_FLUID), 80 - lost);
     tobi_world_destroy(world);
     return lost;

@@ -330,6 +330,7 @@ static void test_summary(void **state)
                                         "\"density_error_mean\"",
                                         "\"density_error_max\"",
                                         "\"particles_lost\"",
+                                        "\"put_back\": 0",
                                         "\"peak_rss_bytes\"",
                                         "\"threads\": 1",
                                         "\"version\"",

@@ -80,6 +80,9 @@ static void worlds(void **state)
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID, "there is no method 'magic'");
     tobi_exec exec;
     REFUSED(tobi_exec_init(&exec, -1, &err), TOBI_INVALID, "threads is -1, allowed is 0 (all cores)");
+    setenv("TOBIUO_ISA", "1", 1);
+    REFUSED(tobi_exec_init(&exec, 1, &err), TOBI_INVALID, "TOBIUO_ISA is \"1\", allowed is 2, 3 or 4");
+    unsetenv("TOBIUO_ISA");
 }
 
 static void fluids(void **state)
@@ -89,20 +92,21 @@ static void fluids(void **state)
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_world *world = make_world(&def, 0);
     REFUSED(tobi_world_start(world, &err), TOBI_INVALID,
-            "no particles at all: the scene needs a fluid region or a body");
+            "no particles at all: the scene needs a region of a fluid or solid, or a body");
     tobi_fill_def fill = make_fill(0.5, 0.5);
     REFUSED(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_INVALID,
-            "box of a region: max 0.5 is not above min 0.5 along x");
+            "fluid 'fluid': box of fill[0]: max 0.5 is not above min 0.5 along x");
     fill = make_fill(2, 3);
     REFUSED(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_INVALID,
-            "a region (2 to 3 m along x) lies outside the domain (0 to 1 m)");
+            "fluid 'fluid': fill[0], a box, reaches from 2 to 3 m along x and lies outside the domain, 0 to "
+            "1 m");
     fill.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";      /* smaller than a particle */
     for (int a = 0; a < 3; a++) {
         fill.scale[a] = 0.01;
         fill.translation[a] = 0.5;
     }
     REFUSED((tobi_world_add_fluid(world, &fluid, &fill, 1, &err), tobi_world_start(world, &err)),
-            TOBI_INVALID, "no particles at all: the fluid regions hold none");
+            TOBI_INVALID, "no particles at all in fluid 'fluid': its regions are smaller than the distance");
     tobi_world_destroy(world);
 
     world = make_world(&def, 1);
