@@ -42,8 +42,8 @@ SCENE = """{ "domain": {"min": [0, 0, 0], "max": [0.3, 0.3, 0.3]}, "spacing": 0.
 OLD = """{ "Configuration": { "domainEnd": [0.3, 0.3, 0.3], "particleRadius": 0.025, "viscosity": 1e-6,
   "gravitation": [0, 0, -9.81], "timeStepSize": 0.001, "cameraPosition": [1, 1, 1] },
 "FluidBlocks": [ { "objectId": 0, "start": [0, 0, 0], "end": [0.3, 0.3, 0.15], "color": [1, 2, 3] } ],
-"RigidBlocks": [ { "start": [0.1, 0.1, 0.16], "end": [0.2, 0.2, 0.2], "isDynamic": true, "density": 500 } ],
-"RigidBodies": [ { "geometryFile": "box.obj", "translation": [0.15, 0.15, 0.27], "velocity": [0, 0, 0],
+"RigidBlocks": [ { "start": [0.1, 0.1, 0.16], "end": [0.2, 0.2, 0.18], "isDynamic": true, "density": 500 } ],
+"RigidBodies": [ { "geometryFile": "box.obj", "translation": [0.15, 0.15, 0.24], "velocity": [0, 0, 0],
   "rotationAngle": 30, "isDynamic": true } ] }
 """
 TIMED = {"summary.json"}
