@@ -98,7 +98,7 @@ TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, 
     }
 }
 
-/* and of the nodes as they are. totals[1]: the sums of eq. (18). */
+/* and of the nodes as they are. totals[1]: the sums of eq. (23). */
 TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
