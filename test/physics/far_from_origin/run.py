@@ -32,6 +32,8 @@ def compare(label, size, fill, end):
     case.hold(f"{label}: as many particles at both places", len(a) == len(b))
     largest = max(sum((a[i + k] - b[i + k])**2 for k in range(3))**0.5 for i in range(0, len(a), 3))
     steps = int(history["step"][-1])
+    case.plot(f"Kinetic energy, {label}", "t, s", "J", [("here", history["time"], history["kinetic_energy"], False),
+                                                       ("far", far["time"], far["kinetic_energy"], True)])
     case.hold(f"{label}: as many steps at both places ({steps})", steps == int(far["step"][-1]))
     return largest/D, steps
 

@@ -15,8 +15,10 @@ double-precision sum over all pairs that knows only the equations, and the same 
 TABLE = {5: 1.00527, 10: 1.00011, 15: 0.999972, 20: 1, 25: 1}
 sums = re.findall(r"(wendland c2|cubic spline) +([23])-D N = *([0-9]+): ([0-9.]+)", case.unit("test_smoothing"))
 case.hold("two kernels, two dimensions, five lattices", len(sums) == 20)
+curves = {}
 for kernel, dimension, n, value in sums:
     text, off = f"{kernel}, {dimension}-D, N = {n}: integral", float(value) - 1
+    curves.setdefault(f"{kernel}, {dimension}-D", []).append((float(n), float(value)))
     if (kernel, dimension) == ("cubic spline", "3"):
         off = float(value) - TABLE[int(n)]
         case.figure(text, value, f"{TABLE[int(n)]:g} within 6e-6", abs(off) <= 6e-6)
@@ -27,4 +29,5 @@ for kernel, dimension, n, value in sums:
 passed = case.unit("test_sph_oracle")
 for name in "kernels_follow_the_equations", "instruction_sets_give_the_same_bits", "pressure_keeps_momentum":
     case.figure(name.replace("_", " "), "passed" if f"OK ] {name}" in passed else "failed", "passed", f"OK ] {name}" in passed)
+case.plot("Integral over the support", "intervals across", "1", [(name, *zip(*points), False) for name, points in curves.items()])
 case.finish()

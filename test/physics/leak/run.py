@@ -11,6 +11,8 @@ Material flies at 10 m/s against a plate, a closed box of 1.2 cells that is much
 grid by a third of a cell; in 2-D also turned by 20 degrees, and coming at 10 m/s towards material at rest. Counted at
 every output: particles behind the plate's middle.""")
 
+curves = []
+
 
 def shoot(label, dim, model, angle=0, moving=0):
     """Most particles behind the middle of the plate at any output."""
@@ -38,6 +40,7 @@ def shoot(label, dim, model, angle=0, moving=0):
         x = read_vtu(path)["Points"]
         behind = max(behind, sum(1 for i in range(0, len(x), 3) if x[i] > at - moving*t - slope*(x[i + 1] - 0.5)))
     h = read_table(out/"history.csv")
+    curves.append((label, h["time"], [p/(1000*10*0.2**dim) for p in h["momentum_x"]], False))
     case.hold(f"{label}: the plate was hit", max(h["contacts"]) > 0)
     return behind, h["fluid_particles"][0], h["particles_lost"][-1]
 
@@ -52,4 +55,5 @@ for dim, model, angle, moving in case.pick(
     text = f"{dim}-D, {model}, turned by {angle} degrees, {'plate' if moving else 'material'} at 10 m/s"
     case.figure(f"{text}: particles of {int(count)} behind the plate", behind, "0", behind == 0)
     case.hold(f"{text}: none behind, none lost", behind == 0 and lost == 0)
+case.plot("Momentum of the material towards the plate, over that of the shot", "t, s", "1", curves)
 case.finish()

@@ -30,7 +30,7 @@ def thrown(dim, transfer):
     time, weight = h["time"], h["weight"]
     case.hold(f"sides {dim}-D {transfer}: every step is an output, none at the same time",
               int(h["step"][-1]) == len(time) - 1)
-    scale, error, impulse = 0.0, 0.0, [0.0]*dim
+    scale, error, impulse, errors = 0.0, 0.0, [0.0]*dim, [0.0]
     for i in range(1, len(time)):
         dt = h["dt"][i]
         force = [-h[f"wall_force_{a}"][i] - (weight[i] if k == dim - 1 else 0) for k, a in enumerate("xyz"[:dim])]
@@ -38,7 +38,9 @@ def thrown(dim, transfer):
         for k, a in enumerate("xyz"[:dim]):
             impulse[k] += force[k]*dt
             error = max(error, abs(h[f"momentum_{a}"][i] - h[f"momentum_{a}"][0] - impulse[k]))
+        errors.append(error)
     case.hold(f"sides {dim}-D {transfer}: it met them", any(abs(f) > 1 for f in h["wall_force_x"]))
+    curves.append((f"{dim}-D, {transfer}", time, [e/scale for e in errors], False))
     return error/scale
 
 
@@ -64,7 +66,7 @@ def against_body(dim):
     return error, moved
 
 
-found = []
+found, curves = [], []
 for dim, transfer in case.pick([(2, "apic"), (2, "flip")], [(2, "apic"), (2, "flip"), (2, "xpic"), (3, "apic"), (3, "flip")]):
     error = thrown(dim, transfer)
     found.append(error)
@@ -74,6 +76,7 @@ for dim in (2, 3):
     found.append(error/moved)
     case.hold(f"body, {dim}-D: they met", moved > 0.1*1000*0.2**dim*2)
     case.figure(f"body, {dim}-D: solid and body together, change over what went over", error/moved, "<= 1e-6", error/moved <= 1e-6)
+case.plot("Largest error of the balance up to a time, over the sum of |F| dt", "t, s", "1", curves)
 # Float sums over some thousand particles, hundreds of steps of 6e-8 each that partly cancel.
 case.hold("all within 1e-5", max(found) <= 1e-5)
 case.finish()

@@ -12,7 +12,7 @@ lies behind its middle has come through it. Thickness in spacings of the fluid; 
 in the contact. Every share of the water above zero is a miss.""")
 
 SPEED, END, FRONT = 2.0, 0.1, 0.07
-thinnest = None
+thinnest, curves = None, []
 for spacing in case.pick((0.01,), (0.01, 0.005)):
     for thickness in (0.05, 0.25, 0.5, 1, 2, 3):
         thick = thickness*spacing
@@ -24,10 +24,13 @@ for spacing in case.pick((0.01,), (0.01, 0.005)):
         share = (behind + lost)/(len(points)//3 + lost)
         case.figure(f"{thickness:g} spacings of {1000*spacing:g} mm ({1000*thick:.3g} mm): share of the water that gets through",
                     share, "0", share == 0)
-        force = read_table(out / "bodies.csv")["mean_pressure_force_x"][-1]
+        table = read_table(out / "bodies.csv")
+        force = table["mean_pressure_force_x"][-1]
+        curves.append((f"{thickness:g} spacings of {1000*spacing:g} mm", table["time"][1:], table["mean_pressure_force_x"][1:], False))
         case.hold(f"{thickness:g} spacings: the water pushes back ({force:.2f} N)", force < 0)
         case.hold(f"{thickness:g} spacings: tight", share == 0)
         if share == 0:
             thinnest = min(thinnest or thickness, thickness)
 case.state("thinnest wing that holds, spacings", thinnest if thinnest else "none")
+case.plot("Force on the wing", "t, s", "N", curves)
 case.finish()
