@@ -87,8 +87,9 @@ static void test_precession(void **state)
 {
     (void)state;
     double coarse = precession_error(100), fine = precession_error(200);
-    print_message("precession error %.3g, %.3g at half the step: order %.3f\n", coarse, fine,
-                  log2(coarse/fine));
+    for (int steps = 100; steps <= 1600; steps *= 2)
+        print_message("%d steps: precession error %.3g\n", steps, precession_error(steps));
+    print_message("order %.3f\n", log2(coarse/fine));
     assert_true(coarse < 2e-3 && fabs(log2(coarse/fine) - 2) < 0.1);
 }
 

@@ -3,6 +3,7 @@
 import pathlib
 import re
 import sys
+from math import log10
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case
@@ -18,4 +19,10 @@ case.figure("change of the angular momentum, relative", momentum, "<= 1e-15", mo
 case.state("length of the quaternion squared less 1", length)
 order = float(re.search(r"order ([0-9.]+)", text).group(1))
 case.figure("order of the precession's phase", order, "2 within 0.1", abs(order - 2) <= 0.1)
+points = [(float(n), float(e)) for n, e in re.findall(r"(\d+) steps: precession error (\S+)", text)]
+case.hold("five lengths of the step", len(points) == 5)
+first = points[0]
+case.plot("Error of the axis after its way, of 1", "log10 of the steps", "log10 of the error",
+          [("tobiuo", [log10(n) for n, _ in points], [log10(e) for _, e in points], True),
+           ("second order", [log10(n) for n, _ in points], [log10(first[1]*(first[0]/n)**2) for n, _ in points], False)])
 case.finish()
