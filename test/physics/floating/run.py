@@ -48,8 +48,8 @@ for density, end in (500, 0.1), (2000, 0.1), (50, 0.04):
         share = table["velocity_z"][-1]/(free_fall(density)*end)
         case.figure(f"full vessel, density ratio {density/RHO}, {across} across: velocity over theory", share,
                     "1 within 0.05", abs(share - 1) <= 0.05)
-        if across == 10:    # of six, drag takes a tenth by then
-            case.hold(f"full vessel, density ratio {density/RHO}: within 10 % of theory", abs(share - 1) <= 0.1)
+        # Six across miss this: drag takes a tenth by then.
+        case.hold(f"full vessel, density ratio {density/RHO}: within 10 % of theory", abs(share - 1) <= 0.1)
         side = max(abs(table[f"velocity_{a}"][-1]) for a in "xy")/abs(table["velocity_z"][-1])
         # Six spacings across: nothing but the lattice points aside.
         case.hold(f"full vessel, density ratio {density/RHO}: goes straight up or down, {side:.2g} aside", side <= 0.05)
