@@ -15,6 +15,18 @@ void tobi_quaternion_matrix(const double q[4], double m[3][3])
     m[2][0] = 2*(x*z - w*y);     m[2][1] = 2*(y*z + w*x);     m[2][2] = 1 - 2*(x*x + y*y);
 }
 
+void tobi_rigid_between(const tobi_rigid *a, const tobi_rigid *b, double turn[3][3], double shift[3])
+{
+    double ma[3][3], mb[3][3], d[3];
+    tobi_quaternion_matrix(a->orientation, ma);
+    tobi_quaternion_matrix(b->orientation, mb);
+    vec3_sub(d, a->position, b->position);
+    for (int i = 0; i < 3; i++) {
+        shift[i] = mb[0][i]*d[0] + mb[1][i]*d[1] + mb[2][i]*d[2];
+        for (int j = 0; j < 3; j++) turn[i][j] = mb[0][i]*ma[0][j] + mb[1][i]*ma[1][j] + mb[2][i]*ma[2][j];
+    }
+}
+
 void tobi_quaternion_product(const double p[4], const double q[4], double out[4])
 {
     double r[4] = { p[0]*q[0] - p[1]*q[1] - p[2]*q[2] - p[3]*q[3],

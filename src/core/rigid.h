@@ -74,6 +74,8 @@ void tobi_rigid_settle(tobi_rigid *r);
 double tobi_rigid_kinetic_energy(const tobi_rigid *r);
 
 void tobi_quaternion_matrix(const double q[4], double m[3][3]);
+/* From a's rest axes to b's: x in a is turn x + shift in b, shift in m. */
+void tobi_rigid_between(const tobi_rigid *a, const tobi_rigid *b, double turn[3][3], double shift[3]);
 void tobi_quaternion_product(const double p[4], const double q[4], double out[4]);
 /* Turns q by the rotation vector w (rad, world axes), for small w; unit length again after. */
 void tobi_quaternion_turn(double q[4], const double w[3]);

@@ -16,19 +16,6 @@ typedef struct search {
 
 typedef struct space { double lower[3], upper[3]; } space;
 
-static void set_frame(search *s, const tobi_rigid *a, const tobi_rigid *b)
-{
-    double ma[3][3], mb[3][3], d[3];
-    tobi_quaternion_matrix(a->orientation, ma);
-    tobi_quaternion_matrix(b->orientation, mb);
-    vec3_sub(d, b->position, a->position);
-    for (int i = 0; i < 3; i++) {
-        s->shift[i] = ma[0][i]*d[0] + ma[1][i]*d[1] + ma[2][i]*d[2];
-        for (int j = 0; j < 3; j++)
-            s->turn[i][j] = ma[0][i]*mb[0][j] + ma[1][i]*mb[1][j] + ma[2][i]*mb[2][j];
-    }
-}
-
 /* How far below the surface x is; above it less than 0. */
 static double find_depth(const tobi_bvh *bvh, const double x[3])
 {
@@ -77,10 +64,9 @@ double tobi_overlap_depth(const tobi_body *a, const tobi_shape *sa, const tobi_b
 {
     search s = { .a = sa->facets.bvh, .b = sb->facets.bvh, .least = 0.5*least };
     space stack[STACK];
-    int top = 0;
-    set_frame(&s, &a->rigid, &b->rigid);
+    int top = 1;
+    tobi_rigid_between(&b->rigid, &a->rigid, s.turn, s.shift);
     if (!find_common(&s, sa->facets.flat, &stack[0])) return 0;
-    top = 1;
     for (int looked = 0; top > 0 && looked < MOST_BOXES; looked++) {
         space box = stack[--top];
         int axis = 0;

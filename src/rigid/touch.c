@@ -47,16 +47,8 @@ static void turn(const frame *f, const double x[3], double y[3])
 
 static void set_frames(pair *p, const tobi_rigid *a, const tobi_rigid *b)
 {
-    double ma[3][3], mb[3][3], d[3];
-    tobi_quaternion_matrix(a->orientation, ma);
-    tobi_quaternion_matrix(b->orientation, mb);
-    vec3_sub(d, a->position, b->position);
-    for (int i = 0; i < 3; i++) {
-        p->to_b.shift[i] = mb[0][i]*d[0] + mb[1][i]*d[1] + mb[2][i]*d[2];
-        for (int j = 0; j < 3; j++)
-            p->to_b.turn[i][j] = mb[0][i]*ma[0][j] + mb[1][i]*ma[1][j] + mb[2][i]*ma[2][j];
-    }
-    memcpy(p->to_world.turn, mb, sizeof mb);
+    tobi_rigid_between(a, b, p->to_b.turn, p->to_b.shift);
+    tobi_quaternion_matrix(b->orientation, p->to_world.turn);
     memcpy(p->to_world.shift, b->position, sizeof p->to_world.shift);
 }
 

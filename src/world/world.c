@@ -383,8 +383,9 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
         if (!isfinite(speed))
             return tobi_fail(err, TOBI_DIVERGED,
                              "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
-                             "is no number any more; a %s smaller than %g may help",
-                             s->time, (long long)s->step, (long long)s->particles.id[i], key, cfl);
+                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help",
+                             s->time, (long long)s->step, (long long)s->particles.id[i],
+                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl);
         return tobi_fail(err, TOBI_DIVERGED,
                          "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
                          "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
