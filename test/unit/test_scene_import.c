@@ -126,8 +126,8 @@ static void the_table_tells_every_key(void **state)
 static void blocks_with_their_own_values(void **state)
 {
     (void)state;
-    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5",
-                                "fluids[1].viscosity=0.5", NULL };
+    const char *overrides[] = { "spacing=0.05", "fluids[0].viscosity=0.5", "fluids[1].viscosity=0.5",
+                                "fluids[0].name=first", NULL };
     tobi_scene *scene = load(OLD "blocks_y_up.json", overrides);
     assert_true(tobi_scene_world_def(scene)->spacing == 0.05);       /* overrides are native */
     assert_vector(tobi_scene_world_def(scene)->gravity, 0, -9.81, 0);
@@ -135,6 +135,8 @@ static void blocks_with_their_own_values(void **state)
     assert_int_equal(scene->fluids[0].fill_count, 2);
     assert_int_equal(scene->fluids[1].fill_count, 1);
     assert_true(scene->fluids[0].def.viscosity == 0.5 && scene->fluids[1].def.viscosity == 0.5);
+    assert_string_equal(scene->fluids[0].def.name, "first");
+    assert_string_not_equal(scene->fluids[1].def.name, "first");
     const tobi_fill_def *fill = &scene->fluids[0].fills[0].def;
     assert_vector(fill->box_min, 0, 0, 0);
     assert_vector(fill->box_max, 0.2, 0.4, 0.4);

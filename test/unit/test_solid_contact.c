@@ -7,30 +7,39 @@
 #include <math.h>
 #include "tobiuo/tobiuo.h"
 
+/* A slab of 0.2 m on the floor of a narrow vessel and a box above it, from low to high. */
+static tobi_world *put_box(tobi_world_def *w, tobi_solid_def *solid, tobi_body_def *body, double low,
+                           double high)
+{
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world;
+    tobi_error err = { 0 };
+    w->method = "mlsmpm";
+    w->spacing = 0.05;
+    for (int a = 0; a < 3; a++) {
+        w->domain_max[a] = a == 2 ? 0.6 : 0.4;
+        fill.box_max[a] = a == 2 ? 0.2 : 0.4;
+        body->box_min[a] = a == 2 ? low : 0.1;
+        body->box_max[a] = a == 2 ? high : 0.3;
+    }
+    body->name = "box";
+    assert_int_equal(tobi_world_create(w, NULL, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_solid(world, solid, &fill, 1, NULL), TOBI_OK);
+    if (tobi_world_add_body(world, body, &err)) fail_msg("%s", err.text);
+    return world;
+}
+
 /* From a height of two spacings: who looks for contacts only where the body was at the start finds none. */
 static void a_falling_box_is_caught(void **state)
 {
     (void)state;
     tobi_world_def w = tobi_default_world_def();
     tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def body = tobi_default_body_def();
     tobi_body_info info;
-    tobi_world *world;
     tobi_error err = { 0 };
-    w.method = "mlsmpm";
-    w.spacing = 0.05;
-    for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = a == 2 ? 0.6 : 0.4;
-        fill.box_max[a] = a == 2 ? 0.2 : 0.4;
-        body.box_min[a] = a == 2 ? 0.3 : 0.1;
-        body.box_max[a] = a == 2 ? 0.5 : 0.3;
-    }
-    body.name = "box";
     body.dynamics = TOBI_FREE;
-    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
-    if (tobi_world_add_body(world, &body, &err)) fail_msg("%s", err.text);
+    tobi_world *world = put_box(&w, &solid, &body, 0.3, 0.5);
     if (tobi_world_advance(world, 0.4, NULL, &err)) fail_msg("%s", err.text);
     tobi_world_body(world, 0, &info);
     /* 8 kg on 0.04 m2 of 1e6 Pa: it sinks 0.4 mm and half a spacing is the gap's uncertainty. */
@@ -63,30 +72,17 @@ static void shortened_steps_tell_the_same_force(void **state)
     (void)state;
     tobi_world_def w = tobi_default_world_def();
     tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def body = tobi_default_body_def();
     told k = { .from = 0.8, .least = INFINITY, .shortest = INFINITY };
-    tobi_world *world;
     tobi_error err = { 0 };
-    w.method = "mlsmpm";
-    w.spacing = 0.05;
     w.gravity[2] = -9.81;
     solid.youngs_modulus = 1e5;
     solid.damping = 20;
-    for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = a == 2 ? 0.6 : 0.4;
-        fill.box_max[a] = a == 2 ? 0.2 : 0.4;
-        body.box_min[a] = a == 2 ? 0.21 : 0.1;
-        body.box_max[a] = a == 2 ? 0.4 : 0.3;
-    }
-    body.name = "weight";
     body.dynamics = TOBI_CONTROLLED;
     body.mass = 2;
     body.control = listen;
     body.control_user = &k;
-    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
-    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
-    if (tobi_world_add_body(world, &body, &err)) fail_msg("%s", err.text);
+    tobi_world *world = put_box(&w, &solid, &body, 0.21, 0.4);
     for (int n = 1; n <= 68; n++)
         if (tobi_world_advance(world, 0.0177*n, NULL, &err)) fail_msg("%s", err.text);
     print_message("contact force %.2f to %.2f N in steps of %.3g to %.3g ms; the load is 29.62 N\n", k.least,

@@ -94,7 +94,7 @@ static void no_number_is_no_speed(void **state)
     OK(tobi_world_write(world, "velocity", v, n, &err));
     free(v);
     REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_DIVERGED,
-            "is no number any more; a mlsmpm.cfl smaller than 0.4 may help");
+            ") m is no number any more; a mlsmpm.cfl smaller than 0.4 may help");
     tobi_world_destroy(world);
 }
 
