@@ -175,7 +175,7 @@ static int add_point(void *user, int32_t k)
 static void blend_lift(const look *l, int32_t i)
 {
     const tobi_simulation *s = l->s;
-    if (s->particles.axis) return;
+    if (s->particles.stretch) return;
     const double *g = l->gravity;
     tobi_near_entry *e = l->entry;
     double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*

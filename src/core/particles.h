@@ -29,7 +29,8 @@ typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
     X(tobi_record,  record,       TOBI_SCRATCH, TOBI_SPH,     "1",    "fixed-point position, payload") \
     X(tobi_float4,  accel,        TOBI_SCRATCH, TOBI_SPH,     "m/s2", "acceleration of the pass") \
     X(tobi_float4,  wall,         TOBI_SCRATCH, TOBI_SPH,     "1/m",  "wall gradient G; w = G . v_wall") \
-    X(tobi_float4,  axis,         TOBI_SCRATCH, TOBI_WETTED,  "1",    "normal of the wall; w: eq. (7b)") \
+    X(tobi_float4,  stretch,      TOBI_SCRATCH, TOBI_WETTED,  "1",    "T, eq. (7b), (7c): xx, yy, zz, xy") \
+    X(tobi_float4,  shear,        TOBI_SCRATCH, TOBI_WETTED,  "1",    "T: yz, zx") \
     X(uint8_t,      beside,       TOBI_SCRATCH, TOBI_WETTED,  "1",    "1: it or a neighbour sees a body") \
     X(float,        density,      TOBI_SCRATCH, TOBI_SPH,     "1",    "density over rest density") \
     X(float,        diagonal,     TOBI_SCRATCH, TOBI_SPH,     "m/kg", "diagonal of the pressure operator") \

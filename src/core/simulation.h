@@ -70,7 +70,7 @@ typedef struct tobi_method {
     size_t def_size;                                             /* of the parameter struct        */
     int fields;                                                  /* particle fields besides TOBI_ALL */
     int body_fields;                                             /* and where there are bodies, or
-                                                                    something moves in a full vessel */
+                                                                    liquid fills the domain         */
     int free_bodies;                                             /* 1: bodies may move by forces   */
     int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a

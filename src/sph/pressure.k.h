@@ -2,45 +2,38 @@
    C u = sum_j V grad W . (u_i - u_j) + 2 G . (u_i - u_wall)   is the rate of relative compression,
    a(p) = -(1/rho) C^T p = -(1/rho) [ sum_j (p_i + p_j) V grad W + 2 p_i G ]   the pressure acceleration,
    A = -C a = C (1/rho) C^T the operator: symmetric, so momentum is exact and CG applies.
-   Beside bodies, and in full vessels sides, both have T grad W in place of grad W, eq. (7b) of
-   docs/theory/boundaries.md.
-   Equation numbers: docs/theory/dfsph.md. */
+   In full vessels, and beside bodies in others, both have T grad W in place of grad W, eq. (7c) and (7b).
+   Equation numbers: docs/theory/dfsph.md and, for (7b), boundaries.md. */
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
-#include "sph/axis.k.h"
+#include "sph/tensor.k.h"
 #include "sph/view.h"
 
 /* a(p) for the payload p of the records, eq. (8). */
-typedef struct sph_pressure_accel_acc { lane p, x, y, z; sph_axis n; } sph_pressure_accel_acc;
+typedef struct sph_pressure_accel_acc { lane p, x, y, z; sph_tensor t; } sph_pressure_accel_acc;
 
 TOBI_FN void sph_pressure_accel_start(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
 {
     a->p = lane_set(v->record[i].w);
     a->x = a->y = a->z = lane_set(0);
-    a->n = sph_axis_of(v, i);
-}
-
-/* What (7b) adds to (8): both particles' pressures along their own walls. */
-TOBI_FN void sph_pressure_along(const sph_view *v, const tobi_near *n, sph_pressure_accel_acc *a, lane f)
-{
-    lane x, y, z, lack, own = f*a->p*a->n.lack;
-    lane_load_float4(v->axis, n->j, &x, &y, &z, &lack);
-    lane other = f*n->w*lack, both = own + other;
-    own *= a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz;
-    other *= x*n->dx + y*n->dy + z*n->dz;
-    a->x += both*n->dx - own*a->n.x - other*x;
-    a->y += both*n->dy - own*a->n.y - other*y;
-    a->z += both*n->dz - own*a->n.z - other*z;
+    a->t = sph_tensor_of(v, i);
 }
 
 TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n,
                                      sph_pressure_accel_acc *a, const int shape)
 {
-    lane r = lane_sqrt(n->r2), fall = smoothing_falloff(shape, r*v->inverse_h, r), f = (a->p + n->w)*fall;
+    lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     (void)i;
-    a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
-    if (a->n.due) sph_pressure_along(v, n, a, fall);
+    if (!a->t.due) {
+        f *= a->p + n->w;
+        a->x += f*n->dx; a->y += f*n->dy; a->z += f*n->dz;
+        return;
+    }
+    sph_tensor both = sph_tensor_both(v, &a->t, a->p, n);
+    lane tilted[3];
+    sph_tensor_times(&both, n->dx, n->dy, n->dz, tilted);
+    a->x += f*tilted[0]; a->y += f*tilted[1]; a->z += f*tilted[2];
 }
 
 TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_pressure_accel_acc *a)
@@ -74,14 +67,14 @@ TOBI_FN void sph_pressure_kick_finish(const sph_view *v, int64_t i, sph_pressure
     totals[0] += (double)sqrtf(f.x * f.x + f.y * f.y + f.z * f.z) / v->inverse_density[v->fluid[i]];
 }
 
-/* C u for a float4 array u, eq. (7), (7b). */
-typedef struct sph_compression_acc { lane ux, uy, uz, sum; sph_axis n; } sph_compression_acc;
+/* C u for a float4 array u, eq. (7). */
+typedef struct sph_compression_acc { lane ux, uy, uz, sum; sph_tensor t; } sph_compression_acc;
 
 TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression_acc *a,
                                    const tobi_float4 *field)
 {
     tobi_float4 u = field[i];
-    a->n = sph_axis_of(v, i);
+    a->t = sph_tensor_of(v, i);
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
     a->sum = lane_set(0);
 }
@@ -92,11 +85,9 @@ TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_com
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
     lane_load_float4(field, n->j, &x, &y, &z, &w);
     x -= a->ux; y -= a->uy; z -= a->uz;
-    lane rate = x*n->dx + y*n->dy + z*n->dz;
-    if (a->n.due)
-        rate += a->n.lack*(rate - (a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz)*
-                                      (a->n.x*x + a->n.y*y + a->n.z*z));
-    a->sum += f*rate;
+    lane tilted[3] = {n->dx, n->dy, n->dz};
+    if (a->t.due) sph_tensor_times(&a->t, n->dx, n->dy, n->dz, tilted);
+    a->sum += f*(x*tilted[0] + y*tilted[1] + z*tilted[2]);
 }
 
 TOBI_FN float sph_compression_value(const sph_view *v, int64_t i, sph_compression_acc *a,

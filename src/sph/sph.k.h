@@ -4,7 +4,7 @@
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
-#include "sph/axis.k.h"
+#include "sph/tensor.k.h"
 #include "sph/view.h"
 
 /* Linear interpolation in a plane table at distance s. */
@@ -53,38 +53,21 @@ TOBI_FN float sph_wall_density(const sph_view *v, float share)
     return share < 0.5f ? full + (share - at)*(0.5f - full)/(0.5f - at) : share;
 }
 
-/* (7b) is for bodies, and in full vessels for sides as well. */
-TOBI_FN int sph_sees_wall(const sph_view *v, int64_t i)
-{
-    return v->full || (v->near && v->near[i] >= 0);
-}
-
-/* Along a wall the sums of (7) lack the neighbours behind it. Eq. (7b): the wall's normal; w = L/(1 - L) with
-   the share L that a lattice lacks, at most that of a particle almost on the wall: edges have more. */
-TOBI_FN tobi_float4 sph_wall_axis(const sph_view *v, tobi_float4 gradient, float share)
-{
-    float size2 = gradient.x*gradient.x + gradient.y*gradient.y + gradient.z*gradient.z;
-    float unit = size2 > 0 ? 1/sqrtf(size2) : 0, lack = sph_wall_density(v, share);
-    lack = lack < 0.45f ? lack : 0.45f;
-    tobi_float4 axis = {unit*gradient.x, unit*gradient.y, unit*gradient.z, lack/(1 - lack)};
-    return axis;
-}
-
 /* Relative density, eq. (3), the diagonal of the pressure operator, eq. (9), and the free-surface
    sign div x (Lee et al. 2008): dim in the bulk, less where neighbours are missing.
    totals: error, surface particles, diagonal, those at a surface beyond doubt; maxima: error, and how deep
    the latter reach, which delta keeps for each, m. */
 typedef struct sph_density_acc {
-    lane rho, pressure, gx, gy, gz, g2, div, across;
-    sph_axis n;
+    lane rho, pressure, gx, gy, gz, g2, div;
+    sph_moments first, second;      /* sums of F x x and of F^2 x x, where T is due */
+    int due;
 } sph_density_acc;
 
 TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
 {
-    if (v->axis)
-        v->axis[i] = sph_wall_axis(v, v->wall[i], sph_sees_wall(v, i) ? v->density[i] : 0);
-    a->n = sph_axis_of(v, i);
-    a->across = lane_set(0);
+    a->due = sph_tensor_due(v, i);
+    sph_moments_clear(&a->first);
+    sph_moments_clear(&a->second);
     a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
 }
 
@@ -100,22 +83,37 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     lane f2 = f*n->r2;
     a->g2 += f*f2;
     a->div += f2;
-    if (!a->n.due) return;
-    lane across = f*(a->n.x*n->dx + a->n.y*n->dy + a->n.z*n->dz);
-    a->across += across*across;
+    if (!a->due) return;
+    sph_moments_add(&a->first, f, n);
+    sph_moments_add(&a->second, f*f, n);
 }
 
-/* The diagonal, eq. (9): of C^T C, with k*g = -sum V grad W and the sum of squares g2. */
-TOBI_FN float sph_diagonal(const sph_view *v, int64_t i, tobi_float4 g, float g2, float across)
+/* T of a particle: (7c) in full vessels, (7b) beside bodies in others and where (7c) has no answer. */
+TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_density_acc *a, float share)
 {
-    tobi_float4 w = v->wall[i], n = {0, 0, 0, 0};
-    float k = v->slope;
-    if (v->axis) n = v->axis[i];
-    float kept = 1 + n.w, along = n.w*(g.x*n.x + g.y*n.y + g.z*n.z);
-    float sx = 2*w.x - k*(kept*g.x - along*n.x), sy = 2*w.y - k*(kept*g.y - along*n.y),
-          sz = 2*w.z - k*(kept*g.z - along*n.z);
-    g2 += (kept*kept - 1)*(g2 - across);
-    return v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*g2);
+    sph_matrix t = {1, 1, 1, 0, 0, 0};
+    if (!v->stretch) return t;
+    int walled = share > 0 && (v->full || (v->near && v->near[i] >= 0)), made = 0;
+    if (v->full) {
+        sph_matrix m = sph_moments_sum(&a->first, v->slope);
+        if (v->dimension == 2) m.zz = 1;
+        made = sph_invert(&m, v->wall[i], share, &t);
+    }
+    if (!made && walled) t = sph_along_wall(v->wall[i], sph_wall_density(v, share), v->dimension);
+    sph_tensor_store(v, i, &t, walled);
+    return t;
+}
+
+/* The diagonal, eq. (9): of C^T C, with k*g = -sum V grad W. */
+TOBI_FN float sph_diagonal(const sph_view *v, int64_t i, tobi_float4 g, const sph_density_acc *a,
+                           const sph_matrix *t)
+{
+    tobi_float4 w = v->wall[i];
+    float k = v->slope, squares = a->due ? sph_matrix_squares(t, &a->second) : lane_sum(a->g2);
+    float sx = 2*w.x - k*(t->xx*g.x + t->xy*g.y + t->zx*g.z),
+          sy = 2*w.y - k*(t->xy*g.x + t->yy*g.y + t->yz*g.z),
+          sz = 2*w.z - k*(t->zx*g.x + t->yz*g.y + t->zz*g.z);
+    return v->inverse_density[v->fluid[i]]*(sx*sx + sy*sy + sz*sz + k*k*squares);
 }
 
 TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a, double *totals)
@@ -143,7 +141,8 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
-    v->diagonal[i] = sph_diagonal(v, i, g, lane_sum(a->g2), lane_sum(a->across));
+    sph_matrix t = sph_make_tensor(v, i, a, share);
+    v->diagonal[i] = sph_diagonal(v, i, g, a, &t);
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;
     totals[1] += v->surface[i];
@@ -193,7 +192,7 @@ TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_ac
 TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 {
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
-    if (v->axis && v->axis[i].w > 0) return 0;
+    if (sph_walled(v, i)) return 0;
     float full = 2*v->spacing*(float)sqrt(g2)/v->inverse_density[v->fluid[i]];
     float p = v->pressure[i] + (float)tobi_still_pressure(&v->still, &v->position[i].x);
     return p >= full ? 1 : p > 0 ? p/full : 0;

@@ -49,7 +49,7 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     const tobi_smoothing_constants *c = &s->smoothing;
     v->count = p->count;
     v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->axis = p->axis; v->beside = p->beside;
+    v->stretch = p->stretch; v->shear = p->shear; v->beside = p->beside;
     v->wall = p->wall; v->normal = p->normal; v->capillary = p->capillary;
     v->density = p->density;
     v->diagonal = p->diagonal;

@@ -16,8 +16,8 @@ typedef struct sph_view {
     tobi_record *TOBI_RESTRICT record;
     tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall,
                 *TOBI_RESTRICT normal;
-    tobi_float4 *TOBI_RESTRICT axis;          /* eq. (7b); it and beside: NULL without it */
-    const uint8_t *TOBI_RESTRICT beside;
+    tobi_float4 *TOBI_RESTRICT stretch, *TOBI_RESTRICT shear;   /* T, eq. (7b), (7c); they and beside: */
+    const uint8_t *TOBI_RESTRICT beside;                        /* NULL without it     */
     const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;

@@ -66,22 +66,27 @@ static tobi_status check_open(const tobi_world_def *d, const tobi_method *method
     return TOBI_OK;
 }
 
-/* Whether a body or a side moves in a domain that the regions fill: not half a layer of particles is missing
-   over its smallest side. */
-static int is_stirred_vessel(const tobi_world *w)
+/* Whether the regions fill the domain: not half a layer of particles is missing over its smallest side. */
+static int is_full_vessel(const tobi_world *w)
 {
     const tobi_world_def *d = &w->sim.def;
     double domain = 1, longest = 0, filled = 0;
-    int stirred = w->sim.wall_speed > 0;
-    for (int k = 0; k < w->sim.body_count; k++)
-        stirred |= w->sim.bodies[k].motion != NULL || w->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
     for (int a = 0; a < d->dimension; a++) {
         double side = d->domain_max[a] - d->domain_min[a];
         domain *= side;
         longest = fmax(longest, side);
     }
     for (int k = 0; k < w->region_count; k++) filled += w->regions[k].volume;
-    return stirred && filled > domain*(1 - 0.5*d->spacing/longest);
+    return filled > domain*(1 - 0.5*d->spacing/longest);
+}
+
+/* Whether a body or a side moves in a full vessel. */
+static int is_stirred_vessel(const tobi_world *w)
+{
+    int stirred = w->sim.wall_speed > 0;
+    for (int k = 0; k < w->sim.body_count; k++)
+        stirred |= w->sim.bodies[k].motion != NULL || w->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
+    return stirred && is_full_vessel(w);
 }
 
 /* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
@@ -244,7 +249,7 @@ static int needed_fields(const tobi_world *w)
         if (w->sim.fluid[f].tension > 0) owners |= TOBI_TENSION;
     for (int k = 0; k < w->sim.body_count; k++)
         if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (w->sim.body_count > 0 || is_stirred_vessel(w)) owners |= w->method->body_fields;
+    if (w->sim.body_count > 0 || is_full_vessel(w)) owners |= w->method->body_fields;
     return owners;
 }
 

@@ -10,14 +10,14 @@
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
     FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
-    AXIS, LACK = AXIS + 3, COLUMNS
+    TENSOR, WALLED = TENSOR + 6, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
-    "axis x", "axis y", "axis z", "lack"
+    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled"
 };
 
 enum { TABLE = 4000 };
@@ -28,7 +28,7 @@ typedef struct oracle {
     double w_scale, g_scale;             /* lattice normalisation of W and of its gradient */
     double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
-    int along;                           /* not 0: eq. (7b) */
+    int along;                           /* not 0: eq. (7c), or with near (7b) */
     const int32_t *near;                 /* >= 0: with it, NULL: all */
     int plane_count;
     tobi_plane plane[6];
@@ -178,20 +178,71 @@ static double oracle_fill(const oracle *o, double share)
     return share > 0.5 ? share : share < at ? o->behind*share/at : 0.5 - slope*(0.5 - share);
 }
 
-/* Eq. (7b): T x for the wall of a row, T = n n^T + (I - n n^T)/(1 - L). */
+/* T x, with T of the row. */
 static void tilt(const oracle *o, const row *in, int i, const double x[3], double out[3])
 {
-    const double *n = &in[i][AXIS];
-    double across = n[0]*x[0] + n[1]*x[1] + n[2]*x[2], rate = o->along ? 1 + in[i][LACK] : 1;
-    for (int c = 0; c < 3; c++) out[c] = o->along ? across*n[c] + rate*(x[c] - across*n[c]) : x[c];
+    static const int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    for (int a = 0; a < 3; a++) {
+        out[a] = o->along ? 0 : x[a];
+        for (int b = 0; o->along && b < 3; b++) out[a] += in[i][TENSOR + place[a][b]]*x[b];
+    }
 }
 
-static void oracle_axis(const oracle *o, row *out, int i)
+/* m becomes its inverse; returns its determinant. Gauss and Jordan. */
+static double oracle_inverse(double m[3][3])
 {
-    double size = 0, lack = o->near && o->near[i] < 0 ? 0 : fmin(oracle_fill(o, out[i][RHO]), 0.45);
-    for (int c = 0; c < 3; c++) size += out[i][WALL + c]*out[i][WALL + c];
-    for (int c = 0; c < 3; c++) out[i][AXIS + c] = size > 0 ? out[i][WALL + c]/sqrt(size) : 0;
-    out[i][LACK] = lack/(1 - lack);
+    double e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, det = 1;
+    for (int k = 0; k < 3; k++) {
+        double pivot = m[k][k];
+        det *= pivot;
+        for (int c = 0; c < 3; c++) { m[k][c] /= pivot; e[k][c] /= pivot; }
+        for (int r = 0; r < 3; r++) {
+            double f = m[r][k];
+            for (int c = 0; r != k && c < 3; c++) { m[r][c] -= f*m[k][c]; e[r][c] -= f*e[k][c]; }
+        }
+    }
+    memcpy(m, e, sizeof e);
+    return det;
+}
+
+/* Eq. (7c): (I - w n n^T) M^-1 with M the sum of V F x x^T and w what it lacks along the normal. */
+static int oracle_renormalised(const oracle *o, const row *in, int i, const double n[3], double share,
+                               double t[3][3])
+{
+    double m[3][3] = {{0}}, wall[3][3], across = 1, det;
+    EACH_NEIGHBOUR(o, in, i, j, x, r)
+        for (int a = 0; a < 9; a++) m[a/3][a%3] += o->volume*o->g_scale*oracle_f(o, r)*x[a/3]*x[a%3];
+    if (o->dimension == 2) m[2][2] = 1;
+    for (int a = 0; a < 9; a++) across -= n[a/3]*m[a/3][a%3]*n[a%3];
+    det = oracle_inverse(m);
+    for (int a = 0; a < 9; a++) wall[a/3][a%3] = (a%4 == 0) - across*fmin(50*share, 1)*n[a/3]*n[a%3];
+    for (int a = 0; a < 9; a++) {
+        t[a/3][a%3] = 0;
+        for (int c = 0; c < 3; c++)
+            t[a/3][a%3] += 0.5*(wall[a/3][c]*m[c][a%3] + m[a/3][c]*wall[c][a%3]);
+    }
+    for (int a = 0; a < 3; a++)
+        if (!(t[a][a] > 0 && t[a][a] < 20)) return 0;
+    return det > 1e-3;
+}
+
+/* Eq. (7c) in a full vessel; eq. (7b), n n^T + (I - n n^T)/(1 - L), beside bodies. */
+static void oracle_tensor(const oracle *o, const row *in, row *out, int i)
+{
+    double share = in[i][RHO], lack = fmin(oracle_fill(o, share), 0.45), size = 0;
+    double n[3] = {0}, t[3][3] = {{0}};
+    int walled = share > 0 && !(o->near && o->near[i] < 0);
+    for (int c = 0; c < 3; c++) size += in[i][WALL + c]*in[i][WALL + c];
+    for (int c = 0; c < 3; c++) n[c] = size > 0 ? in[i][WALL + c]/sqrt(size) : 0;
+    if (o->near || !oracle_renormalised(o, in, i, n, share, t))
+        for (int a = 0; a < 9; a++) {
+            double across = n[a/3]*n[a%3], unit = a%4 == 0;
+            t[a/3][a%3] = walled ? across + (unit - across)/(1 - lack) : unit;
+        }
+    if (o->dimension == 2) t[2][2] = 1;
+    const double kept[6] = {t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[2][0]};
+    memcpy(&out[i][TENSOR], kept, sizeof kept);
+    out[i][WALLED] = walled;
 }
 
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
@@ -201,7 +252,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
         double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
         double slant[3], tilted[3];
-        if (o->along) oracle_axis(o, out, i);
+        if (o->along) oracle_tensor(o, in, out, i);
         for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
@@ -259,7 +310,7 @@ static double wetness(const oracle *o, const row *in, int i)
 {
     double g = sqrt(o->gravity[0]*o->gravity[0] + o->gravity[1]*o->gravity[1] + o->gravity[2]*o->gravity[2]);
     double p = in[i][PRES] + still_pressure(&o->still, &in[i][POS], 0);
-    if (o->along && in[i][LACK] > 0) return 0;
+    if (o->along && in[i][WALLED] > 0) return 0;
     return fmin(fmax(p/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
 }
 

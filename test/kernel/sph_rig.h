@@ -13,7 +13,7 @@ typedef struct rig_case {
     int fluids;           /* 1 or 2                                 */
     double jitter;        /* in spacings                            */
     double origin;        /* world coordinate of the lower corner   */
-    int along;            /* with eq. (7b), 1: at all walls, 2: for every third particle */
+    int along;            /* 1: with eq. (7c); 2: with (7b), for every third particle */
 } rig_case;
 
 typedef struct rig {
@@ -89,7 +89,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
-    v->axis = k->along ? p->axis : NULL;
+    v->stretch = k->along ? p->stretch : NULL;
+    v->shear = p->shear;
     v->beside = p->beside; v->near = p->near; v->full = k->along == 1;
     v->normal = p->normal; v->capillary = p->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
@@ -223,7 +224,8 @@ static void rig_get(const rig *g, row *s)
         }
         for (int a = 0; a < 4; a++) s[i][WALL + a] = (&p->wall[i].x)[a];
         for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&p->normal[i].x)[a];
-        for (int a = 0; a < 4; a++) s[i][AXIS + a] = (&p->axis[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&p->stretch[i].x)[a];
+        for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&p->shear[i].x)[a];
         s[i][BAND] = p->accel[i].w; s[i][CAPILLARY] = p->capillary[i];
         s[i][PAYLOAD] = p->record[i].w;
         s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
@@ -245,7 +247,8 @@ static void rig_set(rig *g, const row *s)
         p->velocity[i].w = (float)s[i][WET];
         for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&p->normal[i].x)[a] = (float)s[i][NORMAL + a];
-        for (int a = 0; a < 4; a++) (&p->axis[i].x)[a] = (float)s[i][AXIS + a];
+        for (int a = 0; a < 4; a++) (&p->stretch[i].x)[a] = (float)s[i][TENSOR + a];
+        for (int a = 0; a < 3; a++) (&p->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];
         p->accel[i].w = (float)s[i][BAND]; p->capillary[i] = (float)s[i][CAPILLARY];
         p->record[i].w = (float)s[i][PAYLOAD];
         p->density[i] = (float)s[i][RHO]; p->diagonal[i] = (float)s[i][DIAG];
