@@ -71,7 +71,6 @@ typedef struct tobi_method {
     int fields;                                                  /* particle fields besides TOBI_ALL */
     int body_fields;                                             /* and where there are bodies, or
                                                                     something moves in a full vessel */
-    int free_bodies;                                             /* 1: bodies may move by forces   */
     int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a
        vessel full of liquid. */

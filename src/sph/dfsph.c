@@ -342,7 +342,6 @@ const tobi_method tobi_dfsph = {
     .def_size = sizeof(tobi_dfsph_def),
     .fields = TOBI_SPH,
     .body_fields = TOBI_WETTED,
-    .free_bodies = 1,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

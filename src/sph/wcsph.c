@@ -4,6 +4,7 @@
    own density from drifting away from it (docs/theory/wcsph.md). Operators, walls and bodies are those
    of DFSPH. Drawback: the step is that of sound, and pressure waves of the start ring on for a while. */
 #include "sph/wcsph.h"
+#include "core/couple.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include <math.h>
@@ -20,6 +21,7 @@ typedef struct wcsph {
     const sph_kernels *kernel;
     struct { double speed, vessel; } memory;      /* survives a restart; vessel: SPH_VESSEL_*         */
     double sound;                                 /* m/s                                              */
+    double softness;                              /* m2/kg, of the bodies: tobi_couple_softness       */
 } wcsph;
 
 static void launch(tobi_simulation *s, wcsph *m, tobi_kernel k, double *totals)
@@ -42,6 +44,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->def = *(const tobi_wcsph_def *)def;
     m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
     m->sound = sqrt(m->def.exponent*m->def.stiffness/s->fluid[0].density);
+    m->softness = tobi_couple_softness(s);
     *state = m;
     return TOBI_OK;
 }
@@ -63,13 +66,22 @@ static void bind_view(const tobi_simulation *s, wcsph *m)
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
 }
 
-/* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit). */
+/* The layer of water at a body is a spring between the two, explicit in time, eq. (25). INFINITY without. */
+static double body_dt(const tobi_simulation *s, const wcsph *m)
+{
+    double d = s->smoothing.spacing, limit = 2/(1 + s->fluid[0].density*d*m->softness);
+    if (!(m->softness > 0)) return INFINITY;
+    return limit/(sqrt(m->def.damping*m->def.damping + limit) + m->def.damping)*d/m->sound;
+}
+
+/* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit, bodies' limit), eq. (24). */
 static double choose_dt(const tobi_simulation *s, const wcsph *m)
 {
     double speed = fmax(m->memory.speed, s->body_speed);
     if (s->def.time_step > 0) return s->def.time_step;
     double dt = fmin(s->def.cfl*s->smoothing.spacing/(m->sound + speed), sph_gravity_dt(s));
     dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    dt = fmin(dt, fmin(body_dt(s, m), tobi_couple_dt(s)));
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
 
@@ -136,8 +148,10 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     apply_forces(s, m, &clock);
+    tobi_couple_begin(s);
     apply_pressure(s, m, &clock);
     measure_forces(s, m, &clock);
+    tobi_couple_correct(s);
     shift_positions(s, m, &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
     TOBI_TRY(sph_move_bodies(s, &clock, err));
