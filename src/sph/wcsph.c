@@ -183,6 +183,7 @@ const tobi_method tobi_wcsph = {
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .def_size = sizeof(tobi_wcsph_def),
     .fields = TOBI_SPH,
+    .body_fields = TOBI_WETTED,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,
