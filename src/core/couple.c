@@ -195,7 +195,7 @@ static double largest_eigenvalue(double x[6][6])
     }
 }
 
-/* Locked shifts count as free ones: how much of the surface lies across the others changes as a body turns. */
+/* Locked shifts count as free ones: how much of the surface lies across the others changes with the pose. */
 double tobi_couple_softness(const tobi_simulation *s)
 {
     double most = 0;

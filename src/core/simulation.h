@@ -57,7 +57,7 @@ typedef struct tobi_simulation {
     double still_volume;            /* m3 of fluid times the share of gravity so held          */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
-    double start_speed;             /* m/s, fastest particle at the start                    */
+    double start_speed;             /* m/s, fastest particle or free body at the start       */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     tobi_stages stages;

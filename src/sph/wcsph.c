@@ -7,6 +7,7 @@
 #include "core/couple.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
+#include "sph/still.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -19,7 +20,8 @@ typedef struct wcsph {
     tobi_wcsph_def def;
     sph_view view;
     const sph_kernels *kernel;
-    struct { double speed, vessel; } memory;      /* survives a restart; vessel: SPH_VESSEL_*         */
+    /* survives a restart; vessel: SPH_VESSEL_*; low, level: drops of the surface and of still water, m */
+    struct { double speed, vessel, low, level; } memory;
     double sound;                                 /* m/s                                              */
     double softness;                              /* m2/kg, of the bodies: tobi_couple_softness       */
 } wcsph;
@@ -53,14 +55,16 @@ static int list_memory(void *state, double **values)
 {
     wcsph *m = state;
     *values = &m->memory.speed;
-    return 2;
+    return 4;
 }
 
-static void bind_view(const tobi_simulation *s, wcsph *m)
+static void bind_view(tobi_simulation *s, wcsph *m)
 {
     sph_view *v = &m->view;
     double d = s->smoothing.spacing;
     sph_bind_view(s, v, m->memory.vessel);
+    sph_still_set(s, m->memory.level);
+    v->still = s->still;
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
@@ -85,11 +89,23 @@ static double choose_dt(const tobi_simulation *s, const wcsph *m)
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
 
+/* Once, in a vessel just looked into. */
+static void start_at_rest(tobi_simulation *s, wcsph *m)
+{
+    if (m->def.still_water) m->memory.level = m->memory.low = sph_still_low(s);
+    bind_view(s, m);
+    m->view.still_before = s->still;
+    launch(s, m, m->kernel->sph_rest, NULL);
+}
+
 static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
+    int new = m->memory.vessel == SPH_VESSEL_UNKNOWN;
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    if (m->memory.vessel == SPH_VESSEL_FULL) tobi_simulation_fill_up(s);
+    if (new) start_at_rest(s, m);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -111,6 +127,7 @@ static void apply_forces(tobi_simulation *s, wcsph *m, double *clock)
 static void apply_pressure(tobi_simulation *s, wcsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    launch(s, m, m->kernel->sph_carry, NULL);
     launch(s, m, m->kernel->sph_tait, t);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
     s->info.divergence_max = t[6];
@@ -144,13 +161,16 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
+    m->memory.low = sph_still_low(s);
     apply_forces(s, m, &clock);
     tobi_couple_begin(s);
     apply_pressure(s, m, &clock);
     measure_forces(s, m, &clock);
+    tobi_simulation_add_hydrostatic(s);
     tobi_couple_correct(s);
     shift_positions(s, m, &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
