@@ -368,8 +368,6 @@ static void blocks_of_another_material(void **state)
 static void mistakes_of_bodies(void **state)
 {
     (void)state;
-    EXPECT(make(", \"simulationMethod\": 0", "\"isDynamic\": true"),
-           "RigidBodies[0].isDynamic: is true: the water moves bodies in simulationMethod 4 (DFSPH)");
     EXPECT(make("", "\"fishLength\": 0.2, \"fishWidth\": 0.1, \"LEPos\": 0.1, \"wingspan\": 0.1,\n"
                     "\"wingchord\": 1, \"waveLength\": 1, \"freq\": 1, \"amplitude\": 1, \"relax\": 1,\n"
                     "\"startPosition\": [0, 0, 0], \"swimmingPosition\": [0, 0, 0], \"pitchAngle\": 3,\n"
@@ -386,9 +384,9 @@ static void mistakes_of_bodies(void **state)
            "\"particleRadius\": 0.1, \"simulationMethod\": 0 },\n"
            "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ],\n"
            "\"RigidBodies\": [ { }, { \"geometryFile\": \"\" }, { \"geometryFile\": 3 } ],\n"
-           "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1], \"isDynamic\": true } ] }",
+           "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1] } ] }",
            "RigidBodies[0].geometryFile: is missing", "RigidBodies[1].geometryFile: is empty",
-           "RigidBodies[2].geometryFile: is a number", "RigidBlocks[0].isDynamic: is true");
+           "RigidBodies[2].geometryFile: is a number");
 }
 
 /* Found in the native scene, told at the old key. */
