@@ -89,10 +89,18 @@ static double choose_dt(const tobi_simulation *s, const wcsph *m)
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
 
+/* Drop of the free surface. Gaps between a lattice and a body in it look like one: what sees a body does not
+   count. */
+static double find_surface(tobi_simulation *s)
+{
+    for (int64_t k = 0; k < s->near.count; k++) s->particles.delta[s->near.entry[k].particle] = 0;
+    return sph_still_low(s);
+}
+
 /* Once, in a vessel just looked into. */
 static void start_at_rest(tobi_simulation *s, wcsph *m)
 {
-    if (m->def.still_water) m->memory.level = m->memory.low = sph_still_low(s);
+    if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
     m->view.still_before = s->still;
     launch(s, m, m->kernel->sph_rest, NULL);
@@ -165,7 +173,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
-    m->memory.low = sph_still_low(s);
+    m->memory.low = find_surface(s);
     apply_forces(s, m, &clock);
     tobi_couple_begin(s);
     apply_pressure(s, m, &clock);
