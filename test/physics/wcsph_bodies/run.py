@@ -33,7 +33,7 @@ def cylinder(density, at, **more):
 
 def run(label, size, depth, bodies, across, end, *options, **more):
     dimension = len(size)
-    scene = case.write_scene(label.removesuffix("_resumed"), {
+    scene = case.write_scene(label, {
         "method": "wcsph", "dimension": dimension, "domain": {"min": [0]*dimension, "max": size},
         "gravity": [0]*(dimension - 1) + [-G], "spacing": SIDE/across, "end_time": end,
         "fluids": [{"name": "water", "density": RHO, "viscosity": 1e-3, "fill": [{"box": {"min": [0]*dimension, "max": size[:-1] + [depth]}}]}],
