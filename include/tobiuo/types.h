@@ -84,6 +84,7 @@ typedef struct tobi_dfsph_def {
 /* Parameters of the WCSPH method. */
 typedef struct tobi_wcsph_def {
     int    kernel;                    /* tobi_smoothing                                               */
+    int    still_water;               /* 1: water begins at rest, and what rest explains is no pressure */
     double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double stiffness;                 /* Pa, B of p = B ((rho/rho0)^exponent - 1)                     */
     double exponent;                  /* 1                                                            */

@@ -163,6 +163,58 @@ void tobi_couple_finish(tobi_simulation *s)
     }
 }
 
+/* The integral of (n, r x n) (n, r x n)^T over the whole surface, m2. */
+static void sum_surface(const tobi_body *b, double sum[6][6])
+{
+    memset(sum, 0, 36*sizeof(double));
+    for (int64_t k = 0; k < b->point_count; k++) {
+        double arm[3], row[6];
+        memcpy(row, b->normal[k], sizeof b->normal[k]);
+        vec3_sub(arm, b->point[k], b->rigid.position);
+        vec3_cross(row + 3, arm, b->normal[k]);
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j < 6; j++) sum[i][j] += b->area[k]*row[i]*row[j];
+    }
+}
+
+/* The largest eigenvalue of a product of two positive matrices: the 32nd root of the trace of its 32nd power
+   is that or up to 6 % more. */
+static double largest_eigenvalue(double x[6][6])
+{
+    double root = 1;
+    for (int k = 0;; k++) {
+        double trace = 0, y[6][6] = {{0}};
+        for (int i = 0; i < 6; i++) trace += x[i][i];
+        if (!(trace > 0)) return 0;
+        root *= pow(trace, 1.0/(1 << k));
+        if (k == 5) return root;
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j < 6; j++)
+                for (int l = 0; l < 6; l++) y[i][j] += x[i][l]*x[l][j]/(trace*trace);
+        memcpy(x, y, sizeof y);
+    }
+}
+
+/* Locked shifts count as free ones: how much of the surface lies across the others changes with the pose. */
+double tobi_couple_softness(const tobi_simulation *s)
+{
+    double most = 0;
+    for (int k = 0; k < s->body_count; k++) {
+        const tobi_body *b = &s->bodies[k];
+        double sum[6][6], x[6][6] = {{0}}, shift[3], turn[3][3];
+        if (!moves(b)) continue;
+        sum_surface(b, sum);
+        tobi_rigid_inverse(&b->rigid, shift, turn);
+        for (int a = 0; a < 3; a++)
+            for (int j = 0; j < 6; j++) {
+                x[a][j] = sum[a][j]/b->rigid.mass;
+                for (int c = 0; c < 3; c++) x[3 + a][j] += turn[a][c]*sum[3 + c][j];
+            }
+        most = fmax(most, largest_eigenvalue(x));
+    }
+    return most;
+}
+
 /* The two layers of particles at a no-slip surface of area S brake a body at some 4 mu S/(d m); its turns
    have a smaller inertia: three times that, as those of a ball. */
 double tobi_couple_dt(const tobi_simulation *s)

@@ -1,7 +1,8 @@
 /* Bodies that move by forces, inside the pressure equation of a liquid (docs/theory/rigid.md, R.11 to R.14).
-   Order of a step: tobi_near_find, the forces of the particles, tobi_couple_begin, the pressure solve with
-   tobi_couple_product after each product, tobi_near_body_forces, tobi_couple_correct, tobi_body_advance,
-   tobi_couple_finish. */
+   Order of a step: tobi_near_find, the forces of the particles, tobi_couple_begin, the pressure,
+   tobi_near_body_forces, tobi_couple_correct, tobi_body_advance, tobi_couple_finish. A solve for the pressure
+   has tobi_couple_product after each product; an equation of state has it known from tobi_couple_begin, and
+   the step bounded by tobi_couple_softness (docs/theory/wcsph.md, eq. 25). */
 #pragma once
 #include "base/error.h"
 
@@ -19,3 +20,7 @@ void tobi_couple_correct(struct tobi_simulation *s);
 void tobi_couple_finish(struct tobi_simulation *s);
 /* The longest step for the explicit friction between bodies and liquid, s; INFINITY without. */
 double tobi_couple_dt(const struct tobi_simulation *s);
+/* How fast a layer of water around a moving body would move it, were the layer a spring: the largest
+   eigenvalue of the inverse mass and inertia times the integral of (n, r x n) (n, r x n)^T over the surface,
+   of the worst body, up to 6 % too much; m2/kg, 0 without such bodies. At the bodies' present pose. */
+double tobi_couple_softness(const struct tobi_simulation *s);

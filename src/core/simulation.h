@@ -57,7 +57,7 @@ typedef struct tobi_simulation {
     double still_volume;            /* m3 of fluid times the share of gravity so held          */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
-    double start_speed;             /* m/s, fastest particle at the start                    */
+    double start_speed;             /* m/s, fastest particle or free body at the start       */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     tobi_stages stages;
@@ -71,7 +71,6 @@ typedef struct tobi_method {
     int fields;                                                  /* particle fields besides TOBI_ALL */
     int body_fields;                                             /* and where there are bodies, or
                                                                     liquid fills the domain         */
-    int free_bodies;                                             /* 1: bodies may move by forces   */
     int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a
        vessel full of liquid. */

@@ -560,7 +560,6 @@ const tobi_method tobi_mlsmpm = {
     .doc = "The material point method (MLS-MPM) for elastic and plastic solids, liquids, snow and sand.",
     .def_size = sizeof(tobi_mlsmpm_def),
     .fields = TOBI_MPM,
-    .free_bodies = 1,
     .planes = 1,
     .smoothing = choose_smoothing,
     .create = create,

@@ -288,18 +288,13 @@ static void check_body_box(const tobi_scene *scene, tobi_source *source, int bod
                                 def->box_min[a], def->box_max[a], axis_name[a]);
 }
 
-/* A body moves by a motion or by forces, and forces need a method that knows them. */
+/* A body moves by a motion, or by forces. */
 static void check_dynamics(const tobi_scene *scene, tobi_source *source, int i, const tobi_place *entry)
 {
     const tobi_body_def *def = &scene->bodies[i].def;
-    const tobi_method *method = scene->method ? tobi_method_find(scene->method->name) : NULL;
     json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)i);
-    tobi_place dynamics = { entry, "dynamics", 0 }, motion = { entry, "motion", 0 },
-               control = { entry, "control", 0 };
+    tobi_place motion = { entry, "motion", 0 }, control = { entry, "control", 0 };
     int controls = json_object_get(value, "control") != NULL, moves = def->dynamics != TOBI_PRESCRIBED;
-    if (moves && method && !method->free_bodies)
-        tobi_source_mistake(source, &dynamics, "must be prescribed: bodies that move by forces need the "
-                            "method \"dfsph\" or \"mlsmpm\", %s does not know them", method->name);
     if (moves && json_object_get(value, "motion"))
         tobi_source_mistake(source, &motion, "is for prescribed bodies, this one is %s",
                             def->dynamics == TOBI_FREE ? "free" : "controlled");

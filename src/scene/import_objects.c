@@ -106,10 +106,6 @@ void tobi_import_fluids(tobi_import *im)
 static void set_free(tobi_import *im, json_t *body, const double *velocity, int fish, const tobi_place *place)
 {
     tobi_place at = { place, "isDynamic", 0 };
-    if (im->config.method == 0)
-        tobi_source_mistake(im->source, &at,
-                            "is true: the water moves bodies in simulationMethod 4 (DFSPH), not in 0 "
-                            "(WCSPH); false fixes the body");
     if (fish)
         tobi_source_mistake(im->source, &at,
                             "is true, but the keys from fishLength to pitchAngle say how the body swims; "

@@ -70,14 +70,6 @@ static int reaches_far(const tobi_simulation *s)
     return s->smoothing.h > (SHIFTING_SUPPORT - 1e-6)*s->smoothing.spacing;
 }
 
-/* The level of still water for the step at hand, by the surface of the last. */
-static void move_level(tobi_simulation *s, dfsph *m)
-{
-    sph_still_set(s, m->memory.level);
-    m->view.still_before = s->still;
-    m->memory.level = m->def.still_water ? sph_still_follow(s, m->memory.level, m->memory.low) : 0;
-}
-
 static void bind_view(tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
@@ -293,7 +285,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
-    move_level(s, m);
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
@@ -343,7 +335,6 @@ const tobi_method tobi_dfsph = {
     .def_size = sizeof(tobi_dfsph_def),
     .fields = TOBI_SPH,
     .body_fields = TOBI_WETTED,
-    .free_bodies = 1,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

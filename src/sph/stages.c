@@ -80,7 +80,10 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     }
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
-    for (int a = 0; a < 3; a++) v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
+    for (int a = 0; a < 3; a++) {
+        v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
+        v->taken[a] = a < c->dimension ? (float)(s->def.gravity[a] - s->gravity[a]) : 0;
+    }
 }
 
 double sph_gravity_dt(const tobi_simulation *s)
@@ -148,6 +151,7 @@ tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kern
     v->pressure = s->particles.pressure;
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
+    s->lowest = t[7];
     int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
     *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
     return TOBI_OK;

@@ -40,10 +40,18 @@ double sph_still_low(const tobi_simulation *s)
     return k/scale;
 }
 
-double sph_still_follow(const tobi_simulation *s, double before, double low)
+/* Down with the surface at once, up slowly. */
+static double follow(const tobi_simulation *s, double before, double low)
 {
     double g = 0;
     for (int a = 0; a < 3; a++) g += s->still.down[a]*s->gravity[a];
     double rise = 0.1*sqrt(g*s->smoothing.spacing)*s->dt;
     return low > 0 && before > low ? fmax(low, before - rise) : low;
+}
+
+void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double *level)
+{
+    sph_still_set(s, *level);
+    *before = s->still;
+    *level = follow(s, *level, low);
 }

@@ -8,5 +8,6 @@ void sph_still_set(tobi_simulation *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
    where it has no more. After sph_measure_density, which leaves the drops in particles.delta. */
 double sph_still_low(const tobi_simulation *s);
-/* The drop to set in the step at hand: down with the surface at once, up slowly. */
-double sph_still_follow(const tobi_simulation *s, double before, double low);
+/* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low`:
+   down with it at once, up slowly. *before: the reference that pressures refer to until then. */
+void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double *level);

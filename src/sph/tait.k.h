@@ -3,6 +3,31 @@
 #pragma once
 #include "sph/pressure.k.h"
 
+/* Water at rest from the first step on, eq. (21c); payload = that pressure. */
+TOBI_FN void sph_rest(const sph_view *v, int64_t i, double *totals)
+{
+    const tobi_still *w = &v->still;
+    const double *x = &v->position[i].x;
+    double depth = tobi_still_drop(w, x) - w->level;
+    (void)totals;
+    v->pressure[i] = depth > 0 ? (float)(w->push*depth - tobi_still_pressure(w, x)) : 0;
+    v->record[i].w = v->pressure[i];
+}
+
+/* What the reference gains as its level moves and the particle sinks in it is no compression: the pressure
+   beside it loses that, eq. (21b). */
+TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
+{
+    const tobi_still *w = &v->still;
+    const double *x = &v->position[i].x;
+    tobi_float4 u = v->velocity[i];
+    double held = w->push*tobi_still_share(w, x), sink = 0, rho = 1/v->inverse_density[v->fluid[i]];
+    (void)totals;
+    for (int c = 0; c < 3; c++) sink += (held*w->down[c] + rho*v->taken[c])*(&u.x)[c];
+    double rise = tobi_still_pressure(w, x) - tobi_still_pressure(&v->still_before, x);
+    v->pressure[i] -= (float)(rise + v->dt*sink);
+}
+
 /* dp/dt = exponent (p + B) C v, eq. (21), which is the Tait equation carried along with the particle.
    The payload of the pressure force adds the damping of sound, eq. (22). A free surface does not pull.
    totals: |C v|, |p|; maximum: |C v|. */

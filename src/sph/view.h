@@ -53,6 +53,7 @@ typedef struct sph_view {
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];
+    float taken[3];                           /* m/s2, what a full vessel takes from gravity    */
     tobi_still still, still_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */

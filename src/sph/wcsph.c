@@ -4,8 +4,10 @@
    own density from drifting away from it (docs/theory/wcsph.md). Operators, walls and bodies are those
    of DFSPH. Drawback: the step is that of sound, and pressure waves of the start ring on for a while. */
 #include "sph/wcsph.h"
+#include "core/couple.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
+#include "sph/still.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,8 +20,10 @@ typedef struct wcsph {
     tobi_wcsph_def def;
     sph_view view;
     const sph_kernels *kernel;
-    struct { double speed, vessel; } memory;      /* survives a restart; vessel: SPH_VESSEL_*         */
+    /* survives a restart; vessel: SPH_VESSEL_*; low, level: drops of the surface and of still water, m */
+    struct { double speed, vessel, low, level; } memory;
     double sound;                                 /* m/s                                              */
+    double softness;                              /* m2/kg, of the bodies: tobi_couple_softness       */
 } wcsph;
 
 static void launch(tobi_simulation *s, wcsph *m, tobi_kernel k, double *totals)
@@ -42,6 +46,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->def = *(const tobi_wcsph_def *)def;
     m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
     m->sound = sqrt(m->def.exponent*m->def.stiffness/s->fluid[0].density);
+    m->softness = tobi_couple_softness(s);
     *state = m;
     return TOBI_OK;
 }
@@ -50,34 +55,65 @@ static int list_memory(void *state, double **values)
 {
     wcsph *m = state;
     *values = &m->memory.speed;
-    return 2;
+    return 4;
 }
 
-static void bind_view(const tobi_simulation *s, wcsph *m)
+static void bind_view(tobi_simulation *s, wcsph *m)
 {
     sph_view *v = &m->view;
     double d = s->smoothing.spacing;
     sph_bind_view(s, v, m->memory.vessel);
+    sph_still_set(s, m->memory.level);
+    v->still = s->still;
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
 }
 
-/* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit). */
+/* The layer of water at a body is a spring between the two, explicit in time, eq. (25). INFINITY without. */
+static double body_dt(const tobi_simulation *s, const wcsph *m)
+{
+    double d = s->smoothing.spacing, limit = 2/(1 + s->fluid[0].density*d*m->softness);
+    if (!(m->softness > 0)) return INFINITY;
+    return limit/(sqrt(m->def.damping*m->def.damping + limit) + m->def.damping)*d/m->sound;
+}
+
+/* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit, bodies' limit), eq. (24). */
 static double choose_dt(const tobi_simulation *s, const wcsph *m)
 {
     double speed = fmax(m->memory.speed, s->body_speed);
     if (s->def.time_step > 0) return s->def.time_step;
     double dt = fmin(s->def.cfl*s->smoothing.spacing/(m->sound + speed), sph_gravity_dt(s));
     dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    dt = fmin(dt, fmin(body_dt(s, m), tobi_couple_dt(s)));
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
+}
+
+/* Drop of the free surface. Gaps between a lattice and a body in it look like one: what sees a body does not
+   count. */
+static double find_surface(tobi_simulation *s)
+{
+    for (int64_t k = 0; k < s->near.count; k++) s->particles.delta[s->near.entry[k].particle] = 0;
+    return sph_still_low(s);
+}
+
+/* Once, in a vessel just looked into. */
+static void start_at_rest(tobi_simulation *s, wcsph *m)
+{
+    if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
+    bind_view(s, m);
+    m->view.still_before = s->still;
+    launch(s, m, m->kernel->sph_rest, NULL);
 }
 
 static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
+    int new = m->memory.vessel == SPH_VESSEL_UNKNOWN;
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    if (m->memory.vessel == SPH_VESSEL_FULL) tobi_simulation_fill_up(s);
+    if (new) start_at_rest(s, m);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -99,6 +135,7 @@ static void apply_forces(tobi_simulation *s, wcsph *m, double *clock)
 static void apply_pressure(tobi_simulation *s, wcsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    launch(s, m, m->kernel->sph_carry, NULL);
     launch(s, m, m->kernel->sph_tait, t);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
     s->info.divergence_max = t[6];
@@ -132,12 +169,17 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
+    m->memory.low = find_surface(s);
     apply_forces(s, m, &clock);
+    tobi_couple_begin(s);
     apply_pressure(s, m, &clock);
     measure_forces(s, m, &clock);
+    tobi_simulation_add_hydrostatic(s);
+    tobi_couple_correct(s);
     shift_positions(s, m, &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
     TOBI_TRY(sph_move_bodies(s, &clock, err));
@@ -169,6 +211,7 @@ const tobi_method tobi_wcsph = {
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .def_size = sizeof(tobi_wcsph_def),
     .fields = TOBI_SPH,
+    .body_fields = TOBI_WETTED,
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,

@@ -17,27 +17,12 @@ static void describe_world(const tobi_simulation *s, tobi_rigid_world *r)
     }
 }
 
-static tobi_status check_free(const tobi_world *w, tobi_error *err)
-{
-    const tobi_simulation *s = &w->sim;
-    for (int k = 0; k < s->body_count; k++) {
-        const tobi_body *b = &s->bodies[k];
-        if (b->rigid.kind != TOBI_PRESCRIBED && !w->method->free_bodies)
-            return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "body '%s' is %s, which the method %s does not know; dfsph and mlsmpm do",
-                             b->name,
-                             b->rigid.kind == TOBI_FREE ? "free" : "controlled", w->method->name);
-    }
-    return TOBI_OK;
-}
-
 tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
 {
     enum { NOTES = 8000 };
     tobi_simulation *s = &w->sim;
     tobi_rigid_world world;
     if (!tobi_rigid_any(s->bodies, s->body_count) || w->dynamics) return TOBI_OK;
-    TOBI_TRY(check_free(w, err));
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);

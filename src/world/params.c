@@ -144,6 +144,10 @@ static const tobi_param wcsph_rows[] = {
       .text = "off",
       .doc = "Share of particle-scale motion taken out per step of a tenth of the speed of sound; "
              "longer waves are left alone." },
+    { .key = "still_water", BOOL, AT(tobi_wcsph_def, still_water), .def = { 1 },
+      .doc = "Start with the pressure that water at rest has, and take it, some layers below the free "
+             "surface, from gravity: the water does not ring, and slow bodies and waves lose far less to the "
+             "disorder of particles." },
     { 0 }
 };
 

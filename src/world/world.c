@@ -354,6 +354,8 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
+    /* What free bodies bring the material may have when they are slow already. */
+    if (w->dynamics) s->start_speed = fmax(s->start_speed, s->body_speed);
     s->info.fluid_particles = n;
     w->started = 1;
     return TOBI_OK;

@@ -33,7 +33,7 @@ typedef struct oracle {
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
-    double rho0[2], nu[2], gravity[3];
+    double rho0[2], nu[2], gravity[3], taken[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;
     double cells_per_metre[3];
@@ -434,6 +434,34 @@ static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
         t[0] += fabs(rate);
         t[1] += fabs(p);
         t[6] = fmax(t[6], fabs(rate));
+    }
+}
+
+/* Eq. (21c). */
+static void oracle_rest(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *x = &in[i][POS];
+        double depth = -o->still.level;
+        for (int a = 0; a < 3; a++) depth += o->still.down[a]*(x[a] - o->still.corner[a]);
+        double all = o->still.push*fmax(depth, 0);
+        out[i][PRES] = out[i][PAYLOAD] = all - still_pressure(&o->still, x, 0);
+    }
+}
+
+/* Eq. (21b): the reference at the particle's place before and after its way. */
+static void oracle_carry(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *x = &in[i][POS], *u = &in[i][VEL];
+        double step = 1e-5*o->d, sink = 0, slope, gain;
+        slope = (still_pressure(&o->still, x, step) - still_pressure(&o->still, x, -step))/(2*step);
+        for (int a = 0; a < 3; a++)
+            sink += (slope*o->still.down[a] + o->rho0[o->fluid[i]]*o->taken[a])*u[a];
+        gain = still_pressure(&o->still, x, 0) - still_pressure(&o->still_before, x, 0);
+        out[i][PRES] -= gain + o->dt*sink;
     }
 }
 

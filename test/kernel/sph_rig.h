@@ -74,6 +74,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->plane_count = 0;
     for (int a = 0; a < k->dimension; a++) {
         v->gravity[a] = (float)(a + 1 == k->dimension ? -9.81 : 1.5);
+        v->taken[a] = (float)(0.5 - a);
         if (k->periodic[a]) continue;
         v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1, {0.3f, -0.2f, 0.1f}};
         v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0, {0}};
@@ -146,6 +147,7 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
         o->box[a] = g->box.size[a];
         o->periodic[a] = g->box.periodic[a];
         o->gravity[a] = v->gravity[a];
+        o->taken[a] = v->taken[a];
     }
     for (int f = 0; f < 2; f++) {
         o->rho0[f] = rho[f]; o->nu[f] = nu[f];

@@ -38,6 +38,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_center_direction oracle_center_direction
 #define oracle_sph_center_pressure oracle_center_pressure
 #define oracle_sph_tait oracle_tait
+#define oracle_sph_rest oracle_rest
+#define oracle_sph_carry oracle_carry
 #define oracle_sph_relax oracle_relax
 #define oracle_sph_normal oracle_normal
 #define oracle_sph_smooth_normal oracle_smooth_normal

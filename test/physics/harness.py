@@ -81,7 +81,7 @@ class Case:
         """Runs a scene (the case's own by default); returns the folder of the results (None: it failed)."""
         scene = scene or self.folder / "scene.json"
         target = self.out / label
-        shown = [os.path.relpath(scene, ROOT) if str(scene).startswith(str(ROOT)) else f"{label}.json"]
+        shown = [os.path.relpath(scene, ROOT) if pathlib.Path(scene).is_relative_to(ROOT) else f"{label}.json"]
         command = [str(o) for o in options]
         self.commands.append("tobiuo run " + shlex.join(shown + command))
         done = subprocess.run([self.program, "run", str(scene), "--out", str(target), "--force", "--quiet",

@@ -221,9 +221,6 @@ static void test_refused(void **state)
     expect_failure(&def, &b, TOBI_DIVERGED, "no number");
     b.control = NULL;
     b.dynamics = TOBI_FREE;
-    def.method = "wcsph";
-    expect_failure(&def, &b, TOBI_UNSUPPORTED, "the method wcsph does not know");
-    def.method = "mlsmpm";
     def.dimension = 2;
     b.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
     memcpy(b.translation, (double[3]){ 1, 1, 0 }, sizeof b.translation);
@@ -256,7 +253,6 @@ static void test_scene_mistakes(void **state)
     const char *at = "bodies[0].dynamics: ", *control = "bodies[0].control: ";
     write_file("good.lua", "function control() end");
     write_file("place.lua", "function place() return 0, 0, 0 end");
-    expect_line("\"dynamics\": \"free\"", "wcsph", at, "method \"dfsph\" or \"mlsmpm\", wcsph does not");
     expect_line("\"dynamics\": \"fre\"", "mlsmpm", at, "did you mean \"free\"?");
     expect_line("\"dynamics\": \"free\", \"motion\": { \"translation\": { \"velocity\": [1, 0, 0] } }",
                 "mlsmpm", "bodies[0].motion: ", "is for prescribed bodies, this one is free");
