@@ -200,8 +200,8 @@ static const tobi_param solid_rows[] = {
       RANGE(0, 0.5), .unit = "1", .doc = "Stretch at which snow breaks." },
     { .key = "friction_angle", REAL, AT(tobi_solid_def, friction_angle), .def = { 30 }, RANGE(0, 60),
       .unit = "degrees",
-      .doc = "Angle of internal friction of sand, and of a neo-hookean or corotated solid where it is "
-             "broken." },
+      .doc = "Slope at which sand comes to rest: sheared, it flows at its tangent times the pressure. Also of a "
+             "neo-hookean or corotated solid where it is broken." },
     { .key = "strength", REAL, AT(tobi_solid_def, strength), FROM(0), .unit = "Pa", .text = "none",
       .doc = "Tension at which a neo-hookean or corotated solid begins to crack, force over area at the "
              "start; it needs a fracture_energy." },
