@@ -118,6 +118,9 @@ typedef struct tobi_solid_def {
     double critical_compression;      /* 1, snow                                                      */
     double critical_stretch;          /* 1, snow                                                      */
     double friction_angle;            /* degrees, sand, and solids where they are broken              */
+    double friction_rise;             /* 1, sand in fast flow, above the tangent of friction_angle    */
+    double grain_diameter;            /* m, sand with a friction_rise                                 */
+    double inertial_number;           /* 1, sand: at which half of friction_rise is there             */
     double strength;                  /* Pa, tension per area at the start that breaks it; 0 = never  */
     double fracture_energy;           /* J/m2, of a crack, per area at the start                      */
     double cut_friction;              /* 1, Coulomb, between the faces of a cut                       */

@@ -127,7 +127,9 @@ static double flow_work(const mpm_view *v, int64_t i)
     mpm_load_columns(v->strain + i, e, other);
     mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
     const double stored = energy_density(m, e, other[1]);
-    mpm_find_stress(&parameters, model, present, gradient, e, &other[1], before);
+    mpm_parameters still = parameters;                     /* no time goes by */
+    still.haste = 0;
+    mpm_find_stress(&still, model, present, gradient, e, &other[1], before);
     mpm_load_columns(v->strain + i, e, other);
     mpm_deform(v->strain_dt, gradient, e);
     mpm_find_stress(&parameters, model, present, gradient, e, &other[1], after);

@@ -2,15 +2,20 @@
 #include "tobiuo/types.h"
 #include <math.h>
 
-/* Slope of Drucker and Prager's cone, eq. (11): Mohr and Coulomb's in triaxial compression; in plane strain,
-   where the stress out of the plane is the mean of the others in flow, theirs there. */
-static double find_cone(const tobi_solid_def *d, int dimension)
+/* Slope of Drucker and Prager's cone, eqs. (11), (11b): what is sheared without change of volume, down a
+   slope or in a collapse, flows at shear over pressure = tan phi, in 2-D and 3-D alike. */
+static double find_cone(const tobi_solid_def *d)
 {
-    double sine = sin(d->friction_angle*acos(-1)/180);
-    return dimension == 2 ? sqrt(2.0)/3*sine : sqrt(2.0/3)*2*sine/(3 - sine);
+    return sqrt(2.0)/3*tan(d->friction_angle*acos(-1)/180);
 }
 
-mpm_material mpm_material_describe(const tobi_solid_def *d, int dimension, double *sound)
+/* Shear modulus times I_0/(d sqrt(rho_s)) of eq. (11c): grains fill 0.6 of what they lie in. */
+static double find_haste(const tobi_solid_def *d, double mu)
+{
+    return mu*d->inertial_number/(d->grain_diameter*sqrt(d->density/0.6));
+}
+
+mpm_material mpm_material_describe(const tobi_solid_def *d, double *sound)
 {
     double mu = d->youngs_modulus/(2*(1 + d->poissons_ratio));
     double lambda = d->youngs_modulus*d->poissons_ratio/((1 + d->poissons_ratio)*(1 - 2*d->poissons_ratio));
@@ -22,7 +27,8 @@ mpm_material mpm_material_describe(const tobi_solid_def *d, int dimension, doubl
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)find_cone(d, dimension), .cut_friction = (float)d->cut_friction,
+        .friction = (float)find_cone(d), .rise = (float)d->friction_rise,
+        .haste = (float)find_haste(d, mu), .cut_friction = (float)d->cut_friction,
         .surface_friction = d->model == TOBI_LIQUID ? 0 : (float)d->surface_friction, .keep = 1 };
 }
 

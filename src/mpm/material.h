@@ -4,7 +4,7 @@
 #include "mpm/view.h"
 
 /* *sound: how fast sound is in it at rest, m/s. */
-mpm_material mpm_material_describe(const tobi_solid_def *d, int dimension, double *sound);
+mpm_material mpm_material_describe(const tobi_solid_def *d, double *sound);
 /* The longest step that viscosity allows, s; infinite without. */
 double mpm_material_viscous_dt(const tobi_solid_def *d, double cell);
 /* The longest step, s, with sound and particles as fast as that, m/s. */

@@ -152,7 +152,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
         const tobi_solid_def *d = &s->solids[k].def;
         double sound;
         m->touch.cell_mass = fmin(m->touch.cell_mass, d->density*pow(m->cell, s->box.dimension));
-        m->material[k] = mpm_material_describe(d, s->box.dimension, &sound);
+        m->material[k] = mpm_material_describe(d, &sound);
         mpm_damage_describe(d, m->cell, &m->material[k]);
         m->damping[k] = d->damping;
         m->view.damped |= d->damping > 0;
@@ -181,7 +181,7 @@ static double limit_dt(const tobi_simulation *s, const void *def, int solid, dou
 {
     const tobi_solid_def *d = &s->solids[solid].def;
     double sound;
-    mpm_material_describe(d, s->box.dimension, &sound);
+    mpm_material_describe(d, &sound);
     return fmin(mpm_material_dt(s, def, sound, speed),
                 mpm_material_viscous_dt(d, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing));
 }

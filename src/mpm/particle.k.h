@@ -70,13 +70,14 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
                                    lane_int *model, uint32_t *present)
 {
     const mpm_material *one = &v->material[v->solid[i]];
-    float p[12][MPM_WIDE];
+    float p[14][MPM_WIDE];
     int32_t number[MPM_WIDE];
     if (mpm_is_uniform(v->solid + i)) {
         *m = (mpm_parameters){lane_set(one->mu), lane_set(one->lambda), lane_set(one->bulk),
                               lane_set(one->viscosity), lane_set(one->yield), lane_set(one->hardening),
                               lane_set(one->compression), lane_set(one->stretch), lane_set(one->friction),
-                              lane_set(one->strength), lane_set(one->brittleness)};
+                              lane_set(one->strength), lane_set(one->brittleness), lane_set(one->rise),
+                              lane_set(one->haste*v->strain_dt)};
         *keep = lane_set(one->keep);
         *model = lane_set_int(one->model);
         *present = mpm_bit_of(one);
@@ -88,13 +89,13 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
         p[0][k] = a->mu; p[1][k] = a->lambda; p[2][k] = a->bulk; p[3][k] = a->viscosity;
         p[4][k] = a->yield; p[5][k] = a->hardening; p[6][k] = a->compression; p[7][k] = a->stretch;
         p[8][k] = a->friction; p[9][k] = a->keep; p[10][k] = a->strength;
-        p[11][k] = a->brittleness;
+        p[11][k] = a->brittleness; p[12][k] = a->rise; p[13][k] = a->haste*v->strain_dt;
         number[k] = a->model;
         *present |= mpm_bit_of(a);
     }
     *m = (mpm_parameters){lane_load(p[0]), lane_load(p[1]), lane_load(p[2]), lane_load(p[3]), lane_load(p[4]),
                           lane_load(p[5]), lane_load(p[6]), lane_load(p[7]), lane_load(p[8]),
-                          lane_load(p[10]), lane_load(p[11])};
+                          lane_load(p[10]), lane_load(p[11]), lane_load(p[12]), lane_load(p[13])};
     *keep = lane_load(p[9]);
     *model = lane_load_index(number);
 }

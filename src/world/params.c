@@ -205,8 +205,17 @@ static const tobi_param solid_rows[] = {
       RANGE(0, 0.5), .unit = "1", .doc = "Stretch at which snow breaks." },
     { .key = "friction_angle", REAL, AT(tobi_solid_def, friction_angle), .def = { 30 }, RANGE(0, 60),
       .unit = "degrees",
-      .doc = "Angle of internal friction of sand, and of a neo-hookean or corotated solid where it is "
-             "broken." },
+      .doc = "Slope at which sand comes to rest: sheared, it flows at its tangent times the pressure. Also "
+             "of a neo-hookean or corotated solid where it is broken." },
+    { .key = "friction_rise", REAL, AT(tobi_solid_def, friction_rise), FROM(0), .unit = "1", .text = "none",
+      .doc = "By how much the friction of sand rises above the tangent of friction_angle in fast flow, by "
+             "the law mu(I); 0.26 for glass beads (Jop et al. 2006)." },
+    { .key = "grain_diameter", REAL, AT(tobi_solid_def, grain_diameter), .def = { 1e-3 }, POSITIVE,
+      .unit = "m", .doc = "Of the grains of sand, for friction_rise." },
+    { .key = "inertial_number", REAL, AT(tobi_solid_def, inertial_number), .def = { 0.279 }, POSITIVE,
+      .unit = "1",
+      .doc = "Rate of shear times grain_diameter over sqrt(pressure/density of a grain) at which half of "
+             "friction_rise is there." },
     { .key = "strength", REAL, AT(tobi_solid_def, strength), FROM(0), .unit = "Pa", .text = "none",
       .doc = "Tension at which a neo-hookean or corotated solid begins to crack, force over area at the "
              "start; it needs a fracture_energy." },
@@ -523,8 +532,10 @@ static const struct { const char *key; uint32_t models; } constants[] = {
     { "bulk_modulus", OF(TOBI_LIQUID) },    { "viscosity", OF(TOBI_LIQUID) },
     { "yield_stress", OF(TOBI_VON_MISES) }, { "hardening", OF(TOBI_VON_MISES) | OF(TOBI_SNOW) },
     { "critical_compression", OF(TOBI_SNOW) }, { "critical_stretch", OF(TOBI_SNOW) },
-    { "friction_angle", OF(TOBI_SAND) | BREAKABLE }, { "strength", BREAKABLE },
-    { "fracture_energy", BREAKABLE },       { "damping", ~OF(TOBI_STATIONARY) },
+    { "friction_angle", OF(TOBI_SAND) | BREAKABLE }, { "friction_rise", OF(TOBI_SAND) },
+    { "grain_diameter", OF(TOBI_SAND) },    { "inertial_number", OF(TOBI_SAND) },
+    { "strength", BREAKABLE },              { "fracture_energy", BREAKABLE },
+    { "damping", ~OF(TOBI_STATIONARY) },
     { "cut_friction", ~(OF(TOBI_STATIONARY) | OF(TOBI_LIQUID) | OF(TOBI_SAND)) },
     { "surface_friction", ~OF(TOBI_LIQUID) },
 #undef BREAKABLE

@@ -11,6 +11,7 @@ typedef struct oracle_solid {
     int model;                               /* tobi_model */
     double E, nu, bulk, viscosity, yield, hardening, compression, stretch, cone, keep;
     double strength, last;                   /* 0: never breaks; crack strain at which nothing is left */
+    double rise, haste;                      /* of sand: friction in flow; eq. (11c) */
 } oracle_solid;
 
 typedef struct oracle_particle {
@@ -116,9 +117,22 @@ static void oracle_snow(const oracle_solid *m, double mu, double lambda, oracle_
     oracle_corotated(mu*harder, lambda*harder, p->F, tau);
 }
 
+/* Deviatoric strain that sand in flow loses in dt, eq. (11c): the rate at which stress and friction agree. */
+static double oracle_hurry(const oracle_solid *m, double mu, double pressure, double norm, double dt)
+{
+    double low = 0, high = sqrt(2)*norm/dt;
+    for (int k = 0; k < 200; k++) {
+        double rate = 0.5*(low + high), x = rate*mu/(m->haste*sqrt(pressure));
+        double friction = 3*m->cone/sqrt(2) + m->rise*x/(1 + x);
+        if (sqrt(2)*mu*norm - mu*rate*dt > friction*pressure) low = rate;
+        else high = rate;
+    }
+    return low*dt/sqrt(2);
+}
+
 /* Von Mises and sand: return mapping of Hencky strains, tau = U (2 mu h + lambda tr h) U^T. */
-static void oracle_hencky(const oracle_solid *m, int sand, double mu, double lambda, oracle_particle *p,
-                          double tau[3][3])
+static void oracle_hencky(const oracle_solid *m, int sand, double mu, double lambda, double dt,
+                          oracle_particle *p, double tau[3][3])
 {
     double U[3][3], V[3][3], s[3], h[3], d[3], norm = 0, trace = 0;
     oracle_svd(p->F, U, s, V);
@@ -133,6 +147,8 @@ static void oracle_hencky(const oracle_solid *m, int sand, double mu, double lam
     norm = sqrt(norm);
     if (sand) {
         double over = norm + (3*lambda + 2*mu)/(2*mu)*trace*m->cone;
+        if (m->rise > 0 && over > 0 && trace < 0)
+            over = oracle_hurry(m, mu, -(lambda + 2*mu/3)*trace, norm, dt);
         p->state = trace < 0 ? 0 : trace;
         for (int k = 0; k < 3; k++) {
             if (trace >= 0) h[k] = 0;
@@ -223,9 +239,9 @@ static void oracle_stress(const oracle_solid *m, double strain_dt, oracle_partic
     }
     if (m->model == 1) oracle_corotated(mu, lambda, p->F, tau);
     if (m->model == 2) oracle_liquid(m, p, tau);
-    if (m->model == 3) oracle_hencky(m, 0, mu, lambda, p, tau);
+    if (m->model == 3) oracle_hencky(m, 0, mu, lambda, strain_dt, p, tau);
     if (m->model == 4) oracle_snow(m, mu, lambda, p, tau);
-    if (m->model == 5) oracle_hencky(m, 1, mu, lambda, p, tau);
+    if (m->model == 5) oracle_hencky(m, 1, mu, lambda, strain_dt, p, tau);
 }
 
 /* The quadratic B-spline at a distance in cells. */

@@ -44,7 +44,7 @@ static void choose_solids(rig *g)
             .model = k < BREAKING ? k : k - BREAKING, .strength = k < BREAKING ? 0 : 3000, .last = 0.1,
             .E = 1e5*(1 + k), .nu = 0.1 + 0.05*(k%BREAKING), .bulk = 2e5, .viscosity = 3, .yield = 4e3,
             .hardening = k == TOBI_SNOW ? 8 : 2e4, .compression = 0.04, .stretch = 0.02, .cone = 0.2,
-            .keep = 1 - 0.01*k };
+            .rise = k == TOBI_SAND && g->dimension == 2 ? 0.5 : 0, .haste = 1e5, .keep = 1 - 0.01*k };
         g->solid[k] = s;
         g->material[k] = (mpm_material){
             .model = s.model, .strength = (float)s.strength, .brittleness = 10,
@@ -52,7 +52,7 @@ static void choose_solids(rig *g)
             .lambda = (float)(s.E*s.nu/((1 + s.nu)*(1 - 2*s.nu))), .bulk = (float)s.bulk,
             .viscosity = (float)s.viscosity, .yield = (float)s.yield, .hardening = (float)s.hardening,
             .compression = (float)s.compression, .stretch = (float)s.stretch, .friction = (float)s.cone,
-            .keep = (float)s.keep };
+            .rise = (float)s.rise, .haste = (float)s.haste, .keep = (float)s.keep };
     }
 }
 

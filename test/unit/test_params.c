@@ -204,8 +204,8 @@ static void models_know_their_constants(void **state)
         assert_true(tobi_solid_uses(model, "density") && tobi_solid_uses(model, "color"));
     }
     tobi_solid_list(TOBI_SAND, text, sizeof text);
-    assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, damping, "
-                        "surface_friction");
+    assert_string_equal(text, "density or mass, youngs_modulus, poissons_ratio, friction_angle, "
+                        "friction_rise, grain_diameter, inertial_number, damping, surface_friction");
 }
 
 static void methods_are_found_by_name(void **state)

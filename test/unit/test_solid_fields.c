@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include "solid_rig.h"
 #include "mpm/fields.h"
+#include "mpm/material.h"
 #include "tobiuo/run.h"
 #include "tobiuo/types.h"
 #include "world/world.h"
@@ -23,20 +24,25 @@ enum { WIDE = 8 };
 static const mpm_material hard = { .mu = 4e4f, .lambda = 6e4f, .bulk = 1e5f, .yield = 1e9f, .hardening = 10,
                                    .compression = 0.025f, .stretch = 0.0075f, .friction = 0.8f, .keep = 1 };
 
-/* A particle of 1 m3 that is deformed by F (rows). */
-static mpm_sight look_at(int model, const double F[9], float plastic)
+/* A particle of 1 m3 of the material that is deformed by F (rows). */
+static mpm_sight look_into(const mpm_material *material, const double F[9], float plastic)
 {
     tobi_columns strain[WIDE] = { 0 }, affine[WIDE] = { 0 };
-    mpm_material material = hard;
     const uint8_t solid[WIDE] = { 0 };
-    material.model = model;
     for (int c = 0; c < 3; c++)
         strain[0].c[c] = (tobi_float4){ (float)(F[c] - (c == 0)), (float)(F[3 + c] - (c == 1)),
                                         (float)(F[6 + c] - (c == 2)), 0 };
     strain[0].c[0].w = 1;
     strain[0].c[1].w = plastic;
-    const mpm_view v = { .strain = strain, .affine = affine, .solid = solid, .material = &material };
+    const mpm_view v = { .strain = strain, .affine = affine, .solid = solid, .material = material };
     return mpm_look(&v, 0);
+}
+
+static mpm_sight look_at(int model, const double F[9], float plastic)
+{
+    mpm_material material = hard;
+    material.model = model;
+    return look_into(&material, F, plastic);
 }
 
 static void multiply(const double a[9], const double b[9], double out[9])
@@ -100,6 +106,28 @@ static void models_flow_as_they_should(void **state)
     assert_true(fabs(s.strain[0] - 0.0075) < 1e-5 && fabs(s.ratio - 1.331) < 1e-4);
     s = look_at(TOBI_LIQUID, bent, 0);                       /* sheared water resists nothing */
     assert_true(fabs(s.stress[3]) < 1e-3 && fabs(s.ratio - 1) < 1e-6);
+}
+
+/* Pressed and sheared in the plane without change of volume: shear over pressure is tan phi, so that the
+   principal stresses have (s1 - s3)/(s1 + s3) = tan phi, and the one across the plane is their mean. */
+static void sheared_sand_flows_at_its_angle(void **state)
+{
+    (void)state;
+    for (double angle = 20; angle <= 40; angle += 10) {
+        const double slope = tan(angle*acos(-1)/180), F[9] = { 0.999, 0.02, 0, 0, 0.999, 0, 0, 0, 0.999 };
+        tobi_solid_def d = tobi_default_solid_def();
+        double sound;
+        d.model = TOBI_SAND;
+        d.friction_angle = angle;
+        const mpm_material sand = mpm_material_describe(&d, &sound);
+        const mpm_sight seen = look_into(&sand, F, 0);
+        const double *s = seen.stress;
+        const double pressure = -0.5*(s[0] + s[1]), radius = hypot(0.5*(s[0] - s[1]), s[3]);
+        if (!(pressure > 0 && fabs(radius/pressure - slope) < 2e-3*slope &&
+              fabs(s[3]/pressure - slope) < 2e-2*slope && fabs(-s[2]/pressure - 1) < 1e-2))
+            fail_msg("%g degrees: %g and %g for %g; across %g", angle, radius/pressure, s[3]/pressure, slope,
+                     -s[2]/pressure);
+    }
 }
 
 /* --- fields ---------------------------------------------------------------------------------------- */
@@ -445,6 +473,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stress_is_the_derivative_of_energy),
         cmocka_unit_test(models_flow_as_they_should),
+        cmocka_unit_test(sheared_sand_flows_at_its_angle),
         cmocka_unit_test(fields_agree_with_formulas),
         cmocka_unit_test(strain_is_that_of_now),
         cmocka_unit_test(reading_changes_nothing),
