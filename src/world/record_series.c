@@ -25,6 +25,7 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
     for (int k = 0; (known = tobi_world_field_name(k, &field->components, &unit)); k++) {
         if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
         field->name = known;
+        field->bodies = tobi_world_bodies_have(k);
         field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64 : is_number(known) ? TOBI_I32 : TOBI_F32;
         return TOBI_OK;
     }
@@ -135,16 +136,20 @@ static void *convert(const double *from, int64_t n, int type)
     return to;
 }
 
-/* Reads every chosen field; arrays[k].data is owned by the caller, also after a failure. */
-static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int64_t n,
-                               tobi_vtk_array *arrays, tobi_error *err)
+/* Reads every chosen field that the set has, *count of them; arrays[k].data is owned by the caller, also
+   after a failure. */
+static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, tobi_vtk_array *arrays,
+                               int *count, tobi_error *err)
 {
+    int64_t n = tobi_world_count(run->world, set);
     for (int k = 0; k < run->field_count; k++) {
         const tobi_record_field *f = &run->field[k];
+        if (set == TOBI_BODIES && !f->bodies) continue;
         TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
-        arrays[k] = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
-                                      convert(buffer, n * f->components, f->type) };
-        if (!arrays[k].data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+        tobi_vtk_array *array = &arrays[(*count)++];
+        *array = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
+                                   convert(buffer, n * f->components, f->type) };
+        if (!array->data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     }
     return TOBI_OK;
 }

@@ -49,6 +49,8 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 /* The names of the fields that a method has, all if it is unknown; returns how many. */
 enum { TOBI_WORLD_FIELDS = 32 };
 int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
+/* Whether the particles of bodies have it too, by the number of tobi_world_field_name. */
+int tobi_world_bodies_have(int field);
 
 void tobi_world_free_grid(tobi_world *w);
 
