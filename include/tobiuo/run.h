@@ -8,6 +8,7 @@
    DIR/bodies.pvd, bodies/      the bodies' particles
    DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
    DIR/grid.pvd, grid/          nodes of the grid of mlsmpm, if asked
+   DIR/all.pvd                  the four above in one list: the same times, a part for each
    DIR/frames/                  pictures, if asked
    DIR/ply/, DIR/obj/           positions of the fluid, surfaces of the bodies, if asked
    DIR/checkpoints/             the last two states and the recorder's place in the files

@@ -93,7 +93,7 @@ TOBI_API const char *tobi_world_probe_name(const tobi_world *world, int probe, t
 typedef enum tobi_set { TOBI_FLUID, TOBI_BODIES } tobi_set;
 TOBI_API int64_t tobi_world_count(const tobi_world *world, tobi_set set);
 /* Names of all fields by index, NULL past the end; components is 1, 3, 6 (xx, yy, zz, xy, yz, zx) or 9 (by
-   rows). Which of them a method has says docs/scene.md; tobi_world_read refuses the others. */
+   rows). Which of them a method and bodies have says docs/scene.md; tobi_world_read refuses the others. */
 TOBI_API const char *tobi_world_field_name(int field, int *components, const char **unit);
 /* Copies a field into buffer (count x components doubles, row-major, id order). */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,

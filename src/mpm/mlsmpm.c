@@ -264,8 +264,22 @@ static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error 
     return TOBI_OK;
 }
 
+/* What gravity adds to a velocity is rounded to its last place, in free fall by the same error for all
+   particles in every step. A shift of up to half a place, another in each step and without a sum that grows,
+   lets it average out, m/s. */
+static double dither(const tobi_simulation *s, double speed)
+{
+    int exponent;
+    const double golden = 0.6180339887498949, turn = golden*(double)s->step;
+    frexp(speed, &exponent);
+    return ldexp(turn - floor(turn) - 0.5, exponent - 24);
+}
+
 static void use_dt(const tobi_simulation *s, mlsmpm *m)
 {
+    const double shift = dither(s, m->memory[SPEED]);
+    for (int a = 0; a < s->box.dimension; a++)
+        m->view.fall[a] = (float)(s->def.gravity[a] != 0 ? s->def.gravity[a]*s->dt + shift : 0);
     m->view.dt = (float)s->dt;
     m->view.strain_dt = (float)m->memory[STRAIN_DT];
     for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);

@@ -233,16 +233,16 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
 {
     const mpm_patch *g = &v->patch[number];
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    const quad fall = {v->gravity[0]*v->dt, v->gravity[1]*v->dt, v->gravity[2]*v->dt, 0};
+    const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
     mpm_sum_tiles(g, v->tile, sum, dim);
     if (v->old) mpm_sum_tiles(g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
-        const float mass = sum[n][3], inverse = mass > 0 ? 1/mass : 0;
-        quad u = sum[n]*quad_set(inverse);
+        const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
+        quad u = sum[n]/quad_set(divisor);
         if (v->old) {
-            quad before = calm[n]*quad_set(inverse);
+            quad before = calm[n]/quad_set(divisor);
             if (v->wave) quad_store(&v->wave[number*nodes + n], before);
             quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
         }

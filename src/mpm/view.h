@@ -90,6 +90,7 @@ typedef struct mpm_view {
     float  own;                        /* 1 if the particle's own velocity goes on: FLIP           */
     float  order;                      /* m of XPIC, and in its sweeps the share of this one       */
     float  gravity[3];
+    float  fall[3];                    /* what gravity adds in this step, m/s                      */
     int    plane_count;
     mpm_plane plane[MPM_PLANES];
     double size[3];                    /* m, of the domain                                         */

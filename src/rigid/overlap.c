@@ -1,12 +1,13 @@
 /* The depth below both surfaces changes by at most a metre per metre; so a box of space whose middle is d
    deep holds nothing deeper than d and half its diagonal, and boxes that cannot hold more than is known are
    dropped, others halved. Corners, edges and faces play no part: coinciding faces, one body within another
-   and bars that cross are all the same. Drawback: thin layers cost many boxes, hence a least depth. */
+   and bars that cross are all the same. Drawback: thin layers cost many boxes, hence a least depth and a
+   largest number of boxes, which large plates close together reach. */
 #include "rigid/overlap.h"
 #include "geom/vec3.h"
 #include <string.h>
 
-enum { MOST_BOXES = 200000, STACK = 256 };     /* more are not looked at */
+enum { MOST_BOXES = 200000, STACK = 256 };
 
 typedef struct search {
     const tobi_bvh *a, *b;
@@ -60,22 +61,26 @@ static int look(search *s, const space *box)
 }
 
 double tobi_overlap_depth(const tobi_body *a, const tobi_shape *sa, const tobi_body *b, const tobi_shape *sb,
-                          double least)
+                          double least, int *whole)
 {
     search s = { .a = sa->facets.bvh, .b = sb->facets.bvh, .least = 0.5*least };
     space stack[STACK];
-    int top = 1;
+    int top = 1, dropped = 0;
+    *whole = 1;
     tobi_rigid_between(&b->rigid, &a->rigid, s.turn, s.shift);
     if (!find_common(&s, sa->facets.flat, &stack[0])) return 0;
     for (int looked = 0; top > 0 && looked < MOST_BOXES; looked++) {
         space box = stack[--top];
         int axis = 0;
-        if (!look(&s, &box) || top + 2 > STACK) continue;
+        if (!look(&s, &box)) continue;
+        dropped |= top + 2 > STACK;
+        if (top + 2 > STACK) continue;
         for (int k = 1; k < 3; k++)
             if (box.upper[k] - box.lower[k] > box.upper[axis] - box.lower[axis]) axis = k;
         stack[top] = stack[top + 1] = box;
         stack[top].upper[axis] = stack[top + 1].lower[axis] = 0.5*(box.lower[axis] + box.upper[axis]);
         top += 2;
     }
+    *whole = top == 0 && !dropped;
     return s.best > s.least ? 2*s.best : 0;
 }

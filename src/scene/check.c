@@ -343,35 +343,6 @@ static void check_planes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-/* Whether some side of the domain lets solids separate from it. */
-static int has_separate_side(const tobi_world_def *w)
-{
-    int has = 0;
-    for (int a = 0; a < w->dimension; a++)
-        has |= w->wall_min[a] == TOBI_WALL_SEPARATE || w->wall_max[a] == TOBI_WALL_SEPARATE;
-    return has;
-}
-
-/* What mlsmpm would read past. */
-static void check_unused(const tobi_scene *scene, tobi_source *source)
-{
-    tobi_place cfl = { &root, "cfl", 0 }, planes = { &root, "planes", 0 };
-    tobi_place domain = { &root, "domain", 0 }, friction = { &domain, "friction", 0 };
-    if (scene->method != &tobi_mlsmpm_table) return;
-    if (tobi_bind_has(&tobi_world_table, scene->world_bound.given, "cfl"))
-        tobi_source_mistake_at_key(source, &cfl, "is for dfsph and wcsph; mlsmpm has its own, mlsmpm.cfl");
-    if (scene->world.friction > 0 && !has_separate_side(&scene->world))
-        tobi_source_mistake_at_key(source, &friction, "is for \"separate\" sides, and no side in "
-                                   "domain.walls is one");
-    for (int i = 0; i < scene->plane_count && !tobi_report_full(source->report); i++) {
-        tobi_place entry = { &planes, NULL, (size_t)i }, rub = { &entry, "friction", 0 };
-        const tobi_plane_def *plane = &scene->planes[i];
-        if (plane->friction > 0 && plane->kind != TOBI_PLANE_SEPARATE)
-            tobi_source_mistake_at_key(source, &rub, "is for planes of the kind separate, this one is %s",
-                                       plane->kind == TOBI_PLANE_SLIP ? "slip" : "no-slip");
-    }
-}
-
 static void check_probes(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
@@ -447,7 +418,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     tobi_check_overlaps(scene, source);
     check_bodies(scene, source);
     check_planes(scene, source);
-    check_unused(scene, source);
+    tobi_unused_check(scene, source);
     check_probes(scene, source);
     check_output(scene, source);
     tobi_references_check(scene, source);

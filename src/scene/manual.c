@@ -32,7 +32,8 @@ static const char head[] =
     "  for both: `\"walls\": { \"x\": \"periodic\", \"z\": [\"no-slip\", \"slip\"] }`.\n"
     "- Where a default is a word (`adaptive`, `all`), that word or a number may be written.\n"
     "- Relative paths of meshes, scripts and tables start at the scene's own folder.\n"
-    "- Unknown keys are mistakes. Nothing is case-insensitive.\n"
+    "- Unknown keys are mistakes, and so are keys that the chosen method would not read. Nothing is\n"
+    "  case-insensitive.\n"
     "\n"
     "## A complete example\n"
     "\n"
@@ -221,16 +222,18 @@ static void write_fields(FILE *out)
     const char *name, *unit;
     int components;
     fputs("\nFields that `fields` may list:\n\n"
-          "| field | components | unit | methods |\n|---|---|---|---|\n", out);
+          "| field | components | unit | of |\n|---|---|---|---|\n", out);
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) {
         fprintf(out, "| `%s` | %d | %s |", name, components, unit);
         const char *method, *known[TOBI_WORLD_FIELDS];
         for (int m = 0; (method = tobi_method_name(m)); m++)
             for (int k = tobi_world_list_fields(method, known) - 1; k >= 0; k--)
                 if (known[k] == name) fprintf(out, " %s", method);
-        fputs(" |\n", out);
+        fputs(tobi_world_bodies_have(i) ? " bodies |\n" : " |\n", out);
     }
-    fputs("\nSix components are xx, yy, zz, xy, yz, zx of a symmetric tensor, nine are a matrix by rows.\n"
+    fputs("\n`bodies` are the particles in `bodies.pvd`, which has only fields of theirs. Their `density`\n"
+          "is the scene's; `object_id` is 0 in fluids and solids and from 1 in bodies.\n\n"
+          "Six components are xx, yy, zz, xy, yz, zx of a symmetric tensor, nine are a matrix by rows.\n"
           "`stress` is Cauchy's, `pressure` of a solid a third of minus its trace, `J` the volume over that\n"
           "at the start, `density` the density at the start over J. `deformation_gradient` is the elastic\n"
           "part where a model flows, and of a liquid only its determinant means something. `plastic` is the\n"

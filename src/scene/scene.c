@@ -115,7 +115,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
         tobi_place entry = { &place, NULL, i }, motion = { &entry, "motion", 0 };
         tobi_scene_body *body = &scene->bodies[scene->body_count++];
         body->def = tobi_default_body_def();
-        tobi_bind(binder, &tobi_body_table, value, &entry, also, &body->def);
+        body->bound = tobi_bind(binder, &tobi_body_table, value, &entry, also, &body->def);
         json_t *moves = json_object_get(value, "motion"), *controls = json_object_get(value, "control");
         if (controls) {
             tobi_place control = { &entry, "control", 0 };
@@ -196,9 +196,14 @@ static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, con
         void *def = malloc(table->size);
         if (!def) return TOBI_NO_MEMORY;
         tobi_param_defaults(table, def);
-        if (value) tobi_bind(binder, table, value, &place, NULL, def);
-        if (table == scene->method) scene->method_def = def;
-        else free(def);
+        tobi_bound bound = { 0 };
+        if (value) bound = tobi_bind(binder, table, value, &place, NULL, def);
+        if (table != scene->method) {
+            free(def);
+            continue;
+        }
+        scene->method_def = def;
+        scene->method_bound = bound;
     }
     return TOBI_OK;
 }
@@ -455,10 +460,11 @@ static json_t *write_solid(const tobi_scene_solid *solid)
     return write_fills(object, solid->fills, solid->fill_count);
 }
 
-static json_t *write_body(const tobi_scene_body *body)
+static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
 {
     json_t *object = tobi_write_def(&tobi_body_table, &body->def);
     int failed = 0;
+    tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
     json_object_del(object, body->def.mesh ? "box" : "mesh");
     if (body->motion_def.table)
         failed = json_object_set_new(object, "motion", tobi_motion_write(&body->motion_def));
@@ -470,17 +476,18 @@ static json_t *write_body(const tobi_scene_body *body)
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
-    if (scene->method == &tobi_mlsmpm_table) json_object_del(root, "cfl");          /* it has its own */
+    json_t *method = tobi_write_def(scene->method, scene->method_def);
+    tobi_unused_drop(scene, &tobi_world_table, NULL, root);
+    tobi_unused_drop(scene, scene->method, NULL, method);
     json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
            *probes = json_array(), *references = json_array();
-    int failed = json_object_set_new(root, scene->method->name,
-                                     tobi_write_def(scene->method, scene->method_def));
+    int failed = json_object_set_new(root, scene->method->name, method);
     for (int i = 0; i < scene->fluid_count; i++)
         failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->solid_count; i++)
         failed |= json_array_append_new(solids, write_solid(&scene->solids[i]));
     for (int i = 0; i < scene->body_count; i++)
-        failed |= json_array_append_new(bodies, write_body(&scene->bodies[i]));
+        failed |= json_array_append_new(bodies, write_body(scene, &scene->bodies[i]));
     for (int i = 0; i < scene->plane_count; i++)
         failed |= json_array_append_new(planes, tobi_write_def(&tobi_plane_table, &scene->planes[i]));
     for (int i = 0; i < scene->probe_count; i++)

@@ -25,6 +25,7 @@ typedef struct tobi_scene_solid {
 
 typedef struct tobi_scene_body {
     tobi_body_def def;
+    tobi_bound bound;              /* rows of the body table that the file gives  */
     tobi_motion_def motion_def;
     tobi_motion *motion;           /* owned; NULL = fixed                         */
     tobi_control_def control_def;
@@ -40,6 +41,7 @@ struct tobi_scene {
     tobi_bound world_bound;
     const tobi_param_table *method;
     void *method_def;              /* method->size bytes                          */
+    tobi_bound method_bound;
     tobi_scene_fluid *fluids;
     int fluid_count;
     tobi_scene_solid *solids;
@@ -78,6 +80,12 @@ void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source);
 /* check.c: whether both corners are right; a file that the scene names. */
 int  tobi_check_has_domain(const tobi_scene *scene);
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
+
+/* unused.c: reports keys that are given and that nothing would read; takes them out of what the definition
+   of a table has become, for resolved.json. body: whose, NULL for other tables. */
+void tobi_unused_check(const tobi_scene *scene, tobi_source *source);
+void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const tobi_body_def *body,
+                      json_t *object);
 
 /* Reports what no table can see: corners, pairs of walls, regions, names, files. */
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source);

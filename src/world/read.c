@@ -6,19 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* owner: which methods have it. Of 6: xx, yy, zz, xy, yz, zx, as ParaView names them; of 9: by rows. */
-static const struct { const char *name; int components; const char *unit; int owner; } fields[] = {
-    {"position", 3, "m", TOBI_ALL},           {"velocity", 3, "m/s", TOBI_ALL},
-    {"pressure", 1, "Pa", TOBI_ALL},          {"density", 1, "kg/m3", TOBI_ALL},
-    {"object_id", 1, "1", TOBI_ALL},          {"particle_id", 1, "1", TOBI_ALL},
-    {"acceleration", 3, "m/s2", TOBI_SPH},    {"vorticity", 3, "1/s", TOBI_SPH},
-    {"surface", 1, "1", TOBI_SPH},            {"material", 1, "1", TOBI_MPM},
-    {"von_mises", 1, "Pa", TOBI_MPM},         {"stress", 6, "Pa", TOBI_MPM},
-    {"J", 1, "1", TOBI_MPM},                  {"deformation_gradient", 9, "1", TOBI_MPM},
-    {"plastic", 1, "1", TOBI_MPM},            {"rest_position", 3, "m", TOBI_MPM},
-    {"piece", 1, "1", TOBI_MPM},              {"cut_side", 1, "1", TOBI_MPM},
-    {"damage", 1, "1", TOBI_MPM},
-    {"texture_coordinates", 2, "1", TOBI_MPM},
+/* owner: which methods have it; bodies: whether their particles have it too. Of 6: xx, yy, zz, xy, yz, zx, as
+   ParaView names them; of 9: by rows. */
+static const struct { const char *name; int components; const char *unit; int owner, bodies; } fields[] = {
+    {"position", 3, "m", TOBI_ALL, 1},        {"velocity", 3, "m/s", TOBI_ALL, 1},
+    {"pressure", 1, "Pa", TOBI_ALL, 0},       {"density", 1, "kg/m3", TOBI_ALL, 1},
+    {"object_id", 1, "1", TOBI_ALL, 1},       {"particle_id", 1, "1", TOBI_ALL, 1},
+    {"acceleration", 3, "m/s2", TOBI_SPH, 0}, {"vorticity", 3, "1/s", TOBI_SPH, 0},
+    {"surface", 1, "1", TOBI_SPH, 0},         {"material", 1, "1", TOBI_MPM, 0},
+    {"von_mises", 1, "Pa", TOBI_MPM, 0},      {"stress", 6, "Pa", TOBI_MPM, 0},
+    {"J", 1, "1", TOBI_MPM, 0},               {"deformation_gradient", 9, "1", TOBI_MPM, 0},
+    {"plastic", 1, "1", TOBI_MPM, 0},         {"rest_position", 3, "m", TOBI_MPM, 0},
+    {"piece", 1, "1", TOBI_MPM, 0},           {"cut_side", 1, "1", TOBI_MPM, 0},
+    {"damage", 1, "1", TOBI_MPM, 0},          {"texture_coordinates", 2, "1", TOBI_MPM, 0},
 };
 enum { FIELD_COUNT = sizeof fields/sizeof *fields };
 
@@ -38,6 +38,8 @@ const char *tobi_world_field_name(int field, int *components, const char **unit)
     if (unit) *unit = fields[field].unit;
     return fields[field].name;
 }
+
+int tobi_world_bodies_have(int field) { return fields[field].bodies; }
 
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
@@ -158,9 +160,8 @@ static tobi_status read_bodies(tobi_world *w, const char *field, int components,
             memcpy(out, b->particle, (size_t)b->particle_count*sizeof *b->particle);
         } else {
             int number = !strcmp(field, "particle_id"), object = !strcmp(field, "object_id");
-            double all = !strcmp(field, "density") ? b->density : !strcmp(field, "piece") ? -1 : 0;
-            for (int64_t i = 0; i < b->particle_count*components; i++)
-                out[i] = number ? (double)(id + row + i) : object ? k + 1 : all;
+            for (int64_t i = 0; i < b->particle_count; i++)
+                out[i] = number ? (double)(id + row + i) : object ? k + 1 : b->density;
         }
         row += b->particle_count;
     }
@@ -175,6 +176,8 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     if (!(fields[k].owner & (TOBI_ALL | w->method->fields)))
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
+    if (set == TOBI_BODIES && !fields[k].bodies)
+        return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
     components = fields[k].components;
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))

@@ -29,6 +29,7 @@ typedef struct tobi_record_field {
     const char *name;                     /* of the world's list                     */
     int components;
     int type;                             /* tobi_vtk_type in files                  */
+    int bodies;                           /* 1: of their particles too               */
 } tobi_record_field;
 
 enum { TOBI_RECORD_FIELD_LIMIT = 32 };

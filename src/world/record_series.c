@@ -25,6 +25,7 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
     for (int k = 0; (known = tobi_world_field_name(k, &field->components, &unit)); k++) {
         if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
         field->name = known;
+        field->bodies = tobi_world_bodies_have(k);
         field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64 : is_number(known) ? TOBI_I32 : TOBI_F32;
         return TOBI_OK;
     }
@@ -82,7 +83,9 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 
 static bool is_taken(const tobi_run *run, int count, const char *name)
 {
-    if (strcmp(name, "fluid") == 0 || strcmp(name, "bodies") == 0 || strcmp(name, "grid") == 0) return true;
+    static const char *const ours[] = { "all", "fluid", "bodies", "grid" };
+    for (size_t k = 0; k < sizeof ours/sizeof *ours; k++)
+        if (strcmp(ours[k], name) == 0) return true;
     for (int k = 0; k < count; k++)
         if (strcmp(run->body_file[k], name) == 0) return true;
     return false;
@@ -135,16 +138,20 @@ static void *convert(const double *from, int64_t n, int type)
     return to;
 }
 
-/* Reads every chosen field; arrays[k].data is owned by the caller, also after a failure. */
-static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int64_t n,
-                               tobi_vtk_array *arrays, tobi_error *err)
+/* Reads every chosen field that the set has, *count of them; arrays[k].data is owned by the caller, also
+   after a failure. */
+static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, tobi_vtk_array *arrays,
+                               int *count, tobi_error *err)
 {
+    int64_t n = tobi_world_count(run->world, set);
     for (int k = 0; k < run->field_count; k++) {
         const tobi_record_field *f = &run->field[k];
+        if (set == TOBI_BODIES && !f->bodies) continue;
         TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
-        arrays[k] = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
-                                      convert(buffer, n * f->components, f->type) };
-        if (!arrays[k].data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+        tobi_vtk_array *array = &arrays[(*count)++];
+        *array = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
+                                   convert(buffer, n * f->components, f->type) };
+        if (!array->data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     }
     return TOBI_OK;
 }
@@ -152,6 +159,7 @@ static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, int6
 static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name, tobi_error *err)
 {
     int64_t n = tobi_world_count(run->world, set);
+    int count = 0;
     tobi_vtk_array arrays[TOBI_RECORD_FIELD_LIMIT] = { 0 };
     char *path =
         tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
@@ -161,11 +169,11 @@ static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name
     if (!path || !points || !buffer)
         status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
     if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, 3 * n, err);
-    if (status == TOBI_OK) status = read_arrays(run, set, buffer, n, arrays, err);
+    if (status == TOBI_OK) status = read_arrays(run, set, buffer, arrays, &count, err);
     if (status == TOBI_OK)
         status = tobi_vtu_write(path, (tobi_compression)run->output.compression, n,
-                                (const double (*)[3])points, arrays, run->field_count, err);
-    for (int k = 0; k < run->field_count; k++) free((void *)arrays[k].data);
+                                (const double (*)[3])points, arrays, count, err);
+    for (int k = 0; k < count; k++) free((void *)arrays[k].data);
     free(buffer);
     free(points);
     free(path);
@@ -295,38 +303,59 @@ static tobi_status write_obj(tobi_run *run, int body, tobi_error *err)
 
 /* --- lists ----------------------------------------------------------------------------- */
 
-/* NAME.pvd for files folder/NAME_000000.extension of the first `count` outputs. */
-static tobi_status write_list(const tobi_run *run, const char *name, const char *folder,
-                              const char *extension, int64_t count, tobi_error *err)
+/* What has a file in each output: folder/NAME_000000.extension. */
+typedef struct series { const char *name, *folder, *extension; } series;
+
+/* The series by number; 0 past the last. */
+static int series_at(const tobi_run *run, int number, series *out)
+{
+    const int bodies = tobi_world_body_count(run->world);
+    const series particles[] = { { "fluid", "fluid", "vtu" }, { "bodies", "bodies", "vtu" },
+                                 { "grid", "grid", "vtu" } };
+    const int has[] = { 1, bodies > 0, run->output.grid };
+    for (int k = 0; k < 3; k++)
+        if (has[k] && number-- == 0) return *out = particles[k], 1;
+    if (!run->output.surfaces || number >= bodies) return 0;
+    *out = (series){ run->body_file[number], "surfaces", "vtp" };
+    return 1;
+}
+
+/* NAME.pvd of the first `count` outputs: `parts` series from number `first` on, by time, then by series. */
+static tobi_status write_list(const tobi_run *run, const char *name, int first, int parts, int64_t count,
+                              tobi_error *err)
 {
     enum { ROOM = 128 };
-    tobi_pvd_entry *entries = malloc((size_t)count * sizeof *entries + 1);
-    char (*files)[ROOM] = malloc((size_t)count * sizeof *files + 1);
+    const size_t room = (size_t)count * (size_t)parts;
+    tobi_pvd_entry *entries = malloc(room * sizeof *entries + 1);
+    char (*files)[ROOM] = malloc(room * sizeof *files + 1);
     char *path = tobi_record_path(run->dir, "%s.pvd", name);
     tobi_status status = TOBI_OK;
     if (!entries || !files || !path)
         status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    for (int64_t k = 0; status == TOBI_OK && k < count; k++) {
-        snprintf(files[k], ROOM, "%s/%s_%06lld.%s", folder, name, (long long)k, extension);
-        entries[k] =
-            (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[k], .name = name };
+    for (int part = 0; status == TOBI_OK && part < parts; part++) {
+        series s;
+        series_at(run, first + part, &s);
+        for (int64_t k = 0; k < count; k++) {
+            const int64_t at = k * parts + part;
+            snprintf(files[at], ROOM, "%s/%s_%06lld.%s", s.folder, s.name, (long long)k, s.extension);
+            entries[at] = (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[at],
+                                            .name = s.name, .part = part };
+        }
     }
-    if (status == TOBI_OK) status = tobi_pvd_write(path, entries, count, err);
+    if (status == TOBI_OK) status = tobi_pvd_write(path, entries, (int64_t)room, err);
     free(path);
     free(files);
     free(entries);
     return status;
 }
 
+/* A list of each series, then one of all. */
 static tobi_status write_lists(const tobi_run *run, int64_t count, tobi_error *err)
 {
-    int bodies = tobi_world_body_count(run->world);
-    TOBI_TRY(write_list(run, "fluid", "fluid", "vtu", count, err));
-    if (bodies) TOBI_TRY(write_list(run, "bodies", "bodies", "vtu", count, err));
-    if (run->output.grid) TOBI_TRY(write_list(run, "grid", "grid", "vtu", count, err));
-    for (int b = 0; run->output.surfaces && b < bodies; b++)
-        TOBI_TRY(write_list(run, run->body_file[b], "surfaces", "vtp", count, err));
-    return TOBI_OK;
+    series s;
+    int parts = 0;
+    for (; series_at(run, parts, &s); parts++) TOBI_TRY(write_list(run, s.name, parts, 1, count, err));
+    return write_list(run, "all", 0, parts, count, err);
 }
 
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err)

@@ -70,6 +70,37 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
     return tobi_world_add_notes(w, "world", "time_step", text, err);
 }
 
+/* How far a body reaches into the domain from a side, m. */
+static double find_reach(const tobi_box *box, const tobi_body *b, int axis, int upper)
+{
+    double reach = 0;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
+        const double at = b->vertex[i][axis] + b->lower[axis] - box->lower[axis];
+        reach = fmax(reach, upper ? box->size[axis] - at : at);
+    }
+    return reach;
+}
+
+tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err)
+{
+    const tobi_simulation *s = &w->sim;
+    if (!(w->method->fields & TOBI_MPM) || s->solid_count == 0) return TOBI_OK;
+    const double cell = ((const tobi_mlsmpm_def *)w->method_def)->cell*s->smoothing.spacing;
+    for (int k = 0; k < s->body_count; k++)
+        for (int side = 0; side < 2*s->box.dimension; side++) {
+            const int axis = side/2, upper = side%2;
+            const double reach = find_reach(&s->box, &s->bodies[k], axis, upper);
+            char text[300];
+            if ((upper ? s->def.wall_max : s->def.wall_min)[axis] == TOBI_WALL_OPEN) continue;
+            if (reach <= 0 || reach >= 1.5*cell) continue;
+            snprintf(text, sizeof text, "lies within %.2g cells of the side at the %s %c, which carries a "
+                     "part or all of what solids press on it there; from 1.5 cells on the body carries all\n",
+                     reach/cell, upper ? "upper" : "lower", "xyz"[axis]);
+            TOBI_TRY(tobi_world_add_notes(w, "body", s->bodies[k].name, text, err));
+        }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_pieces(tobi_world *w, const tobi_pieces **pieces, tobi_error *err)
 {
     *pieces = &w->pieces.found;

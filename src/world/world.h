@@ -40,6 +40,8 @@ int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 /* The fastest point of a region at the start, m/s. */
 double tobi_world_start_speed(const tobi_world *w);
+/* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
+tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 
@@ -49,6 +51,8 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 /* The names of the fields that a method has, all if it is unknown; returns how many. */
 enum { TOBI_WORLD_FIELDS = 32 };
 int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
+/* Whether the particles of bodies have it too, by the number of tobi_world_field_name. */
+int tobi_world_bodies_have(int field);
 
 void tobi_world_free_grid(tobi_world *w);
 

@@ -15,6 +15,13 @@ same_results() {
     for part in fluid bodies surfaces; do diff -r "$1/$part" "$2/$part" || return 1; done
     for part in "$1"/*.pvd; do cmp "$part" "$2/$(basename "$part")" || return 1; done
 }
+# vtk WHAT FILE [KEY=VALUE...]: VTK reads it and finds that (without VTK, code 77, nothing is checked)
+vtk() {
+    local code=0 what=$1
+    shift
+    /usr/bin/python3 "$here/read_vtk.py" "$@" > out.txt || code=$?
+    check "$what: $(tail -1 out.txt)" test $code = 0 -o $code = 77
+}
 no_parts() { [ -z "$(find "$1" -name '*.part')" ]; }
 # A step takes milliseconds here, so tests that stop a run in the middle need a run of about a second.
 cat > make_scene.py <<'END'
@@ -119,7 +126,7 @@ rm -rf full cavity
 # --- a run ------------------------------------------------------------------------------------------
 expect 0 "" run tank.json --quiet
 a=out/tank
-for file in resolved.json history.csv bodies.csv fluid.pvd bodies.pvd box.pvd summary.json \
+for file in resolved.json history.csv bodies.csv fluid.pvd bodies.pvd box.pvd all.pvd summary.json \
             fluid/fluid_000000.vtu fluid/fluid_000010.vtu bodies/bodies_000010.vtu \
             surfaces/box_000010.vtp surfaces/box_000010.stl; do
     check "a run leaves $file" test -s $a/$file
@@ -251,6 +258,7 @@ for output in 000001 000005 000012; do
     sleep 0.0$((RANDOM % 10))
     kill -KILL $pid 2> /dev/null
     wait $pid 2> /dev/null
+    vtk "kill -9 after $output: all.pvd names whole files" killed_$output/all.pvd
     expect 0 "" resume killed_$output --quiet
     check "kill -9 after $output + resume = run" same_results whole killed_$output
     check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
@@ -278,7 +286,7 @@ check "resuming a finished run changes nothing" same_results whole halves
 
 # --- solids -----------------------------------------------------------------------------------------
 cat > solids.json <<'END'
-{ "method": "mlsmpm",   # a jelly and a ball of snow fall onto a steel plate that lies in sand
+{ "method": "mlsmpm",   # a jelly and a ball of snow fall onto a steel plate that lies on sand
   "domain": { "min": [0, 0, 0], "max": [0.6, 0.4, 0.4], "friction": 0.4,
               "walls": { "x": "separate", "y": "separate", "z": ["no-slip", "separate"] } },
   "spacing": 0.02, "end_time": 0.2,
@@ -289,6 +297,7 @@ cat > solids.json <<'END'
       "fill": [ { "sphere": { "centre": [0.42, 0.2, 0.25], "radius": 0.1 }, "velocity": [-1, 0, -2] } ] },
     { "name": "sand", "model": "sand", "mass": 30,
       "fill": [ { "box": { "min": [0, 0, 0], "max": [0.6, 0.4, 0.08] } } ] } ],
+  "bodies": [ { "name": "plate", "box": { "min": [0.1, 0.1, 0.08], "max": [0.5, 0.3, 0.11] } } ],
   "output": { "interval": 0.02, "checkpoint_interval": 0.04, "grid": true, "fields": ["usual", "stress", "J"] }
 }
 END
@@ -331,15 +340,16 @@ expect 0 "" resume cut_halves --quiet --until 0.2 --threads 2
 check "cut: run = run + resume" same_cut cut_whole cut_halves
 cut --out cut_often --set output.checkpoint_interval=0.003
 check "cut: checkpoints change nothing" same_cut cut_whole cut_often
-vtk=0
-/usr/bin/python3 "$here/read_vtk.py" solids/grid/grid_000010.vtu \
-    'arrays={"velocity": 3, "mass": 1, "stress": 6}' > out.txt || vtk=$?
-check "VTK reads the grid (77: no VTK; was $vtk)" test $vtk = 0 -o $vtk = 77
-vtk=0
-/usr/bin/python3 "$here/read_vtk.py" solids/fluid/fluid_000010.vtu 'arrays={"velocity": 3, "pressure": 1, '\
+vtk "VTK reads the grid" solids/grid/grid_000010.vtu 'arrays={"velocity": 3, "mass": 1, "stress": 6}'
+vtk "VTK reads the solids" solids/fluid/fluid_000010.vtu 'arrays={"velocity": 3, "pressure": 1, '\
 '"density": 1, "object_id": 1, "particle_id": 1, "von_mises": 1, "material": 1, "stress": 6, "J": 1}' \
-    > out.txt || vtk=$?
-check "VTK reads the solids (77: no VTK; was $vtk)" test $vtk = 0 -o $vtk = 77
+    'ranges={"object_id": [0, 0]}'
+vtk "VTK reads the bodies" solids/bodies/bodies_000010.vtu 'ranges={"object_id": [1, 1]}' \
+    'arrays={"velocity": 3, "density": 1, "particle_id": 1}' 'lacks=["pressure", "material", "stress", "J", "von_mises"]'
+vtk "one list of all" solids/all.pvd \
+    "times=$($python -c 'print([t*0.02 for t in range(11) for part in range(4)])')" \
+    "parts=$($python -c 'print(list(range(4))*11)')" \
+    "names=$($python -c 'import json; print(json.dumps(["fluid", "bodies", "grid", "plate"]*11))')"
 expect 1 "there is no field \"surface\"" check solids.json --set output.fields=surface
 expect 0 "" bench ball --spacing 0.04 --steps 3 --settle 1
 check "bench ball: ns" grep -q "ns per particle and step and core" out.txt

@@ -4,7 +4,7 @@
     read_vtk.py CHECKS.json        a list of {"file": ..., expected values}; paths relative to the JSON file
     read_vtk.py FILE [key=value]   one file, values as JSON:  read_vtk.py a.vtu points=1000 'arrays={"p":1}'
 
-Keys: points, cells (counts), cell_type (VTK number of every cell), arrays {name: components},
+Keys: points, cells (counts), cell_type (VTK number of every cell), arrays {name: components}, lacks [name],
 ranges {name: [min, max]} (all components together; "Points" is the coordinates), sums {name: sum of
 (row + 1) * value over all components}, connectivity (the sum over cells of cell number * point ids),
 bounds [x0, x1, y0, y1, z0, z1]; for a PVD: times, parts, names, and each data set is read too
@@ -90,6 +90,8 @@ def check_data(path, want):
     for name, components in want.get("arrays", {}).items():
         a = array_of(data, name)
         check(f"{path}: array {name}", a is not None and a.GetNumberOfComponents() == components)
+    for name in want.get("lacks", []):
+        check(f"{path}: no array {name}", array_of(data, name) is None)
     for name, (low, high) in want.get("ranges", {}).items():
         a = array_of(data, name)
         v = vtk_to_numpy(a) if a is not None and a.GetNumberOfTuples() else None

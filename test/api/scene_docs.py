@@ -2,7 +2,8 @@
 """The page and the schema of scenes: up to date, and of one mind with the reader.
 
 usage: scene_docs.py page PROGRAM | schema LIBRARY
-  page    docs/scene.md and docs/scene.schema.json are what the program prints; the page's example runs
+  page    docs/scene.md and docs/scene.schema.json are what the program prints; the page's example runs;
+          what the tutorials run is accepted
   schema  shipped scenes follow the schema; a damaged scene is refused by the schema exactly when the
           reader refuses it for a key, a type or a range (needs python3-jsonschema, or else answers 77)
 """
@@ -47,6 +48,22 @@ def write_example(folder):
     return folder / "scene.json"
 
 
+def check_tutorials(program):
+    """Their commands, with `check` for `run`; a folder that the reader copies is what it is copied from."""
+    failed = count = 0
+    for path in ("docs/tutorial.md", "docs/tutorial.ja.md"):
+        text = (ROOT / path).read_text().replace("\\\n", " ")
+        copies = dict((b, a) for a, b in re.findall(r"^cp -r (\S+) (\S+)$", text, re.M))
+        for scene, line in re.findall(r"^build/release/tobiuo run (\S+) (.*)$", text, re.M):
+            words = re.sub(r"--frames|--out \S+", "", line).split()
+            result = call(program, "check", str(ROOT / copies.get(scene, scene)), *words)
+            count += 1
+            if result.returncode != 0:
+                print(f"{path}: the command does not work:", scene, line, result.stderr)
+                failed += 1
+    return failed or count < 8
+
+
 def check_page(program):
     failed = 0
     for topic, path in PAGES.items():
@@ -67,7 +84,7 @@ def check_page(program):
             print("the page's command does not work:", line, result.stderr)
             failed += 1
     print(f"{len(PAGES)} files, 1 example, {len(commands)} commands; {failed} failed")
-    return failed or not commands
+    return failed or not commands or check_tutorials(program)
 
 
 class Library:

@@ -104,6 +104,7 @@ static void make(rig *g, int dim, int only, double strain, int threads, int isa,
         .own = transfer == TOBI_FLIP, .order = ORDER,
         .plane_count = 3,
         .gravity = {1, -2, dim == 3 ? -9.81f : 0}, .size = {1, 1, 1} };
+    for (int a = 0; a < 3; a++) v->fall[a] = (float)DT*v->gravity[a];
     v->plane[0] = (mpm_plane){.normal = {1, 0, 0}, .kind = TOBI_WALL_NO_SLIP, .velocity = {0, 0.4f, 0}};
     v->plane[1] = (mpm_plane){.normal = {0, 1, 0}, .kind = TOBI_WALL_SEPARATE, .friction = 0.4f};
     v->plane[2] = (mpm_plane){.normal = {-1, 0, 0}, .offset = -9*H, .kind = TOBI_WALL_SLIP};

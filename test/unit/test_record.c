@@ -219,14 +219,51 @@ static void test_old_results_are_safe(void **state)
 static void test_body_names_become_file_names(void **state)
 {
     (void)state;
-    const char *const names[] = { "fluid", "a/b c", "a_b_c" };
+    const char *const names[] = { "all", "a/b c", "a_b_c" };
     tobi_output_def output = make_output();
     tobi_world *world = make_world(3, names);
     tobi_run *run = create(world, &output, at("names"), 0);
-    assert_true(exists(at("names/fluid_2.pvd")) && exists(at("names/fluid.pvd")));
-    assert_true(exists(at("names/surfaces/fluid_2_000000.vtp")));
+    assert_true(exists(at("names/all_2.pvd")) && exists(at("names/all.pvd")));
+    assert_true(exists(at("names/surfaces/all_2_000000.vtp")));
     assert_true(exists(at("names/a_b_c.pvd")) && exists(at("names/a_b_c_2.pvd")));
     assert_int_equal(count_rows(at("names/bodies.csv")), 3);
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+}
+
+/* Particles of bodies have their own fields only, and one list has every file under the times of all. */
+static void test_bodies_and_the_list_of_all(void **state)
+{
+    (void)state;
+    const char *const names[] = { "cube" };
+    const char *const of_water[] = { "pressure", "vorticity" }, *const of_both[] = { "density", "object_id" };
+    tobi_output_def output = make_output();
+    output.fields = "usual,vorticity";
+    output.compression = TOBI_ASCII;
+    tobi_world *world = make_world(1, names);
+    tobi_run *run = create(world, &output, at("every"), 0);
+    step_until(run, 0.008);
+    size_t n;
+    char *water = read_file(at("every/fluid/fluid_000001.vtu"), &n), key[60];
+    char *cube = read_file(at("every/bodies/bodies_000001.vtu"), &n);
+    for (int k = 0; k < 2; k++) {
+        snprintf(key, sizeof key, "Name=\"%s\"", of_water[k]);
+        assert_true(strstr(water, key) && !strstr(cube, key));
+        snprintf(key, sizeof key, "Name=\"%s\"", of_both[k]);
+        assert_true(strstr(water, key) && strstr(cube, key));
+    }
+    free(water);
+    free(cube);
+    const char *const files[] = { "fluid/fluid", "bodies/bodies", "surfaces/cube" };
+    char *list = read_file(at("every/all.pvd"), &n), *next = list, line[200];
+    for (int k = 0; k < 9; k++) {
+        snprintf(line, sizeof line, "<DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"%s\" "
+                 "file=\"%s_%06d.", k/3*output.interval, k%3, strchr(files[k%3], '/') + 1, files[k%3], k/3);
+        next = strstr(next, line);
+        if (!next) fail_msg("all.pvd lacks, or not in order: %s", line);
+    }
+    assert_null(strstr(next + 1, "<DataSet"));
+    free(list);
     tobi_run_free(run);
     tobi_world_destroy(world);
 }
@@ -260,6 +297,7 @@ static void stop_and_go_on(int steps, bool write_more_first)
     assert_same_file(at("whole/history.csv"), at("stopped_%d/history.csv", steps));
     assert_same_file(at("whole/bodies.csv"), at("stopped_%d/bodies.csv", steps));
     assert_same_file(at("whole/fluid.pvd"), at("stopped_%d/fluid.pvd", steps));
+    assert_same_file(at("whole/all.pvd"), at("stopped_%d/all.pvd", steps));
     assert_same_file(at("whole/fluid/fluid_000005.vtu"),
                      at("stopped_%d/fluid/fluid_000005.vtu", steps));
     assert_same_file(at("whole/cube.pvd"), at("stopped_%d/cube.pvd", steps));
@@ -379,6 +417,7 @@ int main(void)
         cmocka_unit_test(test_outputs_are_multiples_of_the_interval),
         cmocka_unit_test(test_old_results_are_safe),
         cmocka_unit_test(test_body_names_become_file_names),
+        cmocka_unit_test(test_bodies_and_the_list_of_all),
         cmocka_unit_test(test_going_on_equals_not_stopping),
         cmocka_unit_test(test_checkpoints),
         cmocka_unit_test(test_summary),

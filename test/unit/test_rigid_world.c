@@ -369,6 +369,36 @@ static void test_deep_overlap(void **state)
     }
 }
 
+/* Plates a millimetre thick, one on the other and both at an angle, so that their boxes hold each other: on a
+   metre there are too many places to look at, which is said. */
+static void test_search_given_up(void **state)
+{
+    (void)state;
+    static const struct { double side, gap; int given_up; } cases[] = {
+        { 1, 1e-5, 1 }, { 1, 0.05, 0 }, { 0.03, 1e-5, 0 },
+    };
+    const double none[3] = { 0, 0, 0 }, thick = 1e-3, angle = 30*acos(-1)/180;
+    for (size_t k = 0; k < sizeof cases/sizeof *cases; k++) {
+        rig g;
+        rig_open(&g, 10, none);
+        for (int n = 0; n < 2; n++) {
+            const double up = n*(thick + cases[k].gap);
+            tobi_body_def def = rig_def();
+            def.rotation_axis[0] = 1;
+            def.rotation_axis[2] = 0;
+            def.rotation_angle = 30;
+            rig_box(&g, def, (double[3]){ cases[k].side, cases[k].side, thick },
+                    (double[3]){ 5, 5 - up*sin(angle), 5 + up*cos(angle) });
+        }
+        rig_start(&g);
+        print_message("%s", g.notes);
+        assert_int_equal(strstr(g.notes, "'b0' lies so close to body 'b1' over so large an area that not all "
+                                "places were searched for overlaps") != NULL, cases[k].given_up);
+        assert_null(strstr(g.notes, "overlaps body"));
+        rig_close(&g);
+    }
+}
+
 /* Balls are parted from wherever they are, but not out of a box that holds their middle. */
 static void test_balls_overlap(void **state)
 {
@@ -520,6 +550,7 @@ int main(void)
         cmocka_unit_test(test_restart), cmocka_unit_test(test_control_script), cmocka_unit_test(test_refused),
         cmocka_unit_test(test_scene_mistakes), cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_overlap), cmocka_unit_test(test_deep_overlap),
+        cmocka_unit_test(test_search_given_up),
         cmocka_unit_test(test_balls_overlap), cmocka_unit_test(test_plane),
         cmocka_unit_test(test_projectile), cmocka_unit_test(test_free_fall),
     };

@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
+#include <string.h>
 #include "tobiuo/tobiuo.h"
 
 /* A slab of 0.2 m on the floor of a narrow vessel and a box above it, from low to high. */
@@ -92,9 +93,66 @@ static void shortened_steps_tell_the_same_force(void **state)
     tobi_world_destroy(world);
 }
 
+/* The share of a block's weight that a plate on the floor carries, 2-D. *told: a note says it is too thin. */
+static double rest_on_plate(double cells, int *told)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def plate = tobi_default_body_def();
+    tobi_world *world;
+    tobi_body_info info;
+    tobi_error err = { 0 };
+    w.method = "mlsmpm";
+    w.dimension = 2;
+    w.spacing = 0.05;
+    w.gravity[1] = -9.81;
+    w.gravity[2] = 0;
+    w.domain_max[0] = 2;
+    w.domain_max[1] = 1.5;
+    w.wall_min[1] = TOBI_WALL_SEPARATE;
+    solid.youngs_modulus = 1e5;
+    solid.damping = 20;
+    plate.name = "plate";
+    plate.box_min[0] = 0.4;
+    plate.box_max[0] = 1.6;
+    plate.box_min[2] = -(plate.box_max[2] = 0.5);
+    plate.box_max[1] = cells*2*w.spacing;
+    fill.box_min[0] = 0.7;
+    fill.box_max[0] = 1.3;
+    fill.box_min[1] = plate.box_max[1];
+    fill.box_max[1] = plate.box_max[1] + 0.4;
+    assert_int_equal(tobi_world_create(&w, NULL, &world, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_solid(world, &solid, &fill, 1, NULL), TOBI_OK);
+    assert_int_equal(tobi_world_add_body(world, &plate, NULL), TOBI_OK);
+    if (tobi_world_advance(world, 1, NULL, &err)) fail_msg("%s", err.text);
+    tobi_world_body(world, 0, &info);
+    const char *note;
+    *told = 0;
+    for (int k = 0; (note = tobi_world_note(world, k)); k++)
+        *told |= strstr(note, "body 'plate': lies within") && strstr(note, "of the side at the lower y");
+    tobi_world_destroy(world);
+    return -info.pressure_force[1]/(1000*0.6*0.4*9.81);
+}
+
+/* The side's nodes reach through a thin plate: said, and all of the load from 1.5 cells on. */
+static void a_side_is_felt_through_a_thin_plate(void **state)
+{
+    (void)state;
+    const struct { double cells, share; int told; } cases[] = { { 0.5, 0, 1 }, { 1.5, 1, 0 }, { 2, 1, 0 } };
+    for (int k = 0; k < 3; k++) {
+        int told;
+        const double share = rest_on_plate(cases[k].cells, &told);
+        print_message("%g cells: the plate carries %.4f of the weight\n", cases[k].cells, share);
+        assert_true(fabs(share - cases[k].share) < 0.01);
+        assert_int_equal(told, cases[k].told);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_falling_box_is_caught),
-                                        cmocka_unit_test(shortened_steps_tell_the_same_force) };
+                                        cmocka_unit_test(shortened_steps_tell_the_same_force),
+                                        cmocka_unit_test(a_side_is_felt_through_a_thin_plate) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

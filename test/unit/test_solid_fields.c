@@ -406,6 +406,8 @@ static void calls_are_refused_in_words(void **state)
             "dfsph has no field 'von_mises'");
     REFUSED(tobi_world_read(world, TOBI_FLUID, "vorticity", number, 1, &err), TOBI_NOT_FOUND,
             "mlsmpm has no field 'vorticity'");
+    REFUSED(tobi_world_read(world, TOBI_BODIES, "stress", number, 1, &err), TOBI_NOT_FOUND,
+            "bodies have no field 'stress'");
     output.grid = 1;
     REFUSED(tobi_run_create(water, &output, "no_run", 0, NULL, &run, &err), TOBI_INVALID,
             "output.grid: dfsph has no grid");

@@ -168,9 +168,6 @@ static void test_particles(void **state)
         assert_true(fabs(t[0] - (x[1] - 0.5)/6) < 1e-5 && fabs(t[1] - (x[2] - 0.5)) < 1e-5);
     }
     assert_true(near > 50);
-    n = tobi_world_count(w, TOBI_BODIES);
-    uv = realloc(uv, (size_t)n*2*sizeof *uv);
-    assert_int_equal(tobi_world_read(w, TOBI_BODIES, "texture_coordinates", uv, n, &err), TOBI_OK);
     free(uv);
     free(rest);
     free(material);

@@ -1,0 +1,141 @@
+/* Keys that the scene's own method, or its other keys, leave unread: a number in a file that does nothing
+   misleads. One list serves the check, which reports those that are given, and resolved.json, which leaves
+   them out. The section of a method that is not chosen plainly waits for another run and is let be. */
+#include "scene/scene.h"
+#include "world/methods.h"
+#include "world/params.h"
+#include "world/world.h"
+#include <string.h>
+
+typedef enum reader {
+    SPH,             /* the methods of fluids                     */
+    SOLIDS,          /* the method of solids                      */
+    TOUCH,           /* methods that let bodies meet bodies or solids */
+    FORCES,          /* bodies that move by forces                */
+    BLADE,           /* bodies that cut                           */
+    FLIP, XPIC       /* ways to the grid and back                 */
+} reader;
+
+#define MEETING "is for bodies that meet each other or solids, which wcsph does not know"
+#define UNMOVED "is for free and controlled bodies, this one is prescribed"
+
+static const struct {
+    const tobi_param_table *table;
+    const char *key;
+    reader reader;
+    const char *why;
+} keys[] = {
+    { &tobi_world_table, "cfl", SPH, "is for dfsph and wcsph; mlsmpm has its own, mlsmpm.cfl" },
+    { &tobi_world_table, "domain.contact_angle", SPH, "is for liquids of dfsph and wcsph; mlsmpm has no "
+                                                      "surface tension" },
+    { &tobi_world_table, "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "
+                                                    "domain.walls and their viscosity" },
+    { &tobi_body_table, "friction", SPH, "is for liquids of dfsph and wcsph; solids of mlsmpm rub by its "
+                                         "friction_coefficient" },
+    { &tobi_body_table, "contact_angle", SPH, "is for liquids of dfsph and wcsph; mlsmpm has no surface "
+                                              "tension" },
+    { &tobi_body_table, "restitution", TOUCH, MEETING },
+    { &tobi_body_table, "friction_coefficient", TOUCH, MEETING },
+#define MOVED(key) { &tobi_body_table, key, FORCES, UNMOVED }
+    MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),
+    MOVED("locked"),
+#undef MOVED
+#define EDGE(key) { &tobi_body_table, key, BLADE, "is for a blade, which this body is not" }
+    EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
+#undef EDGE
+    { &tobi_mlsmpm_table, "flip", FLIP, "is for \"transfer\": \"flip\"" },
+    { &tobi_mlsmpm_table, "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
+};
+enum { KEYS = sizeof keys/sizeof *keys };
+
+static int is_there(const tobi_scene *scene, const tobi_body_def *body, reader who)
+{
+    const tobi_method *method = tobi_method_find(scene->world.method);
+    const tobi_mlsmpm_def *solids = scene->method == &tobi_mlsmpm_table ? scene->method_def : NULL;
+    switch (who) {
+    case SPH: return (method->fields & TOBI_SPH) != 0;
+    case SOLIDS: return (method->fields & TOBI_MPM) != 0;
+    case TOUCH: return method->free_bodies;
+    case FORCES: return body->dynamics != TOBI_PRESCRIBED;
+    case BLADE: return body->blade;
+    case FLIP: return !solids || solids->transfer == TOBI_FLIP;
+    default: return !solids || solids->transfer == TOBI_XPIC;
+    }
+}
+
+/* The object that a key with a dot belongs to, and the key there. */
+static void split(const char *key, char outer[32], const char **inner)
+{
+    const char *dot = strchr(key, '.');
+    snprintf(outer, 32, "%.*s", dot ? (int)(dot - key) : 0, key);
+    *inner = dot ? dot + 1 : key;
+}
+
+void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const tobi_body_def *body,
+                      json_t *object)
+{
+    char outer[32];
+    const char *inner;
+    for (int k = 0; k < KEYS; k++) {
+        if (keys[k].table != table || is_there(scene, body, keys[k].reader)) continue;
+        split(keys[k].key, outer, &inner);
+        json_object_del(outer[0] ? json_object_get(object, outer) : object, inner);
+    }
+}
+
+/* Where some value is wrong, a key may be for what the value was to say: one mistake after the other. */
+static void check(const tobi_scene *scene, tobi_source *source, const tobi_param_table *table,
+                  const tobi_place *place, const tobi_body_def *body, tobi_bound bound)
+{
+    char outer[32];
+    const char *inner;
+    for (int k = 0; bound.given == bound.good && k < KEYS; k++) {
+        if (keys[k].table != table || !tobi_bind_has(table, bound.given, keys[k].key) ||
+            is_there(scene, body, keys[k].reader)) continue;
+        split(keys[k].key, outer, &inner);
+        tobi_place middle = { place, outer, 0 }, key = { outer[0] ? &middle : place, inner, 0 };
+        tobi_source_mistake_at_key(source, &key, "%s", keys[k].why);
+    }
+}
+
+/* Whether some side of the domain lets solids separate from it. */
+static int has_separate_side(const tobi_world_def *w)
+{
+    int has = 0;
+    for (int a = 0; a < w->dimension; a++)
+        has |= w->wall_min[a] == TOBI_WALL_SEPARATE || w->wall_max[a] == TOBI_WALL_SEPARATE;
+    return has;
+}
+
+/* Friction where nothing separates. */
+static void check_friction(const tobi_scene *scene, tobi_source *source, const tobi_place *root)
+{
+    tobi_place domain = { root, "domain", 0 }, friction = { &domain, "friction", 0 };
+    tobi_place planes = { root, "planes", 0 };
+    if (scene->method != &tobi_mlsmpm_table) return;
+    if (scene->world.friction > 0 && !has_separate_side(&scene->world))
+        tobi_source_mistake_at_key(source, &friction, "is for \"separate\" sides, and no side in "
+                                   "domain.walls is one");
+    for (int i = 0; i < scene->plane_count && !tobi_report_full(source->report); i++) {
+        tobi_place entry = { &planes, NULL, (size_t)i }, rub = { &entry, "friction", 0 };
+        const tobi_plane_def *plane = &scene->planes[i];
+        if (plane->friction > 0 && plane->kind != TOBI_PLANE_SEPARATE)
+            tobi_source_mistake_at_key(source, &rub, "is for planes of the kind separate, this one is %s",
+                                       plane->kind == TOBI_PLANE_SLIP ? "slip" : "no-slip");
+    }
+}
+
+void tobi_unused_check(const tobi_scene *scene, tobi_source *source)
+{
+    tobi_place root = { 0 }, bodies = { &root, "bodies", 0 };
+    if (!scene->method) return;
+    tobi_place method = { &root, scene->method->name, 0 };
+    check(scene, source, &tobi_world_table, &root, NULL, scene->world_bound);
+    check(scene, source, scene->method, &method, NULL, scene->method_bound);
+    check_friction(scene, source, &root);
+    for (int i = 0; i < scene->body_count && !tobi_report_full(source->report); i++) {
+        tobi_place entry = { &bodies, NULL, (size_t)i };
+        const tobi_scene_body *body = &scene->bodies[i];
+        check(scene, source, &tobi_body_table, &entry, &body->def, body->bound);
+    }
+}
