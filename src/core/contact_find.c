@@ -56,6 +56,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
     c->shift_count = 0;
     c->drift = drift;
     c->near_next = 0;
+    for (int k = 0; k < c->near_room && c->marked; k++) c->near[k].body = NULL;
+    c->marked = 0;
     if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
     if (chunks > c->chunk_room) {
         free(c->run);
@@ -200,15 +202,20 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
 static int touch_blade(const pose *at, const double x[3], const double local[3], const tobi_columns *cuts,
                        tobi_contact *out, bounds *known)
 {
-    const double radius = at->step->radius, reach = at->step->reach;
+    const double radius = at->step->radius, reach = at->step->reach, near_edge = sqrt(2)*reach;
     tobi_blade_place place;
     double depth = radius;
     int side = find_side(at->body, cuts, &depth);
-    if (depth > 2*radius) return 0;
+    if (depth > 2*radius) {
+        known->clear = INFINITY;
+        return 0;
+    }
     int found = tobi_blade_locate(at->body, at->step->dimension, local, &place);
     int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
     if (!side && near) return 0;
     if (!touch(at, x, local, out, known)) return 0;
+    /* Away from the edge all that counts is how far the face is. */
+    known->clear = fmax(known->clear, fmin(out->gap + radius - depth, place.far - near_edge) + 2*radius);
     double normal[3];
     for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
     if (near && vec3_dot(normal, out->normal) < 0.2) {
