@@ -434,6 +434,7 @@ static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, con
     list_seams(c, g);
     TOBI_TRY(find_split(c, g, v, &s->exec, err));
     make_twins(g);
+    memset(c->hidden, 0, (size_t)s->particles.count*sizeof *c->hidden);
     return TOBI_OK;
 }
 

@@ -22,7 +22,7 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
-            const uint32_t hidden = calm_twin ? v->hidden[i + k] : 0;
+            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
             quad u, mass = quad_set(v->strain[i + k].c[2].w);
             if (hidden) mpm_load_split(tile, twin, s.first[k], hidden, g, dim);
             else mpm_load_rows(tile, s.first[k], g, dim);
@@ -82,7 +82,8 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
                 column[c][3] = 0;
                 if (c < dim) base = base - column[c]*quad_set(s.offset[c][k]);
             }
-            mpm_add_split(calm, calm_twin, &s, k, calm_twin ? v->hidden[i + k] : 0, base, column, dim);
+            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
+            mpm_add_split(calm, calm_twin, &s, k, hidden, base, column, dim);
         }
     }
 }

@@ -6,27 +6,37 @@
 #pragma once
 #include "mpm/split.k.h"
 
+/* nodes: a multiple of four. */
 TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
 {
-    for (int n = 0; n < nodes; n++) tile[n] = (tobi_float4){0, 0, 0, 0};
+    const row zero = row_set(0);
+    for (int n = 0; n < nodes; n += 4) row_store(tile + n, zero);
 }
 
-/* The rows of nodes of one cell, as long as its particles follow one another. */
+/* The rows of nodes of one cell, as long as its particles follow one another and the same nodes are hidden
+   from them. */
 typedef struct mpm_cell {
     row sum[9];
     int32_t first;                     /* node of the tile; -1 = none                             */
+    uint32_t hidden;                   /* see mpm_view                                            */
 } mpm_cell;
 
 TOBI_FN void mpm_clear_cell(mpm_cell *c)
 {
     for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
     c->first = -1;
+    c->hidden = 0;
 }
 
-/* Adds the cell's sums to the tile. */
-TOBI_FN void mpm_leave_cell(tobi_float4 *tile, mpm_cell *c, const int dim)
+/* Adds the cell's sums to the tile, those of hidden nodes to the twin's. */
+TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, const int dim)
 {
     if (c->first < 0) return;
+    if (twin && c->hidden) {
+        mpm_leave_split(tile, twin, c->sum, c->first, c->hidden, dim);
+        for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
+        return;
+    }
     for (int r = 0; r < (dim == 3 ? 9 : 3); r++) {
         tobi_float4 *at = tile + c->first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
         row_store(at, row_add(row_load(at), c->sum[r]));
@@ -35,15 +45,10 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *tile, mpm_cell *c, const int dim)
 }
 
 /* Adds particle k of eight to the sums. */
-TOBI_FN void mpm_add_particle(tobi_float4 *tile, mpm_cell *c, const mpm_stencil *s, const mpm_load *load,
-                              int k, const int dim)
+TOBI_FN void mpm_add_particle(mpm_cell *c, const mpm_stencil *s, const mpm_load *load, int k, const int dim)
 {
     const int last = dim - 1, rows = dim == 3 ? 3 : 1;
     const quad step = {0, 1, 2, 0};
-    if (s->first[k] != c->first) {
-        mpm_leave_cell(tile, c, dim);
-        c->first = s->first[k];
-    }
     const row w = row_spread(quad_load(&s->along[k]));
     const row d0 = row_mul(row_repeat(quad_load(&load->column[0][k])), w),
               d1 = dim == 3 ? row_mul(row_repeat(quad_load(&load->column[1][k])), w) : w;
@@ -100,26 +105,15 @@ TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, mpm_targets *t,
     t->side = t->twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
 }
 
-/* The same for particle i, k of eight, where there are other targets. */
-TOBI_FN void mpm_add_apart(const mpm_view *v, tobi_float4 *tile, const mpm_targets *t, mpm_cell *c,
-                           const mpm_stencil *s, const mpm_load *load, int64_t i, int k, const int dim)
-{
-    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)}, momentum = quad_load(&load->momentum[k]);
-    const uint32_t hidden = t->twin ? mpm_find_hidden(v, i, t->side, s->first[k], dim) : 0;
-    if (t->twin) v->hidden[i] = hidden;
-    if (t->calm && hidden) mpm_add_split(t->calm, t->calm_twin, s, k, hidden, momentum, zero, dim);
-    else if (t->calm) mpm_add_calm(t->calm, s, k, momentum, dim);
-    if (hidden) {
-        const quad columns[3] = {quad_load(&load->column[0][k]), quad_load(&load->column[1][k]),
-                                 dim == 3 ? quad_load(&load->column[2][k]) : zero[0]};
-        mpm_add_split(tile, t->twin, s, k, hidden, quad_load(&load->base[k]), columns, dim);
-    } else mpm_add_particle(tile, c, s, load, k, dim);
-}
+/* Where a block's particles add to: their tile alone, its twin too, all targets. */
+enum { MPM_PLAIN, MPM_SPLIT, MPM_CALM };
 
-/* plain: no other targets than the tile. Returns the kinetic energy that damping takes, J. */
+/* Returns the kinetic energy that damping takes, J. */
 TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
-                             const int dim, const int plain)
+                             const int dim, const int kind)
 {
+    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
+    tobi_float4 *const twin = kind == MPM_PLAIN ? NULL : t->twin;
     double taken = 0;
     mpm_cell cell;
     mpm_clear_cell(&cell);
@@ -129,11 +123,21 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
         taken += mpm_find_load(v, i, count, &s, dim, &load);
-        for (int k = 0; k < count; k++)
-            if (plain) mpm_add_particle(tile, &cell, &s, &load, k, dim);
-            else mpm_add_apart(v, tile, t, &cell, &s, &load, i + k, k, dim);
+        for (int k = 0; k < count; k++) {
+            const uint32_t hidden = twin ? mpm_find_hidden(v, i + k, t->side, s.first[k], dim) : 0;
+            if (s.first[k] != cell.first || (twin && hidden != cell.hidden)) {
+                mpm_leave_cell(tile, twin, &cell, dim);
+                cell.first = s.first[k];
+                cell.hidden = hidden;
+            }
+            mpm_add_particle(&cell, &s, &load, k, dim);
+            if (kind != MPM_CALM) continue;
+            const quad momentum = quad_load(&load.momentum[k]);
+            if (hidden) mpm_add_split(t->calm, t->calm_twin, &s, k, hidden, momentum, zero, dim);
+            else mpm_add_calm(t->calm, &s, k, momentum, dim);
+        }
     }
-    mpm_leave_cell(tile, &cell, dim);
+    mpm_leave_cell(tile, twin, &cell, dim);
     return taken;
 }
 
@@ -147,8 +151,9 @@ TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, c
     mpm_targets targets;
     mpm_clear(tile, nodes);
     mpm_find_targets(&v, number, &targets, dim);
-    if (!targets.calm && !targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 1);
-    else totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 0);
+    if (targets.calm) totals[0] += mpm_add_block(&v, b, tile, &targets, dim, MPM_CALM);
+    else if (targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, dim, MPM_SPLIT);
+    else totals[0] += mpm_add_block(&v, b, tile, &targets, dim, MPM_PLAIN);
     __builtin_memcpy(v.tile + number*nodes, tile, (size_t)nodes*sizeof *tile);
 }
 
@@ -389,27 +394,39 @@ TOBI_FN void mpm_end_motion(const mpm_motion *m, double dt, double *totals)
     }
 }
 
-/* The rows of nodes that a particle feels; hidden: those from the twin's tile. */
+/* The rows of nodes that a particle feels, kept for those after it that feel the same. */
+typedef struct mpm_felt {
+    row g[9];
+    int32_t first;
+    uint32_t hidden;                   /* from the twin's tile                                     */
+} mpm_felt;
+
 TOBI_FN void mpm_find_rows(const tobi_float4 *tile, const tobi_float4 *twin, int32_t first, uint32_t hidden,
-                           row *g, const int dim)
+                           mpm_felt *f, const int dim)
 {
-    if (hidden) mpm_load_split(tile, twin, first, hidden, g, dim);
-    else mpm_load_rows(tile, first, g, dim);
+    if (f->first == first && f->hidden == hidden) return;
+    f->first = first;
+    f->hidden = hidden;
+    if (hidden) mpm_load_split(tile, twin, first, hidden, f->g, dim);
+    else mpm_load_rows(tile, first, f->g, dim);
 }
 
 /* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. hidden: nodes across a cut.
-   plain: no FLIP, no cuts. The w of the velocity: the force of a contact in this step is kept for the next,
-   and only that long. The w of the gradient: where the particle is at home, for mpm_grid_restore. */
+   plain: no FLIP, no cuts. felt: of `now` and `old`, begun with first = -1. The w of the velocity: the force
+   of a contact in this step is kept for the next, and only that long. The w of the gradient: where the
+   particle is at home, for mpm_grid_restore. */
 TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil *s, int k, int64_t i,
-                      uint32_t hidden, quad home, mpm_motion *m, const int dim, const int plain)
+                      uint32_t hidden, quad home, mpm_motion *m, mpm_felt felt[2], const int dim,
+                      const int plain)
 {
     const float scale = (float)(4*v->inverse_cell);
     const quad factor = {1, scale, scale, scale};
     tobi_double3 *const position = v->position + i;
     tobi_float4 *const velocity = v->velocity + i;
     row g[9];
-    mpm_find_rows(t->now, t->now_twin, s->first[k], plain ? 0 : hidden, g, dim);
-    row all = mpm_interpolate(g, s, k, dim);
+    if (plain) mpm_load_rows(t->now, s->first[k], g, dim);
+    else mpm_find_rows(t->now, t->now_twin, s->first[k], hidden, &felt[0], dim);
+    row all = mpm_interpolate(plain ? g : felt[0].g, s, k, dim);
     quad u = row_first(all);
     all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
     row_store_others(v->affine + i, row_take_w(row_mul(all, row_spread(factor)), row_spread(home)));
@@ -419,8 +436,8 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     quad_store(&m->moved[k], u);
     if (!plain && v->old) {
         const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own);
-        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, g, dim);
-        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(g, s, k, dim)));
+        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, &felt[1], dim);
+        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(felt[1].g, s, k, dim)));
     }
     if (!plain) quad_store(&m->speed[k], u);
     u[3] = velocity->w > 0 ? -velocity->w : 0;
@@ -431,6 +448,8 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
                             const int dim, const int plain)
 {
     const quad home = {0, (float)b->corner[0], (float)b->corner[1], (float)b->corner[2]};
+    mpm_felt felt[2];
+    felt[0].first = felt[1].first = -1;
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -438,7 +457,8 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
         mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
             if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
-            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] : 0, home, m, dim, plain);
+            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] & MPM_HIDDEN : 0, home, m, felt, dim,
+                     plain);
         }
         mpm_note_speed(m, plain);
     }

@@ -12,7 +12,7 @@
 #include "core/particles.h"
 
 enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
-       MPM_SIDES = MPM_TILE_3D + 8 };
+       MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
 
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
@@ -73,7 +73,8 @@ typedef struct mpm_view {
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity                            */
     uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
-                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it  */
+                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it; above
+                                          MPM_HIDDEN for which base node that was found, 0 = never */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */

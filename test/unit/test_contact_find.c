@@ -69,7 +69,7 @@ static void move_all(tobi_world *world, double way, uint32_t *seed)
     tobi_quaternion_product(q, r->orientation, r->orientation);
 }
 
-/* Two particles in three remember the blade's cut: either side of it, up to one and a half spacings from it. */
+/* Two particles in three remember the blade's cut: either side of it, up to 1.5 spacings from it. */
 static void mark_some(tobi_simulation *s, uint32_t *seed)
 {
     s->bodies[0].rigid.cut = 1;
