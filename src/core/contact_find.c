@@ -197,9 +197,9 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
     return 1;
 }
 
-/* How far inside the stretch along the edge a place is where touch_blade goes by the cut and not by the mesh, m;
-   < 0: how far outside; nobody gets across by moving less. With several edges, or one that cuts where it goes,
-   0 if it may be inside. */
+/* How far inside the stretch along the edge a place is where touch_blade goes by the cut and not by the mesh,
+   m; < 0: how far outside; nobody gets across by moving less. With several edges, or one that cuts where it
+   goes, 0 if it may be inside. */
 static double find_inside(const pose *at, const double local[3], const tobi_blade_place *place)
 {
     const tobi_blade_edge *e = at->body->edge_now;
