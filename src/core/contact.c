@@ -6,9 +6,9 @@
 enum { MATRIX = 36, SUMS = TOBI_CONTACT_SUMS };
 _Static_assert(SUMS == MATRIX + 6, "a matrix and a vector of six");
 
-/* Of the impulse by the sum of its row, which asks too little of contacts that push unequally: with more, fewer
-   sweeps do. A common motion then goes back and forth by what is more than 1; a body that moves would go with
-   it. */
+/* Of the impulse by the sum of its row, which asks too little of contacts that push unequally: with more,
+   fewer sweeps do. A common motion then goes back and forth by what is more than 1; a body that moves would
+   go with it. */
 static const double PACE = 1.4;
 
 static int64_t count_parts(const tobi_contacts *c) { return (c->count + TOBI_BLOCK - 1)/TOBI_BLOCK; }

@@ -40,7 +40,7 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     quad sum[MPM_NODES_3D];
     (void)totals;
-    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3];
         const int64_t at = number*nodes + n;
@@ -92,7 +92,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     quad sum[MPM_NODES_3D];
-    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
         quad square = sum[n]*sum[n];
         if (sum[n][3] > 0) totals[0] += 0.5*(double)(square[0] + square[1] + square[2])/sum[n][3];
@@ -104,8 +104,8 @@ TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals,
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D];
-    mpm_sum_tiles(&v->patch[number], v->tile, pushed, dim);
-    mpm_sum_tiles(&v->patch[number], v->calm, calm, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->tile, pushed, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
         quad u = quad_load(&v->node[number*nodes + n]), square = u*u;
         if (!(u[3] > 0)) continue;

@@ -52,6 +52,11 @@ typedef struct mpm_patch {
     int32_t twin;                      /* index of the twin, -1 = none                            */
 } mpm_patch;
 
+/* Rows of a tile, bit 8 x + y, in which a node carries something: of the nodes 4 to 6, 0 to 3 and -1 along z,
+   which belong to the node blocks after, of and before the tile's; in 2-D, where they lie along nothing, of
+   all. The other rows of a tile are not written. */
+typedef struct mpm_reach { uint64_t rows[3]; } mpm_reach;
+
 /* A half space that material may not enter: n . x < offset. x from the domain's lower corner. */
 typedef struct mpm_plane {
     double normal[3], offset;          /* 1, m                                                    */
@@ -77,6 +82,7 @@ typedef struct mpm_view {
                                           MPM_HIDDEN for which base node that was found, 0 = never */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
+    mpm_reach *TOBI_RESTRICT reach;    /* [blocks] of their tiles                                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
     tobi_float4 *TOBI_RESTRICT old;    /* what of the particle's own is replaced, m/s; NULL: APIC  */
     tobi_float4 *TOBI_RESTRICT wave;   /* XPIC: the velocity filtered once more, m/s                */
