@@ -38,14 +38,15 @@ void tobi_blade_bring(tobi_body *b, int dimension)
 int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out)
 {
     const tobi_blade_edge *nearest = NULL;
-    double least = INFINITY;
+    double least = INFINITY, any = INFINITY;
     for (const tobi_blade_edge *e = b->edge_now; e < b->edge_now + b->edge_count; e++) {
         double from[3];
-        if (!e->cuts) continue;
         vec3_sub(from, x, e->from);
         if (dimension == 2) from[2] = 0;
         double way = dimension == 2 ? 0 : vec3_dot(from, e->along);
         double beyond = fmax(0, fmax(-way, way - e->length));
+        any = fmin(any, vec3_dot(from, from) - way*way + beyond*beyond);
+        if (!e->cuts) continue;
         double ahead = vec3_dot(from, e->ahead), aside = vec3_dot(from, e->normal);
         double far = beyond*beyond + ahead*ahead + aside*aside;
         if (far >= least) continue;
@@ -55,6 +56,7 @@ int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi
         out->ahead = ahead;
         out->aside = aside;
     }
+    out->far = sqrt(fmax(0, any));
     if (nearest) memcpy(out->normal, nearest->normal, sizeof out->normal);
     return nearest != NULL;
 }

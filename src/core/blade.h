@@ -7,6 +7,7 @@ typedef struct tobi_blade_place {
     double beyond;                     /* m, past an end of the edge; 0 beside it                 */
     double ahead;                      /* m, in the direction of cutting: > 0 is not cut yet      */
     double aside;                      /* m, along the cut's normal                               */
+    double far;                        /* m, from all edges, those that cut nothing now included  */
     double normal[3];                  /* of the cut, axes as asked                               */
 } tobi_blade_place;
 
@@ -20,7 +21,7 @@ typedef struct tobi_blade_piece {
 /* Before the others, whenever the body has moved or has other velocities: where its edges cut now. */
 void tobi_blade_bring(tobi_body *b, int dimension);
 /* x: m, from the body's centre, in the body's rest axes, as the normal found. 0 if the edge has no direction:
-   it is tagged and stands still. */
+   it is tagged and stands still; only `far` is found then. */
 int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);
 /* The same for x in world axes, from the domain's corner, and a normal in world axes. */
 int tobi_blade_locate_world(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);

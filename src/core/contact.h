@@ -48,6 +48,8 @@ typedef struct tobi_contacts {
     int near_next, near_room;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
     double drift;                    /* m, how far they may be out of it                         */
+    int marked;                      /* 1: particles remember other cuts than in the last step: the
+                                        caller's to set                                          */
     double *partial;                 /* sums of parts of the list                                */
     int64_t chunk_room;
     double velocity[3], spin[3];     /* m/s, rad/s: of the present body, after the impulses      */

@@ -56,6 +56,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
     c->shift_count = 0;
     c->drift = drift;
     c->near_next = 0;
+    for (int k = 0; k < c->near_room && c->marked; k++) c->near[k].body = NULL;
+    c->marked = 0;
     if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
     if (chunks > c->chunk_room) {
         free(c->run);
@@ -88,12 +90,14 @@ typedef struct pose {
     double box[2][3];                /* m, corners of the mesh: in rest axes about the centre, or of a body
                                         that bends in world axes */
     double reach;                    /* m, who is farther outside has no contact */
+    int plain;                       /* 1: a blade with one edge that has a direction of its own */
 } pose;
 
 static void find_pose(const tobi_body *b, const tobi_contact_step *step, pose *at)
 {
     at->body = b;
     at->step = step;
+    at->plain = b->blade && b->edge_count == 1 && vec3_dot(b->edge->ahead, b->edge->ahead) > 0;
     at->reach = (b->blade ? 2 : 1)*step->radius + step->margin;
     tobi_quaternion_matrix(b->rigid.orientation, at->matrix);
     tobi_bvh_box(b->deforms ? b->bvh : b->rest_bvh, at->box[0], at->box[1]);
@@ -193,6 +197,21 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
     return 1;
 }
 
+/* How far inside the stretch along the edge a place is where touch_blade goes by the cut and not by the mesh,
+   m; < 0: how far outside; nobody gets across by moving less. With several edges, or one that cuts where it
+   goes, 0 if it may be inside. */
+static double find_inside(const pose *at, const double local[3], const tobi_blade_place *place)
+{
+    const tobi_blade_edge *e = at->body->edge_now;
+    const double reach = at->step->reach;
+    if (!at->plain) return fmin(0, sqrt(2)*reach - place->far);
+    double from[3], inside = fmin(reach - fabs(place->aside), reach - fabs(place->ahead));
+    if (at->step->dimension == 2) return inside;
+    vec3_sub(from, local, e->from);
+    const double way = vec3_dot(from, e->along);
+    return fmin(inside, fmin(way, e->length - way));
+}
+
 /* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
    face of its own side, however thin the blade. What fills the place to the cut is the outermost layer of
    particles, wherever the cut lies between them: that keeps the faces a blade's thickness apart. 0: no
@@ -204,12 +223,21 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
     tobi_blade_place place;
     double depth = radius;
     int side = find_side(at->body, cuts, &depth);
-    if (depth > 2*radius) return 0;
+    if (depth > 2*radius) {
+        known->clear = INFINITY;
+        return 0;
+    }
     int found = tobi_blade_locate(at->body, at->step->dimension, local, &place);
     int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
-    if (!side && near) return 0;
+    const double inside = find_inside(at, local, &place);
+    if (!side && near) {
+        known->clear = fmax(known->clear, inside + 2*radius);
+        return 0;
+    }
     if (!touch(at, x, local, out, known)) return 0;
-    double normal[3];
+    double normal[3], free = out->gap + radius - depth;    /* what the gap below is at least */
+    if (side) free = fmin(free, at->plain ? fmax(side*place.aside - depth, -inside) : -inside);
+    known->clear = fmax(known->clear, free + 2*radius);
     for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
     if (near && vec3_dot(normal, out->normal) < 0.2) {
         if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */

@@ -20,6 +20,16 @@
 #  define TOBI_RESTRICT restrict
 #endif
 
+/* Number of the lowest bit that is set; x not 0. */
+TOBI_FN int tobi_lowest_bit(uint64_t x)
+{
+#if defined(__CUDA_ARCH__)
+    return __ffsll((long long)x) - 1;
+#else
+    return __builtin_ctzll(x);
+#endif
+}
+
 typedef struct tobi_float4 { float x, y, z, w; } tobi_float4;
 /* Fixed-point position over the domain (see docs/decisions/0002) and one float for the pass. */
 typedef struct tobi_record { int32_t x, y, z; float w; } tobi_record;

@@ -4,12 +4,10 @@
 #include "core/cuts.h"
 #include "exec/rows.h"
 #include "geom/vec3.h"
-#include "mpm/spline.h"
+#include "mpm/vote.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { VOTES = 2 };                    /* cuts that one node looks at                             */
 
 void mpm_cut_free(mpm_cut *c)
 {
@@ -18,7 +16,8 @@ void mpm_cut_free(mpm_cut *c)
     free(c->tile);
     free(c->face);
     free(c->hidden);
-    free(c->marked);
+    free(c->voter);
+    free(c->voters);
     free(c->crowd);
     free(c->rows);
     memset(c, 0, sizeof *c);
@@ -39,34 +38,22 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
     if (particles > c->particle_room) {
         free(c->face);
         free(c->hidden);
+        free(c->voter);
+        c->voter = malloc((size_t)particles*sizeof *c->voter);
         c->face = malloc((size_t)particles*sizeof *c->face);
         c->hidden = calloc((size_t)particles, sizeof *c->hidden);
-        c->particle_room = c->face && c->hidden ? particles : 0;
+        c->particle_room = c->face && c->hidden && c->voter ? particles : 0;
     }
     if (g->block_room > c->block_room) {
-        free(c->marked);
+        free(c->voters);
         free(c->crowd);
-        c->marked = malloc((size_t)g->block_room);
+        c->voters = malloc((size_t)g->block_room*sizeof *c->voters);
         c->crowd = malloc((size_t)g->block_room*sizeof *c->crowd);
-        c->block_room = c->marked && c->crowd ? g->block_room : 0;
+        c->block_room = c->voters && c->crowd ? g->block_room : 0;
     }
     if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
         return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the cuts of %lld particles", (long long)particles);
-}
-
-/* F of a particle now, what the last step left to do included. */
-static void find_deformation(const mpm_view *v, int64_t i, double f[3][3])
-{
-    const tobi_columns *e = &v->strain[i], *l = &v->affine[i];
-    double was[3][3];
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) was[r][c] = (&e->c[c].x)[r] + (r == c);
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) {
-            f[r][c] = was[r][c];
-            for (int k = 0; k < 3; k++) f[r][c] += v->strain_dt*(&l->c[k].x)[r]*was[k][c];
-        }
 }
 
 /* How far from a cut a particle may feel nodes beyond it, however the material turns, m; a quarter of a cell
@@ -122,7 +109,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
             continue;
         met = 1;
         if (at.ahead > 0) continue;
-        find_deformation(v, i, f);
+        mpm_vote_deformation(v, i, f);
         remember(&s->particles.cuts[i], f, mine, &at, least);
     }
     b->rigid.cut = met ? mine : 0;
@@ -133,161 +120,6 @@ void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number)
 {
     for (int k = 0; k < s->body_count; k++)
         if (s->bodies[k].blade) mark_blade(s, &s->bodies[k], v, number);
-}
-
-/* Inverse transpose of F times n. */
-static void turn_normal(const double f[3][3], const double n[3], double out[3])
-{
-    double c[3][3], det = 0;
-    for (int a = 0; a < 3; a++)
-        vec3_cross(c[a], f[(a + 1)%3], f[(a + 2)%3]);      /* rows of the cofactor matrix */
-    det = vec3_dot(f[0], c[0]);
-    for (int a = 0; a < 3; a++) out[a] = vec3_dot(c[a], n)/det;
-}
-
-/* Where the cuts a particle remembers are now. */
-static void find_faces(mpm_cut *c, const tobi_simulation *s, const mpm_view *v)
-{
-    #pragma omp parallel for num_threads(s->exec.threads)
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        const tobi_columns *cuts = &v->cuts[i];
-        double f[3][3];
-        if (cuts->c[0].w == 0) continue;
-        find_deformation(v, i, f);
-        for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
-            double rest[3] = {cuts->c[k].x, cuts->c[k].y, cuts->c[k].z}, now[3];
-            double far = vec3_length(rest);
-            vec3_normalize(rest);
-            turn_normal(f, rest, now);
-            double stretch = vec3_length(now);
-            vec3_normalize(now);
-            c->face[i].c[k] = (tobi_float4){(float)now[0], (float)now[1], (float)now[2],
-                                            (float)(far/stretch)};
-        }
-    }
-}
-
-/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight,
-   of places (m, from the corner of the block) with the weights themselves, and of normals with distances from
-   the cut (m). */
-typedef struct vote {
-    quad place[2], face[2];
-    float number, friction;
-} vote;
-
-/* mark: of the particle, with its side. */
-static void add_vote(vote votes[VOTES], float mark, float w, quad place, quad face, float friction)
-{
-    const int side = mark < 0;
-    int k = 0;
-    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
-    if (k == VOTES) return;
-    vote *to = &votes[k];
-    to->number = fabsf(mark);
-    to->friction += w*friction;
-    to->place[side] = to->place[side] + place*quad_set(w);
-    to->face[side] = to->face[side] + face*quad_set(w);
-}
-
-/* Adds the votes of one particle to the nodes of a block that feel it. */
-static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
-                          int64_t i, vote votes[][VOTES])
-{
-    const int dim = g->dimension;
-    const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
-    const double mass = v->strain[i].c[2].w;
-    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    int first[3] = {0, 0, -1};
-    for (int a = 0; a < dim; a++) {
-        first[a] = (int)mpm_spline(x[a]*v->inverse_cell, w[a]) - p->corner[a];
-        if (first[a] > 3 || first[a] < -2) return;
-    }
-    int low[3], high[3];
-    for (int a = 0; a < 3; a++) {
-        low[a] = first[a] < 0 ? -first[a] : 0;
-        high[a] = first[a] > 1 ? 3 - first[a] : 2;
-    }
-    if (dim == 2) low[2] = high[2] = 1;
-    const float friction = v->material[v->solid[i]].cut_friction;
-    quad place = {0, 0, 0, 1};
-    for (int a = 0; a < dim; a++) place[a] = (float)(x[a] - p->corner[a]*(double)v->cell);
-    for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
-        const quad face = quad_load(&c->face[i].c[k]);
-        const float mark = v->cuts[i].c[k].w;
-        for (int p0 = low[0]; p0 <= high[0]; p0++)
-            for (int p1 = low[1]; p1 <= high[1]; p1++) {
-                const int row = (first[0] + p0)*4 + first[1] + p1;
-                const double along = mass*w[0][p0]*w[1][p1];
-                for (int p2 = low[2]; p2 <= high[2]; p2++)
-                    add_vote(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark, (float)(along*w[2][p2]),
-                             place, face, friction);
-            }
-    }
-}
-
-/* The node's side and seam by its votes; returns whether it has two velocities. */
-static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
-{
-    const vote *best = NULL;
-    float most = 0;
-    for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
-        float least = fminf(votes[k].place[0][3], votes[k].place[1][3]);
-        if (least > most) { most = least; best = &votes[k]; }
-    }
-    *side = 0;
-    if (!best) return 0;
-    const double weight[2] = {best->place[0][3], best->place[1][3]};
-    const int own = weight[1] > weight[0], other = !own;
-    double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
-    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];
-    vec3_normalize(n);
-    for (int a = 0; a < 3; a++) {
-        gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
-        seam->normal[a] = (float)n[a];
-    }
-    seam->gap = (float)gap;
-    seam->fixed = 0;
-    seam->friction = (float)(best->friction/(weight[0] + weight[1]));
-    *side = own ? -best->number : best->number;
-    return 1;
-}
-
-/* Adds the votes of the particles that remember a cut to a block of nodes. */
-static void hold_vote(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
-                      vote votes[][VOTES])
-{
-    /* Most are farther than 1.5 cells from all its nodes. */
-    double low[3] = {-INFINITY, -INFINITY, -INFINITY}, high[3] = {INFINITY, INFINITY, INFINITY};
-    for (int a = 0; a < g->dimension; a++) {
-        low[a] = (p->corner[a] - 1.6)/v->inverse_cell;
-        high[a] = (p->corner[a] + 4.6)/v->inverse_cell;
-    }
-    for (int o = 0; o < 27; o++) {
-        if (p->cover[o] < 0 || !c->marked[p->cover[o]]) continue;
-        const mpm_block *b = &g->block[p->cover[o]];
-        for (int64_t i = b->begin; i < b->end; i++) {
-            const tobi_double3 *x = &v->position[i];
-            if (x->x < low[0] || x->x > high[0] || x->y < low[1] || x->y > high[1] || x->z < low[2] ||
-                x->z > high[2] || v->cuts[i].c[0].w == 0) continue;
-            vote_particle(c, g, v, p, i, votes);
-        }
-    }
-}
-
-static int find_sides(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
-{
-    const mpm_patch *p = &g->patch[patch];
-    const int nodes = nodes_of(g);
-    vote votes[MPM_NODES_3D][VOTES];
-    int any = 0, two = 0;
-    for (int o = 0; o < 27; o++) any |= p->cover[o] >= 0 && c->marked[p->cover[o]];
-    memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
-    if (!any || !v->cuts) return 0;
-    memset(votes, 0, sizeof votes);
-    hold_vote(c, g, v, p, votes);
-    for (int n = 0; n < nodes; n++)
-        two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
-    return two;
 }
 
 /* The sides of the nodes around a block, as its tile. */
@@ -341,7 +173,7 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
         b->twin = 0;
-        for (int o = 0; o < 27 && (v->apart || c->marked[k]); o++)
+        for (int o = 0; o < 27 && (v->apart || c->voters[k] > 0); o++)
             b->twin |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
         b->sides = b->twin ? (int32_t)c->tile_count++ : -1;
     }
@@ -419,10 +251,8 @@ static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid 
 {
     #pragma omp parallel for num_threads(s->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
-        c->marked[k] = 0;
+        mpm_vote_list(c, v, &g->block[k], k, g->dimension);
         if (v->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
-        for (int64_t i = g->block[k].begin; i < g->block[k].end && v->cuts; i++)
-            c->marked[k] |= v->cuts[i].c[0].w != 0;
     }
 }
 
@@ -434,6 +264,7 @@ static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, con
     list_seams(c, g);
     TOBI_TRY(find_split(c, g, v, &s->exec, err));
     make_twins(g);
+    memset(c->hidden, 0, (size_t)s->particles.count*sizeof *c->hidden);
     return TOBI_OK;
 }
 
@@ -441,11 +272,10 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
 {
     const int nodes = nodes_of(g);
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    if (v->cuts) find_faces(c, s, v);
     look_at_blocks(c, s, g, v);
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
-        g->patch[k].twin = find_sides(c, g, v, k);
+        g->patch[k].twin = mpm_vote_count(c, g, v, k);
         if (v->apart)
             g->patch[k].twin |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
                                               c->seam + k*nodes);

@@ -5,6 +5,12 @@
 #include "mpm/grid.h"
 #include "mpm/meet.h"
 
+/* A particle that remembers a cut. */
+typedef struct mpm_voter {
+    int32_t base[3], particle;         /* its lowest node                                         */
+    int32_t sides;                     /* of any cut: 1 +, 2 -, 3 both                            */
+} mpm_voter;
+
 typedef struct mpm_cut {
     float *side;                       /* [patches][nodes], see mpm_view.sides                    */
     mpm_seam *seam;                    /* [seam_count] of the nodes with a side, in their order   */
@@ -14,7 +20,8 @@ typedef struct mpm_cut {
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
     uint32_t *hidden;                  /* [particles], see mpm_view                               */
-    char *marked;                      /* [blocks] 1: a particle of it remembers a cut            */
+    mpm_voter *voter;                  /* [particles] those of a block from its first particle on  */
+    int32_t *voters;                   /* [blocks] how many                                       */
     mpm_crowd *crowd;                  /* [blocks], see mpm/meet.h                                */
     int64_t node_room, particle_room, block_room;
     double *rows;                      /* of a checkpoint, for the next step; NULL = none         */

@@ -22,7 +22,7 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
-            const uint32_t hidden = calm_twin ? v->hidden[i + k] : 0;
+            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
             quad u, mass = quad_set(v->strain[i + k].c[2].w);
             if (hidden) mpm_load_split(tile, twin, s.first[k], hidden, g, dim);
             else mpm_load_rows(tile, s.first[k], g, dim);
@@ -40,7 +40,7 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     quad sum[MPM_NODES_3D];
     (void)totals;
-    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3];
         const int64_t at = number*nodes + n;
@@ -82,7 +82,8 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
                 column[c][3] = 0;
                 if (c < dim) base = base - column[c]*quad_set(s.offset[c][k]);
             }
-            mpm_add_split(calm, calm_twin, &s, k, calm_twin ? v->hidden[i + k] : 0, base, column, dim);
+            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
+            mpm_add_split(calm, calm_twin, &s, k, hidden, base, column, dim);
         }
     }
 }
@@ -91,7 +92,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     quad sum[MPM_NODES_3D];
-    mpm_sum_tiles(&v->patch[number], v->calm, sum, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
         quad square = sum[n]*sum[n];
         if (sum[n][3] > 0) totals[0] += 0.5*(double)(square[0] + square[1] + square[2])/sum[n][3];
@@ -103,8 +104,8 @@ TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals,
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D];
-    mpm_sum_tiles(&v->patch[number], v->tile, pushed, dim);
-    mpm_sum_tiles(&v->patch[number], v->calm, calm, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->tile, pushed, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
         quad u = quad_load(&v->node[number*nodes + n]), square = u*u;
         if (!(u[3] > 0)) continue;

@@ -21,7 +21,7 @@ tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_e
 
 void mpm_grid_free(mpm_grid *g)
 {
-    free(g->block); free(g->patch); free(g->block_key); free(g->patch_key);
+    free(g->block); free(g->patch); free(g->reach); free(g->block_key); free(g->patch_key);
     free(g->node); free(g->old); free(g->wave); free(g->scratch); free(g->histogram); free(g->begin);
     memset(g, 0, sizeof *g);
 }
@@ -29,7 +29,8 @@ void mpm_grid_free(mpm_grid *g)
 int64_t mpm_grid_bytes(const mpm_grid *g)
 {
     int64_t node = (int64_t)sizeof(tobi_float4)*block_nodes(g)*g->layers;
-    return g->scratch_bytes + g->block_room*(int64_t)(sizeof(mpm_block) + sizeof(uint32_t)) +
+    int64_t block = (int64_t)(sizeof(mpm_block) + sizeof(mpm_reach) + sizeof(uint32_t));
+    return g->scratch_bytes + g->block_room*block +
            g->patch_room*(node + (int64_t)(sizeof(mpm_patch) + sizeof(uint32_t)));
 }
 
@@ -75,6 +76,7 @@ static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
     if (need > g->block_room) {
         g->block_room = need + need/8 + 8;
         if (!grow((void **)&g->block, g->block_room, sizeof *g->block) ||
+            !grow((void **)&g->reach, g->block_room, sizeof *g->reach) ||
             !grow((void **)&g->block_key, g->block_room, sizeof *g->block_key)) {
             g->block_room = 0;
             return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
@@ -302,6 +304,7 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
 {
     v->block = g->block;
     v->patch = g->patch;
+    v->reach = g->reach;
     v->node = g->node;
     v->old = g->layers > 1 ? g->old : NULL;
     v->wave = g->layers > 2 ? g->wave : NULL;

@@ -8,6 +8,7 @@ typedef struct mpm_grid {
     int dimension;
     mpm_block *block;
     mpm_patch *patch;
+    mpm_reach *reach;                  /* [block_room]                                            */
     uint32_t *block_key, *patch_key;   /* in rising order, for finding neighbours                */
     int64_t block_count, patch_count, block_room, patch_room;
     int64_t block_twins, patch_twins;  /* behind the others                                       */

@@ -206,6 +206,7 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_erro
 {
     if (stale || m->memory[MOVED] > MPM_MEET_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
+        s->contacts.marked = 1;
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
         m->memory[MOVED] = 0;
     } else if (m->cut.rows) {

@@ -24,14 +24,19 @@ TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, 
 }
 
 /* The nodes across a cut from a particle, and those whose second velocity is its solid's: see
-   mpm_view.hidden. */
+   mpm_view.hidden. Found anew when its base node is another, which since the last sort can only be one beside
+   it: parities tell them apart. */
 TOBI_FN uint32_t mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int32_t first, int dim)
 {
-    uint32_t hidden = 0;
+    const uint32_t place = (8u | (first >> 4 & 4) | (first >> 2 & 2) | (first & 1))*(MPM_HIDDEN + 1u);
+    uint32_t hidden = v->hidden[i];
+    if ((hidden & ~(uint32_t)MPM_HIDDEN) == place) return hidden & MPM_HIDDEN;
+    hidden = 0;
     if (v->apart)
         hidden = mpm_match_sides(side, first, mpm_side_of(v->material[v->solid[i]].group), dim);
     for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
         hidden |= mpm_match_sides(side, first, -v->cuts[i].c[k].w, dim);
+    v->hidden[i] = hidden | place;
     return hidden;
 }
 
@@ -64,6 +69,19 @@ TOBI_FN void mpm_add_split(tobi_float4 *tile, tobi_float4 *twin, const mpm_stenc
             y = row_add(y, turn);
         }
         x = row_add(x, d0);
+    }
+}
+
+/* Adds rows of sums to the nodes from `first` on: those hidden in the twin's tile. */
+TOBI_FN void mpm_leave_split(tobi_float4 *tile, tobi_float4 *twin, const row *sum, int32_t first,
+                             uint32_t hidden, const int dim)
+{
+    for (int r = 0; r < (dim == 3 ? 9 : 3); r++) {
+        const int32_t at = first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
+        const uint32_t bits = hidden >> 3*r & 7;
+        const row own = row_spread(mpm_take(~bits)), other = row_spread(mpm_take(bits));
+        if (bits != 7) row_store(tile + at, row_fma(sum[r], own, row_load(tile + at)));
+        if (bits != 0) row_store(twin + at, row_fma(sum[r], other, row_load(twin + at)));
     }
 }
 

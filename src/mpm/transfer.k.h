@@ -6,27 +6,50 @@
 #pragma once
 #include "mpm/split.k.h"
 
+/* nodes: a multiple of four. */
 TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
 {
-    for (int n = 0; n < nodes; n++) tile[n] = (tobi_float4){0, 0, 0, 0};
+    const row zero = row_set(0);
+    for (int n = 0; n < nodes; n += 4) row_store(tile + n, zero);
 }
 
-/* The rows of nodes of one cell, as long as its particles follow one another. */
+/* The rows of nodes of one cell, as long as its particles follow one another and the same nodes are hidden
+   from them. */
 typedef struct mpm_cell {
     row sum[9];
     int32_t first;                     /* node of the tile; -1 = none                             */
+    uint32_t hidden;                   /* see mpm_view                                            */
 } mpm_cell;
 
 TOBI_FN void mpm_clear_cell(mpm_cell *c)
 {
     for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
     c->first = -1;
+    c->hidden = 0;
 }
 
-/* Adds the cell's sums to the tile. */
-TOBI_FN void mpm_leave_cell(tobi_float4 *tile, mpm_cell *c, const int dim)
+/* Notes the rows of the 3 x 3 x 3 nodes from `first` on. */
+TOBI_FN void mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
+{
+    const uint64_t rows = UINT64_C(0x070707) << (dim == 3 ? first >> 3 : first);
+    const int z = dim == 3 ? first & 7 : 1;
+    reach->rows[0] |= z >= 3 ? rows : 0;
+    reach->rows[1] |= z <= 4 ? rows : 0;
+    reach->rows[2] |= z == 0 ? rows : 0;
+}
+
+/* Adds the cell's sums to the tile, those of hidden nodes to the twin's. reach: of both. */
+TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, mpm_reach reach[2],
+                            const int dim)
 {
     if (c->first < 0) return;
+    mpm_note_rows(&reach[0], c->first, dim);
+    if (twin && c->hidden) {
+        mpm_note_rows(&reach[1], c->first, dim);
+        mpm_leave_split(tile, twin, c->sum, c->first, c->hidden, dim);
+        for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
+        return;
+    }
     for (int r = 0; r < (dim == 3 ? 9 : 3); r++) {
         tobi_float4 *at = tile + c->first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
         row_store(at, row_add(row_load(at), c->sum[r]));
@@ -35,15 +58,10 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *tile, mpm_cell *c, const int dim)
 }
 
 /* Adds particle k of eight to the sums. */
-TOBI_FN void mpm_add_particle(tobi_float4 *tile, mpm_cell *c, const mpm_stencil *s, const mpm_load *load,
-                              int k, const int dim)
+TOBI_FN void mpm_add_particle(mpm_cell *c, const mpm_stencil *s, const mpm_load *load, int k, const int dim)
 {
     const int last = dim - 1, rows = dim == 3 ? 3 : 1;
     const quad step = {0, 1, 2, 0};
-    if (s->first[k] != c->first) {
-        mpm_leave_cell(tile, c, dim);
-        c->first = s->first[k];
-    }
     const row w = row_spread(quad_load(&s->along[k]));
     const row d0 = row_mul(row_repeat(quad_load(&load->column[0][k])), w),
               d1 = dim == 3 ? row_mul(row_repeat(quad_load(&load->column[1][k])), w) : w;
@@ -100,26 +118,15 @@ TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, mpm_targets *t,
     t->side = t->twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
 }
 
-/* The same for particle i, k of eight, where there are other targets. */
-TOBI_FN void mpm_add_apart(const mpm_view *v, tobi_float4 *tile, const mpm_targets *t, mpm_cell *c,
-                           const mpm_stencil *s, const mpm_load *load, int64_t i, int k, const int dim)
-{
-    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)}, momentum = quad_load(&load->momentum[k]);
-    const uint32_t hidden = t->twin ? mpm_find_hidden(v, i, t->side, s->first[k], dim) : 0;
-    if (t->twin) v->hidden[i] = hidden;
-    if (t->calm && hidden) mpm_add_split(t->calm, t->calm_twin, s, k, hidden, momentum, zero, dim);
-    else if (t->calm) mpm_add_calm(t->calm, s, k, momentum, dim);
-    if (hidden) {
-        const quad columns[3] = {quad_load(&load->column[0][k]), quad_load(&load->column[1][k]),
-                                 dim == 3 ? quad_load(&load->column[2][k]) : zero[0]};
-        mpm_add_split(tile, t->twin, s, k, hidden, quad_load(&load->base[k]), columns, dim);
-    } else mpm_add_particle(tile, c, s, load, k, dim);
-}
+/* Where a block's particles add to: their tile alone, its twin too, all targets. */
+enum { MPM_PLAIN, MPM_SPLIT, MPM_CALM };
 
-/* plain: no other targets than the tile. Returns the kinetic energy that damping takes, J. */
+/* Returns the kinetic energy that damping takes, J. */
 TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
-                             const int dim, const int plain)
+                             mpm_reach reach[2], const int dim, const int kind)
 {
+    const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
+    tobi_float4 *const twin = kind == MPM_PLAIN ? NULL : t->twin;
     double taken = 0;
     mpm_cell cell;
     mpm_clear_cell(&cell);
@@ -129,12 +136,32 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
         taken += mpm_find_load(v, i, count, &s, dim, &load);
-        for (int k = 0; k < count; k++)
-            if (plain) mpm_add_particle(tile, &cell, &s, &load, k, dim);
-            else mpm_add_apart(v, tile, t, &cell, &s, &load, i + k, k, dim);
+        for (int k = 0; k < count; k++) {
+            const uint32_t hidden = twin ? mpm_find_hidden(v, i + k, t->side, s.first[k], dim) : 0;
+            if (s.first[k] != cell.first || (twin && hidden != cell.hidden)) {
+                mpm_leave_cell(tile, twin, &cell, reach, dim);
+                cell.first = s.first[k];
+                cell.hidden = hidden;
+            }
+            mpm_add_particle(&cell, &s, &load, k, dim);
+            if (kind != MPM_CALM) continue;
+            const quad momentum = quad_load(&load.momentum[k]);
+            if (hidden) mpm_add_split(t->calm, t->calm_twin, &s, k, hidden, momentum, zero, dim);
+            else mpm_add_calm(t->calm, &s, k, momentum, dim);
+        }
     }
-    mpm_leave_cell(tile, &cell, dim);
+    mpm_leave_cell(tile, twin, &cell, reach, dim);
     return taken;
+}
+
+/* Copies the rows of a tile that something reaches. */
+TOBI_FN void mpm_copy_rows(tobi_float4 *to, const tobi_float4 *tile, const mpm_reach *reach, const int dim)
+{
+    for (uint64_t rows = reach->rows[0] | reach->rows[1] | reach->rows[2]; rows; rows &= rows - 1) {
+        const int at = tobi_lowest_bit(rows)*(dim == 3 ? 8 : 1);
+        if (dim == 2) to[at] = tile[at];
+        for (int n = 0; n < 8 && dim == 3; n += 4) row_store(to + at + n, row_load(tile + at + n));
+    }
 }
 
 /* Momentum and mass of a block's particles into its tile. totals: 0 energy taken by damping, J. */
@@ -145,11 +172,15 @@ TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, c
     const int nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
     tobi_float4 tile[MPM_TILE_3D + 8];
     mpm_targets targets;
+    mpm_reach reach[2] = {{{0, 0, 0}}, {{0, 0, 0}}};       /* of the tile and its twin */
     mpm_clear(tile, nodes);
     mpm_find_targets(&v, number, &targets, dim);
-    if (!targets.calm && !targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 1);
-    else totals[0] += mpm_add_block(&v, b, tile, &targets, dim, 0);
-    __builtin_memcpy(v.tile + number*nodes, tile, (size_t)nodes*sizeof *tile);
+    if (targets.calm) totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_CALM);
+    else if (targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_SPLIT);
+    else totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_PLAIN);
+    v.reach[number] = reach[0];
+    if (b->twin >= 0) v.reach[b->twin] = reach[1];
+    mpm_copy_rows(v.tile + number*nodes, tile, &reach[0], dim);
 }
 
 /* Coulomb contact of a node with a plane, eq. (13); v becomes the velocity after. */
@@ -176,42 +207,36 @@ TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
     for (int a = 0; a < 3; a++) v[a] = p->velocity[a] + r[a]*left;
 }
 
-/* Node `first` of a tile; number -1 = no such tile, any address. */
-TOBI_FN const tobi_float4 *mpm_tile_at(const tobi_float4 *tiles, int32_t number, int first)
+/* Rows x 8 + y of a tile that lie in the node blocks before, beside and behind its own along x, and y. */
+TOBI_FN uint64_t mpm_rows_at(int x, int y)
 {
-    return tiles + (int64_t)(number < 0 ? 0 : number)*(MPM_TILE_3D + 8) + first;
-}
-
-/* Adds row `at` of three tiles that follow along z, those that are there, to four nodes. */
-TOBI_FN void mpm_add_row(const tobi_float4 *tiles, const int32_t cover[3], int at, quad to[4])
-{
-    const tobi_float4 *const before = mpm_tile_at(tiles, cover[0], at + 5),
-                      *const own = mpm_tile_at(tiles, cover[1], at + 1),
-                      *const after = mpm_tile_at(tiles, cover[2], at);
-    if (cover[0] >= 0)
-        for (int n = 0; n < 3; n++) to[n] = to[n] + quad_load(&before[n]);
-    if (cover[1] >= 0)
-        for (int n = 0; n < 4; n++) to[n] = to[n] + quad_load(&own[n]);
-    if (cover[2] >= 0) to[3] = to[3] + quad_load(after);
+    const uint64_t along[3] = {UINT64_C(0x0101010000000000), UINT64_C(0x0000000101010100), UINT64_C(1)},
+                   across[3] = {UINT64_C(0xe0), UINT64_C(0x1e), UINT64_C(0x01)};
+    return along[x]*across[y];
 }
 
 /* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
-   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. */
-TOBI_FN void mpm_sum_tiles(const mpm_patch *g, const tobi_float4 *tiles, quad *sum, const int dim)
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. 0: there is
+   nothing. */
+TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
+                          const int dim)
 {
-    for (int x = 0; x < 4; x++)
-        for (int y = 0; y < 4; y++) {
-            quad *to = sum + (dim == 3 ? 16*x + 4*y : 4*x + y);
-            for (int n = 0; n < (dim == 3 ? 4 : 1); n++) to[n] = quad_set(0);
-            for (int pair = 0; pair < 4; pair++) {         /* of tiles that reach this row */
-                const int ox = (x == 3) + (pair >> 1), oy = (y == 3) + (pair & 1);
-                const int32_t *cover = g->cover + 9*ox + 3*oy;
-                const int row = 8*(x + 5 - 4*ox) + (y + 5 - 4*oy);
-                if (dim == 3) mpm_add_row(tiles, cover, 8*row, to);
-                else if (cover[1] >= 0)
-                    *to = *to + quad_load(&tiles[(int64_t)cover[1]*(MPM_TILE_2D + 8) + row]);
-            }
+    int any = 0;
+    for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) sum[n] = quad_set(0);
+    for (int o = 0; o < 27; o++) {
+        if (g->cover[o] < 0) continue;
+        const int x = o/9, y = o/3%3, z = o%3, count = dim == 2 || z == 2 ? 1 : 3 + z;
+        const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*((dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8);
+        uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y);
+        any |= rows != 0;
+        for (; rows; rows &= rows - 1) {
+            const int row = tobi_lowest_bit(rows), at = 4*((row >> 3) + 4*x - 5) + (row & 7) + 4*y - 5;
+            const tobi_float4 *from = dim == 3 ? tile + 8*row + (z == 0 ? 5 : z == 1 ? 1 : 0) : tile + row;
+            quad *to = dim == 3 ? sum + 4*at + (z == 2 ? 3 : 0) : sum + at;
+            for (int n = 0; n < count; n++) to[n] = to[n] + quad_load(from + n);
         }
+    }
+    return any;
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
@@ -236,8 +261,13 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
-    mpm_sum_tiles(g, v->tile, sum, dim);
-    if (v->old) mpm_sum_tiles(g, v->calm, calm, dim);
+    if (!mpm_sum_tiles(v, g, v->tile, sum, dim)) {
+        mpm_clear(node, nodes);
+        if (v->old) mpm_clear(v->old + number*nodes, nodes);
+        if (v->wave) mpm_clear(v->wave + number*nodes, nodes);
+        return;
+    }
+    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
         quad u = sum[n]/quad_set(divisor);
@@ -389,27 +419,46 @@ TOBI_FN void mpm_end_motion(const mpm_motion *m, double dt, double *totals)
     }
 }
 
-/* The rows of nodes that a particle feels; hidden: those from the twin's tile. */
-TOBI_FN void mpm_find_rows(const tobi_float4 *tile, const tobi_float4 *twin, int32_t first, uint32_t hidden,
-                           row *g, const int dim)
+/* The rows of nodes that a particle feels, kept for those after it that feel the same. */
+typedef struct mpm_felt {
+    row g[9];
+    int32_t first;
+    uint32_t hidden;                   /* from the twin's tile                                     */
+} mpm_felt;
+
+TOBI_FN void mpm_begin_felt(mpm_felt *f)
 {
-    if (hidden) mpm_load_split(tile, twin, first, hidden, g, dim);
-    else mpm_load_rows(tile, first, g, dim);
+    for (int r = 0; r < 9; r++) f->g[r] = row_set(0);
+    f->first = -1;
+    f->hidden = 0;
+}
+
+TOBI_FN void mpm_find_rows(const tobi_float4 *tile, const tobi_float4 *twin, int32_t first, uint32_t hidden,
+                           mpm_felt *f, const int dim)
+{
+    if (f->first == first && f->hidden == hidden) return;
+    f->first = first;
+    f->hidden = hidden;
+    if (hidden) mpm_load_split(tile, twin, first, hidden, f->g, dim);
+    else mpm_load_rows(tile, first, f->g, dim);
 }
 
 /* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. hidden: nodes across a cut.
-   plain: no FLIP, no cuts. The w of the velocity: the force of a contact in this step is kept for the next,
-   and only that long. The w of the gradient: where the particle is at home, for mpm_grid_restore. */
+   plain: no FLIP, no cuts. felt: of `now` and `old`. The w of the velocity: the force
+   of a contact in this step is kept for the next, and only that long. The w of the gradient: where the
+   particle is at home, for mpm_grid_restore. */
 TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil *s, int k, int64_t i,
-                      uint32_t hidden, quad home, mpm_motion *m, const int dim, const int plain)
+                      uint32_t hidden, quad home, mpm_motion *m, mpm_felt felt[2], const int dim,
+                      const int plain)
 {
     const float scale = (float)(4*v->inverse_cell);
     const quad factor = {1, scale, scale, scale};
     tobi_double3 *const position = v->position + i;
     tobi_float4 *const velocity = v->velocity + i;
     row g[9];
-    mpm_find_rows(t->now, t->now_twin, s->first[k], plain ? 0 : hidden, g, dim);
-    row all = mpm_interpolate(g, s, k, dim);
+    if (plain) mpm_load_rows(t->now, s->first[k], g, dim);
+    else mpm_find_rows(t->now, t->now_twin, s->first[k], hidden, &felt[0], dim);
+    row all = mpm_interpolate(plain ? g : felt[0].g, s, k, dim);
     quad u = row_first(all);
     all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
     row_store_others(v->affine + i, row_take_w(row_mul(all, row_spread(factor)), row_spread(home)));
@@ -419,8 +468,8 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     quad_store(&m->moved[k], u);
     if (!plain && v->old) {
         const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own);
-        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, g, dim);
-        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(g, s, k, dim)));
+        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, &felt[1], dim);
+        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(felt[1].g, s, k, dim)));
     }
     if (!plain) quad_store(&m->speed[k], u);
     u[3] = velocity->w > 0 ? -velocity->w : 0;
@@ -431,6 +480,8 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
                             const int dim, const int plain)
 {
     const quad home = {0, (float)b->corner[0], (float)b->corner[1], (float)b->corner[2]};
+    mpm_felt felt[2];
+    for (int n = 0; n < 2; n++) mpm_begin_felt(&felt[n]);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -438,7 +489,8 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
         mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
             if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
-            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] : 0, home, m, dim, plain);
+            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] & MPM_HIDDEN : 0, home, m, felt, dim,
+                     plain);
         }
         mpm_note_speed(m, plain);
     }

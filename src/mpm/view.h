@@ -12,7 +12,7 @@
 #include "core/particles.h"
 
 enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
-       MPM_SIDES = MPM_TILE_3D + 8 };
+       MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
 
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
@@ -53,6 +53,11 @@ typedef struct mpm_patch {
     int32_t twin;                      /* index of the twin, -1 = none                            */
 } mpm_patch;
 
+/* Rows of a tile, bit 8 x + y, in which a node carries something: of the nodes 4 to 6, 0 to 3 and -1 along z,
+   which belong to the node blocks after, of and before the tile's; in 2-D, where they lie along nothing, of
+   all. The other rows of a tile are not written. */
+typedef struct mpm_reach { uint64_t rows[3]; } mpm_reach;
+
 /* A half space that material may not enter: n . x < offset. x from the domain's lower corner. */
 typedef struct mpm_plane {
     double normal[3], offset;          /* 1, m                                                    */
@@ -74,9 +79,11 @@ typedef struct mpm_view {
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity                            */
     uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
-                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it  */
+                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it; above
+                                          MPM_HIDDEN for which base node that was found, 0 = never */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
+    mpm_reach *TOBI_RESTRICT reach;    /* [blocks] of their tiles                                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
     tobi_float4 *TOBI_RESTRICT old;    /* what of the particle's own is replaced, m/s; NULL: APIC  */
     tobi_float4 *TOBI_RESTRICT wave;   /* XPIC: the velocity filtered once more, m/s                */

@@ -1,0 +1,235 @@
+/* Most voters stand where all are of one side. So the sides are looked at first, by base node, and votes
+   counted for those nodes alone that see both: the others have one velocity whatever the count. */
+#include "mpm/vote.h"
+#include "core/cuts.h"
+#include "exec/rows.h"
+#include "geom/vec3.h"
+#include "mpm/spline.h"
+#include <math.h>
+#include <string.h>
+
+enum { VOTES = 2 };                    /* cuts that one node looks at                             */
+enum { SPAN = 6, CELLS = SPAN*SPAN*SPAN };     /* base nodes whose particles reach a patch         */
+
+void mpm_vote_deformation(const mpm_view *v, int64_t i, double f[3][3])
+{
+    const tobi_columns *e = &v->strain[i], *l = &v->affine[i];
+    double was[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) was[r][c] = (&e->c[c].x)[r] + (r == c);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            f[r][c] = was[r][c];
+            for (int k = 0; k < 3; k++) f[r][c] += v->strain_dt*(&l->c[k].x)[r]*was[k][c];
+        }
+}
+
+/* Inverse transpose of F times n. */
+static void turn_normal(const double f[3][3], const double n[3], double out[3])
+{
+    double c[3][3], det = 0;
+    for (int a = 0; a < 3; a++)
+        vec3_cross(c[a], f[(a + 1)%3], f[(a + 2)%3]);      /* rows of the cofactor matrix */
+    det = vec3_dot(f[0], c[0]);
+    for (int a = 0; a < 3; a++) out[a] = vec3_dot(c[a], n)/det;
+}
+
+/* Where the cuts a particle remembers are now. */
+static void find_faces(mpm_cut *c, const mpm_view *v, int64_t i)
+{
+    const tobi_columns *cuts = &v->cuts[i];
+    double f[3][3];
+    mpm_vote_deformation(v, i, f);
+    for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
+        double rest[3] = {cuts->c[k].x, cuts->c[k].y, cuts->c[k].z}, now[3];
+        double far = vec3_length(rest);
+        vec3_normalize(rest);
+        turn_normal(f, rest, now);
+        double stretch = vec3_length(now);
+        vec3_normalize(now);
+        c->face[i].c[k] = (tobi_float4){(float)now[0], (float)now[1], (float)now[2], (float)(far/stretch)};
+    }
+}
+
+void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension)
+{
+    mpm_voter *list = c->voter + b->begin;
+    int32_t count = 0;
+    for (int64_t i = b->begin; i < b->end && v->cuts; i++) {
+        if (v->cuts[i].c[0].w == 0) continue;
+        mpm_voter *one = &list[count++];
+        double unused[3];
+        *one = (mpm_voter){ .base = {0, 0, -1}, .particle = (int32_t)i };
+        for (int a = 0; a < dimension; a++)
+            one->base[a] = (int32_t)mpm_spline((&v->position[i].x)[a]*v->inverse_cell, unused);
+        for (int k = 0; k < TOBI_CUTS_EACH; k++)
+            one->sides |= (v->cuts[i].c[k].w > 0 ? 1 : 0) | (v->cuts[i].c[k].w < 0 ? 2 : 0);
+        find_faces(c, v, i);
+    }
+    c->voters[number] = count;
+}
+
+/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight,
+   of places (m, from the corner of the block) with the weights themselves, and of normals with distances from
+   the cut (m). */
+typedef struct vote {
+    quad place[2], face[2];
+    float number, friction;
+} vote;
+
+/* mark: of the particle, with its side. */
+static void add_vote(vote votes[VOTES], float mark, float w, quad place, quad face, float friction)
+{
+    const int side = mark < 0;
+    int k = 0;
+    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
+    if (k == VOTES) return;
+    vote *to = &votes[k];
+    to->number = fabsf(mark);
+    to->friction += w*friction;
+    to->place[side] = to->place[side] + place*quad_set(w);
+    to->face[side] = to->face[side] + face*quad_set(w);
+}
+
+/* The node's side and seam by its votes; returns whether it has two velocities. */
+static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
+{
+    const vote *best = NULL;
+    float most = 0;
+    for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
+        float least = fminf(votes[k].place[0][3], votes[k].place[1][3]);
+        if (least > most) { most = least; best = &votes[k]; }
+    }
+    *side = 0;
+    if (!best) return 0;
+    const double weight[2] = {best->place[0][3], best->place[1][3]};
+    const int own = weight[1] > weight[0], other = !own;
+    double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
+    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];
+    vec3_normalize(n);
+    for (int a = 0; a < 3; a++) {
+        gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
+        seam->normal[a] = (float)n[a];
+    }
+    seam->gap = (float)gap;
+    seam->fixed = 0;
+    seam->friction = (float)(best->friction/(weight[0] + weight[1]));
+    *side = own ? -best->number : best->number;
+    return 1;
+}
+
+/* Nodes of a patch and base nodes around it, by place. */
+typedef struct poll {
+    unsigned char sides[CELLS];        /* of the voters with this base node: 1 +, 2 -, 3 both      */
+    unsigned char wanted[CELLS];       /* 1: a node of the patch that sees both                    */
+    unsigned char near[CELLS];         /* 1: voters with this base node reach such a node          */
+} poll;
+
+/* Place of a base node or a node, counted from the patch. */
+static int cell_of(int a, int b, int c) { return ((a + 2)*SPAN + b + 2)*SPAN + c + 2; }
+
+/* Place of the voter's base node; -1 = it does not reach the patch. */
+static int find_cell(const mpm_voter *one, const mpm_patch *p)
+{
+    int at[3], out = 0;
+    for (int a = 0; a < 3; a++) {
+        at[a] = one->base[a] - p->corner[a];
+        out |= at[a] > 3 || at[a] < -2;
+    }
+    return out ? -1 : cell_of(at[0], at[1], at[2]);
+}
+
+/* Joins each entry with those of the two places before it along every axis (step 1), or after it (-1). */
+static void spread(unsigned char x[CELLS], int step)
+{
+    const int stride[3] = {SPAN*SPAN, SPAN, 1};
+    for (int a = 0; a < 3; a++)
+        for (int n = 0; n < CELLS; n++) {
+            const int k = step > 0 ? CELLS - 1 - n : n, at = k/stride[a]%SPAN;
+            for (int m = 1; m <= 2; m++)
+                if (at - m*step >= 0 && at - m*step < SPAN) x[k] |= x[k - m*step*stride[a]];
+        }
+}
+
+/* Returns whether any node sees both sides. */
+static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, poll *q)
+{
+    int any = 0;
+    memset(q, 0, sizeof *q);
+    for (int o = 0; o < 27; o++) {
+        if (p->cover[o] < 0) continue;
+        const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
+        for (int32_t k = 0; k < c->voters[p->cover[o]]; k++) {
+            const int cell = find_cell(&list[k], p);
+            if (cell < 0) continue;
+            q->sides[cell] |= list[k].sides;
+            any |= list[k].sides;
+        }
+    }
+    if (any != 3) return 0;
+    any = 0;
+    spread(q->sides, 1);
+    for (int x = 0; x < 4; x++)
+        for (int y = 0; y < 4; y++)
+            for (int z = 0; z < (g->dimension == 3 ? 4 : 1); z++)
+                any |= q->wanted[cell_of(x, y, z)] = q->sides[cell_of(x, y, z)] == 3;
+    memcpy(q->near, q->wanted, sizeof q->near);
+    spread(q->near, -1);
+    return any;
+}
+
+/* Adds the votes of one particle to the wanted nodes of a block that feel it. */
+static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
+                          const poll *q, int64_t i, vote votes[][VOTES])
+{
+    const int dim = g->dimension;
+    const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
+    const double mass = v->strain[i].c[2].w;
+    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    int first[3] = {0, 0, -1}, low[3], high[3];
+    for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*v->inverse_cell, w[a]) - p->corner[a];
+    for (int a = 0; a < 3; a++) {
+        low[a] = first[a] < 0 ? -first[a] : 0;
+        high[a] = first[a] > 1 ? 3 - first[a] : 2;
+    }
+    if (dim == 2) low[2] = high[2] = 1;
+    const float friction = v->material[v->solid[i]].cut_friction;
+    quad place = {0, 0, 0, 1};
+    for (int a = 0; a < dim; a++) place[a] = (float)(x[a] - p->corner[a]*(double)v->cell);
+    for (int k = 0; k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
+        const quad face = quad_load(&c->face[i].c[k]);
+        const float mark = v->cuts[i].c[k].w;
+        for (int p0 = low[0]; p0 <= high[0]; p0++)
+            for (int p1 = low[1]; p1 <= high[1]; p1++) {
+                const int row = (first[0] + p0)*4 + first[1] + p1;
+                const double along = mass*w[0][p0]*w[1][p1];
+                for (int p2 = low[2]; p2 <= high[2]; p2++)
+                    if (q->wanted[cell_of(first[0] + p0, first[1] + p1, first[2] + p2)])
+                        add_vote(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark, (float)(along*w[2][p2]),
+                                 place, face, friction);
+            }
+    }
+}
+
+int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
+{
+    const mpm_patch *p = &g->patch[patch];
+    const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    vote votes[MPM_NODES_3D][VOTES];
+    poll q;
+    int two = 0;
+    memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
+    if (!v->cuts || !find_wanted(c, g, p, &q)) return 0;
+    memset(votes, 0, sizeof votes);
+    for (int o = 0; o < 27; o++) {
+        if (p->cover[o] < 0) continue;
+        const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
+        for (int32_t k = 0; k < c->voters[p->cover[o]]; k++) {
+            const int cell = find_cell(&list[k], p);
+            if (cell >= 0 && q.near[cell]) vote_particle(c, g, v, p, &q, list[k].particle, votes);
+        }
+    }
+    for (int n = 0; n < nodes; n++)
+        two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
+    return two;
+}
