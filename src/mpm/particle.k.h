@@ -24,7 +24,7 @@ typedef struct mpm_stencil {
    strayed more than a cell or is no number, which ends the run (mlsmpm.c). */
 TOBI_FN void mpm_find_stencil(const mpm_view *v, const mpm_block *b, int64_t i, const int dim, mpm_stencil *s)
 {
-    const double corner[3] = {b->corner[0], b->corner[1], b->corner[2]};
+    const double corner[3] = {(double)b->corner[0], (double)b->corner[1], (double)b->corner[2]};
     lane place[3], w[3];
     lane_int first = lane_set_int(0);
     lane_load_places(v->position + i, v->inverse_cell, corner, place);

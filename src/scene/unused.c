@@ -10,13 +10,11 @@
 typedef enum reader {
     SPH,             /* the methods of fluids                     */
     SOLIDS,          /* the method of solids                      */
-    TOUCH,           /* methods that let bodies meet bodies or solids */
     FORCES,          /* bodies that move by forces                */
     BLADE,           /* bodies that cut                           */
     FLIP, XPIC       /* ways to the grid and back                 */
 } reader;
 
-#define MEETING "is for bodies that meet each other or solids, which wcsph does not know"
 #define UNMOVED "is for free and controlled bodies, this one is prescribed"
 
 static const struct {
@@ -34,8 +32,6 @@ static const struct {
                                          "friction_coefficient" },
     { &tobi_body_table, "contact_angle", SPH, "is for liquids of dfsph and wcsph; mlsmpm has no surface "
                                               "tension" },
-    { &tobi_body_table, "restitution", TOUCH, MEETING },
-    { &tobi_body_table, "friction_coefficient", TOUCH, MEETING },
 #define MOVED(key) { &tobi_body_table, key, FORCES, UNMOVED }
     MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),
     MOVED("locked"),
@@ -55,7 +51,6 @@ static int is_there(const tobi_scene *scene, const tobi_body_def *body, reader w
     switch (who) {
     case SPH: return (method->fields & TOBI_SPH) != 0;
     case SOLIDS: return (method->fields & TOBI_MPM) != 0;
-    case TOUCH: return method->free_bodies;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;

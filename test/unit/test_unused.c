@@ -81,10 +81,6 @@ static const row rows[] = {
       "bodies[0].friction: is for liquids of dfsph and wcsph" },
     { "contact_angle", IN_BODY(", \"contact_angle\": 60", "mlsmpm", "wcsph"), "s.json:5:",
       "bodies[0].contact_angle: is for liquids of dfsph and wcsph" },
-    { "restitution", IN_BODY(", \"restitution\": 0.2", "wcsph", "dfsph"), "s.json:5:",
-      "bodies[0].restitution: is for bodies that meet each other" },
-    { "friction_coefficient", IN_BODY(", \"friction_coefficient\": 0.2", "wcsph", "mlsmpm"), "s.json:5:",
-      "bodies[0].friction_coefficient: is for bodies that meet each other" },
     { "flip", { "mlsmpm", "\"mlsmpm\": {\n\"flip\": 0.9 },", "", "" },
       { "mlsmpm", "\"mlsmpm\": { \"transfer\": \"flip\", \"flip\": 0.9 },", "", "" },
       "s.json:2:1: mlsmpm.flip: ", "is for \"transfer\": \"flip\"" },
@@ -120,7 +116,7 @@ static void test_resolved(void **state)
     (void)state;
     static const struct { const char *method, *key; int has; } resolved[] = {
         { "mlsmpm", "contact_angle", 0 }, { "dfsph", "contact_angle", 1 }, { "mlsmpm", "flip", 0 },
-        { "mlsmpm", "locked", 0 },        { "mlsmpm", "edge_angle", 0 },   { "wcsph", "restitution", 0 },
+        { "mlsmpm", "locked", 0 },        { "mlsmpm", "edge_angle", 0 },   { "wcsph", "restitution", 1 },
         { "dfsph", "restitution", 1 },    { "mlsmpm", "velocity", 1 },     /* of the fill */
         { "mlsmpm", "angular_velocity", 0 },
     };
