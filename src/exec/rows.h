@@ -14,6 +14,7 @@ TOBI_FN quad quad_set(float a) { quad q = {{a, a, a, a}}; return q; }
 TOBI_FN quad operator+(quad a, quad b) { for (int k = 0; k < 4; k++) a.v[k] += b.v[k]; return a; }
 TOBI_FN quad operator-(quad a, quad b) { for (int k = 0; k < 4; k++) a.v[k] -= b.v[k]; return a; }
 TOBI_FN quad operator*(quad a, quad b) { for (int k = 0; k < 4; k++) a.v[k] *= b.v[k]; return a; }
+TOBI_FN quad operator/(quad a, quad b) { for (int k = 0; k < 4; k++) a.v[k] /= b.v[k]; return a; }
 TOBI_FN quad quad_larger(quad a, quad b)
 {
     for (int k = 0; k < 4; k++) a.v[k] = a.v[k] > b.v[k] ? a.v[k] : b.v[k];
