@@ -220,7 +220,7 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
                        tobi_contact *out, bounds *known)
 {
     const double radius = at->step->radius, reach = at->step->reach;
-    tobi_blade_place place;
+    tobi_blade_place place = { 0 };
     double depth = radius;
     int side = find_side(at->body, cuts, &depth);
     if (depth > 2*radius) {

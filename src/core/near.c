@@ -158,7 +158,6 @@ static int add_point(void *user, int32_t k)
         e->gradient[a] -= aw*n[a];
         e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
         e->lift[a] -= aw*gn*(s + reach)*n[a];
-        e->ghost_lift[a] -= aw*dot(r, g)*n[a];
     }
     e->wall_flux -= aw*dot(n, v);
     e->share += aw*reach;
@@ -168,22 +167,6 @@ static int add_point(void *user, int32_t k)
         for (int a = 0; a < 3; a++) e->drag_velocity[a] += rate*v[a];
     }
     return 0;
-}
-
-/* Under pressure the body holds the whole hydrostatic field, as a fluid in its place would; a film that
-   only slides along it is held off along the normal alone, eq. (6b). With (7b) nothing is missing there. */
-static void blend_lift(const look *l, int32_t i)
-{
-    const tobi_simulation *s = l->s;
-    if (s->particles.stretch) return;
-    const double *g = l->gravity;
-    tobi_near_entry *e = l->entry;
-    double full = 2*s->smoothing.spacing*s->fluid[s->particles.fluid[i]].density*
-                  sqrt(dot(s->gravity, s->gravity));
-    double p = s->particles.pressure[i] + tobi_still_pressure(&s->still, l->x);
-    double wet = p >= full ? 1 : p > 0 ? p/full : 0;
-    for (int a = 0; a < s->box.dimension; a++)
-        e->lift[a] += wet*(e->ghost_lift[a] - e->share*g[a] - e->lift[a]);
 }
 
 /* Gravity less what still water holds; fluids have one density then. */
@@ -212,7 +195,6 @@ static int look_at(look *l, int32_t i, int body)
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
     visit_points(&l->s->near, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
-    blend_lift(l, i);
     return 1;
 }
 

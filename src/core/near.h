@@ -13,7 +13,6 @@ typedef struct tobi_near_entry {
     double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
     double share;             /* lambda: share of the kernel inside or behind the body            */
     double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
-    double ghost_lift[3];     /* sum A W (g . (x_b - x)) n: of the hydrostatic field inside the body  */
     double friction[3];       /* acceleration by no-slip friction in this step                    */
     double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
     double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */

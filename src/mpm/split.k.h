@@ -24,8 +24,8 @@ TOBI_FN uint32_t mpm_match_sides(const float *side, int32_t first, float other, 
 }
 
 /* The nodes across a cut from a particle, and those whose second velocity is its solid's: see
-   mpm_view.hidden. Found anew when its base node is another, which since the last sort can only be one beside
-   it: parities tell them apart. */
+   mpm_view.hidden. Found anew when its base node is another: masks are cleared whenever sides are found, so
+   that it can only be one beside it, which parities tell apart. */
 TOBI_FN uint32_t mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int32_t first, int dim)
 {
     const uint32_t place = (8u | (first >> 4 & 4) | (first >> 2 & 2) | (first & 1))*(MPM_HIDDEN + 1u);

@@ -32,7 +32,7 @@ static const char head[] =
     "  for both: `\"walls\": { \"x\": \"periodic\", \"z\": [\"no-slip\", \"slip\"] }`.\n"
     "- Where a default is a word (`adaptive`, `all`), that word or a number may be written.\n"
     "- Relative paths of meshes, scripts and tables start at the scene's own folder.\n"
-    "- Unknown keys are mistakes, and so are keys that the chosen method would not read. Nothing is\n"
+    "- Unknown keys are mistakes, and so are keys that the method or other keys leave unread. Nothing is\n"
     "  case-insensitive.\n"
     "\n"
     "## A complete example\n"

@@ -197,12 +197,11 @@ static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock,
     return TOBI_OK;
 }
 
-/* With (7c) disorder makes no motion that a filter would have to take out. */
 static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
 {
-    double scale = 2*s->smoothing.rate, share = m->view.full && m->view.stretch ? 0 : m->def.filter;
+    double scale = 2*s->smoothing.rate;
     /* per motion step: a step made short by viscosity or by the user filters less */
-    m->view.filter = (float)(share/(fmax(s->dt, m->motion_dt)*scale*scale));
+    m->view.filter = (float)(m->def.filter/(fmax(s->dt, m->motion_dt)*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
 }
 

@@ -88,13 +88,13 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     sph_moments_add(&a->second, f*f, n);
 }
 
-/* T of a particle: (7c) in full vessels, (7b) beside bodies in others and where (7c) has no answer. */
+/* T of a particle: (7c), or (7b) at walls where that is not asked for or has no answer. */
 TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_density_acc *a, float share)
 {
     sph_matrix t = {1, 1, 1, 0, 0, 0};
     if (!v->stretch) return t;
     int walled = share > 0 && (v->full || (v->near && v->near[i] >= 0)), made = 0;
-    if (v->full) {
+    if (v->exact) {
         sph_matrix m = sph_moments_sum(&a->first, v->slope);
         if (v->dimension == 2) m.zz = 1;
         made = sph_invert(&m, v->wall[i], share, &t);
@@ -188,7 +188,7 @@ TOBI_FN void sph_laplacian_finish(const sph_view *v, int64_t i, sph_laplacian_ac
 }
 
 /* Eq. (6b), 0 .. 1: the pressure there is to continue into a wall, over that of two spacings of depth; none
-   where (7b) misses nothing along it. */
+   where (7b) or (7c) leaves nothing to make up along it. */
 TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
 {
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];

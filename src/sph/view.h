@@ -36,6 +36,7 @@ typedef struct sph_view {
     float spacing, volume;
     int   dimension;
     int   full;                               /* 1: a vessel without a free surface          */
+    int   exact;                              /* 1: eq. (7c), linear flows are exact         */
     float open_limit;                         /* div x below this: neighbours are missing       */
     float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */

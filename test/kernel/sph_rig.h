@@ -92,7 +92,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
     v->stretch = k->along ? p->stretch : NULL;
     v->shear = p->shear;
-    v->beside = p->beside; v->near = p->near; v->full = k->along == 1;
+    v->beside = p->beside; v->near = p->near; v->full = v->exact = k->along == 1;
     v->normal = p->normal; v->capillary = p->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);

@@ -37,14 +37,15 @@ typedef struct rig {
 
 /* Random numbers of usual size. Sand, snow, von Mises and what breaks get strains on both sides of their
    limits. */
-static void choose_solids(rig *g)
+static void choose_solids(rig *g, int only)
 {
     for (int k = 0; k < MODELS; k++) {
         const oracle_solid s = {
             .model = k < BREAKING ? k : k - BREAKING, .strength = k < BREAKING ? 0 : 3000, .last = 0.1,
             .E = 1e5*(1 + k), .nu = 0.1 + 0.05*(k%BREAKING), .bulk = 2e5, .viscosity = 3, .yield = 4e3,
             .hardening = k == TOBI_SNOW ? 8 : 2e4, .compression = 0.04, .stretch = 0.02, .cone = 0.2,
-            .rise = k == TOBI_SAND && g->dimension == 2 ? 0.5 : 0, .haste = 1e5, .keep = 1 - 0.01*k };
+            .rise = k == TOBI_SAND && (only < 0) == (g->dimension == 2) ? 0.5 : 0, .haste = 1e5,
+            .keep = 1 - 0.01*k };
         g->solid[k] = s;
         g->material[k] = (mpm_material){
             .model = s.model, .strength = (float)s.strength, .brittleness = 10,
@@ -93,7 +94,7 @@ static void make(rig *g, int dim, int only, double strain, int threads, int isa,
     assert_int_equal(tobi_particles_create(&g->p, COUNT, TOBI_ALL | TOBI_MPM, &err), TOBI_OK);
     assert_int_equal(mpm_grid_create(&g->grid, dim, 1 + transfer, &g->exec, &err), TOBI_OK);
     g->kernels = mpm_kernels_for(g->exec.isa, dim);
-    choose_solids(g);
+    choose_solids(g, only);
     fill(g, only, strain);
     mpm_view *v = &g->view;
     *v = (mpm_view){

@@ -58,7 +58,8 @@ for ratio, cells in case.pick([(1, 24), (4, 12)], [(0.5, 32), (0.5, 64), (1, 16)
     case.state(f"{text}: where the deposit is d/20 thick, over Lube's run-out", thick/exact)
     case.state(f"{text}: height at the side over Lube's", top/(ratio if ratio < 1.15 else ratio**0.4))
     case.state(f"{text}: speed at the end, root mean square, m/s", speed)
-    # Twice the scatter of the experiments, which is the goal: few cells in the thin front.
+    # Twice the scatter of the experiments, which is the goal. Broken with 16 cells in d (0.76 to 0.78): momentum diffuses through
+    # the cells that shear (sand_slope), so no smoke size is that coarse.
     case.hold(f"{text}: run-out within 20 %", abs(found/exact - 1) <= 0.2)
     case.hold(f"{text}: come to rest, below 1 cm/s", speed < 0.01)
 for ratio, cells in case.pick([], [(1, 16), (1, 32), (1, 64), (4, 16)]):
