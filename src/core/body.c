@@ -382,6 +382,13 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     return TOBI_OK;
 }
 
+int tobi_body_any_free(const tobi_body *bodies, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
+    return 0;
+}
+
 void tobi_body_free(tobi_body *b)
 {
     tobi_mesh_free(&b->mesh);

@@ -71,6 +71,8 @@ typedef struct tobi_body {
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err);
 void tobi_body_free(tobi_body *b);
+/* 1 if any of the bodies is free or controlled. */
+int tobi_body_any_free(const tobi_body *bodies, int count);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
 tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err);
 /* Finds the edge of a blade, or takes the one that the definition gives; of other bodies nothing. The body

@@ -23,13 +23,6 @@ struct tobi_dynamics_state {
     tobi_solver solver;
 };
 
-int tobi_rigid_any(const tobi_body *bodies, int count)
-{
-    for (int k = 0; k < count; k++)
-        if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
-    return 0;
-}
-
 /* --- start ------------------------------------------------------------------------------------- */
 
 /* In 2-D a body stands for its section, which must be the same at every height. */

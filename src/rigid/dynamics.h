@@ -32,8 +32,6 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *state, double t, double dt, tob
    by half a radian, less where bodies are thin: contact looks ahead along straight lines. */
 double tobi_rigid_step_limit(const tobi_dynamics_state *state);
 
-/* 1 if any body is free or controlled. */
-int tobi_rigid_any(const tobi_body *bodies, int count);
 /* Contacts of the last step that carried a force, and the sweeps of the solver. */
 void tobi_rigid_count(const tobi_dynamics_state *state, int64_t *touching, int *sweeps);
 

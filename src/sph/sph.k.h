@@ -59,7 +59,7 @@ TOBI_FN float sph_wall_density(const sph_view *v, float share)
    the latter reach, which delta keeps for each, m. */
 typedef struct sph_density_acc {
     lane rho, pressure, gx, gy, gz, g2, div;
-    sph_moments first, second;      /* sums of F x x and of F^2 x x, where T is due */
+    sph_moments first, second;      /* sums of F x x, for (7c), and of F^2 x x, where T is due */
     int due;
 } sph_density_acc;
 
@@ -84,7 +84,7 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     a->g2 += f*f2;
     a->div += f2;
     if (!a->due) return;
-    sph_moments_add(&a->first, f, n);
+    if (v->exact) sph_moments_add(&a->first, f, n);
     sph_moments_add(&a->second, f*f, n);
 }
 

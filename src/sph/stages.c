@@ -43,14 +43,6 @@ static double band_depth(const tobi_smoothing_constants *c)
     return sum/weight;
 }
 
-/* Bodies let go act larger with (7c) beside them than with (7b), decision 28. */
-static int moved_by_forces(const tobi_simulation *s)
-{
-    for (int k = 0; k < s->body_count; k++)
-        if (s->bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
-    return 0;
-}
-
 void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
@@ -64,7 +56,8 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     v->precondition = p->precondition;
     v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
     v->full = vessel == SPH_VESSEL_FULL;
-    v->exact = v->full && v->stretch && !moved_by_forces(s);
+    /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
+    v->exact = v->full && v->stretch && !tobi_body_any_free(s->bodies, s->body_count);
     v->near = s->body_count > 0 ? p->near : NULL;
     v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
     v->list = s->cells.list;

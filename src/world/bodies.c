@@ -22,7 +22,7 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     enum { NOTES = 8000 };
     tobi_simulation *s = &w->sim;
     tobi_rigid_world world;
-    if (!tobi_rigid_any(s->bodies, s->body_count) || w->dynamics) return TOBI_OK;
+    if (!tobi_body_any_free(s->bodies, s->body_count) || w->dynamics) return TOBI_OK;
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);

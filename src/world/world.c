@@ -83,9 +83,8 @@ static int is_full_vessel(const tobi_world *w)
 /* Whether a body or a side moves in a full vessel. */
 static int is_stirred_vessel(const tobi_world *w)
 {
-    int stirred = w->sim.wall_speed > 0;
-    for (int k = 0; k < w->sim.body_count; k++)
-        stirred |= w->sim.bodies[k].motion != NULL || w->sim.bodies[k].rigid.kind != TOBI_PRESCRIBED;
+    int stirred = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
+    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
     return stirred && is_full_vessel(w);
 }
 
