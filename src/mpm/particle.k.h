@@ -161,10 +161,11 @@ TOBI_FN void mpm_find_stress(const mpm_parameters *m, lane_int model, uint32_t p
 }
 
 /* What eight particles give their nodes, eq. (3): (base + columns times the distance from the lowest node)
-   times the weight. */
+   times the weight; and along each axis bend times 1, -2, 1 times the weights of the others, eq. (3b). */
 typedef struct mpm_load {
     tobi_float4 base[8];               /* kg m/s at the lowest node, and the particle's mass      */
     tobi_float4 column[3][8];          /* kg m/s per cell                                         */
+    tobi_float4 bend[3][8];            /* kg m/s; unset unless mpm_view.bent                      */
     tobi_float4 momentum[8];           /* kg m/s at the particle, and its mass                    */
 } mpm_load;
 
@@ -193,12 +194,16 @@ TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane
     lane base[3] = {momentum[0], momentum[1], momentum[2]};
     for (int c = 0; c < dim; c++) {
         const lane offset = lane_load(at->offset[c]);
-        lane column[3];
+        lane column[3], bend[3];
         for (int r = 0; r < 3; r++) {
             column[r] = (stress*tau[of[r][c]] + carried*gradient[3*r + c])*v->cell;
             base[r] = base[r] - column[r]*offset;
         }
         lane_store_float4(load->column[c], 1, 8, column[0], column[1], column[2], zero);
+        if (!v->bent) continue;
+        const lane differ = 0.25f*(1.5f - offset)*(1.0f - offset)*(2.0f*offset - 1.0f)*v->cell;
+        for (int r = 0; r < 3; r++) bend[r] = stress*tau[of[r][c]]*differ;
+        lane_store_float4(load->bend[c], 1, 8, bend[0], bend[1], bend[2], zero);
     }
     lane_store_float4(load->base, 1, 8, base[0], base[1], base[2], momentum[3]);
     if (v->calm)

@@ -17,6 +17,7 @@ TOBI_FN void mpm_clear(tobi_float4 *tile, int nodes)
    from them. */
 typedef struct mpm_cell {
     row sum[9];
+    row across[3];                     /* 3-D: goes to the rows along y times 1, -2, 1            */
     int32_t first;                     /* node of the tile; -1 = none                             */
     uint32_t hidden;                   /* see mpm_view                                            */
 } mpm_cell;
@@ -24,6 +25,7 @@ typedef struct mpm_cell {
 TOBI_FN void mpm_clear_cell(mpm_cell *c)
 {
     for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
+    for (int n = 0; n < 3; n++) c->across[n] = row_set(0);
     c->first = -1;
     c->hidden = 0;
 }
@@ -40,10 +42,16 @@ TOBI_FN void mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
 
 /* Adds the cell's sums to the tile, those of hidden nodes to the twin's. reach: of both. */
 TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, mpm_reach reach[2],
-                            const int dim)
+                            const int dim, const int bent)
 {
     if (c->first < 0) return;
     mpm_note_rows(&reach[0], c->first, dim);
+    for (int n = 0; n < 3 && dim == 3 && bent; n++) {
+        c->sum[3*n] = row_add(c->sum[3*n], c->across[n]);
+        c->sum[3*n + 1] = row_fma(c->across[n], row_set(-2), c->sum[3*n + 1]);
+        c->sum[3*n + 2] = row_add(c->sum[3*n + 2], c->across[n]);
+        c->across[n] = row_set(0);
+    }
     if (twin && c->hidden) {
         mpm_note_rows(&reach[1], c->first, dim);
         mpm_leave_split(tile, twin, c->sum, c->first, c->hidden, dim);
@@ -58,18 +66,25 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, m
 }
 
 /* Adds particle k of eight to the sums. */
-TOBI_FN void mpm_add_particle(mpm_cell *c, const mpm_stencil *s, const mpm_load *load, int k, const int dim)
+TOBI_FN void mpm_add_particle(mpm_cell *c, const mpm_stencil *s, const mpm_load *load, int k, const int dim,
+                              const int bent)
 {
     const int last = dim - 1, rows = dim == 3 ? 3 : 1;
-    const quad step = {0, 1, 2, 0};
-    const row w = row_spread(quad_load(&s->along[k]));
+    const quad step = {0, 1, 2, 0}, bow = {1, -2, 1, 0};
+    const row w = row_spread(quad_load(&s->along[k])), zero = row_set(0);
     const row d0 = row_mul(row_repeat(quad_load(&load->column[0][k])), w),
-              d1 = dim == 3 ? row_mul(row_repeat(quad_load(&load->column[1][k])), w) : w;
+              d1 = dim == 3 ? row_mul(row_repeat(quad_load(&load->column[1][k])), w) : w,
+              b0 = bent ? row_mul(row_repeat(quad_load(&load->bend[0][k])), w) : zero,
+              b1 = bent && dim == 3 ? row_mul(row_repeat(quad_load(&load->bend[1][k])), w) : zero,
+              b2 = bent ? row_mul(b0, row_set(-2)) : zero;
     row x = row_mul(row_fma(row_repeat(quad_load(&load->column[last][k])), row_spread(step),
                             row_repeat(quad_load(&load->base[k]))), w);
+    if (bent) x = row_fma(row_repeat(quad_load(&load->bend[last][k])), row_spread(bow), x);
     for (int n = 0; n < 3; n++) {
-        row wx = row_set(s->weight[0][n][k]), t = row_mul(x, wx), u = row_mul(d1, wx);
-        row y0 = dim == 3 ? row_set(s->weight[1][0][k]) : row_set(1);
+        row wx = row_set(s->weight[0][n][k]), u = row_mul(d1, wx), y0 = row_set(1);
+        row t = bent ? row_fma(x, wx, n == 1 ? b2 : b0) : row_mul(x, wx);
+        if (dim == 3) y0 = row_set(s->weight[1][0][k]);
+        if (dim == 3 && bent) c->across[n] = row_fma(b1, wx, c->across[n]);
         c->sum[rows*n] = row_fma(t, y0, c->sum[rows*n]);
         if (dim == 3) {
             t = row_add(t, u);
@@ -121,9 +136,9 @@ TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, mpm_targets *t,
 /* Where a block's particles add to: their tile alone, its twin too, all targets. */
 enum { MPM_PLAIN, MPM_SPLIT, MPM_CALM };
 
-/* Returns the kinetic energy that damping takes, J. */
+/* bent: eq. (3b) is on. Returns the kinetic energy that damping takes, J. */
 TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
-                             mpm_reach reach[2], const int dim, const int kind)
+                             mpm_reach reach[2], const int dim, const int kind, const int bent)
 {
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     tobi_float4 *const twin = kind == MPM_PLAIN ? NULL : t->twin;
@@ -139,19 +154,27 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 
         for (int k = 0; k < count; k++) {
             const uint32_t hidden = twin ? mpm_find_hidden(v, i + k, t->side, s.first[k], dim) : 0;
             if (s.first[k] != cell.first || (twin && hidden != cell.hidden)) {
-                mpm_leave_cell(tile, twin, &cell, reach, dim);
+                mpm_leave_cell(tile, twin, &cell, reach, dim, bent);
                 cell.first = s.first[k];
                 cell.hidden = hidden;
             }
-            mpm_add_particle(&cell, &s, &load, k, dim);
+            mpm_add_particle(&cell, &s, &load, k, dim, bent);
             if (kind != MPM_CALM) continue;
             const quad momentum = quad_load(&load.momentum[k]);
             if (hidden) mpm_add_split(t->calm, t->calm_twin, &s, k, hidden, momentum, zero, dim);
             else mpm_add_calm(t->calm, &s, k, momentum, dim);
         }
     }
-    mpm_leave_cell(tile, twin, &cell, reach, dim);
+    mpm_leave_cell(tile, twin, &cell, reach, dim, bent);
     return taken;
+}
+
+TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
+                            mpm_reach reach[2], const int dim, const int bent)
+{
+    if (t->calm) return mpm_add_block(v, b, tile, t, reach, dim, MPM_CALM, bent);
+    if (t->twin) return mpm_add_block(v, b, tile, t, reach, dim, MPM_SPLIT, bent);
+    return mpm_add_block(v, b, tile, t, reach, dim, MPM_PLAIN, bent);
 }
 
 /* Copies the rows of a tile that something reaches. */
@@ -175,9 +198,8 @@ TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, c
     mpm_reach reach[2] = {{{0, 0, 0}}, {{0, 0, 0}}};       /* of the tile and its twin */
     mpm_clear(tile, nodes);
     mpm_find_targets(&v, number, &targets, dim);
-    if (targets.calm) totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_CALM);
-    else if (targets.twin) totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_SPLIT);
-    else totals[0] += mpm_add_block(&v, b, tile, &targets, reach, dim, MPM_PLAIN);
+    totals[0] += v.bent ? mpm_add_kind(&v, b, tile, &targets, reach, dim, 1) :
+                          mpm_add_kind(&v, b, tile, &targets, reach, dim, 0);
     v.reach[number] = reach[0];
     if (b->twin >= 0) v.reach[b->twin] = reach[1];
     mpm_copy_rows(v.tile + number*nodes, tile, &reach[0], dim);

@@ -93,6 +93,7 @@ typedef struct mpm_view {
     int    damped;                     /* 1: a material is damped                                  */
     int    apart;                      /* 1: there are several groups of solids                    */
     int    affine_momentum;            /* 1: APIC                                                  */
+    int    bent;                       /* 1: stress pushes nodes by the splines' own gradients, (3b) */
     float  flip;                       /* share of FLIP; 1 with XPIC                               */
     float  own;                        /* 1 if the particle's own velocity goes on: FLIP           */
     float  order;                      /* m of XPIC, and in its sweeps the share of this one       */

@@ -19,6 +19,10 @@ typedef struct oracle_particle {
     int solid;
 } oracle_particle;
 
+/* A place is a float, good for 1e-7 of a cell, and so is a slope near the rim of a spline, where it goes to
+   0: this part of a cell counts in full. */
+static const double ORACLE_BLUR = 0.01;
+
 /* bound: what the absolute values of all terms of the momentum sum up to, kg m/s. */
 typedef struct oracle_node {
     double mass, momentum[3], calm[3], v[3], old[3], wave[3], kept[3], bound;
@@ -27,7 +31,7 @@ typedef struct oracle_node {
 typedef struct oracle_side { int axis, upper, kind; double at, friction, velocity[3]; } oracle_side;
 
 typedef struct oracle_grid {
-    int dimension, affine, sides;
+    int dimension, affine, spline, sides;    /* spline: its gradient carries the stress, not MLS's */
     double h, dt, gravity[3];
     oracle_side side[6];
     oracle_node node[ORACLE_NODES*ORACLE_NODES*ORACLE_NODES];
@@ -251,6 +255,20 @@ static double oracle_spline(double r)
     return r < 0.5 ? 0.75 - r*r : r < 1.5 ? 0.5*(1.5 - r)*(1.5 - r) : 0;
 }
 
+/* Its slope, and the gradient of a node's weight at a particle, 1/m, r: node - particle. */
+static double oracle_slope(double r)
+{
+    return fabs(r) < 0.5 ? -2*r : fabs(r) < 1.5 ? copysign(1.5 - fabs(r), -r) : 0;
+}
+
+static void oracle_gradient(const oracle_grid *g, const double r[3], double out[3])
+{
+    for (int a = 0; a < 3; a++) {
+        out[a] = a < g->dimension ? -oracle_slope(r[a]/g->h)/g->h : 0;
+        for (int b = 0; b < g->dimension; b++) out[a] *= b == a ? 1 : oracle_spline(r[b]/g->h);
+    }
+}
+
 static void oracle_place(int at, int place[3])
 {
     place[0] = at/ORACLE_NODES/ORACLE_NODES - 4;
@@ -293,6 +311,9 @@ static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_pa
         const oracle_solid *m = &solids[p[i].solid];
         oracle_stress(m, strain_dt, &p[i], tau);
         ORACLE_EACH_NODE(g, &p[i], w, r, n) {
+            double slope[3];
+            oracle_gradient(g, r, slope);
+            for (int b = 0; b < 3 && !g->spline; b++) slope[b] = 4/(g->h*g->h)*w*r[b];
             n->mass += w*p[i].mass;
             for (int a = 0; a < 3; a++) {
                 double own = p[i].mass*m->keep*p[i].v[a];
@@ -301,9 +322,9 @@ static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_pa
                 n->bound += w*fabs(own);
                 for (int b = 0; b < 3; b++) {
                     double spin = g->affine ? p[i].mass*m->keep*p[i].C[a][b] : 0;
-                    double push = -g->dt*p[i].volume*4/(g->h*g->h)*tau[a][b];
-                    n->momentum[a] += w*(spin + push)*r[b];
-                    n->bound += w*(fabs(spin) + fabs(push))*g->h;
+                    double push = -g->dt*p[i].volume*tau[a][b];
+                    n->momentum[a] += w*spin*r[b] + push*slope[b];
+                    n->bound += w*g->h*fabs(spin) + ((4*w + ORACLE_BLUR)/g->h + fabs(slope[b]))*fabs(push);
                 }
             }
         }

@@ -101,7 +101,7 @@ static void make(rig *g, int dim, int only, double strain, int threads, int isa,
         .position = g->p.position, .velocity = g->p.velocity, .strain = g->p.strain, .affine = g->p.affine,
         .solid = g->p.fluid, .material = g->material, .cell = (float)H, .inverse_cell = 1/H, .dt = (float)DT,
         .strain_dt = (float)STRAIN_DT, .affine_momentum = transfer == TOBI_APIC,
-        .flip = transfer == TOBI_FLIP ? 0.9f : 1,
+        .bent = transfer != TOBI_XPIC, .flip = transfer == TOBI_FLIP ? 0.9f : 1,
         .own = transfer == TOBI_FLIP, .order = ORDER,
         .plane_count = 3,
         .gravity = {1, -2, dim == 3 ? -9.81f : 0}, .size = {1, 1, 1} };
@@ -141,7 +141,8 @@ static oracle_grid *see(const rig *g, oracle_particle *out)
     oracle_grid *o = calloc(1, sizeof *o);
     assert_non_null(o);
     *o = (oracle_grid){
-        .dimension = g->dimension, .affine = g->view.affine_momentum, .sides = 3, .h = H, .dt = (float)DT };
+        .dimension = g->dimension, .affine = g->view.affine_momentum,
+        .spline = g->view.bent, .sides = 3, .h = H, .dt = (float)DT };
     for (int a = 0; a < 3; a++) o->gravity[a] = g->view.gravity[a];
     o->side[0] = (oracle_side){.axis = 0, .kind = 1, .velocity = {0, 0.4f, 0}};
     o->side[1] = (oracle_side){.axis = 1, .kind = 3, .friction = 0.4f};
