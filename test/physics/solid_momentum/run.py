@@ -10,7 +10,9 @@ case = Case("solid_momentum", "Momentum balance of solids", """
 mlsmpm in 2-D and 3-D, every step an output. Sides: an elastic block is thrown at an angle into a box with "separate"
 and slip sides, falls, bounces and slides: momentum P changes by (m g - W) dt, W the force on the sides. Body: the block flies
 without gravity against a free body half as heavy: what the solid loses the body has. Scale: the sum of |F| dt, F weight and
-force on the sides, or the force on the body. Forces and momentum come with 9 digits, sums of float.""")
+force on the sides, or the force on the body. Forces and momentum come with 9 digits, sums of float.
+What the body case misses is lost in flight, 1e-8 of the solid's momentum in a step, not in contact, whose 200 steps change the sum by 1.2e-7 of what
+goes over: a lattice has its particles at the same places in all cells, where weights round alike.""")
 
 
 STEP = 2.5e-4      # s, below every limit, so that each step is an output
