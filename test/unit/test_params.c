@@ -51,7 +51,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_fill_table), 0);
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control + hole);
     assert_int_equal(count_uncovered(&tobi_output_table), 2*hole);
-    assert_int_equal(count_uncovered(&tobi_mlsmpm_table), 2*hole);
+    assert_int_equal(count_uncovered(&tobi_mlsmpm_table), hole);
     assert_int_equal(count_uncovered(&tobi_solid_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_plane_table), hole);
     assert_int_equal(count_uncovered(&tobi_reference_table), 0);
