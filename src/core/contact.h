@@ -40,7 +40,6 @@ typedef struct tobi_shift { int32_t particle; double by[3]; } tobi_shift;
 typedef struct tobi_contacts {
     tobi_contact *list;              /* of the present body                                      */
     int64_t count, room;
-    tobi_contact *found;             /* the same as the threads found them                       */
     tobi_shift *shift;               /* of this step, at all bodies so far                       */
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;

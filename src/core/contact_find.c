@@ -11,9 +11,9 @@
 
 static const double IDLE = 0.05;
 
-/* Less `way` of its list, clear is what the particle is at least outside the surface, m; and more by it, most
-   is how far it is at most from it. */
-typedef struct candidate { int32_t particle; float clear, most; } candidate;
+/* Less `way` of its list, clear is what the particle is at least outside the surface, m. Until that way is
+   `sure`, the triangle of this slot of the tree is nearest to it and no other as near. */
+typedef struct candidate { int32_t particle, slot; float clear, sure; } candidate;
 
 /* Particles near one body. */
 struct tobi_contact_near {
@@ -27,14 +27,13 @@ struct tobi_contact_near {
 };
 
 /* Contacts, or candidates, that one block of particles or candidates has. */
-struct tobi_contact_run { int64_t block, first, count; };
+struct tobi_contact_run { int64_t block, count; };
 
 void tobi_contact_free(tobi_contacts *c)
 {
     for (int k = 0; k < c->near_room; k++) free(c->near[k].list);
     free(c->near);
     free(c->list);
-    free(c->found);
     free(c->run);
     free(c->chunk_box);
     free(c->partial);
@@ -162,15 +161,30 @@ static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth
     return 0;
 }
 
-static int find_closest(const pose *at, const double x[3], const double local[3], double far,
+/* What is known of a particle's distance from the surface, m: clear as of a candidate; if slot >= 0, its
+   triangle is nearest and will be for this way more. */
+typedef struct bounds { double clear, way; int32_t slot; } bounds;
+
+/* Finds the nearest point, closer than far. Who has to look at the whole tree looks for the second nearest
+   triangle, too: as long as it is farther whatever has moved, the one that was found will do. */
+static int find_closest(const pose *at, const double x[3], const double local[3], double far, bounds *known,
                         tobi_bvh_hit *hit)
 {
     const tobi_body *b = at->body;
-    return tobi_bvh_closest(b->deforms ? b->bvh : b->rest_bvh, b->deforms ? x : local, far, hit);
+    const tobi_bvh *tree = b->deforms ? b->bvh : b->rest_bvh;
+    const double *point = b->deforms ? x : local;
+    double others;
+    if (known->slot >= 0) {
+        hit->slot = known->slot;
+        tobi_bvh_closest_again(tree, point, hit);
+        return hit->distance < far;
+    }
+    known->way = 0;
+    if (!tobi_bvh_closest_two(tree, point, far, hit, &others)) return 0;
+    known->slot = hit->slot;
+    known->way = 0.5*(others - hit->distance);
+    return 1;
 }
-
-/* What is known of a particle's distance from the surface, see candidate, m. */
-typedef struct bounds { double clear, most; } bounds;
 
 /* Nearest point of the body to x (from the domain's corner). Narrows the bounds. */
 static int touch(const pose *at, const double x[3], const double local[3], tobi_contact *out, bounds *known)
@@ -179,17 +193,15 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
     tobi_bvh_hit hit;
     const double far = fmax(at->reach, at->step->reach), farther = far + at->step->reach;
     double *clear = &known->clear;
-    if (!(known->most < far && find_closest(at, x, local, known->most, &hit)) &&
-        !find_closest(at, x, local, far, &hit)) {
+    if (!find_closest(at, x, local, far, known, &hit)) {
         /* Outside its box nobody is inside the body. */
         if (*clear > 0) *clear = fmax(*clear, far);
-        else if (!find_closest(at, x, local, farther, &hit)) *clear = farther - far + at->reach;
+        else if (!find_closest(at, x, local, farther, known, &hit)) *clear = farther - far + at->reach;
         else *clear = hit.signed_distance > 0 ? hit.distance : hit.distance - far + at->reach;
         return 0;
     }
     out->gap = hit.signed_distance - at->step->radius;
     *clear = fmax(*clear, hit.signed_distance);
-    known->most = hit.distance;
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
@@ -260,7 +272,7 @@ static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
         if (outside) continue;
         const double clear = approach(at, x, arm, local);
-        if (clear < far) out[n++] = (candidate){(int32_t)i, (float)(clear*(1 - 1e-6)), INFINITY};
+        if (clear < far) out[n++] = (candidate){(int32_t)i, 0, (float)(clear*(1 - 1e-6)), -1};
     }
     return n;
 }
@@ -282,7 +294,7 @@ static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *n
     find_box(at, far, low, high);
     for (int64_t k = 0; k < count_chunks(p->count); k++)
         if (boxes_meet(c->chunk_box[k], low, high, at->step->dimension, c->drift))
-            c->run[runs++] = (struct tobi_contact_run){k, 0, 0};
+            c->run[runs++] = (struct tobi_contact_run){k, 0};
     near->way = near->count = 0;
     if (runs*TOBI_BLOCK > near->room) {
         free(near->list);
@@ -351,52 +363,75 @@ static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *vel
     return k->gap + along*at->step->dt > IDLE*at->step->margin;
 }
 
-/* Contacts of one block of candidates into `found`; returns how many. */
-static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
-                            int64_t block, tobi_contact found[TOBI_BLOCK])
+static void prefetch(const tobi_particles *p, int64_t i)
+{
+    __builtin_prefetch(&p->position[i]);
+    __builtin_prefetch(&p->velocity[i]);
+    if (p->cuts) __builtin_prefetch(&p->cuts[i]);
+}
+
+/* Looks at one candidate; whether it is a contact. */
+static int look(const pose *at, const tobi_particles *p, double way, candidate *one, tobi_contact *out)
 {
     const double slack = 1e-6*at->reach;
+    const int64_t i = one->particle;
+    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    double local[3];
+    *out = (tobi_contact){ .particle = (int32_t)i };
+    bounds known = { approach(at, x, out->arm, local), one->sure - way, way < one->sure ? one->slot : -1 };
+    const int kept = known.slot, touches = known.clear <= at->reach + slack &&
+        (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
+                                    : touch(at, x, local, out, &known)) &&
+        !is_idle(at, out, &p->velocity[i]);
+    one->clear = (float)((known.clear + way)*(1 - 1e-6));
+    if (known.slot != kept) {
+        one->slot = known.slot;
+        one->sure = (float)((way + known.way)*(1 - 1e-6) - slack);
+    }
+    if (!touches) return 0;
+    const double start = fmax(0, -p->velocity[i].w)*at->step->dt;
+    for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
+    return 1;
+}
+
+enum { AHEAD = 8 };                    /* particles that are on their way from memory             */
+
+/* Contacts of one block of candidates into out; returns how many. */
+static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
+                            int64_t block, tobi_contact out[TOBI_BLOCK])
+{
+    const double least = at->reach*(1 + 1e-6) + near->way;
+    int32_t asked[TOBI_BLOCK];
+    int count = 0;
     int64_t n = 0;
-    for (int64_t k = block*TOBI_BLOCK; k < (block + 1)*TOBI_BLOCK && k < near->count; k++) {
-        candidate *one = &near->list[k];
-        if (one->clear - near->way > at->reach + slack) continue;
-        const int64_t i = one->particle;
-        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-        double local[3];
-        tobi_contact *out = &found[n];
-        *out = (tobi_contact){ .particle = (int32_t)i };
-        bounds known = { approach(at, x, out->arm, local), (one->most + near->way)*(1 + 1e-6) + slack };
-        if (known.clear <= at->reach + slack &&
-            (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
-                                        : touch(at, x, local, out, &known)) &&
-            !is_idle(at, out, &p->velocity[i])) {
-            double start = fmax(0, -p->velocity[i].w)*at->step->dt;
-            for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
-            n++;
-        }
-        one->clear = (float)((known.clear + near->way)*(1 - 1e-6));
-        one->most = (float)(known.most - near->way);
+    candidate *list = near->list + block*TOBI_BLOCK;
+    for (int k = 0; k < TOBI_BLOCK && block*TOBI_BLOCK + k < near->count; k++)
+        if (list[k].clear <= least) asked[count++] = k;
+    for (int q = 0; q < count && q < AHEAD; q++) prefetch(p, list[asked[q]].particle);
+    for (int q = 0; q < count; q++) {
+        if (q + AHEAD < count) prefetch(p, list[asked[q + AHEAD]].particle);
+        n += look(at, p, near->way, &list[asked[q]], &out[n]);
     }
     return n;
 }
 
-/* Fills `found` and the runs; returns how many contacts there are, more than `room` if that was too short. */
-static int64_t search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
-                      const tobi_particles *p, tobi_exec *x)
+/* Lists the contacts in the order of the particles. */
+static void search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                   const tobi_particles *p, tobi_exec *x)
 {
     const int64_t runs = count_chunks(near->count);
-    int64_t used = 0;
-    #pragma omp parallel for num_threads(tobi_team(x, runs, 4)) schedule(dynamic, 1)
+    const int team = tobi_team(x, runs, 4);
+    c->count = 0;
+    for (int64_t k = 0; k < runs && team == 1; k++)
+        c->count += search_block(at, p, near, k, c->list + c->count);
+    if (team == 1) return;
+    #pragma omp parallel for num_threads(team) schedule(dynamic, 1)
+    for (int64_t k = 0; k < runs; k++)
+        c->run[k].count = search_block(at, p, near, k, c->list + k*TOBI_BLOCK);
     for (int64_t k = 0; k < runs; k++) {
-        tobi_contact found[TOBI_BLOCK];
-        struct tobi_contact_run *run = &c->run[k];
-        run->count = search_block(at, p, near, k, found);
-        #pragma omp atomic capture
-        { run->first = used; used += run->count; }
-        if (run->first + run->count <= c->room)
-            memcpy(c->found + run->first, found, (size_t)run->count*sizeof *found);
+        memmove(c->list + c->count, c->list + k*TOBI_BLOCK, (size_t)c->run[k].count*sizeof *c->list);
+        c->count += c->run[k].count;
     }
-    return used;
 }
 
 static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
@@ -405,11 +440,9 @@ static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
     int64_t room = count + count/4 + 1024, parts = count_chunks(room);
     tobi_contact *list = realloc(c->list, (size_t)room*sizeof *list);
     if (list) c->list = list;
-    tobi_contact *found = realloc(c->found, (size_t)room*sizeof *found);
-    if (found) c->found = found;
     double *partial = realloc(c->partial, (size_t)parts*TOBI_CONTACT_SUMS*sizeof *partial);
     if (partial) c->partial = partial;
-    if (!list || !found || !partial) return fail_memory(room, err);
+    if (!list || !partial) return fail_memory(room, err);
     c->room = room;
     return TOBI_OK;
 }
@@ -450,13 +483,9 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     find_pose(b, step, &at);
     tobi_blade_bring(b, step->dimension);
     TOBI_TRY(find_candidates(c, near, &at, p, x, err));
-    while ((c->count = search(c, near, &at, p, x)) > c->room) TOBI_TRY(make_room(c, c->count, err));
+    TOBI_TRY(make_room(c, (count_chunks(near->count) + 1)*TOBI_BLOCK, err));
+    search(c, near, &at, p, x);
     TOBI_TRY(reserve_shifts(c, err));
-    int64_t n = 0;
-    for (int64_t k = 0; k < count_chunks(near->count); k++) {  /* in this order, whoever was first */
-        memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
-        n += c->run[k].count;
-    }
     memcpy(c->velocity, b->rigid.velocity, sizeof c->velocity);
     memcpy(c->spin, b->rigid.angular_velocity, sizeof c->spin);
     return TOBI_OK;
