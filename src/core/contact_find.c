@@ -11,6 +11,10 @@
 
 static const double IDLE = 0.05;
 
+/* fmax is a call. */
+static double larger(double a, double b) { return a > b ? a : b; }
+static double smaller(double a, double b) { return a < b ? a : b; }
+
 /* Less `way` of its list, clear is what the particle is at least outside the surface, m. Until that way is
    `sure`, the triangle of this slot of the tree is nearest to it and no other as near. */
 typedef struct candidate { int32_t particle, slot; float clear, sure; } candidate;
@@ -117,18 +121,21 @@ static void find_box(const pose *at, double more, double low[3], double high[3])
     }
 }
 
-/* x (m, from the domain's corner) about the body's centre, in world and in rest axes; and how far it is at
-   least from the mesh, by its box, m. */
-static double approach(const pose *at, const double x[3], double arm[3], double local[3])
+/* x (m, from the domain's corner) about the body's centre, in world and in rest axes. */
+static void approach(const pose *at, const double x[3], double arm[3], double local[3])
 {
-    const int deforms = at->body->deforms;
-    double square = 0;
     vec3_sub(arm, x, at->body->rigid.position);
     for (int a = 0; a < 3; a++)
         local[a] = at->matrix[0][a]*arm[0] + at->matrix[1][a]*arm[1] + at->matrix[2][a]*arm[2];
+}
+
+/* How far a particle is at least from the mesh, by its box, m. */
+static double find_outside(const pose *at, const double x[3], const double local[3])
+{
+    const double *from = at->body->deforms ? x : local;
+    double square = 0;
     for (int a = 0; a < at->step->dimension; a++) {
-        const double v = deforms ? x[a] : local[a];
-        const double below = at->box[0][a] - v, above = v - at->box[1][a];
+        const double below = at->box[0][a] - from[a], above = from[a] - at->box[1][a];
         const double d = below > above ? below : above;
         square += d > 0 ? d*d : 0;
     }
@@ -191,17 +198,17 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
 {
     const tobi_body *b = at->body;
     tobi_bvh_hit hit;
-    const double far = fmax(at->reach, at->step->reach), farther = far + at->step->reach;
+    const double far = larger(at->reach, at->step->reach), farther = far + at->step->reach;
     double *clear = &known->clear;
     if (!find_closest(at, x, local, far, known, &hit)) {
         /* Outside its box nobody is inside the body. */
-        if (*clear > 0) *clear = fmax(*clear, far);
+        if (*clear > 0) *clear = larger(*clear, far);
         else if (!find_closest(at, x, local, farther, known, &hit)) *clear = farther - far + at->reach;
         else *clear = hit.signed_distance > 0 ? hit.distance : hit.distance - far + at->reach;
         return 0;
     }
     out->gap = hit.signed_distance - at->step->radius;
-    *clear = fmax(*clear, hit.signed_distance);
+    *clear = larger(*clear, hit.signed_distance);
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
@@ -216,12 +223,12 @@ static double find_inside(const pose *at, const double local[3], const tobi_blad
 {
     const tobi_blade_edge *e = at->body->edge_now;
     const double reach = at->step->reach;
-    if (!at->plain) return fmin(0, sqrt(2)*reach - place->far);
-    double from[3], inside = fmin(reach - fabs(place->aside), reach - fabs(place->ahead));
+    if (!at->plain) return smaller(0, sqrt(2)*reach - place->far);
+    double from[3], inside = smaller(reach - fabs(place->aside), reach - fabs(place->ahead));
     if (at->step->dimension == 2) return inside;
     vec3_sub(from, local, e->from);
     const double way = vec3_dot(from, e->along);
-    return fmin(inside, fmin(way, e->length - way));
+    return smaller(inside, smaller(way, e->length - way));
 }
 
 /* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
@@ -243,13 +250,13 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
     int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
     const double inside = find_inside(at, local, &place);
     if (!side && near) {
-        known->clear = fmax(known->clear, inside + 2*radius);
+        known->clear = larger(known->clear, inside + 2*radius);
         return 0;
     }
     if (!touch(at, x, local, out, known)) return 0;
     double normal[3], free = out->gap + radius - depth;    /* what the gap below is at least */
-    if (side) free = fmin(free, at->plain ? fmax(side*place.aside - depth, -inside) : -inside);
-    known->clear = fmax(known->clear, free + 2*radius);
+    if (side) free = smaller(free, at->plain ? larger(side*place.aside - depth, -inside) : -inside);
+    known->clear = larger(known->clear, free + 2*radius);
     for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
     if (near && vec3_dot(normal, out->normal) < 0.2) {
         if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
@@ -271,7 +278,8 @@ static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk
         int outside = 0;
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
         if (outside) continue;
-        const double clear = approach(at, x, arm, local);
+        approach(at, x, arm, local);
+        const double clear = find_outside(at, x, local);
         if (clear < far) out[n++] = (candidate){(int32_t)i, 0, (float)(clear*(1 - 1e-6)), -1};
     }
     return n;
@@ -326,7 +334,7 @@ static double find_way(const pose *at, struct tobi_contact_near *near)
         turn += change*change;
     }
     for (int a = 0; a < 3; a++) {
-        const double most = fmax(fabs(at->box[0][a]), fabs(at->box[1][a]));
+        const double most = larger(fabs(at->box[0][a]), fabs(at->box[1][a]));
         size += most*most;
     }
     memcpy(near->position, r->position, sizeof near->position);
@@ -378,7 +386,9 @@ static int look(const pose *at, const tobi_particles *p, double way, candidate *
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     double local[3];
     *out = (tobi_contact){ .particle = (int32_t)i };
-    bounds known = { approach(at, x, out->arm, local), one->sure - way, way < one->sure ? one->slot : -1 };
+    approach(at, x, out->arm, local);
+    bounds known = { one->clear - way, one->sure - way, way < one->sure ? one->slot : -1 };
+    if (known.slot < 0) known.clear = find_outside(at, x, local);
     const int kept = known.slot, touches = known.clear <= at->reach + slack &&
         (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
                                     : touch(at, x, local, out, &known)) &&
@@ -389,7 +399,7 @@ static int look(const pose *at, const tobi_particles *p, double way, candidate *
         one->sure = (float)((way + known.way)*(1 - 1e-6) - slack);
     }
     if (!touches) return 0;
-    const double start = fmax(0, -p->velocity[i].w)*at->step->dt;
+    const double start = larger(0, -p->velocity[i].w)*at->step->dt;
     for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
     return 1;
 }

@@ -99,11 +99,12 @@ static void join(mpm_packs *p, const mpm_pack_entries *e, const mpm_pack_run *ru
 
 static void spread_weights(const mpm_packs *p, const mpm_pack_entries *e, const mpm_pack *at)
 {
+    static const float none[54] = { 0 };
+    const float *from[4];
     float *to = p->weight + at->weight;
-    for (int lane = 0; lane < 4; lane++) {
-        const float *from = e->weight + entry_of(e, at->contact[lane]);
-        for (int n = 0; n < at->count; n++) to[4*n + lane] = lane < at->used ? from[n] : 0;
-    }
+    for (int k = 0; k < 4; k++) from[k] = k < at->used ? e->weight + entry_of(e, at->contact[k]) : none;
+    for (int n = 0; n < at->count; n++)
+        for (int k = 0; k < 4; k++) to[4*n + k] = from[k][n];
 }
 
 tobi_status mpm_packs_make(mpm_packs *p, const mpm_pack_entries *e, const int32_t *particle, size_t stride,

@@ -28,12 +28,13 @@ typedef struct mpm_pack_view {
 TOBI_FN void mpm_pack_crowd(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
-    for (int n = 0; n < p->count; n++) {
-        const int64_t at = v->node[p->node + n];
-        quad w = quad_load(v->weight + p->weight + 4*n);
-        mpm_yield *y = &v->yield[at];
-        if (y->crowd == 0) y->inverse = v->velocity[at].w > 0 ? 1/v->velocity[at].w : 0;
-        y->crowd += (w[0] + w[1] + w[2] + w[3])*y->inverse;
+    const uint32_t *node = v->node + p->node;
+    const float *weight = v->weight + p->weight;
+    const int count = p->count;
+    for (int n = 0; n < count; n++, weight += 4) {
+        mpm_yield *y = &v->yield[node[n]];
+        if (y->crowd == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
+        y->crowd += ((weight[0] + weight[1]) + (weight[2] + weight[3]))*y->inverse;
     }
 }
 
@@ -42,9 +43,12 @@ TOBI_FN void mpm_pack_crowd(const mpm_pack_view *v, int64_t number)
 TOBI_FN void mpm_pack_answer(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
+    const uint32_t *node = v->node + p->node;
+    const float *weight = v->weight + p->weight;
+    const int count = p->count;
     quad sum = quad_set(0);
-    for (int n = 0; n < p->count; n++)
-        sum = sum + quad_load(v->weight + p->weight + 4*n)*quad_set(v->yield[v->node[p->node + n]].crowd);
+    for (int n = 0; n < count; n++, weight += 4)
+        sum = sum + quad_load(weight)*quad_set(v->yield[node[n]].crowd);
     for (int k = 0; k < p->used; k++) v->moving[p->contact[k]].w = sum[k];
 }
 
@@ -52,18 +56,23 @@ TOBI_FN void mpm_pack_answer(const mpm_pack_view *v, int64_t number)
 TOBI_FN void mpm_pack_forget(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
-    for (int n = 0; n < p->count; n++) v->yield[v->node[p->node + n]].crowd = 0;
+    const uint32_t *node = v->node + p->node;
+    const int count = p->count;
+    for (int n = 0; n < count; n++) v->yield[node[n]].crowd = 0;
 }
 
 TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
+    const uint32_t *node = v->node + p->node;
+    const float *weight = v->weight + p->weight;
+    const int count = p->count;
     row u[3] = {row_set(0), row_set(0), row_set(0)};
     tobi_float4 out[4];
-    for (int n = 0; n < p->count; n += 3)
+    for (int n = 0; n < count; n += 3)
         for (int k = 0; k < 3; k++)
-            u[k] = row_fma(row_spread(quad_load(v->weight + p->weight + 4*(n + k))),
-                           row_repeat(quad_load(&v->velocity[v->node[p->node + n + k]])), u[k]);
+            u[k] = row_fma(row_spread(quad_load(weight + 4*(n + k))),
+                           row_repeat(quad_load(&v->velocity[node[n + k]])), u[k]);
     row_store(out, row_add(row_add(u[0], u[1]), u[2]));
     for (int k = 0; k < p->used; k++) v->moving[p->contact[k]] = out[k];
 }
@@ -71,13 +80,16 @@ TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)
 TOBI_FN void mpm_pack_push(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
+    const uint32_t *node = v->node + p->node;
+    const float *weight = v->weight + p->weight;
+    const int count = p->count;
     tobi_float4 in[4];
     for (int k = 0; k < 4; k++) in[k] = v->push[p->contact[k]];
     const row push = row_load(in);
-    for (int n = 0; n < p->count; n++) {
-        const int64_t at = v->node[p->node + n];
-        const quad sum = row_fold(row_mul(row_spread(quad_load(v->weight + p->weight + 4*n)), push));
-        quad_store(&v->velocity[at], quad_load(&v->velocity[at]) + sum*quad_set(v->yield[at].inverse));
+    for (int n = 0; n < count; n++, weight += 4) {
+        tobi_float4 *to = &v->velocity[node[n]];
+        const quad sum = row_fold(row_mul(row_spread(quad_load(weight)), push));
+        quad_store(to, quad_load(to) + sum*quad_set(v->yield[node[n]].inverse));
     }
 }
 
