@@ -50,18 +50,19 @@ static double find_lack(const tobi_contact *k, double along, double dt)
 static void find_change(tobi_contact *k, const tobi_contacts *c, double friction, double dt, double pace)
 {
     double relative[3], wanted[3], normal, slide[3];
+    const double mass = pace/k->mobility;
     find_relative(k, c->velocity, c->spin, relative);
     double along = vec3_dot(relative, k->normal), lack = find_lack(k, along, dt);
-    normal = larger(0, vec3_dot(k->impulse, k->normal) + lack*pace/k->mobility);
+    normal = larger(0, vec3_dot(k->impulse, k->normal) + lack*mass);
     for (int a = 0; a < 3; a++) {
         double sliding = relative[a] - along*k->normal[a];
-        wanted[a] = k->impulse[a] - sliding*pace/k->mobility;
+        wanted[a] = k->impulse[a] - sliding*mass;
     }
     vec3_add_scaled(slide, wanted, -vec3_dot(wanted, k->normal), k->normal);
     double size = vec3_length(slide), grip = friction*normal;
     k->sliding = size > grip;
-    for (int a = 0; a < 3; a++)
-        k->change[a] = normal*k->normal[a] + (k->sliding ? slide[a]*grip/size : slide[a]) - k->impulse[a];
+    const double keep = k->sliding ? grip/size : 1;
+    for (int a = 0; a < 3; a++) k->change[a] = normal*k->normal[a] + keep*slide[a] - k->impulse[a];
 }
 
 /* The same of an edge: it holds the material within the plane of the cut as long as the force, which then

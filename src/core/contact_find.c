@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double IDLE = 0.05;
+static const double IDLE = 0.01;
 
 /* fmax is a call. */
 static double larger(double a, double b) { return a > b ? a : b; }

@@ -45,7 +45,7 @@ static tobi_status reserve_weights(mpm_packs *p, int64_t contacts, tobi_error *e
 
 static int64_t entry_of(const mpm_pack_entries *e, int64_t k)
 {
-    return k < e->edge_first ? k*e->each : (2*k - e->edge_first)*e->each;
+    return k < e->edge_first ? k*e->each : e->edge_first*e->each + (k - e->edge_first)*e->edge_each;
 }
 
 /* Tiles of blocks that are not neighbours share no nodes. */
@@ -99,7 +99,7 @@ static void join(mpm_packs *p, const mpm_pack_entries *e, const mpm_pack_run *ru
 
 static void spread_weights(const mpm_packs *p, const mpm_pack_entries *e, const mpm_pack *at)
 {
-    static const float none[54] = { 0 };
+    static const float none[MPM_PACK_NODES] = { 0 };
     const float *from[4];
     float *to = p->weight + at->weight;
     for (int k = 0; k < 4; k++) from[k] = k < at->used ? e->weight + entry_of(e, at->contact[k]) : none;

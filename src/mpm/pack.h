@@ -11,7 +11,8 @@ typedef struct mpm_pack_run {
     int colour;                        /* those of one colour share no nodes                       */
 } mpm_pack_run;
 
-enum { MPM_PACK_COLOURS = 9 };         /* one block in two along each axis, and the edge           */
+enum { MPM_PACK_COLOURS = 9,           /* one block in two along each axis, and the edge           */
+       MPM_PACK_NODES = 216 };         /* of a contact at most: 27, each with up to 8 velocities   */
 
 typedef struct mpm_packs {
     mpm_pack *pack;                    /* by colour                                                */
@@ -21,12 +22,11 @@ typedef struct mpm_packs {
     int64_t colour[MPM_PACK_COLOURS + 1];  /* where its runs begin                                 */
 } mpm_packs;
 
-/* What is packed: the entries of contact k, its nodes and weights, begin at k times each, those of the edge
-   from contact edge_first on and twice as long. */
+/* What is packed: `each` nodes and weights of every contact, edge_each of those from edge_first on. */
 typedef struct mpm_pack_entries {
     const uint32_t *node;
     const float *weight;
-    int64_t contacts, edge_first, each;
+    int64_t contacts, edge_first, each, edge_each;
 } mpm_pack_entries;
 
 /* particle: of each contact before edge_first, in rising order. */

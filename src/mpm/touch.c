@@ -239,7 +239,8 @@ static mpm_pack_view view_packs(const mpm_touch *t, const mpm_grid *g)
 static tobi_status pack_contacts(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_error *err)
 {
     const mpm_pack_entries e = { .node = t->node, .weight = t->weight, .contacts = c->count,
-                                 .edge_first = t->edge_first, .each = nodes_each(g) };
+                                 .edge_first = t->edge_first, .each = nodes_each(g),
+                                 .edge_each = 2*nodes_each(g) };
     return mpm_packs_make(&t->packs, &e, &c->list->particle, sizeof *c->list, g, err);
 }
 
