@@ -326,8 +326,17 @@ static void give_to_body(tobi_body *b, const outcome *total, double dt)
         b->info.viscous_force[a] = total->friction[a]/dt;
         b->info.viscous_torque[a] = total->friction[3 + a]/dt;
         b->info.edge_force[a] = total->edge[a]/dt;
-        b->rigid.edge_share[a] = total->edge_limit > 0 ? -total->edge[a]/total->edge_limit : 0;
     }
+}
+
+static void remember_edge(const tobi_contacts *c, tobi_body *b, const outcome *total)
+{
+    const double limit = total->edge_limit;
+    for (int64_t n = 0; n < b->piece_count; n++)
+        for (int a = 0; a < 3; a++) b->edge_share[n][a] = limit > 0 ? -total->edge[a]/limit : 0;
+    for (int64_t n = c->count - 1; n >= 0 && c->list[n].particle < 0; n--)
+        for (int a = 0; a < 3; a++)
+            b->edge_share[-1 - c->list[n].particle][a] = c->list[n].impulse[a]/c->list[n].limit;
 }
 
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
@@ -340,6 +349,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     work->friction += total.rubbing;
     work->bodies += total.fracture + total.rubbing + total.material;
     give_to_body(b, &total, step->dt);
+    remember_edge(c, b, &total);
     b->rigid.span = find_span(b, &total, step);
     /* Touched, it moves as it will, or a resting body would fall into the material in every step. */
     if (b->rigid.kind != TOBI_PRESCRIBED && total.pushing > 0)

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double IDLE = 0.01;
+static const double IDLE = 0.02;
 
 /* fmax is a call. */
 static double larger(double a, double b) { return a > b ? a : b; }
@@ -508,10 +508,12 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
     double local[3], turn[3][3];
     TOBI_TRY(make_room(c, c->count + 1, err));
     tobi_contact *k = &c->list[c->count++];
-    *k = (tobi_contact){ .particle = -1, .limit = full*b->edge_resistance*piece->length*step->dt };
+    *k = (tobi_contact){ .particle = -1 - piece->number,
+                         .limit = full*b->edge_resistance*piece->length*step->dt };
     memcpy(k->normal, piece->normal, sizeof k->normal);
     memcpy(k->ahead, piece->ahead, sizeof k->ahead);
-    vec3_add_scaled(k->change, b->rigid.edge_share, -vec3_dot(b->rigid.edge_share, k->normal), k->normal);
+    const double *share = b->edge_share[piece->number];
+    vec3_add_scaled(k->change, share, -vec3_dot(share, k->normal), k->normal);
     for (int a = 0; a < 3; a++) k->change[a] *= k->limit;
     vec3_sub(k->arm, piece->middle, b->rigid.position);
     if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;

@@ -248,7 +248,8 @@ static inline int find_nearest(const tobi_bvh *b, const double p[3], double max_
     stacked stack[BVH_STACK];
     float local[3];
     const double *limit2 = two ? &best->others2 : &best->distance2;
-    *best = (nearest){.distance2 = max_distance*max_distance, .others2 = max_distance*max_distance, .slot = -1};
+    *best = (nearest){.distance2 = max_distance*max_distance, .slot = -1};
+    best->others2 = best->distance2;
     for (int k = 0; k < 3; k++) local[k] = (float)(p[k] - b->origin[k]);
     int top = push_children(&b->nodes[0], local, *limit2, stack, 0);
     while (top) {

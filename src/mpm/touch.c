@@ -182,7 +182,7 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
 
 /* Lists the pieces of a blade's edge that lie in material, and their surroundings in the same order. The
    share rises from 0 to 1 within half a cell across the surface. */
-static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
+static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     const double size = 2*step->radius;
@@ -196,6 +196,7 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b
         if (!t->piece_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
+    TOBI_TRY(tobi_blade_recall(b, count, err));
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
         if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, s)) continue;
