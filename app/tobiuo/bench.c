@@ -209,7 +209,7 @@ int tobiuo_bench(int argc, char **argv)
                "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
                "  fish    the flying fish at --spacing, --steps steps\n"
                "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
-               "  cut     a ball that a blade is half through, and the same without, a minute\n"
+               "  cut     a ball that a blade goes through, and the same without, half a minute\n"
                "  bodies  200 rigid boxes fall into a bin, seconds\n"
                "\nTimes are wall clock; run it on a machine that does nothing else."
     };

@@ -47,7 +47,8 @@ typedef struct bench_run {
     bench_result result;
 } bench_run;
 
-/* bench_measure.c. All return 0 or an exit code after a complaint; bench_end frees, always. */
+/* bench_measure.c. All return 0 or an exit code after a complaint; bench_end frees, always. steps: at most;
+   0 = any number, and no median. */
 int bench_settle(tobi_world *world, int steps);
 int bench_begin(bench_run *run, tobi_world *world, int steps);
 int bench_step(bench_run *run);

@@ -1,5 +1,5 @@
-/* A ball that a blade is half through, against the same ball alone: what cutting and contact cost. The two
-   take turns, so that other programs cost both the same. */
+/* A ball that a blade goes through, against the same ball alone: what cutting and contact cost over the whole
+   pass, and half way, where they cost most. The two take turns, so that other programs cost both the same. */
 #include "bench.h"
 #include <stdio.h>
 #include <string.h>
@@ -63,8 +63,7 @@ static tobi_world *make_ball(const bench_options *o, int cut)
     fill.centre[2] = RADIUS;
     if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK ||
         tobi_world_add_solid(world, &solid, &fill, 1, &err) != TOBI_OK ||
-        (cut && tobi_world_add_body(world, &blade, &err) != TOBI_OK) ||
-        tobi_world_advance(world, (START + RADIUS)/SPEED, NULL, &err) != TOBI_OK) {
+        (cut && tobi_world_add_body(world, &blade, &err) != TOBI_OK)) {
         complain("%s", err.text);
         tobi_world_destroy(world);
         return NULL;
@@ -72,36 +71,63 @@ static tobi_world *make_ball(const bench_options *o, int cut)
     return world;
 }
 
-static void print_cost(const bench_run run[2])
+enum { BEFORE, HALF, AFTER, PARTS };
+
+/* Steps both balls in turn to a time, or, time 0, a number of steps. */
+static int step_both(bench_run run[2], tobi_world *world[2], double time, int steps)
 {
-    double cost[2];
-    for (int k = 0; k < 2; k++) {
-        const bench_result *r = &run[k].result;
-        cost[k] = r->processor/r->steps*1e9/(double)r->particles;
-        printf("%s%.1f ns of processor time per particle and step\n", k ? "half cut               "
-                                                                        : "alone                  ", cost[k]);
+    int failed = 0, left = 2;
+    for (int k = 0; k < 2 && !failed; k++) failed = bench_begin(&run[k], world[k], steps);
+    for (int n = 0; left > 0 && !failed; n++) {
+        left = 0;
+        for (int k = 0; k < 2 && !failed; k++) {
+            if (time > 0 ? tobi_world_time(world[k]) >= time : n == steps) continue;
+            failed = bench_step(&run[k]);
+            left++;
+        }
     }
-    printf("cutting and contact    %.0f %% of a step without them\n", 100*(cost[1]/cost[0] - 1));
-    bench_print_stages(&run[1]);
-    printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(run[1].world));
+    for (int k = 0; k < 2; k++) bench_end(&run[k]);
+    return failed;
+}
+
+/* ns of processor time per particle and step, of the parts from first to last. */
+static double find_cost(bench_run run[PARTS][2], int first, int last, int cut)
+{
+    double seconds = 0, items = 0;
+    for (int part = first; part <= last; part++) {
+        const bench_result *r = &run[part][cut].result;
+        seconds += r->processor;
+        items += (double)r->particles*r->steps;
+    }
+    return 1e9*seconds/items;
+}
+
+static void print_cost(const char *when, bench_run run[PARTS][2], int first, int last)
+{
+    const double alone = find_cost(run, first, last, 0), cut = find_cost(run, first, last, 1);
+    printf("%-22s %.1f ns of processor time per particle and step, alone %.1f: %.0f %% more\n", when, cut,
+           alone, 100*(cut/alone - 1));
 }
 
 int bench_cut(const bench_options *o)
 {
     int steps = o->steps ? o->steps : 400, failed = 0;
-    bench_run run[2] = { 0 };
-    for (int k = 0; k < 2 && !failed; k++) {
-        tobi_world *world = make_ball(o, k);
-        failed = world ? bench_begin(&run[k], world, steps) : EXIT_ERROR;
+    bench_run run[PARTS][2] = { 0 };
+    tobi_world *world[2] = { 0 };
+    for (int k = 0; k < 2 && !failed; k++) failed = (world[k] = make_ball(o, k)) ? 0 : EXIT_ERROR;
+    if (!failed) failed = step_both(run[BEFORE], world, (START + RADIUS)/SPEED, 0);
+    if (!failed) failed = step_both(run[HALF], world, 0, steps);
+    const uint64_t half = failed ? 0 : tobi_world_hash(world[1]);
+    if (!failed) failed = step_both(run[AFTER], world, 2*(START + RADIUS)/SPEED, 0);
+    if (!failed) {
+        printf("case                   ball of 78 mm by mlsmpm, %lld particles, cut by 3 mm at %g m/s\n",
+               (long long)tobi_world_count(world[1], TOBI_FLUID), SPEED);
+        print_cost("whole pass", run, BEFORE, AFTER);
+        print_cost("while half cut", run, HALF, HALF);
+        bench_print_stages(&run[HALF][1]);
+        printf("state                  %016llx half cut, %016llx at the end\n", (unsigned long long)half,
+               (unsigned long long)tobi_world_hash(world[1]));
     }
-    if (!failed)
-        printf("case                   ball of 78 mm by mlsmpm, %lld particles, cut half through by 3 mm\n",
-               (long long)tobi_world_count(run[1].world, TOBI_FLUID));
-    fflush(stdout);
-    for (int n = 0; n < steps && !failed; n++)
-        for (int k = 0; k < 2 && !failed; k++) failed = bench_step(&run[k]);
-    for (int k = 0; k < 2; k++) bench_end(&run[k]);
-    if (!failed) print_cost(run);
-    for (int k = 0; k < 2; k++) tobi_world_destroy(run[k].world);
+    for (int k = 0; k < 2; k++) tobi_world_destroy(world[k]);
     return failed;
 }

@@ -74,8 +74,8 @@ int bench_begin(bench_run *run, tobi_world *world, int steps)
     memset(run, 0, sizeof *run);
     run->world = world;
     run->up = 2;
-    run->step_seconds = calloc((size_t)steps, sizeof *run->step_seconds);
-    if (!run->step_seconds) return complain("out of memory");
+    if (steps > 0) run->step_seconds = calloc((size_t)steps, sizeof *run->step_seconds);
+    if (steps > 0 && !run->step_seconds) return complain("out of memory");
     run->result.peak_rss = bench_peak_rss();
     read_stages(world, &run->before);
     return 0;
@@ -91,7 +91,7 @@ int bench_step(bench_run *run)
     double seconds = wall_clock() - since;
     r->processor += (double)(clock() - processor) / CLOCKS_PER_SEC;
     r->seconds += seconds;
-    run->step_seconds[r->steps] = seconds;
+    if (run->step_seconds) run->step_seconds[r->steps] = seconds;
     const tobi_step_info *info = tobi_world_info(run->world);      /* sums energies: not part of a step */
     r->particles = info->fluid_particles;
     add_step(r, info, run->up);
@@ -102,8 +102,10 @@ void bench_end(bench_run *run)
 {
     bench_result *r = &run->result;
     if (r->steps > 0) {
-        qsort(run->step_seconds, (size_t)r->steps, sizeof *run->step_seconds, compare);
-        r->median = run->step_seconds[r->steps / 2];
+        if (run->step_seconds) {
+            qsort(run->step_seconds, (size_t)r->steps, sizeof *run->step_seconds, compare);
+            r->median = run->step_seconds[r->steps / 2];
+        }
         read_stages(run->world, &run->stages);
         finish(r, &run->stages, &run->before);
     }

@@ -14,12 +14,13 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return parse_scene_option(state, key, value, &o->set, &o->scene);
 }
 
-/* The step that the stiffness of solids allows; without solids what the CFL condition allows at the speed of
-   a fall through the domain, the fastest that gravity alone can make: a run is seldom slower than this.
-   Without gravity there is no guess. */
-static double guess_step(const tobi_world_def *d, double stable)
+/* The step that the stiffness of solids or sound allow; without either what the CFL condition allows at the
+   speed of a fall through the domain, the fastest that gravity alone can make: a run is seldom slower than
+   this. Without gravity there is no guess. */
+static double guess_step(const tobi_world_def *d, double stable, int solids)
 {
-    if (d->time_step > 0.0) return stable > 0.0 ? d->time_step / ceil(d->time_step / stable) : d->time_step;
+    if (d->time_step > 0.0)
+        return solids && stable > 0.0 ? d->time_step / ceil(d->time_step / stable) : d->time_step;
     if (stable > 0.0) return d->time_step_max > 0.0 ? fmin(d->time_step_max, stable) : stable;
     double work = 0.0;
     for (int a = 0; a < d->dimension; a++)
@@ -48,7 +49,7 @@ static void print_scene(const tobi_scene *scene, const tobi_world *world)
     printf("domain           %g %g %g  to  %g %g %g m\n", low[0], low[1], low[2], high[0], high[1],
            high[2]);
     printf("spacing          %g m\n", d->spacing);
-    double step = guess_step(d, tobi_world_stable_step(world));
+    double step = guess_step(d, tobi_world_stable_step(world), tobi_world_solid_count(world));
     if (step > 0.0)
         printf("time step        %s%.3g s, about %.9g steps to %g s\n",
                d->time_step > 0.0 ? "" : "about ", step, ceil(d->end_time / step), d->end_time);

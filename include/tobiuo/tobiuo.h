@@ -81,8 +81,8 @@ TOBI_API tobi_status tobi_world_body(const tobi_world *world, int body, tobi_bod
 TOBI_API const char *tobi_world_body_name(const tobi_world *world, int body);
 TOBI_API int     tobi_world_solid_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_solid(const tobi_world *world, int solid, tobi_solid_info *info);
-/* The longest step that the stiffness of the solids and their speed at the start allow, s; 0 = there are
-   none. */
+/* The longest step that the stiffness of the solids, or the sound of wcsph, and the speed at the start allow,
+   s; 0 = there is neither. */
 TOBI_API double  tobi_world_stable_step(const tobi_world *world);
 TOBI_API int     tobi_world_probe_count(const tobi_world *world);
 TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_info *info, tobi_error *err);

@@ -1,6 +1,7 @@
 #include "core/blade.h"
 #include "geom/vec3.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Where an edge cuts to, in rest axes. A tagged one cuts where it goes: 0 if it stands still. */
@@ -104,6 +105,7 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
             if (count >= room) continue;
             tobi_blade_piece *p = &out[count];
             p->length = e->length/(double)parts;
+            p->number = (int32_t)count;
             vec3_add_scaled(middle, e->from, dimension == 2 ? 0 : ((double)n + 0.5)*p->length, e->along);
             if (dimension == 2) middle[2] = 0;
             for (int a = 0; a < 3; a++) {
@@ -114,4 +116,14 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
         }
     }
     return count;
+}
+
+tobi_status tobi_blade_recall(tobi_body *b, int64_t count, tobi_error *err)
+{
+    if (count == b->piece_count) return TOBI_OK;
+    free(b->edge_share);
+    b->edge_share = calloc((size_t)count + 1, sizeof *b->edge_share);
+    b->piece_count = b->edge_share ? count : 0;
+    if (b->edge_share) return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
 }

@@ -15,6 +15,7 @@ typedef struct tobi_blade_place {
 typedef struct tobi_blade_piece {
     double middle[3];                  /* m, from the domain's corner                             */
     double length;                     /* m; in 2-D 1, per metre of depth                         */
+    int32_t number;
     double ahead[3], normal[3];        /* direction of cutting, normal of the cut                 */
 } tobi_blade_piece;
 
@@ -31,3 +32,5 @@ void tobi_blade_box(const tobi_body *b, double reach, double low[3], double high
    writes the first `room` of them. */
 int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_blade_piece *out,
                           int64_t room);
+/* Makes room for what `count` pieces pushed with, 0 if that was another number before. */
+tobi_status tobi_blade_recall(tobi_body *b, int64_t count, tobi_error *err);

@@ -401,6 +401,7 @@ void tobi_body_free(tobi_body *b)
     free(b->rest_vertex);
     free(b->edge);
     free(b->edge_now);
+    free(b->edge_share);
     tobi_bvh_free(b->rest_bvh);
     memset(b, 0, sizeof *b);
 }

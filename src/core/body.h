@@ -29,6 +29,10 @@ typedef struct tobi_body {
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */
     int64_t edge_count;
     tobi_blade_edge *edge_now;       /* [edge_count], by tobi_blade_bring                      */
+    double (*edge_share)[3];         /* [piece_count] 1: what each piece of the edge pushed the material with
+                                        in the last step, over the most that it can; the mean of all where
+                                        there is no material                                   */
+    int64_t piece_count;
     double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
     double spacing;                  /* m, of the body's own particles                         */

@@ -11,6 +11,9 @@ _Static_assert(SUMS == MATRIX + 6, "a matrix and a vector of six");
    go with it. */
 static const double PACE = 1.4;
 
+/* fmax is a call. */
+static double larger(double a, double b) { return a > b ? a : b; }
+
 static int64_t count_parts(const tobi_contacts *c) { return (c->count + TOBI_BLOCK - 1)/TOBI_BLOCK; }
 
 /* Velocity of the material relative to the surface, for velocities of the body. */
@@ -39,7 +42,7 @@ void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_s
 /* By how much the velocity must change along the normal, if at all. */
 static double find_lack(const tobi_contact *k, double along, double dt)
 {
-    double allowed = k->bounce > 0 ? k->bounce : -fmax(k->gap, 0)/dt;
+    double allowed = k->bounce > 0 ? k->bounce : -larger(k->gap, 0)/dt;
     return allowed - along;
 }
 
@@ -47,18 +50,19 @@ static double find_lack(const tobi_contact *k, double along, double dt)
 static void find_change(tobi_contact *k, const tobi_contacts *c, double friction, double dt, double pace)
 {
     double relative[3], wanted[3], normal, slide[3];
+    const double mass = pace/k->mobility;
     find_relative(k, c->velocity, c->spin, relative);
     double along = vec3_dot(relative, k->normal), lack = find_lack(k, along, dt);
-    normal = fmax(0, vec3_dot(k->impulse, k->normal) + lack*pace/k->mobility);
+    normal = larger(0, vec3_dot(k->impulse, k->normal) + lack*mass);
     for (int a = 0; a < 3; a++) {
         double sliding = relative[a] - along*k->normal[a];
-        wanted[a] = k->impulse[a] - sliding*pace/k->mobility;
+        wanted[a] = k->impulse[a] - sliding*mass;
     }
     vec3_add_scaled(slide, wanted, -vec3_dot(wanted, k->normal), k->normal);
     double size = vec3_length(slide), grip = friction*normal;
     k->sliding = size > grip;
-    for (int a = 0; a < 3; a++)
-        k->change[a] = normal*k->normal[a] + (k->sliding ? slide[a]*grip/size : slide[a]) - k->impulse[a];
+    const double keep = k->sliding ? grip/size : 1;
+    for (int a = 0; a < 3; a++) k->change[a] = normal*k->normal[a] + keep*slide[a] - k->impulse[a];
 }
 
 /* The same of an edge: it holds the material within the plane of the cut as long as the force, which then
@@ -70,7 +74,7 @@ static void find_edge_change(tobi_contact *k, const tobi_contacts *c, double pac
     vec3_add_scaled(relative, relative, -vec3_dot(relative, k->normal), k->normal);
     vec3_add_scaled(wanted, k->impulse, -pace/k->mobility, relative);
     double size = vec3_length(wanted);
-    double most = size > 0 ? k->limit*fmax(0, vec3_dot(wanted, k->ahead)/size) : 0;
+    double most = size > 0 ? k->limit*larger(0, vec3_dot(wanted, k->ahead)/size) : 0;
     k->sliding = size > most;
     for (int a = 0; a < 3; a++)
         k->change[a] = (k->sliding && size > 0 ? wanted[a]*most/size : wanted[a]) - k->impulse[a];
@@ -99,7 +103,7 @@ static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt
     const int edge = k->particle < 0, stick = !k->sliding;
     double lack = find_lack(k, vec3_dot(relative, k->normal), dt);
     if (edge ? !stick : vec3_dot(k->impulse, k->normal) + lack/k->mobility <= 0) return;
-    double allowed = k->bounce > 0 || edge ? k->bounce : -fmax(k->gap, 0)/dt;
+    double allowed = k->bounce > 0 || edge ? k->bounce : -larger(k->gap, 0)/dt;
     for (int r = 0; r < 3; r++)
         for (int n = 0; n < 3; n++)
             p[r][n] = ((edge ? -1 : !stick)*k->normal[r]*k->normal[n] + (r == n && stick))/k->mobility;
@@ -204,10 +208,10 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
         if (!first && k->particle < 0) find_edge_change(k, c, pace);
         else if (!first) find_change(k, c, r->friction, step->dt, pace);
         for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
-        most = fmax(most, vec3_dot(k->change, k->change));
-        largest = fmax(largest, vec3_dot(k->impulse, k->impulse));
+        most = larger(most, vec3_dot(k->change, k->change));
+        largest = larger(largest, vec3_dot(k->impulse, k->impulse));
     }
-    const double moved = most > 0 ? sqrt(most/fmax(largest, 1e-300)) : 0;
+    const double moved = most > 0 ? sqrt(most/larger(largest, 1e-300)) : 0;
     if (!moves) return moved;
     /* What the impulses really were. */
     double shift[3], turn[3][3];
@@ -300,7 +304,7 @@ static void list_shifts(tobi_contacts *c, const tobi_contact_step *step, double 
         tobi_shift *shift = &c->shift[c->shift_count++];
         *shift = (tobi_shift){ .particle = k->particle };
         for (int a = 0; a < step->dimension; a++) shift->by[a] = push*k->normal[a];
-        *far = fmax(*far, push);
+        *far = larger(*far, push);
     }
 }
 
@@ -322,8 +326,17 @@ static void give_to_body(tobi_body *b, const outcome *total, double dt)
         b->info.viscous_force[a] = total->friction[a]/dt;
         b->info.viscous_torque[a] = total->friction[3 + a]/dt;
         b->info.edge_force[a] = total->edge[a]/dt;
-        b->rigid.edge_share[a] = total->edge_limit > 0 ? -total->edge[a]/total->edge_limit : 0;
     }
+}
+
+static void remember_edge(const tobi_contacts *c, tobi_body *b, const outcome *total)
+{
+    const double limit = total->edge_limit;
+    for (int64_t n = 0; n < b->piece_count; n++)
+        for (int a = 0; a < 3; a++) b->edge_share[n][a] = limit > 0 ? -total->edge[a]/limit : 0;
+    for (int64_t n = c->count - 1; n >= 0 && c->list[n].particle < 0; n--)
+        for (int a = 0; a < 3; a++)
+            b->edge_share[-1 - c->list[n].particle][a] = c->list[n].impulse[a]/c->list[n].limit;
 }
 
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,
@@ -336,6 +349,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     work->friction += total.rubbing;
     work->bodies += total.fracture + total.rubbing + total.material;
     give_to_body(b, &total, step->dt);
+    remember_edge(c, b, &total);
     b->rigid.span = find_span(b, &total, step);
     /* Touched, it moves as it will, or a resting body would fall into the material in every step. */
     if (b->rigid.kind != TOBI_PRESCRIBED && total.pushing > 0)

@@ -17,7 +17,7 @@
 /* One particle at one body, or a piece of a blade's edge in the material: that is held by an impulse within
    the plane of the cut, of at most limit times the share of it that points ahead (docs/theory/cutting.md). */
 typedef struct tobi_contact {
-    int32_t particle;                /* -1: a piece of an edge                                   */
+    int32_t particle;                /* < 0: piece -1 - particle of an edge                      */
     int32_t sliding;                 /* 1: friction was not enough in the last sweep             */
     double  normal[3];               /* outward from the body; of an edge that of the cut        */
     double  ahead[3], limit;         /* of an edge: direction of cutting, and N s                */
@@ -40,7 +40,6 @@ typedef struct tobi_shift { int32_t particle; double by[3]; } tobi_shift;
 typedef struct tobi_contacts {
     tobi_contact *list;              /* of the present body                                      */
     int64_t count, room;
-    tobi_contact *found;             /* the same as the threads found them                       */
     tobi_shift *shift;               /* of this step, at all bodies so far                       */
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;

@@ -9,11 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double IDLE = 0.05;
+static const double IDLE = 0.02;
 
-/* Less `way` of its list, clear is what the particle is at least outside the surface, m; and more by it, most
-   is how far it is at most from it. */
-typedef struct candidate { int32_t particle; float clear, most; } candidate;
+/* fmax is a call. */
+static double larger(double a, double b) { return a > b ? a : b; }
+static double smaller(double a, double b) { return a < b ? a : b; }
+
+/* Less `way` of its list, clear is what the particle is at least outside the surface, m. Until that way is
+   `sure`, the triangle of this slot of the tree is nearest to it and no other as near. */
+typedef struct candidate { int32_t particle, slot; float clear, sure; } candidate;
 
 /* Particles near one body. */
 struct tobi_contact_near {
@@ -27,14 +31,13 @@ struct tobi_contact_near {
 };
 
 /* Contacts, or candidates, that one block of particles or candidates has. */
-struct tobi_contact_run { int64_t block, first, count; };
+struct tobi_contact_run { int64_t block, count; };
 
 void tobi_contact_free(tobi_contacts *c)
 {
     for (int k = 0; k < c->near_room; k++) free(c->near[k].list);
     free(c->near);
     free(c->list);
-    free(c->found);
     free(c->run);
     free(c->chunk_box);
     free(c->partial);
@@ -118,18 +121,21 @@ static void find_box(const pose *at, double more, double low[3], double high[3])
     }
 }
 
-/* x (m, from the domain's corner) about the body's centre, in world and in rest axes; and how far it is at
-   least from the mesh, by its box, m. */
-static double approach(const pose *at, const double x[3], double arm[3], double local[3])
+/* x (m, from the domain's corner) about the body's centre, in world and in rest axes. */
+static void approach(const pose *at, const double x[3], double arm[3], double local[3])
 {
-    const int deforms = at->body->deforms;
-    double square = 0;
     vec3_sub(arm, x, at->body->rigid.position);
     for (int a = 0; a < 3; a++)
         local[a] = at->matrix[0][a]*arm[0] + at->matrix[1][a]*arm[1] + at->matrix[2][a]*arm[2];
+}
+
+/* How far a particle is at least from the mesh, by its box, m. */
+static double find_outside(const pose *at, const double x[3], const double local[3])
+{
+    const double *from = at->body->deforms ? x : local;
+    double square = 0;
     for (int a = 0; a < at->step->dimension; a++) {
-        const double v = deforms ? x[a] : local[a];
-        const double below = at->box[0][a] - v, above = v - at->box[1][a];
+        const double below = at->box[0][a] - from[a], above = from[a] - at->box[1][a];
         const double d = below > above ? below : above;
         square += d > 0 ? d*d : 0;
     }
@@ -162,34 +168,47 @@ static int find_side(const tobi_body *b, const tobi_columns *cuts, double *depth
     return 0;
 }
 
-static int find_closest(const pose *at, const double x[3], const double local[3], double far,
+/* What is known of a particle's distance from the surface, m: clear as of a candidate; if slot >= 0, its
+   triangle is nearest and will be for this way more. */
+typedef struct bounds { double clear, way; int32_t slot; } bounds;
+
+/* Finds the nearest point, closer than far. Who has to look at the whole tree looks for the second nearest
+   triangle, too: as long as it is farther whatever has moved, the one that was found will do. */
+static int find_closest(const pose *at, const double x[3], const double local[3], double far, bounds *known,
                         tobi_bvh_hit *hit)
 {
     const tobi_body *b = at->body;
-    return tobi_bvh_closest(b->deforms ? b->bvh : b->rest_bvh, b->deforms ? x : local, far, hit);
+    const tobi_bvh *tree = b->deforms ? b->bvh : b->rest_bvh;
+    const double *point = b->deforms ? x : local;
+    double others;
+    if (known->slot >= 0) {
+        hit->slot = known->slot;
+        tobi_bvh_closest_again(tree, point, hit);
+        return hit->distance < far;
+    }
+    known->way = 0;
+    if (!tobi_bvh_closest_two(tree, point, far, hit, &others)) return 0;
+    known->slot = hit->slot;
+    known->way = 0.5*(others - hit->distance);
+    return 1;
 }
-
-/* What is known of a particle's distance from the surface, see candidate, m. */
-typedef struct bounds { double clear, most; } bounds;
 
 /* Nearest point of the body to x (from the domain's corner). Narrows the bounds. */
 static int touch(const pose *at, const double x[3], const double local[3], tobi_contact *out, bounds *known)
 {
     const tobi_body *b = at->body;
     tobi_bvh_hit hit;
-    const double far = fmax(at->reach, at->step->reach), farther = far + at->step->reach;
+    const double far = larger(at->reach, at->step->reach), farther = far + at->step->reach;
     double *clear = &known->clear;
-    if (!(known->most < far && find_closest(at, x, local, known->most, &hit)) &&
-        !find_closest(at, x, local, far, &hit)) {
+    if (!find_closest(at, x, local, far, known, &hit)) {
         /* Outside its box nobody is inside the body. */
-        if (*clear > 0) *clear = fmax(*clear, far);
-        else if (!find_closest(at, x, local, farther, &hit)) *clear = farther - far + at->reach;
+        if (*clear > 0) *clear = larger(*clear, far);
+        else if (!find_closest(at, x, local, farther, known, &hit)) *clear = farther - far + at->reach;
         else *clear = hit.signed_distance > 0 ? hit.distance : hit.distance - far + at->reach;
         return 0;
     }
     out->gap = hit.signed_distance - at->step->radius;
-    *clear = fmax(*clear, hit.signed_distance);
-    known->most = hit.distance;
+    *clear = larger(*clear, hit.signed_distance);
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
@@ -204,12 +223,12 @@ static double find_inside(const pose *at, const double local[3], const tobi_blad
 {
     const tobi_blade_edge *e = at->body->edge_now;
     const double reach = at->step->reach;
-    if (!at->plain) return fmin(0, sqrt(2)*reach - place->far);
-    double from[3], inside = fmin(reach - fabs(place->aside), reach - fabs(place->ahead));
+    if (!at->plain) return smaller(0, sqrt(2)*reach - place->far);
+    double from[3], inside = smaller(reach - fabs(place->aside), reach - fabs(place->ahead));
     if (at->step->dimension == 2) return inside;
     vec3_sub(from, local, e->from);
     const double way = vec3_dot(from, e->along);
-    return fmin(inside, fmin(way, e->length - way));
+    return smaller(inside, smaller(way, e->length - way));
 }
 
 /* A particle at a blade: what the edge has not passed yet meets the edge only; what it has passed meets the
@@ -231,13 +250,13 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
     int near = found && place.beyond == 0 && fabs(place.aside) < reach && fabs(place.ahead) < reach;
     const double inside = find_inside(at, local, &place);
     if (!side && near) {
-        known->clear = fmax(known->clear, inside + 2*radius);
+        known->clear = larger(known->clear, inside + 2*radius);
         return 0;
     }
     if (!touch(at, x, local, out, known)) return 0;
     double normal[3], free = out->gap + radius - depth;    /* what the gap below is at least */
-    if (side) free = fmin(free, at->plain ? fmax(side*place.aside - depth, -inside) : -inside);
-    known->clear = fmax(known->clear, free + 2*radius);
+    if (side) free = smaller(free, at->plain ? larger(side*place.aside - depth, -inside) : -inside);
+    known->clear = larger(known->clear, free + 2*radius);
     for (int a = 0; a < 3; a++) normal[a] = side*vec3_dot(at->matrix[a], place.normal);
     if (near && vec3_dot(normal, out->normal) < 0.2) {
         if (place.ahead > 0) return 0;         /* nearest is the edge or the other face */
@@ -259,8 +278,9 @@ static int64_t list_chunk(const pose *at, const tobi_particles *p, int64_t chunk
         int outside = 0;
         for (int a = 0; a < at->step->dimension; a++) outside |= x[a] < low[a] || x[a] > high[a];
         if (outside) continue;
-        const double clear = approach(at, x, arm, local);
-        if (clear < far) out[n++] = (candidate){(int32_t)i, (float)(clear*(1 - 1e-6)), INFINITY};
+        approach(at, x, arm, local);
+        const double clear = find_outside(at, x, local);
+        if (clear < far) out[n++] = (candidate){(int32_t)i, 0, (float)(clear*(1 - 1e-6)), -1};
     }
     return n;
 }
@@ -282,7 +302,7 @@ static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *n
     find_box(at, far, low, high);
     for (int64_t k = 0; k < count_chunks(p->count); k++)
         if (boxes_meet(c->chunk_box[k], low, high, at->step->dimension, c->drift))
-            c->run[runs++] = (struct tobi_contact_run){k, 0, 0};
+            c->run[runs++] = (struct tobi_contact_run){k, 0};
     near->way = near->count = 0;
     if (runs*TOBI_BLOCK > near->room) {
         free(near->list);
@@ -314,7 +334,7 @@ static double find_way(const pose *at, struct tobi_contact_near *near)
         turn += change*change;
     }
     for (int a = 0; a < 3; a++) {
-        const double most = fmax(fabs(at->box[0][a]), fabs(at->box[1][a]));
+        const double most = larger(fabs(at->box[0][a]), fabs(at->box[1][a]));
         size += most*most;
     }
     memcpy(near->position, r->position, sizeof near->position);
@@ -351,52 +371,77 @@ static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *vel
     return k->gap + along*at->step->dt > IDLE*at->step->margin;
 }
 
-/* Contacts of one block of candidates into `found`; returns how many. */
-static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
-                            int64_t block, tobi_contact found[TOBI_BLOCK])
+static void prefetch(const tobi_particles *p, int64_t i)
+{
+    __builtin_prefetch(&p->position[i]);
+    __builtin_prefetch(&p->velocity[i]);
+    if (p->cuts) __builtin_prefetch(&p->cuts[i]);
+}
+
+/* Looks at one candidate; whether it is a contact. */
+static int look(const pose *at, const tobi_particles *p, double way, candidate *one, tobi_contact *out)
 {
     const double slack = 1e-6*at->reach;
+    const int64_t i = one->particle;
+    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    double local[3];
+    *out = (tobi_contact){ .particle = (int32_t)i };
+    approach(at, x, out->arm, local);
+    bounds known = { one->clear - way, one->sure - way, way < one->sure ? one->slot : -1 };
+    if (known.slot < 0) known.clear = find_outside(at, x, local);
+    const int kept = known.slot, touches = known.clear <= at->reach + slack &&
+        (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
+                                    : touch(at, x, local, out, &known)) &&
+        !is_idle(at, out, &p->velocity[i]);
+    one->clear = (float)((known.clear + way)*(1 - 1e-6));
+    if (known.slot != kept) {
+        one->slot = known.slot;
+        one->sure = (float)((way + known.way)*(1 - 1e-6) - slack);
+    }
+    if (!touches) return 0;
+    const double start = larger(0, -p->velocity[i].w)*at->step->dt;
+    for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
+    return 1;
+}
+
+enum { AHEAD = 8 };                    /* particles that are on their way from memory             */
+
+/* Contacts of one block of candidates into out; returns how many. */
+static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
+                            int64_t block, tobi_contact out[TOBI_BLOCK])
+{
+    const double least = at->reach*(1 + 1e-6) + near->way;
+    int32_t asked[TOBI_BLOCK];
+    int count = 0;
     int64_t n = 0;
-    for (int64_t k = block*TOBI_BLOCK; k < (block + 1)*TOBI_BLOCK && k < near->count; k++) {
-        candidate *one = &near->list[k];
-        if (one->clear - near->way > at->reach + slack) continue;
-        const int64_t i = one->particle;
-        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-        double local[3];
-        tobi_contact *out = &found[n];
-        *out = (tobi_contact){ .particle = (int32_t)i };
-        bounds known = { approach(at, x, out->arm, local), (one->most + near->way)*(1 + 1e-6) + slack };
-        if (known.clear <= at->reach + slack &&
-            (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
-                                        : touch(at, x, local, out, &known)) &&
-            !is_idle(at, out, &p->velocity[i])) {
-            double start = fmax(0, -p->velocity[i].w)*at->step->dt;
-            for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
-            n++;
-        }
-        one->clear = (float)((known.clear + near->way)*(1 - 1e-6));
-        one->most = (float)(known.most - near->way);
+    candidate *list = near->list + block*TOBI_BLOCK;
+    for (int k = 0; k < TOBI_BLOCK && block*TOBI_BLOCK + k < near->count; k++)
+        if (list[k].clear <= least) asked[count++] = k;
+    for (int q = 0; q < count && q < AHEAD; q++) prefetch(p, list[asked[q]].particle);
+    for (int q = 0; q < count; q++) {
+        if (q + AHEAD < count) prefetch(p, list[asked[q + AHEAD]].particle);
+        n += look(at, p, near->way, &list[asked[q]], &out[n]);
     }
     return n;
 }
 
-/* Fills `found` and the runs; returns how many contacts there are, more than `room` if that was too short. */
-static int64_t search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
-                      const tobi_particles *p, tobi_exec *x)
+/* Lists the contacts in the order of the particles. */
+static void search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+                   const tobi_particles *p, tobi_exec *x)
 {
     const int64_t runs = count_chunks(near->count);
-    int64_t used = 0;
-    #pragma omp parallel for num_threads(tobi_team(x, runs, 4)) schedule(dynamic, 1)
+    const int team = tobi_team(x, runs, 4);
+    c->count = 0;
+    for (int64_t k = 0; k < runs && team == 1; k++)
+        c->count += search_block(at, p, near, k, c->list + c->count);
+    if (team == 1) return;
+    #pragma omp parallel for num_threads(team) schedule(dynamic, 1)
+    for (int64_t k = 0; k < runs; k++)
+        c->run[k].count = search_block(at, p, near, k, c->list + k*TOBI_BLOCK);
     for (int64_t k = 0; k < runs; k++) {
-        tobi_contact found[TOBI_BLOCK];
-        struct tobi_contact_run *run = &c->run[k];
-        run->count = search_block(at, p, near, k, found);
-        #pragma omp atomic capture
-        { run->first = used; used += run->count; }
-        if (run->first + run->count <= c->room)
-            memcpy(c->found + run->first, found, (size_t)run->count*sizeof *found);
+        memmove(c->list + c->count, c->list + k*TOBI_BLOCK, (size_t)c->run[k].count*sizeof *c->list);
+        c->count += c->run[k].count;
     }
-    return used;
 }
 
 static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
@@ -405,11 +450,9 @@ static tobi_status make_room(tobi_contacts *c, int64_t count, tobi_error *err)
     int64_t room = count + count/4 + 1024, parts = count_chunks(room);
     tobi_contact *list = realloc(c->list, (size_t)room*sizeof *list);
     if (list) c->list = list;
-    tobi_contact *found = realloc(c->found, (size_t)room*sizeof *found);
-    if (found) c->found = found;
     double *partial = realloc(c->partial, (size_t)parts*TOBI_CONTACT_SUMS*sizeof *partial);
     if (partial) c->partial = partial;
-    if (!list || !found || !partial) return fail_memory(room, err);
+    if (!list || !partial) return fail_memory(room, err);
     c->room = room;
     return TOBI_OK;
 }
@@ -450,13 +493,9 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     find_pose(b, step, &at);
     tobi_blade_bring(b, step->dimension);
     TOBI_TRY(find_candidates(c, near, &at, p, x, err));
-    while ((c->count = search(c, near, &at, p, x)) > c->room) TOBI_TRY(make_room(c, c->count, err));
+    TOBI_TRY(make_room(c, (count_chunks(near->count) + 1)*TOBI_BLOCK, err));
+    search(c, near, &at, p, x);
     TOBI_TRY(reserve_shifts(c, err));
-    int64_t n = 0;
-    for (int64_t k = 0; k < count_chunks(near->count); k++) {  /* in this order, whoever was first */
-        memcpy(c->list + n, c->found + c->run[k].first, (size_t)c->run[k].count*sizeof *c->list);
-        n += c->run[k].count;
-    }
     memcpy(c->velocity, b->rigid.velocity, sizeof c->velocity);
     memcpy(c->spin, b->rigid.angular_velocity, sizeof c->spin);
     return TOBI_OK;
@@ -469,10 +508,12 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
     double local[3], turn[3][3];
     TOBI_TRY(make_room(c, c->count + 1, err));
     tobi_contact *k = &c->list[c->count++];
-    *k = (tobi_contact){ .particle = -1, .limit = full*b->edge_resistance*piece->length*step->dt };
+    *k = (tobi_contact){ .particle = -1 - piece->number,
+                         .limit = full*b->edge_resistance*piece->length*step->dt };
     memcpy(k->normal, piece->normal, sizeof k->normal);
     memcpy(k->ahead, piece->ahead, sizeof k->ahead);
-    vec3_add_scaled(k->change, b->rigid.edge_share, -vec3_dot(b->rigid.edge_share, k->normal), k->normal);
+    const double *share = b->edge_share[piece->number];
+    vec3_add_scaled(k->change, share, -vec3_dot(share, k->normal), k->normal);
     for (int a = 0; a < 3; a++) k->change[a] *= k->limit;
     vec3_sub(k->arm, piece->middle, b->rigid.position);
     if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;

@@ -3,6 +3,7 @@
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
 #include "core/simulation.h"
+#include "core/wall_law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -358,8 +359,15 @@ static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, cons
         lift[c] = e->lift[c];
         a[c] = nu*(e->drag_velocity[c] - e->drag*u[c]);
     }
-    double normal = dot(a, e->foot_normal);
-    for (int c = 0; c < 3; c++) drag[c] = a[c] - normal*e->foot_normal[c];
+    double normal = dot(a, e->foot_normal), square = 0;
+    for (int c = 0; c < 3; c++) {
+        drag[c] = a[c] - normal*e->foot_normal[c];
+        square += drag[c]*drag[c];
+    }
+    if (!(square > 0)) return;
+    const double speed = sqrt(square)/(nu*e->drag), away = fmax(e->distance, 0.25*s->smoothing.spacing),
+                 law = tobi_wall_law((float)(speed*away/nu));
+    for (int c = 0; c < 3; c++) drag[c] *= law;
 }
 
 void tobi_near_add_forces(tobi_simulation *s)

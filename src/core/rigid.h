@@ -31,7 +31,6 @@ typedef struct tobi_rigid {
     double pull[3], pull_torque[3];  /* m/s2, N m: constant over the next drift; 0 where contact holds  */
     double phase, phase_start;       /* of the control program; s                                       */
     double cut;                      /* number of the cut that a blade is making, 0 = none              */
-    double edge_share[3];            /* 1: force on the material by a blade's edge over the most it can be  */
     double hold;                     /* bits like `locked`, asked for by the control program            */
 
     double next_position[3];         /* at the end of the step that is being made                       */

@@ -63,6 +63,8 @@ typedef struct tobi_simulation {
     tobi_stages stages;
 } tobi_simulation;
 
+enum { TOBI_LIQUIDS = -1 };            /* in place of the number of a solid                      */
+
 /* A particle method: one static struct in one file, listed in world/methods.c. */
 typedef struct tobi_method {
     const char *name;
@@ -87,7 +89,8 @@ typedef struct tobi_method {
        it takes all. */
     tobi_status (*accept)(const tobi_simulation *s, const void *def, int solid, char note[200],
                           tobi_error *err);
-    /* The longest step that a solid's material allows at this speed, m/s, in s; NULL: there are no solids. */
+    /* The longest step that a solid's material, or the sound of TOBI_LIQUIDS, allows at a speed, m/s, in s;
+       NULL: only the motion tells. */
     double (*stable_dt)(const tobi_simulation *s, const void *def, int solid, double speed);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */
     tobi_status (*nodes)(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err);

@@ -139,6 +139,7 @@ enum feature { ON_FACE = 0, ON_EDGE = 1, ON_CORNER = 4 };   /* + edge or corner 
 
 typedef struct nearest {
     double distance2, v, w;     /* barycentrics of corners b and c */
+    double others2;             /* of the nearest of all other triangles that were looked at */
     int32_t slot;
     int feature;
 } nearest;
@@ -189,7 +190,9 @@ static inline void visit_triangle(const bvh_corners *t, const double p[3], int32
     }
     double q[3] = {ap[0] - v*ab[0] - w*ac[0], ap[1] - v*ab[1] - w*ac[1], ap[2] - v*ab[2] - w*ac[2]};
     double distance2 = vec3_dot(q, q);
-    if (distance2 < best->distance2) *best = (nearest){distance2, v, w, slot, feature};
+    if (distance2 < best->distance2)
+        *best = (nearest){distance2, v, w, best->distance2, slot, feature};
+    else if (distance2 < best->others2) best->others2 = distance2;
 }
 
 typedef struct stacked {
@@ -238,18 +241,22 @@ static inline int push_children(const bvh_node *node, const float p[3], double l
     return top;
 }
 
-static int find_nearest(const tobi_bvh *b, const double p[3], double max_distance, nearest *best)
+/* two: 1 looks for the second nearest as well. */
+static inline int find_nearest(const tobi_bvh *b, const double p[3], double max_distance, int two,
+                               nearest *best)
 {
     stacked stack[BVH_STACK];
     float local[3];
+    const double *limit2 = two ? &best->others2 : &best->distance2;
     *best = (nearest){.distance2 = max_distance*max_distance, .slot = -1};
+    best->others2 = best->distance2;
     for (int k = 0; k < 3; k++) local[k] = (float)(p[k] - b->origin[k]);
-    int top = push_children(&b->nodes[0], local, best->distance2, stack, 0);
+    int top = push_children(&b->nodes[0], local, *limit2, stack, 0);
     while (top) {
         stacked next = stack[--top];
-        if (next.distance2 >= best->distance2) continue;
+        if (next.distance2 >= *limit2) continue;
         if (next.count == 0) {
-            top = push_children(&b->nodes[next.child], local, best->distance2, stack, top);
+            top = push_children(&b->nodes[next.child], local, *limit2, stack, top);
             continue;
         }
         for (int32_t i = next.child; i < next.child + next.count; i++)
@@ -265,22 +272,45 @@ static const double *feature_normal(const tobi_bvh *b, int32_t triangle, int fea
     return b->face_normal[triangle];
 }
 
-int tobi_bvh_closest(const tobi_bvh *b, const double p[3], double max_distance, tobi_bvh_hit *hit)
+static void describe(const tobi_bvh *b, const double p[3], const nearest *best, tobi_bvh_hit *hit)
 {
-    nearest best;
     double away[3];
-    if (!find_nearest(b, p, max_distance, &best)) return 0;
-    const bvh_corners *t = &b->corners[best.slot];
-    double u = 1 - best.v - best.w;
-    hit->triangle = b->leaf_triangle[best.slot];
-    for (int k = 0; k < 3; k++) hit->point[k] = u*t->a[k] + best.v*t->b[k] + best.w*t->c[k];
-    memcpy(hit->barycentric, (double[3]){u, best.v, best.w}, sizeof hit->barycentric);
-    memcpy(hit->normal, feature_normal(b, hit->triangle, best.feature), sizeof hit->normal);
-    hit->distance = sqrt(best.distance2);
+    const bvh_corners *t = &b->corners[best->slot];
+    double u = 1 - best->v - best->w;
+    hit->slot = best->slot;
+    hit->triangle = b->leaf_triangle[best->slot];
+    for (int k = 0; k < 3; k++) hit->point[k] = u*t->a[k] + best->v*t->b[k] + best->w*t->c[k];
+    memcpy(hit->barycentric, (double[3]){u, best->v, best->w}, sizeof hit->barycentric);
+    memcpy(hit->normal, feature_normal(b, hit->triangle, best->feature), sizeof hit->normal);
+    hit->distance = sqrt(best->distance2);
     vec3_sub(away, p, hit->point);
     int inside = b->by_winding ? tobi_bvh_winding(b, p) > 0 : vec3_dot(away, hit->normal) < 0;
     hit->signed_distance = inside ? -hit->distance : hit->distance;
+}
+
+int tobi_bvh_closest(const tobi_bvh *b, const double p[3], double max_distance, tobi_bvh_hit *hit)
+{
+    nearest best;
+    if (!find_nearest(b, p, max_distance, 0, &best)) return 0;
+    describe(b, p, &best, hit);
     return 1;
+}
+
+int tobi_bvh_closest_two(const tobi_bvh *b, const double p[3], double max_distance, tobi_bvh_hit *hit,
+                         double *others)
+{
+    nearest best;
+    if (!find_nearest(b, p, max_distance, 1, &best)) return 0;
+    describe(b, p, &best, hit);
+    *others = sqrt(best.others2);
+    return 1;
+}
+
+void tobi_bvh_closest_again(const tobi_bvh *b, const double p[3], tobi_bvh_hit *hit)
+{
+    nearest best = {.distance2 = INFINITY};
+    visit_triangle(&b->corners[hit->slot], p, hit->slot, &best);
+    describe(b, p, &best, hit);
 }
 
 int tobi_bvh_inside(const tobi_bvh *b, const double p[3])

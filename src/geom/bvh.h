@@ -15,6 +15,7 @@ typedef struct tobi_bvh_hit {
     double  normal[3];         /* outward unit pseudonormal of the nearest feature              */
     double  barycentric[3];    /* of point in its triangle, sum 1                               */
     int32_t triangle;
+    int32_t slot;              /* of the triangle in the tree                                   */
 } tobi_bvh_hit;
 
 /* Builds over triangles that tobi_mesh_orient has passed (an open mesh works, but its sign means
@@ -35,6 +36,11 @@ void tobi_bvh_box(const tobi_bvh *bvh, double min[3], double max[3]);
    or 0 and leaves it alone. The sign is that of the angle-weighted pseudonormal of the nearest
    vertex, edge or face (Baerentzen & Aanaes, IEEE TVCG 11 (2005)). */
 int tobi_bvh_closest(const tobi_bvh *bvh, const double p[3], double max_distance, tobi_bvh_hit *hit);
+/* The same; *others: no other triangle is nearer than that, m, max_distance at most. */
+int tobi_bvh_closest_two(const tobi_bvh *bvh, const double p[3], double max_distance, tobi_bvh_hit *hit,
+                         double *others);
+/* The same hit for who knows that hit->triangle is nearest, and no other as near: from hit->slot. */
+void tobi_bvh_closest_again(const tobi_bvh *bvh, const double p[3], tobi_bvh_hit *hit);
 
 /* 1 if p is inside. */
 int tobi_bvh_inside(const tobi_bvh *bvh, const double p[3]);

@@ -1,6 +1,7 @@
 /* Turns the transfers into loops, compiled once per instruction set. */
 #include "mpm/kernels.h"
 #include "mpm/filter.k.h"
+#include "mpm/pack.k.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -28,3 +29,12 @@ const mpm_kernels JOIN(mpm_kernels, TOBI_ISA)[2] = {
     {scatter_3d, collect_3d, gather_3d, filter_3d, filter_nodes_3d,
      scatter_calm_3d, energy_calm_3d, energy_nodes_3d},
 };
+
+MPM_PACK_KERNEL(pack_crowd, mpm_pack_crowd)
+MPM_PACK_KERNEL(pack_answer, mpm_pack_answer)
+MPM_PACK_KERNEL(pack_forget, mpm_pack_forget)
+MPM_PACK_KERNEL(pack_read, mpm_pack_read)
+MPM_PACK_KERNEL(pack_push, mpm_pack_push)
+
+const mpm_pack_kernels JOIN(mpm_pack_kernels, TOBI_ISA) = {pack_crowd, pack_answer, pack_forget, pack_read,
+                                                           pack_push};

@@ -13,7 +13,12 @@ typedef struct mpm_kernels {
     tobi_kernel energy_calm, energy_nodes;   /* over node blocks                                  */
 } mpm_kernels;
 
+/* Over packs of contacts (mpm/pack.k.h). */
+typedef struct mpm_pack_kernels { tobi_kernel crowd, answer, forget, read, push; } mpm_pack_kernels;
+
 /* isa: exec's level. Static data, never NULL. */
 const mpm_kernels *mpm_kernels_for(int isa, int dimension);
+const mpm_pack_kernels *mpm_pack_kernels_for(int isa);
 
 extern const mpm_kernels mpm_kernels_v2[2], mpm_kernels_v3[2], mpm_kernels_v4[2];
+extern const mpm_pack_kernels mpm_pack_kernels_v2, mpm_pack_kernels_v3, mpm_pack_kernels_v4;

@@ -165,6 +165,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     }
     bind_particles(s, m);
     m->touch.cut = m->blades ? &m->cut : NULL;
+    m->touch.kernels = mpm_pack_kernels_for(s->exec.isa);
     return TOBI_OK;
 }
 

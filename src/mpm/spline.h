@@ -14,7 +14,8 @@ static inline double mpm_spline_at(double x)
 /* x: in cells. Returns the lowest of the three nodes. */
 static inline int64_t mpm_spline(double x, double w[3])
 {
-    const double base = floor(x - 0.5), f = x - base;
+    const int64_t low = (int64_t)(x - 0.5);        /* towards 0; floor is a call on plain x86-64 */
+    const double base = (double)(low - ((double)low > x - 0.5)), f = x - base;
     w[0] = 0.5*(1.5 - f)*(1.5 - f);
     w[1] = 0.75 - (f - 1)*(f - 1);
     w[2] = 0.5*(f - 0.5)*(f - 0.5);

@@ -1,6 +1,5 @@
 #include "mpm/touch.h"
 #include "base/error.h"
-#include "exec/rows.h"
 #include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,35 +8,16 @@
 enum { SWEEPS = 8 };
 static const double ENOUGH = 4e-3;     /* of the largest impulse may still change: forces within 0.3 % */
 
-static void free_entries(mpm_touch *t)
-{
-    free(t->node); free(t->weight); free(t->touched); free(t->begin); free(t->owner); free(t->share);
-    free(t->inverse);
-    t->node = t->touched = NULL;
-    t->weight = t->share = t->inverse = NULL;
-    t->begin = NULL;
-    t->owner = NULL;
-    t->room = 0;
-}
-
-static void free_sort(mpm_touch *t)
-{
-    free(t->key); free(t->key_scratch); free(t->order); free(t->order_scratch); free(t->histogram);
-    t->key = t->key_scratch = NULL;
-    t->order = t->order_scratch = NULL;
-    t->histogram = NULL;
-    t->sort_room = 0;
-}
-
 void mpm_touch_free(mpm_touch *t)
 {
-    free_entries(t);
-    free_sort(t);
-    free(t->crowd);
-    free(t->slot);
+    mpm_packs_free(&t->packs);
+    free(t->node);
+    free(t->weight);
+    free(t->yield);
     free(t->piece);
     free(t->around);
     free(t->push);
+    free(t->moving);
     memset(t, 0, sizeof *t);
 }
 
@@ -56,69 +36,49 @@ static int64_t entry_of(const mpm_touch *t, int64_t k, int64_t each)
     return k < t->edge_first ? k*each : (2*k - t->edge_first)*each;
 }
 
-static tobi_status reserve_entries(mpm_touch *t, int64_t count, tobi_error *err)
+static tobi_status reserve_entries(mpm_touch *t, int64_t count)
 {
     if (count <= t->room) return TOBI_OK;
-    int64_t room = count + count/4 + 4096;
-    free_entries(t);
-    t->node = malloc((size_t)room*sizeof *t->node);
-    t->weight = malloc((size_t)room*sizeof *t->weight);
-    t->touched = malloc((size_t)room*sizeof *t->touched);
-    t->begin = malloc((size_t)(room + 1)*sizeof *t->begin);
-    t->owner = malloc((size_t)room*sizeof *t->owner);
-    t->share = malloc((size_t)room*sizeof *t->share);
-    t->inverse = malloc((size_t)room*sizeof *t->inverse);
-    if (t->node && t->weight && t->touched && t->begin && t->owner && t->share && t->inverse) {
-        t->room = room;
-        return TOBI_OK;
-    }
-    free_entries(t);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)count);
+    free(t->node);
+    free(t->weight);
+    t->room = count + count/4 + 4096;
+    t->node = malloc((size_t)t->room*sizeof *t->node);
+    t->weight = malloc((size_t)t->room*sizeof *t->weight);
+    if (t->node && t->weight) return TOBI_OK;
+    t->room = 0;
+    return TOBI_NO_MEMORY;
 }
 
-static tobi_status reserve_sort(mpm_touch *t, const tobi_exec *x, tobi_error *err)
+static tobi_status reserve_contacts(mpm_touch *t, int64_t count)
 {
-    if (t->room <= t->sort_room) return TOBI_OK;
-    free_sort(t);
-    t->key = malloc((size_t)t->room*sizeof *t->key);
-    t->key_scratch = malloc((size_t)t->room*sizeof *t->key_scratch);
-    t->order = malloc((size_t)t->room*sizeof *t->order);
-    t->order_scratch = malloc((size_t)t->room*sizeof *t->order_scratch);
-    t->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *t->histogram);
-    if (t->key && t->key_scratch && t->order && t->order_scratch && t->histogram) {
-        t->sort_room = t->room;
-        return TOBI_OK;
-    }
-    free_sort(t);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)t->room);
+    if (count <= t->push_room) return TOBI_OK;
+    free(t->push);
+    free(t->moving);
+    t->push_room = count + count/4 + 64;
+    t->push = malloc((size_t)t->push_room*sizeof *t->push);
+    t->moving = malloc((size_t)t->push_room*sizeof *t->moving);
+    if (t->push && t->moving) return TOBI_OK;
+    t->push_room = 0;
+    return TOBI_NO_MEMORY;
 }
 
-/* Few entries are counted by one thread, many sorted by all. */
-static int are_many(const mpm_touch *t, const tobi_exec *x) { return x->threads > 1 && t->count > 1 << 18; }
-
-static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, const tobi_exec *x,
-                           tobi_error *err)
+static tobi_status reserve_nodes(mpm_touch *t, int64_t count)
 {
-    int64_t nodes = count_nodes(g);
-    t->count = entry_of(t, contacts, nodes_each(g));
-    TOBI_TRY(reserve_entries(t, t->count, err));
-    if (are_many(t, x)) TOBI_TRY(reserve_sort(t, x, err));
-    if (nodes > t->node_room) {
-        free(t->crowd);
-        free(t->slot);
-        t->node_room = nodes + nodes/8;
-        t->crowd = malloc((size_t)t->node_room*sizeof *t->crowd);
-        t->slot = calloc((size_t)t->node_room, sizeof *t->slot);
-    }
-    if (contacts > t->push_room) {
-        free(t->push);
-        t->push_room = contacts + contacts/4 + 64;
-        t->push = malloc((size_t)t->push_room*sizeof *t->push);
-        if (!t->push) t->push_room = 0;
-    }
-    if (t->crowd && t->slot && t->push) return TOBI_OK;
+    if (count <= t->node_room) return TOBI_OK;
+    free(t->yield);
+    t->node_room = count + count/8;
+    t->yield = calloc((size_t)t->node_room, sizeof *t->yield);
+    if (t->yield) return TOBI_OK;
     t->node_room = 0;
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes", (long long)nodes);
+    return TOBI_NO_MEMORY;
+}
+
+static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, tobi_error *err)
+{
+    t->count = entry_of(t, contacts, nodes_each(g));
+    if (reserve_entries(t, t->count) == TOBI_OK && reserve_contacts(t, contacts) == TOBI_OK &&
+        reserve_nodes(t, count_nodes(g)) == TOBI_OK) return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)contacts);
 }
 
 /* Threads for a loop over all entries. */
@@ -222,7 +182,7 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
 
 /* Lists the pieces of a blade's edge that lie in material, and their surroundings in the same order. The
    share rises from 0 to 1 within half a cell across the surface. */
-static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b, const mpm_grid *g,
+static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     const double size = 2*step->radius;
@@ -236,6 +196,7 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, const tobi_body *b
         if (!t->piece_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
+    TOBI_TRY(tobi_blade_recall(b, count, err));
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
         if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, s)) continue;
@@ -270,112 +231,46 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
     }
 }
 
-/* Puts an entry of a contact in its place in the list of its node. */
-static void place_entry(mpm_touch *t, int64_t place, int64_t entry, int64_t contact)
+static mpm_pack_view view_packs(const mpm_touch *t, const mpm_grid *g)
 {
-    t->owner[place] = (int32_t)contact;
-    t->share[place] = t->weight[entry];
+    return (mpm_pack_view){ .pack = t->packs.pack, .node = t->node, .weight = t->packs.weight,
+                            .velocity = g->node, .yield = t->yield, .push = t->push, .moving = t->moving };
 }
 
-static void count_by_node(mpm_touch *t, int64_t contacts, int64_t each)
+static tobi_status pack_contacts(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_error *err)
 {
-    int64_t sum = 0;
-    t->touched_count = 0;
-    for (int64_t e = 0; e < t->count; e++) {
-        int32_t *slot = &t->slot[t->node[e]];
-        if (!*slot) {
-            t->begin[t->touched_count] = 0;
-            t->touched[t->touched_count++] = t->node[e];
-            *slot = (int32_t)t->touched_count;
-        }
-        t->begin[*slot - 1]++;
-    }
-    for (int64_t n = 0; n < t->touched_count; n++) {
-        const int64_t count = t->begin[n];
-        t->begin[n] = sum;
-        sum += count;
-    }
-    for (int64_t k = 0, e = 0; k < contacts; k++)
-        for (const int64_t end = entry_of(t, k + 1, each); e < end; e++)
-            place_entry(t, t->begin[t->slot[t->node[e]] - 1]++, e, k);
-    memmove(t->begin + 1, t->begin, (size_t)t->touched_count*sizeof *t->begin);    /* the ends were left */
-    t->begin[0] = 0;
-    for (int64_t n = 0; n < t->touched_count; n++) t->slot[t->touched[n]] = 0;
+    const mpm_pack_entries e = { .node = t->node, .weight = t->weight, .contacts = c->count,
+                                 .edge_first = t->edge_first, .each = nodes_each(g),
+                                 .edge_each = 2*nodes_each(g) };
+    return mpm_packs_make(&t->packs, &e, &c->list->particle, sizeof *c->list, g, err);
 }
 
-/* Lists the entries of every node, each in the order of the contacts. */
-static void sort_by_node(mpm_touch *t, int64_t contacts, const mpm_grid *g, tobi_exec *x)
-{
-    const int64_t each = nodes_each(g);
-    if (!are_many(t, x)) {
-        count_by_node(t, contacts, each);
-        return;
-    }
-    memcpy(t->key, t->node, (size_t)t->count*sizeof *t->key);
-    tobi_sort_by_key(x, t->count, (uint32_t)count_nodes(g), t->key, t->order, t->key_scratch,
-                     t->order_scratch, t->histogram);
-    t->touched_count = tobi_find_runs(x, t->count, t->key, 0, t->begin);
-    t->begin[t->touched_count] = t->count;
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t n = 0; n < t->touched_count; n++) {
-        t->touched[n] = t->key[t->begin[n]];
-        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) {
-            const int64_t k = t->order[e]/each;        /* an edge has twice as many */
-            place_entry(t, e, t->order[e], k < t->edge_first ? k : t->edge_first + (k - t->edge_first)/2);
-        }
-    }
-}
-
-/* Rows of the matrix that turns impulses into velocities: their sums bound how strongly all contacts together
-   move each, so that sweeps of all at once converge. */
 static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
-    const int64_t each = nodes_each(g);
+    const mpm_pack_view v = view_packs(t, g);
     const int team = team_of(t, x);
-    #pragma omp parallel for num_threads(team)
-    for (int64_t n = 0; n < t->touched_count; n++) {
-        float sum = 0;
-        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++) sum += t->share[e];
-        const float mass = g->node[t->touched[n]].w;
-        t->inverse[n] = mass > 0 ? 1/mass : 0;
-        t->crowd[t->touched[n]] = sum*t->inverse[n];
-    }
-    #pragma omp parallel for num_threads(team)
-    for (int64_t k = 0; k < c->count; k++) {
-        double sum = 0;
-        for (int64_t n = entry_of(t, k, each); n < entry_of(t, k + 1, each); n++)
-            sum += t->weight[n]*t->crowd[t->node[n]];
-        c->list[k].mobility = sum;
-    }
+    mpm_packs_visit(&t->packs, t->kernels->crowd, &v, team);
+    mpm_packs_visit(&t->packs, t->kernels->answer, &v, team);
+    mpm_packs_visit(&t->packs, t->kernels->forget, &v, team);
+    for (int64_t k = 0; k < c->count; k++) c->list[k].mobility = t->moving[k].w;
 }
 
 static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
-    const int64_t each = nodes_each(g);
-    #pragma omp parallel for num_threads(team_of(t, x))
-    for (int64_t k = 0; k < c->count; k++) {
-        const int64_t end = entry_of(t, k + 1, each);
-        quad u = quad_set(0);
-        for (int64_t n = entry_of(t, k, each); n < end; n++)
-            u = u + quad_load(&g->node[t->node[n]])*quad_set(t->weight[n]);
-        for (int a = 0; a < 3; a++) c->list[k].velocity[a] = u[a];
-    }
+    const mpm_pack_view v = view_packs(t, g);
+    mpm_packs_visit(&t->packs, t->kernels->read, &v, team_of(t, x));
+    for (int64_t k = 0; k < c->count; k++)
+        for (int a = 0; a < 3; a++) c->list[k].velocity[a] = (&t->moving[k].x)[a];
 }
 
 static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
+    const mpm_pack_view v = view_packs(t, g);
     for (int64_t k = 0; k < c->count; k++) {
         const double *change = c->list[k].change;
         t->push[k] = (tobi_float4){(float)change[0], (float)change[1], (float)change[2], 0};
     }
-    #pragma omp parallel for num_threads(team_of(t, x))
-    for (int64_t n = 0; n < t->touched_count; n++) {
-        tobi_float4 *node = &g->node[t->touched[n]];
-        quad sum = quad_set(0);
-        for (int64_t e = t->begin[n]; e < t->begin[n + 1]; e++)
-            sum = sum + quad_load(&t->push[t->owner[e]])*quad_set(t->share[e]);
-        quad_store(node, quad_load(node) + sum*quad_set(t->inverse[n]));
-    }
+    mpm_packs_visit(&t->packs, t->kernels->push, &v, team_of(t, x));
 }
 
 static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, const mpm_grid *g,
@@ -387,10 +282,10 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
         TOBI_TRY(list_edges(t, c, b, g, v, step, err));
     if (c->count == 0) return TOBI_OK;
-    TOBI_TRY(reserve(t, g, c->count, &s->exec, err));
+    TOBI_TRY(reserve(t, g, c->count, err));
     find_nodes(t, c, g, v, &s->exec);
     find_edge_nodes(t, c, g);
-    sort_by_node(t, c->count, g, &s->exec);
+    TOBI_TRY(pack_contacts(t, c, g, err));
     find_mobility(t, c, g, &s->exec);
     read_velocities(t, c, g, &s->exec);
     tobi_contact_aim(c, b, step, &s->exec);

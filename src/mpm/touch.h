@@ -3,32 +3,25 @@
 #pragma once
 #include "core/simulation.h"
 #include "mpm/cut.h"
+#include "mpm/pack.h"
 
 typedef struct mpm_touch {
     mpm_cut *cut;                      /* whose faces push at the same time, NULL = no blades: the caller's */
     int64_t count;                     /* entries: contacts times nodes each feels                */
     uint32_t *node;                    /* place in the nodes' array                               */
     float *weight;
-    /* The entries by node, so that every node is changed by one thread, in one order. */
-    uint32_t *touched;                 /* places of the nodes that have any                       */
-    int64_t *begin;                    /* of the entries of each touched node                     */
-    float *inverse;                    /* 1/kg, of its mass                                       */
-    int32_t *owner;                    /* the contact of each, and its weight                     */
-    float *share;
-    int64_t touched_count, room;
-    float *crowd;                      /* [nodes] sum of the contacts' weights over the mass, 1/kg */
-    int32_t *slot;                     /* [nodes] scratch of the sort, else 0                     */
+    int64_t room;
+    mpm_packs packs;                   /* the contacts by their nodes                             */
+    const mpm_pack_kernels *kernels;   /* the caller's to set                                     */
+    mpm_yield *yield;                  /* [nodes], the sums 0 outside of a step                   */
     int64_t node_room;
-    uint32_t *key, *key_scratch;       /* scratch of the sort of many entries                     */
-    int32_t *order, *order_scratch;
-    int64_t *histogram, sort_room;
     tobi_blade_piece *piece;           /* of the present blade's edge                             */
     struct mpm_surroundings *around;   /* [pieces] and what is there; those in material first     */
     int64_t piece_room;
     double cell_mass;                  /* kg of a full cell: the caller's to set                  */
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
     tobi_contact_work work;            /* J, of the last step                                     */
-    tobi_float4 *push;                 /* N s, what each contact changed last, close together     */
+    tobi_float4 *push, *moving;        /* [contacts] see mpm_pack_view                            */
     int64_t push_room;
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;

@@ -3,6 +3,7 @@
    V grad W = -slope falloff x_ij (core/smoothing). Equation numbers: docs/theory/dfsph.md. */
 #pragma once
 #include "core/smoothing.k.h"
+#include "core/wall_law.h"
 #include "exec/pairs.h"
 #include "sph/tensor.k.h"
 #include "sph/view.h"
@@ -206,10 +207,23 @@ TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
     for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->still.down[c]);
 }
 
+/* Rate at which a no-slip plane at the distance s brakes a particle along itself, eq. (14), (14b). */
+TOBI_FN float sph_plane_friction(const sph_view *v, int plane, float s, float sigma, float nu,
+                                 const float *speed)
+{
+    const tobi_plane *p = &v->plane[plane];
+    float along2 = 0;
+    for (int c = 0; c < 3; c++) {
+        const float u = c == p->axis ? 0 : speed[c] - p->velocity[c];
+        along2 += u*u;
+    }
+    return 2*nu*sigma/s*(nu > 0 ? tobi_wall_law(sqrtf(along2)*s/nu) : 1);
+}
+
 /* v += dt (g + 2 nu L v - filter L L v + walls), eq. (13), (14): laminar viscosity, a fourth-order
-   filter that takes motion at the particle scale and leaves longer waves, no-slip planes (mirrored
-   velocity: 2 nu sigma/s) and the lift of planes, the hydrostatic part of their mirrored pressure,
-   -(g . n)(s sigma + lambda) n and along them -lambda g, eq. (6), (6b). */
+   filter that takes motion at the particle scale and leaves longer waves, no-slip planes and the lift of
+   planes, the hydrostatic part of their mirrored pressure, -(g . n)(s sigma + lambda) n and along them
+   -lambda g, eq. (6), (6b). */
 typedef sph_laplacian_acc sph_kick_acc;
 TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
 {
@@ -240,8 +254,9 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
         int axis = v->plane[p].axis;
         for (int c = 0; c < 3; c++) add[c] -= g[c]*(c == axis ? lambda + s*sigma : wet*lambda);
         if (!v->plane[p].no_slip) continue;
+        const float rate = sph_plane_friction(v, p, s, sigma, nu, speed);
         for (int c = 0; c < 3; c++)
-            if (c != axis) add[c] -= 2*nu*sigma/s*(speed[c] - v->plane[p].velocity[c]);
+            if (c != axis) add[c] -= rate*(speed[c] - v->plane[p].velocity[c]);
     }
     u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
     u.w = wet;      /* the walls' reaction needs the same */
@@ -281,9 +296,9 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
         for (int c = 0; c < 3; c++)
             totals[c] += mass*g[c]*(c == axis ? lambda[k] : wet*(lambda[k] - s_sigma[k]));
         if (!v->plane[k].no_slip) continue;
-        float s = sph_plane_distance(v, k, i);
-        double drag = 2.0*mass*v->kinematic[v->fluid[i]]*sigma[k]/
-                      (s > 0.25f*v->spacing ? s : 0.25f*v->spacing);
+        const float s = sph_plane_distance(v, k, i), least = 0.25f*v->spacing;
+        const double drag = mass*sph_plane_friction(v, k, s > least ? s : least, sigma[k],
+                                                    v->kinematic[v->fluid[i]], &v->velocity[i].x);
         for (int c = 0; c < 3; c++)
             if (c != axis) totals[c] += drag*((&v->velocity[i].x)[c] - v->plane[k].velocity[c]);
     }

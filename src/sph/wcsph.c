@@ -39,13 +39,24 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     *support = d->support > 0 ? d->support : 2;
 }
 
+static double find_sound(const tobi_simulation *s, const tobi_wcsph_def *d)
+{
+    return sqrt(d->exponent*d->stiffness/s->fluid[0].density);
+}
+
+static double limit_dt(const tobi_simulation *s, const void *def, int solid, double speed)
+{
+    (void)solid;
+    return fmin(s->def.cfl*s->smoothing.spacing/(find_sound(s, def) + speed), sph_gravity_dt(s));
+}
+
 static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
 {
     wcsph *m = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the wcsph state");
     m->def = *(const tobi_wcsph_def *)def;
     m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
-    m->sound = sqrt(m->def.exponent*m->def.stiffness/s->fluid[0].density);
+    m->sound = find_sound(s, &m->def);
     m->softness = tobi_couple_softness(s);
     *state = m;
     return TOBI_OK;
@@ -83,8 +94,7 @@ static double choose_dt(const tobi_simulation *s, const wcsph *m)
 {
     double speed = fmax(m->memory.speed, s->body_speed);
     if (s->def.time_step > 0) return s->def.time_step;
-    double dt = fmin(s->def.cfl*s->smoothing.spacing/(m->sound + speed), sph_gravity_dt(s));
-    dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    double dt = fmin(limit_dt(s, &m->def, TOBI_LIQUIDS, speed), fmin(sph_viscous_dt(s), sph_tension_dt(s)));
     dt = fmin(dt, fmin(body_dt(s, m), tobi_couple_dt(s)));
     return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
 }
@@ -215,6 +225,7 @@ const tobi_method tobi_wcsph = {
     .smoothing = choose_smoothing,
     .create = create,
     .step = step,
+    .stable_dt = limit_dt,
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,

@@ -72,6 +72,9 @@ tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
         TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
         name_body(k, "_state", name);
         TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, TOBI_RIGID_STATE(&b->rigid), err));
+        name_body(k, "_edge", name);
+        if (b->blade)
+            TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->piece_count, 3, b->edge_share, err));
     }
     return w->dynamics ? put_contacts(w, f, err) : TOBI_OK;
 }
@@ -102,6 +105,22 @@ static tobi_status get_state(tobi_body *b, int k, tobi_store *f, tobi_error *err
     return TOBI_OK;
 }
 
+static tobi_status get_edge(tobi_body *b, int k, tobi_store *f, tobi_error *err)
+{
+    char name[32];
+    int64_t count = 0;
+    name_body(k, "_edge", name);
+    TOBI_TRY(tobi_store_rows(f, name, &count, err));
+    TOBI_TRY(tobi_blade_recall(b, count, err));
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, b->edge_share, err));
+    for (int64_t n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++)
+            if (!(fabs(b->edge_share[n][a]) <= 2))
+                return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of the edge of '%s' is no share",
+                                 b->name);
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     for (int k = 0; k < w->sim.body_count; k++) {
@@ -109,6 +128,7 @@ tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
         char name[32];
         name_body(k, "", name);
         TOBI_TRY(get_state(b, k, f, err));
+        if (b->blade) TOBI_TRY(get_edge(b, k, f, err));
         const tobi_rigid rigid = b->rigid;
         TOBI_TRY(tobi_body_place(b, w->sim.time, err));
         b->rigid = rigid;            /* placing a prescribed body forgets its velocities */

@@ -318,7 +318,8 @@ static const tobi_param body_rows[] = {
       .doc = "Distance between the body's own particles, whatever the fluid's; fluid takes that of "
              "the fluid." },
     { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
-      .doc = "Whether the fluid slips along the body or sticks to it." },
+      .doc = "Whether the fluid slips along the body or sticks to it, rubbing as a turbulent layer where the "
+             "spacing is too coarse for the layer at the surface." },
     { .key = "contact_angle", REAL, AT(tobi_body_def, contact_angle), .def = { 90 },
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },

@@ -46,7 +46,8 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
 static double find_step(const tobi_world *w, double speed)
 {
     double least = INFINITY;
-    for (int k = 0; k < w->sim.solid_count && w->method->stable_dt; k++)
+    const int first = w->sim.fluid_count ? TOBI_LIQUIDS : 0;
+    for (int k = first; k < w->sim.solid_count && w->method->stable_dt; k++)
         least = fmin(least, w->method->stable_dt(&w->sim, w->method_def, k, speed));
     return isfinite(least) ? least : 0;
 }
@@ -62,6 +63,11 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
                  parts = ceil(wish/stable*(1 - 1e-9));
     char text[240], speed[80] = "";
     if (!(stable > 0) || wish <= stable) return TOBI_OK;
+    if (w->sim.solid_count == 0) {
+        snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that sound in the liquid allows: the "
+                 "run may run away\n", wish, stable);
+        return tobi_world_add_notes(w, "world", "time_step", text, err);
+    }
     if (stable < 0.99*rest)
         snprintf(speed, sizeof speed, ", their %.3g m/s at the start",
                  fmax(tobi_world_start_speed(w), w->sim.wall_speed));

@@ -314,6 +314,28 @@ static double wetness(const oracle *o, const row *in, int i)
     return fmin(fmax(p/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
 }
 
+/* u_tau^2/u of eq. (14) and (14b): the larger of nu/s and, by bisection of the law itself, that of
+   u/u_tau = 8.3 (s u_tau/nu)^(1/7). */
+static double wall_friction(double u, double s, double nu)
+{
+    double low = 0, high = u;
+    if (!(u > 0)) return nu/s;
+    for (int n = 0; n < 100; n++) {
+        const double middle = 0.5*(low + high);
+        if (8.3*pow(s*middle/nu, 1.0/7)*middle < u) low = middle;
+        else high = middle;
+    }
+    return fmax(nu/s, low*low/u);
+}
+
+static double speed_along(const oracle *o, const row *in, int i, int plane)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++)
+        if (a != o->plane[plane].axis) square += pow(in[i][VEL + a] - o->plane[plane].velocity[a], 2);
+    return sqrt(square);
+}
+
 /* Eq. (13), (14), (6). accel holds L v. */
 static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
 {
@@ -334,7 +356,8 @@ static void oracle_kick(const oracle *o, const row *in, row *out, double *t)
             add[o->plane[k].axis] -= felt_gravity(o, in, i, o->plane[k].axis)*s*sigma;
             for (int a = 0; a < 3; a++)
                 if (o->plane[k].no_slip && a != o->plane[k].axis)
-                    add[a] -= 2*nu*sigma/s*(in[i][VEL + a] - o->plane[k].velocity[a]);
+                    add[a] -= 2*sigma*wall_friction(speed_along(o, in, i, k), s, nu)*
+                              (in[i][VEL + a] - o->plane[k].velocity[a]);
         }
         for (int a = 0; a < 3; a++) out[i][VEL + a] += o->dt*add[a];
         out[i][WET] = wetness(o, in, i);
@@ -366,7 +389,8 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
             if (!o->plane[k].no_slip) continue;
             for (int c = 0; c < 3; c++)
                 if (c != axis)
-                    t[c] += o->volume*o->rho0[o->fluid[i]]*2*o->nu[o->fluid[i]]*look_up(o, o->sigma, s)/s*
+                    t[c] += mass*2*look_up(o, o->sigma, s)*
+                            wall_friction(speed_along(o, in, i, k), s, o->nu[o->fluid[i]])*
                             (in[i][VEL + c] - o->plane[k].velocity[c]);
         }
 }

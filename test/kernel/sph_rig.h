@@ -181,7 +181,7 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
 {
     static const int size3[3] = {9, 8, 8}, size2[3] = {26, 24, 1};
     const int *n = k->dimension == 3 ? size3 : size2;
-    const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-3};   /* kg/m3, m2/s */
+    const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-6};   /* kg/m3, m2/s: both of (14), (14b) */
     double d = 0.01, lower[3], upper[3];
     memset(g, 0, sizeof *g);
     rig_state = 1234567;

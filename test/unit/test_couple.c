@@ -1,4 +1,4 @@
-/* How easily water moves a body: what bounds the steps of an explicit coupling. */
+/* How easily water moves a body, and sound: what bounds the steps of an explicit coupling. */
 #include "calls.h"
 #include "core/couple.h"
 #include "world/world.h"
@@ -57,6 +57,32 @@ static void boxes(void **state)
     expect(softness(cube, &b, 3), 2*0.04/8);
 }
 
+/* Water at rest: cfl d over sound, 0.4*0.02/c. A step above it is told. */
+static void a_step_longer_than_sound_allows_is_told(void **state)
+{
+    (void)state;
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_wcsph_def liquid = tobi_default_wcsph_def();
+    tobi_world *w;
+    def.method = "wcsph";
+    def.spacing = 0.02;
+    def.time_step = 0.01;
+    fluid.name = "water";
+    for (int a = 0; a < 3; a++) {
+        def.domain_max[a] = 1;
+        fill.box_max[a] = a ? 0.1 : 1;
+    }
+    OK(tobi_world_create(&def, &liquid, &w, &err));
+    OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
+    const double exact = 0.4*0.02/sqrt(liquid.exponent*liquid.stiffness/1000);
+    assert_true(fabs(tobi_world_stable_step(w)/exact - 1) < 1e-6);
+    OK(tobi_world_note_time_step(w, &err));
+    assert_non_null(strstr(tobi_world_note(w, 0), "that sound in the liquid allows: the run may run away"));
+    tobi_world_destroy(w);
+}
+
 static void prescribed_bodies_have_none(void **state)
 {
     (void)state;
@@ -68,6 +94,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes),
+        cmocka_unit_test(a_step_longer_than_sound_allows_is_told),
         cmocka_unit_test(prescribed_bodies_have_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -397,6 +397,11 @@ static void same_bits(void **state)
     later->method->recall(later->method_state, nowhere, 1);
     assert_int_equal(tobi_world_step(later, 0, NULL, &why), TOBI_DAMAGED);
     assert_non_null(strstr(why.text, "the checkpoint remembers a cut at node 1e+09"));
+    assert_int_equal(one->sim.bodies[0].piece_count, 1);
+    one->sim.bodies[0].edge_share[0][1] = NAN;
+    OK(tobi_world_save(one, path, &err));
+    assert_int_equal(tobi_world_load(later, path, &why), TOBI_DAMAGED);
+    assert_non_null(strstr(why.text, "the checkpoint's state of the edge of '"));
     unlink(path);
     tobi_world_destroy(one);
     tobi_world_destroy(four);

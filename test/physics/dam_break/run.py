@@ -7,44 +7,44 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, fit_line, interpolate, mean, read_series, read_table, read_vtu
 
 case = Case("dam_break", "Dam break", """
-A column of width a and height n2 a is set free; 2-D, no-slip walls as in a real tank. Front Z = x / a of the foremost particle's far
-side against T = t sqrt(n2 g / a). Slope: least squares over 2 < Z < 6, of the computation and of the
+A column of width a and height n2 a is set free; 2-D, no-slip walls as in a real tank, each experiment at its own size. Front Z = x / a
+of the foremost particle's far side against T = t sqrt(n2 g / a). Slope: least squares over 2 < Z < 6, of the computation and of the
 experiment alike (n2 = 1: over the experiment's own range). Lag: mean over the experiment's points in that range of
-T(computation) - T(experiment) at equal Z, in units of T. Experiments: J. C. Martin and W. J. Moyce, Phil.
+T(computation) - T(experiment) at equal Z, in units of T; "at the first point": at the first one measured at which the front has moved by a tenth
+of a, so what the start of the experiment, its sheet or gate, has to do with it. Experiments: J. C. Martin and W. J. Moyce, Phil.
 Trans. R. Soc. A 244 (1952) 312; S. Koshizuka and Y. Oka, Nucl. Sci. Eng. 123 (1996) 421.""")
 
-A, G = 0.05715, 9.81
+G = 9.81
 ACROSS = case.pick(16, 40)
-D = A/ACROSS
 # Some values of the publications, for machines without the reference data: (T, Z).
 EXPERIMENTS = [
-    ("Martin & Moyce n2=1", 1, "dambreak/martin_moyce1952_n2_1_front.csv", "T",
+    ("Martin & Moyce n2=1", 0.05715, 1, "dambreak/martin_moyce1952_n2_1_front.csv", "T",
      [(0.97, 1.67), (1.29, 2.11), (1.62, 2.56), (1.76, 2.78)]),
-    ("Martin & Moyce n2=2, a = 57 mm", 2, "dambreak/martin_moyce1952_n2_2_a2.25in_front.csv", "T2",
+    ("Martin & Moyce n2=2, a = 57 mm", 0.05715, 2, "dambreak/martin_moyce1952_n2_2_a2.25in_front.csv", "T2",
      [(1.997, 2.292), (2.547, 2.995), (3.345, 4.134), (4.034, 4.944), (4.418, 5.881)]),
-    ("Martin & Moyce n2=2, a = 29 mm", 2, "dambreak/martin_moyce1952_n2_2_a1.125in_front.csv", "T2",
+    ("Martin & Moyce n2=2, a = 29 mm", 0.028575, 2, "dambreak/martin_moyce1952_n2_2_a1.125in_front.csv", "T2",
      [(2.283, 2.689), (2.95, 3.728), (3.598, 4.528), (3.905, 4.999), (4.592, 5.841)]),
-    ("Koshizuka & Oka", 2, "dambreak/koshizuka_oka1996_exp_front_pysph.csv", "T2",
+    ("Koshizuka & Oka", 0.146, 2, "dambreak/koshizuka_oka1996_exp_front_pysph.csv", "T2",
      [(1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624)]),
 ]
-if not case.smoke and not case.reference_file(EXPERIMENTS[0][2]):
+if not case.smoke and not case.reference_file(EXPERIMENTS[0][3]):
     print("dam_break: no reference data found (--reference); using the few values quoted in run.py")
 
 
-def compute_front(n2):
+def compute_front(a, n2):
     """T and Z of the front, and the history."""
-    end = (case.pick(4.6, 5.5) if n2 == 2 else case.pick(2.4, 3.5))/(n2*G/A)**0.5
-    out = case.run(f"column{n2}", "--spacing", repr(D), "--until", f"{end:.4f}",
-                   "--set", f"fluids[0].fill[0].box.max=[{A}, {n2*A}]")
+    end = (case.pick(4.6, 5.5) if n2 == 2 else case.pick(2.4, 3.5))/(n2*G/a)**0.5
+    out = case.run(f"column{n2}_{1000*a:.0f}", "--spacing", repr(a/ACROSS), "--until", f"{end:.4f}", "--set", f"output.interval={end/50:.6f}",
+                   "--set", f"domain.max=[{10.5*a}, {4.4*a}]", "--set", f"fluids[0].fill[0].box.max=[{a}, {n2*a}]")
     times, fronts = [], []
     for time, path in read_series(out):
-        times.append(time*(n2*G/A)**0.5)
-        fronts.append((max(read_vtu(path)["Points"][0::3]) + D/2)/A)
+        times.append(time*(n2*G/a)**0.5)
+        fronts.append(max(read_vtu(path)["Points"][0::3])/a + 0.5/ACROSS)
     return times, fronts, read_table(out / "history.csv")
 
 
-def compare(label, n2, file, column, quoted, run):
-    times, fronts, _ = run
+def compare(label, a, n2, file, column, quoted):
+    times, fronts, history = compute_front(a, n2)
     path = case.reference_file(file)
     points = list(zip(*[read_table(path)[c] for c in (column, "Z")])) if path else quoted
     low, high = (2, 6) if n2 == 2 else (min(z for _, z in points), max(z for _, z in points))
@@ -57,24 +57,22 @@ def compare(label, n2, file, column, quoted, run):
                 deviation, "within 0.05", abs(deviation) <= 0.05)
     lag = mean([interpolate(fronts, times, z) - t for t, z in reference])
     case.figure(f"{label}: lag in T", lag, "within 0.15", abs(lag) <= 0.15)
+    t, z = next((t, z) for t, z in points if z >= 1.1)
+    case.state(f"{label}: lag at the first point, Z = {z}", interpolate(fronts, times, z) - t)
     # Experiments scatter by 15 % among themselves (compare the two columns of Martin & Moyce); a front
     # outside 25 % is not a dam break.
     case.hold(f"{label}: slope within 25 %", abs(deviation) <= 0.25)
-    return label, [t for t, _ in points], [z for _, z in points], True
-
-
-runs = {n2: compute_front(n2) for n2 in (1, 2)}
-curves = {1: [], 2: []}
-for row in EXPERIMENTS:
-    curves[row[1]].append(compare(*row, runs[row[1]]))
-for n2, (times, fronts, history) in runs.items():
     total = [k + p for k, p in zip(history["kinetic_energy"], history["potential_energy"])]
     gain = max(total[1:])/total[0] - 1
-    case.figure(f"n2={n2}: largest energy against the start", gain, "<= 0.01", gain <= 0.01)
-    case.figure(f"n2={n2}: particles lost", int(history["particles_lost"][-1]), "0",
-                history["particles_lost"][-1] == 0)
+    case.figure(f"{label}: largest energy against the start", gain, "<= 0.01", gain <= 0.01)
+    case.figure(f"{label}: particles lost", int(history["particles_lost"][-1]), "0", history["particles_lost"][-1] == 0)
     # Energy may not appear; 5 % is what a column of 16 particles may gain by rearranging at its free surface.
-    case.hold(f"n2={n2}: no energy from nothing (5 %)", gain <= 0.05)
-    case.hold(f"n2={n2}: the front only advances", all(b >= a - 0.1 for a, b in zip(fronts, fronts[1:])))
-    case.plot(f"Front, n2 = {n2}", "T", "Z", [(f"tobiuo, a / d = {ACROSS}", times, fronts, False)] + curves[n2])
+    case.hold(f"{label}: no energy from nothing (5 %)", gain <= 0.05)
+    case.hold(f"{label}: the front only advances", all(b >= a - 0.1 for a, b in zip(fronts, fronts[1:])))
+    case.plot(f"Front, {label}", "T", "Z", [(f"tobiuo, a / d = {ACROSS}", times, fronts, False),
+                                            ("experiment", [t for t, _ in points], [z for _, z in points], True)])
+
+
+for row in EXPERIMENTS:
+    compare(*row)
 case.finish()
