@@ -184,10 +184,10 @@ TOBI_FN double mpm_find_damping(const mpm_view *v, int count, const lane velocit
     return sum;
 }
 
-/* Stress and momentum, with axes as the stencil has them. bent: stress, or 0 of solids that break. */
+/* Stress and momentum, with axes as the stencil has them. */
 TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane tau[6],
-                            const lane gradient[9], const lane momentum[4], lane stress, lane bent,
-                            lane carried, const int dim, mpm_load *load)
+                            const lane gradient[9], const lane momentum[4], lane stress, lane carried,
+                            const int dim, mpm_load *load)
 {
     const int of[3][3] = {{MPM_XX, MPM_XY, MPM_ZX}, {MPM_XY, MPM_YY, MPM_YZ}, {MPM_ZX, MPM_YZ, MPM_ZZ}};
     const lane zero = lane_set(0);
@@ -202,7 +202,7 @@ TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane
         lane_store_float4(load->column[c], 1, 8, column[0], column[1], column[2], zero);
         if (!v->bent) continue;
         const lane differ = 0.25f*(1.5f - offset)*(1.0f - offset)*(2.0f*offset - 1.0f)*v->cell;
-        for (int r = 0; r < 3; r++) bend[r] = bent*tau[of[r][c]]*differ;
+        for (int r = 0; r < 3; r++) bend[r] = stress*tau[of[r][c]]*differ;
         lane_store_float4(load->bend[c], 1, 8, bend[0], bend[1], bend[2], zero);
     }
     lane_store_float4(load->base, 1, 8, base[0], base[1], base[2], momentum[3]);
@@ -229,10 +229,8 @@ TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, const mpm_
     const lane mass = other[2], moving = mass*keep;
     for (int a = 0; a < 3; a++) momentum[a] = moving*velocity[a];
     momentum[3] = mass;
-    const lane zero = lane_set(0),
-               stress = other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell),
-               bent = lane_where_less(zero, m.strength, zero, stress);
-    mpm_store_load(v, at, tau, gradient, momentum, stress, bent,
+    mpm_store_load(v, at, tau, gradient, momentum,
+                   other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell),
                    v->affine_momentum ? moving : lane_set(0), dim, load);
     return v->damped ? mpm_find_damping(v, count, velocity, gradient, mass, keep) : 0;
 }

@@ -313,7 +313,7 @@ static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_pa
         ORACLE_EACH_NODE(g, &p[i], w, r, n) {
             double slope[3];
             oracle_gradient(g, r, slope);
-            for (int b = 0; b < 3 && (!g->spline || m->strength > 0); b++) slope[b] = 4/(g->h*g->h)*w*r[b];
+            for (int b = 0; b < 3 && !g->spline; b++) slope[b] = 4/(g->h*g->h)*w*r[b];
             n->mass += w*p[i].mass;
             for (int a = 0; a < 3; a++) {
                 double own = p[i].mass*m->keep*p[i].v[a];
