@@ -163,7 +163,8 @@ static const tobi_param mlsmpm_rows[] = {
     { .key = "gradient", CHOICE("spline|mls", 2), AT(tobi_mlsmpm_def, gradient),
       .doc = "How stress pushes the grid: by the gradient of the splines, or by that of moving least "
              "squares, with which slender solids that lean in the grid bend up to a tenth too easily and a "
-             "step takes 4 % less time, without AVX-512 a fifth." },
+             "step takes 4 % less time, without AVX-512 a fifth. Scenes with blades or with a solid that "
+             "has a strength always take mls." },
     { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
       .positive = true, .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
