@@ -10,14 +10,14 @@
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
     FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
-    TENSOR, WALLED = TENSOR + 6, COLUMNS
+    TENSOR, WALLED = TENSOR + 6, CORRECTION, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
-    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled"
+    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled", "correction"
 };
 
 enum { TABLE = 4000 };
@@ -245,6 +245,27 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i)
     out[i][WALLED] = walled;
 }
 
+/* c of eq. (13c): M^-1 times the sum of V F x_ji. */
+static void oracle_lean(const oracle *o, const row *in, row *out, int i)
+{
+    double m[3][3] = {{0}}, sum[3] = {0}, c[3], size = 0;
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double f = o->volume*o->g_scale*oracle_f(o, r);
+        for (int a = 0; a < 9; a++) m[a/3][a%3] += f*x[a/3]*x[a%3];
+        for (int a = 0; a < 3; a++) sum[a] -= f*x[a];
+    }
+    if (o->dimension == 2) m[2][2] = 1;
+    int exists = oracle_inverse(m) > 1e-3;
+    for (int a = 0; a < 3; a++) {
+        c[a] = exists ? m[a][0]*sum[0] + m[a][1]*sum[1] + m[a][2]*sum[2] : 0;
+        size += c[a]*c[a];
+    }
+    double cut = fmin(1, 3/(o->h*fmax(sqrt(size), 1e-30)));
+    out[i][PRE] = cut*c[0];
+    out[i][RES] = cut*c[1];
+    out[i][CORRECTION] = cut*c[2];
+}
+
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
@@ -253,6 +274,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
         double slant[3], tilted[3];
         if (o->along) oracle_tensor(o, in, out, i);
+        if (o->along == 1) oracle_lean(o, in, out, i);
         for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
@@ -442,6 +464,7 @@ static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t
 }
 
 #include "sph_pressure_oracle.h"
+#include "sph_vessel_oracle.h"
 
 /* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
 static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
