@@ -134,8 +134,9 @@ TOBI_FN tobi_float4 sph_matrix_times(const sph_matrix *m, tobi_float4 x)
 }
 
 /* The symmetric part of (I - w n n^T) M^-1, eq. (7c), with w what M lacks along the wall's normal; b = M^-1.
-   0 where it is none to use. */
-TOBI_FN int sph_tilt(const sph_matrix *m, const sph_matrix *b, tobi_float4 gradient, float share, sph_matrix *t)
+   0 where that is none to use. */
+TOBI_FN int sph_tilt(const sph_matrix *m, const sph_matrix *b, tobi_float4 gradient, float share,
+                     sph_matrix *t)
 {
     tobi_float4 n = sph_unit(gradient), mn = sph_matrix_times(m, n), bn = sph_matrix_times(b, n);
     float fade = share < 0.02f ? 50*share : 1, half = 0.5f*fade*(1 - (n.x*mn.x + n.y*mn.y + n.z*mn.z));

@@ -9,9 +9,9 @@ static void oracle_midway(const oracle *o, const row *in, row *out, double *t)
         double g[3][3] = {{0}}, sum = 0;
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             double own[3];
+            double f = o->volume*o->g_scale*oracle_f(o, r);
             tilt(o, in, i, x, own);
-            for (int a = 0; a < 9; a++)
-                g[a/3][a%3] += o->volume*o->g_scale*oracle_f(o, r)*own[a/3]*(in[i][VEL + a%3] - in[j][VEL + a%3]);
+            for (int a = 0; a < 9; a++) g[a/3][a%3] += f*own[a/3]*(in[i][VEL + a%3] - in[j][VEL + a%3]);
         }
         for (int a = 0; a < 9; a++) sum += g[a/3][a%3]*g[a%3][a/3];
         out[i][DELTA] = o->dt/2*sum;
