@@ -1,4 +1,4 @@
-/* The filter of full vessels, eq. (13c) of docs/theory/dfsph.md: as that of (13), but blind to linear
+/* The filter of full vessels, eq. (13b) of docs/theory/dfsph.md: as that of (13), but blind to linear
    flows, which L sees where neighbours are in disorder or, beside walls, missing:
    L' v_i = sum_j V F (1 - c_i . x_ji) (v_j - v_i), and v -= dt k L'^T L' v, so that momentum is exact.
    Two passes: accel = L' v, then the rest. */

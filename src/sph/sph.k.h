@@ -89,7 +89,7 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     sph_moments_add(&a->second, f*f, n);
 }
 
-/* c of eq. (13c): M^-1 sum V F x, of size 3/h at most; 0 where M has no inverse. */
+/* c of eq. (13b): M^-1 sum V F x, of size 3/h at most; 0 where M has no inverse. */
 TOBI_FN void sph_lean(const sph_view *v, int64_t i, const sph_matrix *inverse, tobi_float4 g)
 {
     tobi_float4 c = sph_matrix_times(inverse, g);

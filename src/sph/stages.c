@@ -204,7 +204,7 @@ static void apply_tension(tobi_simulation *s, sph_view *v, const sph_kernels *k)
     launch(s, v, k->sph_tension, NULL);
 }
 
-/* Eq. (13c); nothing is left for that of (13). */
+/* Eq. (13b); nothing is left for that of (13). */
 static void apply_filter(tobi_simulation *s, sph_view *v, const sph_kernels *k)
 {
     if (!(v->filter > 0)) return;

@@ -245,7 +245,7 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i)
     out[i][WALLED] = walled;
 }
 
-/* c of eq. (13c): M^-1 times the sum of V F x_ji. */
+/* c of eq. (13b): M^-1 times the sum of V F x_ji. */
 static void oracle_lean(const oracle *o, const row *in, row *out, int i)
 {
     double m[3][3] = {{0}}, sum[3] = {0}, c[3], size = 0;

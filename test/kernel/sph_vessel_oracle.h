@@ -18,7 +18,7 @@ static void oracle_midway(const oracle *o, const row *in, row *out, double *t)
     }
 }
 
-/* The weight of neighbour j in L' at i, eq. (13c). */
+/* The weight of neighbour j in L' at i, eq. (13b). */
 static double leaning(const oracle *o, const row *in, int i, const double x[3], double r, double side)
 {
     double c[3] = {in[i][PRE], in[i][RES], in[i][CORRECTION]};

@@ -379,7 +379,7 @@ static double divergence_error(int dimension, int along, double *ripple)
     return worst;
 }
 
-/* Eq. (7c), (13c): disorder, which costs (7) tens of per cent, costs nothing in a full vessel. */
+/* Eq. (7c), (13b): disorder, which costs (7) tens of per cent, costs nothing in a full vessel. */
 static void linear_flows_are_exact_in_disorder(void **state)
 {
     (void)state;
