@@ -191,16 +191,41 @@ static int find_fork(int a, int b)
     return l;
 }
 
-/* The faces at which two pieces may touch. */
-static void fill_pair(const pieces *p, int levels, mpm_pair *pair)
+/* The side of the cut at a level on which a leaf lies, as particles remember it; 0 = no cut. */
+static float side_of(const mpm_crossing *at, int level, int leaf)
+{
+    const float mark = at->mark[place_of(level, leaf)];
+    return leaf >> level & 1 ? -mark : mark;
+}
+
+/* Whether the leaf lies on a side of this cut. */
+static int knows(const mpm_crossing *at, int leaf, float number)
+{
+    int known = 0;
+    for (int l = 0; l < at->levels; l++) known |= fabsf(side_of(at, l, leaf)) == number;
+    return known;
+}
+
+/* Whether the faces of leaf `one` at level l and of `two` at level m part the two: those of one cut on its two
+   sides, or of two cuts, of which the other leaf knows none, that look at each other. */
+static int part(const mpm_crossing *at, const pieces *p, int one, int l, int two, int m)
+{
+    const float a = side_of(at, l, one), b = side_of(at, m, two);
+    if (a == 0 || b == 0 || !(p->face[one][l].place[3] > 0) || !(p->face[two][m].place[3] > 0)) return 0;
+    if (fabsf(a) == fabsf(b)) return a == -b;
+    return !knows(at, two, fabsf(a)) && !knows(at, one, fabsf(b)) &&
+           are_opposed(&p->face[one][l], &p->face[two][m]);
+}
+
+/* The faces at which two pieces may touch: none if those of the cut at which their ways part are not near. */
+static void fill_pair(const mpm_crossing *at, const pieces *p, mpm_pair *pair)
 {
     const int one = pair->seam.first, two = pair->seam.second, fork = find_fork(one, two);
-    for (int l = fork; l < levels; l++) {
-        const mpm_heard *a = &p->face[one][l], *b = &p->face[two][l];
-        const int heard = a->place[3] > 0 && b->place[3] > 0;
-        if (l == fork && !heard) return;
-        if (heard && (l == fork || are_opposed(a, b))) pair->face[pair->count++] = mpm_vote_measure(a, b);
-    }
+    if (!part(at, p, one, fork, two, fork)) return;
+    for (int l = fork; l < at->levels; l++)
+        for (int m = fork; m < at->levels && pair->count < MPM_LEVELS; m++)
+            if (part(at, p, one, l, two, m))
+                pair->face[pair->count++] = mpm_vote_measure(&p->face[one][l], &p->face[two][m]);
     pair->seam.friction = (p->friction[one] + p->friction[two])/(p->weight[one] + p->weight[two]);
 }
 
@@ -219,7 +244,7 @@ static void fill_pairs(const mpm_crossing *at, struct mpm_cut *c, const mpm_grid
     pieces p;
     hear_pieces(at, c, g, v, &p);
     mpm_cross_pair(&c->cross, at);
-    for (int64_t n = at->begin; n < at->end; n++) fill_pair(&p, at->levels, &c->cross.pair[n]);
+    for (int64_t n = at->begin; n < at->end; n++) fill_pair(at, &p, &c->cross.pair[n]);
 }
 
 /* Lists the nodes in doubt. */
