@@ -151,27 +151,32 @@ static void grow_tree(mpm_crossing *at, const struct mpm_cut *c, const mpm_grid 
     while (at->levels < MPM_LEVELS && grow_level(at, at->levels, c, g, v)) at->levels++;
 }
 
-/* What is heard of the faces of each piece, by level. */
-typedef struct pieces {
-    mpm_heard face[MPM_VELOCITIES][MPM_LEVELS];
-    float weight[MPM_VELOCITIES], friction[MPM_VELOCITIES];
-} pieces;
+/* What is heard of each piece: of the cuts that it knows, with its side, 0 = no more. */
+typedef struct piece {
+    mpm_heard face[MPM_VOTES];
+    float mark[MPM_VOTES], weight, friction;
+} piece;
+
+static void hear_face(piece *p, float mark, float w, quad place, quad face)
+{
+    int k = 0;
+    while (k < MPM_VOTES && p->mark[k] != 0 && p->mark[k] != mark) k++;
+    if (k == MPM_VOTES) return;
+    p->mark[k] = mark;
+    mpm_vote_hear(&p->face[k], w, place, face);
+}
 
 static void hear_pieces(const mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v,
-                        pieces *p)
+                        piece pieces[MPM_VELOCITIES])
 {
-    memset(p, 0, sizeof *p);
+    memset(pieces, 0, MPM_VELOCITIES*sizeof *pieces);
     for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
         const tobi_columns *cuts = &v->cuts[w.particle];
-        const int q = find_branch(at->mark, at->levels, cuts);
-        p->weight[q] += w.weight;
-        p->friction[q] += w.weight*v->material[v->solid[w.particle]].cut_friction;
-        for (int l = 0; l < at->levels; l++) {
-            const float number = fabsf(at->mark[place_of(l, q)]);
-            for (int k = 0; number != 0 && k < TOBI_CUTS_EACH; k++)
-                if (fabsf(cuts->c[k].w) == number)
-                    mpm_vote_hear(&p->face[q][l], w.weight, w.place, quad_load(&c->face[w.particle].c[k]));
-        }
+        piece *p = &pieces[find_branch(at->mark, at->levels, cuts)];
+        p->weight += w.weight;
+        p->friction += w.weight*v->material[v->solid[w.particle]].cut_friction;
+        for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
+            hear_face(p, cuts->c[k].w, w.weight, w.place, quad_load(&c->face[w.particle].c[k]));
     }
 }
 
@@ -191,42 +196,35 @@ static int find_fork(int a, int b)
     return l;
 }
 
-/* The side of the cut at a level on which a leaf lies, as particles remember it; 0 = no cut. */
-static float side_of(const mpm_crossing *at, int level, int leaf)
+/* Which sides of a cut a piece knows: 1 that of the mark, 2 the other, 3 both. */
+static int find_sides(const piece *p, float mark)
 {
-    const float mark = at->mark[place_of(level, leaf)];
-    return leaf >> level & 1 ? -mark : mark;
+    int sides = 0;
+    for (int k = 0; k < MPM_VOTES; k++) sides |= p->mark[k] == mark ? 1 : p->mark[k] == -mark ? 2 : 0;
+    return sides;
 }
 
-/* Whether the leaf lies on a side of this cut. */
-static int knows(const mpm_crossing *at, int leaf, float number)
+/* Whether face k of a piece and face l of another part the two: those of one cut on its two sides, or of two
+   cuts that look at each other, of which neither piece knows the other's. */
+static int part(const piece *a, int k, const piece *b, int l)
 {
-    int known = 0;
-    for (int l = 0; l < at->levels; l++) known |= fabsf(side_of(at, l, leaf)) == number;
-    return known;
-}
-
-/* Whether the faces of leaf `one` at level l and of `two` at level m part the two: those of one cut on its two
-   sides, or of two cuts, of which the other leaf knows none, that look at each other. */
-static int part(const mpm_crossing *at, const pieces *p, int one, int l, int two, int m)
-{
-    const float a = side_of(at, l, one), b = side_of(at, m, two);
-    if (a == 0 || b == 0 || !(p->face[one][l].place[3] > 0) || !(p->face[two][m].place[3] > 0)) return 0;
-    if (fabsf(a) == fabsf(b)) return a == -b;
-    return !knows(at, two, fabsf(a)) && !knows(at, one, fabsf(b)) &&
-           are_opposed(&p->face[one][l], &p->face[two][m]);
+    const float one = a->mark[k], two = b->mark[l];
+    if (one == 0 || two == 0) return 0;
+    if (one == -two) return find_sides(a, one) == 1 && find_sides(b, two) == 1;
+    return find_sides(b, one) == 0 && find_sides(a, two) == 0 && are_opposed(&a->face[k], &b->face[l]);
 }
 
 /* The faces at which two pieces may touch: none if those of the cut at which their ways part are not near. */
-static void fill_pair(const mpm_crossing *at, const pieces *p, mpm_pair *pair)
+static void fill_pair(const mpm_crossing *at, const piece *pieces, mpm_pair *pair)
 {
-    const int one = pair->seam.first, two = pair->seam.second, fork = find_fork(one, two);
-    if (!part(at, p, one, fork, two, fork)) return;
-    for (int l = fork; l < at->levels; l++)
-        for (int m = fork; m < at->levels && pair->count < MPM_LEVELS; m++)
-            if (part(at, p, one, l, two, m))
-                pair->face[pair->count++] = mpm_vote_measure(&p->face[one][l], &p->face[two][m]);
-    pair->seam.friction = (p->friction[one] + p->friction[two])/(p->weight[one] + p->weight[two]);
+    const int fork = find_fork(pair->seam.first, pair->seam.second);
+    const piece *one = &pieces[pair->seam.first], *two = &pieces[pair->seam.second];
+    const float mark = at->mark[place_of(fork, pair->seam.first)];
+    if (mark == 0 || find_sides(one, mark) != 1 || find_sides(two, -mark) != 1) return;
+    for (int k = 0; k < MPM_VOTES; k++)
+        for (int l = 0; l < MPM_VOTES && pair->count < MPM_LEVELS; l++)
+            if (part(one, k, two, l)) pair->face[pair->count++] = mpm_vote_measure(&one->face[k], &two->face[l]);
+    pair->seam.friction = (one->friction + two->friction)/(one->weight + two->weight);
 }
 
 void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at)
@@ -241,10 +239,10 @@ void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at)
 
 static void fill_pairs(const mpm_crossing *at, struct mpm_cut *c, const mpm_grid *g, const mpm_view *v)
 {
-    pieces p;
-    hear_pieces(at, c, g, v, &p);
+    piece pieces[MPM_VELOCITIES];
+    hear_pieces(at, c, g, v, pieces);
     mpm_cross_pair(&c->cross, at);
-    for (int64_t n = at->begin; n < at->end; n++) fill_pair(at, &p, &c->cross.pair[n]);
+    for (int64_t n = at->begin; n < at->end; n++) fill_pair(at, pieces, &c->cross.pair[n]);
 }
 
 /* Lists the nodes in doubt. */

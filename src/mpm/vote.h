@@ -35,15 +35,18 @@ static inline void mpm_vote_add(mpm_vote votes[MPM_VOTES], float mark, float w, 
     mpm_vote_hear(&votes[k].side[mark < 0], w, place, face);
 }
 
-/* The cut whose lesser side weighs most, NULL = there are none. both: how many have both sides. */
+/* Of the cuts that have both sides here the one that parts most: by the weight of the lesser side and, as who does
+   not know a cut may be put on the wrong side of it, of all who know it. NULL = there are none. both: how many
+   there are. */
 static inline const mpm_vote *mpm_vote_pick(const mpm_vote votes[MPM_VOTES], int *both)
 {
     const mpm_vote *best = NULL;
     float most = 0;
     for (int k = 0; k < MPM_VOTES && votes[k].number != 0; k++) {
-        const float least = fminf(votes[k].side[0].place[3], votes[k].side[1].place[3]);
-        *both += least > 0;
-        if (least > most) { most = least; best = &votes[k]; }
+        const float a = votes[k].side[0].place[3], b = votes[k].side[1].place[3], least = fminf(a, b);
+        if (!(least > 0)) continue;
+        ++*both;
+        if (least + a + b > most) { most = least + a + b; best = &votes[k]; }
     }
     return best;
 }
