@@ -35,18 +35,18 @@ static inline void mpm_vote_add(mpm_vote votes[MPM_VOTES], float mark, float w, 
     mpm_vote_hear(&votes[k].side[mark < 0], w, place, face);
 }
 
-/* Of the cuts that have both sides here the one that parts most: by the weight of the lesser side and, as who does
-   not know a cut may be put on the wrong side of it, of all who know it. NULL = there are none. both: how many
-   there are. */
+/* Of the cuts that have both sides here the one that most know, since who does not know it may be put on the wrong
+   side; of those the one whose lesser side weighs more. NULL = there are none. both: how many there are. */
 static inline const mpm_vote *mpm_vote_pick(const mpm_vote votes[MPM_VOTES], int *both)
 {
     const mpm_vote *best = NULL;
     float most = 0;
     for (int k = 0; k < MPM_VOTES && votes[k].number != 0; k++) {
         const float a = votes[k].side[0].place[3], b = votes[k].side[1].place[3], least = fminf(a, b);
+        const float score = least + 100*(a + b);           /* 1 % who do not know outweigh the rest */
         if (!(least > 0)) continue;
         ++*both;
-        if (least + a + b > most) { most = least + a + b; best = &votes[k]; }
+        if (score > most) { most = score; best = &votes[k]; }
     }
     return best;
 }
