@@ -1,7 +1,7 @@
-/* At a node where cuts cross the particles vote again in each branch of the tree that the cuts so far make; what a
-   particle does not know leaves it with the side that outweighs. Pairs of leaves are parted by the cut at which
-   their ways part, and by deeper ones that face each other. The drawback is that each node walks over all voters
-   near its block. */
+/* At a node where cuts cross the particles vote again in each branch of the tree that the cuts so far make;
+   what a particle does not know leaves it with the side that outweighs. Pairs of leaves are parted by the
+   cut at which their ways part, and by deeper ones that face each other. The drawback is that each node
+   walks over all voters near its block. */
 #include "mpm/cross.h"
 #include "base/error.h"
 #include "core/cuts.h"
@@ -123,7 +123,8 @@ static int find_branch(const float *mark, int levels, const tobi_columns *cuts)
 }
 
 /* The cuts of one level of the tree; returns whether there are any. */
-static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v)
+static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
+                      const mpm_view *v)
 {
     mpm_vote votes[MPM_VELOCITIES/2][MPM_VOTES];
     int any = 0, unused = 0;
@@ -223,7 +224,8 @@ static void fill_pair(const mpm_crossing *at, const piece *pieces, mpm_pair *pai
     if (mark == 0 || find_sides(one, mark) != 1 || find_sides(two, -mark) != 1) return;
     for (int k = 0; k < MPM_VOTES; k++)
         for (int l = 0; l < MPM_VOTES && pair->count < MPM_LEVELS; l++)
-            if (part(one, k, two, l)) pair->face[pair->count++] = mpm_vote_measure(&one->face[k], &two->face[l]);
+            if (part(one, k, two, l))
+                pair->face[pair->count++] = mpm_vote_measure(&one->face[k], &two->face[l]);
     pair->seam.friction = (one->friction + two->friction)/(one->weight + two->weight);
 }
 
@@ -258,7 +260,8 @@ static tobi_status list_doubts(mpm_cross *c, const mpm_grid *g, tobi_error *err)
     return TOBI_OK;
 }
 
-tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, const mpm_view *v, tobi_error *err)
+tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, const mpm_view *v,
+                           tobi_error *err)
 {
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     mpm_cross *all = &c->cross;

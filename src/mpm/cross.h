@@ -16,12 +16,13 @@ typedef struct mpm_cross {
 
 /* Finds the nodes in doubt at which cuts cross, once c->side holds their roots, and notes the levels of their
    patches. */
-tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, const mpm_view *v, tobi_error *err);
+tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, const mpm_view *v,
+                           tobi_error *err);
 /* Room for count crossings, and for the pairs of those that there are. */
 tobi_status mpm_cross_reserve(mpm_cross *c, int64_t count, tobi_error *err);
 tobi_status mpm_cross_reserve_pairs(mpm_cross *c, tobi_error *err);
-/* The pairs of a node, each without faces, with the numbers of its velocities for their places: the first is on
-   the own side of the cut at which they part. */
+/* The pairs of a node, each without faces, with the numbers of its velocities for their places: the first
+   is on the own side of the cut at which they part. */
 void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at);
 /* Once twins are numbered: the places of the velocities of all pairs. */
 void mpm_cross_place(mpm_cross *c, const mpm_grid *g);

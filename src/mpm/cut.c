@@ -192,8 +192,8 @@ static int list_other_sides(const mpm_view *v, const mpm_block *b, float other[M
     return count;
 }
 
-/* The deepest level, counted from 1, at which a particle of the block may have a node of its tiles hidden from
-   it; 0 = none. */
+/* The deepest level, counted from 1, at which a particle of the block may have a node of its tiles hidden
+   from it; 0 = none. */
 static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int nodes)
 {
     float other[MOST];

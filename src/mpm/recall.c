@@ -1,6 +1,6 @@
-/* The nodes with several velocities in checkpoints: what particles are now does not say what they were when the
-   sides were found. A row per node with two velocities; of a node where cuts cross, one with its tree and one
-   for each face of its pairs. The last column says which. */
+/* The nodes with several velocities in checkpoints: what particles are now does not say what they were when
+   the sides were found. A row per node with two velocities; of a node where cuts cross, one with its tree
+   and one for each face of its pairs. The last column says which. */
 #include "base/error.h"
 #include "mpm/cut.h"
 #include <stdlib.h>
@@ -31,8 +31,8 @@ static double *put_crossing(const mpm_cut *c, const mpm_crossing *x, double *to)
     for (int64_t n = x->begin; n < x->end; n++)
         for (int k = 0; k < c->cross.pair[n].count; k++) {
             const mpm_face *f = &c->cross.pair[n].face[k];
-            const double row[KIND] = {x->node, (double)(n - x->begin), f->normal[0], f->normal[1], f->normal[2],
-                                      f->gap, c->cross.pair[n].seam.friction};
+            const double row[KIND] = {x->node, (double)(n - x->begin), f->normal[0], f->normal[1],
+                                      f->normal[2], f->gap, c->cross.pair[n].seam.friction};
             to = put_row(to, row, FACE_ROW);
         }
     return to;
@@ -52,8 +52,8 @@ tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_e
     double *to = *rows;
     for (int64_t k = 0; k < c->seam_count; k++) {
         const mpm_seam *m = &c->seam[k];
-        const double row[KIND] = {m->first, c->side[m->first], m->normal[0], m->normal[1], m->normal[2], m->gap,
-                                  m->friction, m->fixed};
+        const double row[KIND] = {m->first, c->side[m->first], m->normal[0], m->normal[1], m->normal[2],
+                                  m->gap, m->friction, m->fixed};
         to = put_row(to, row, SEAM_ROW);
     }
     for (int64_t k = 0; k < c->cross.count; k++) to = put_crossing(c, &c->cross.at[k], to);

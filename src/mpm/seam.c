@@ -1,5 +1,5 @@
-/* Contact of faces at the nodes. A seam is solved exactly in one sweep; where cuts cross, the pairs of a node share
-   velocities and are solved in turn until their impulses stand. */
+/* Contact of faces at the nodes. A seam is solved exactly in one sweep; where cuts cross, the pairs of a
+   node share velocities and are solved in turn until their impulses stand. */
 #include "mpm/seam.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -62,7 +62,8 @@ static void begin_seam(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second)
     memset(seam->push, 0, sizeof seam->push);
 }
 
-double mpm_seams_visit(mpm_seam *seams, int64_t begin, int64_t end, tobi_float4 *node, double dt, mpm_visit what)
+double mpm_seams_visit(mpm_seam *seams, int64_t begin, int64_t end, tobi_float4 *node, double dt,
+                       mpm_visit what)
 {
     double lost = 0;
     for (int64_t k = begin; k < end; k++) {
@@ -83,8 +84,8 @@ static double speed_along(const mpm_face *f, const tobi_float4 *first, const tob
     return along;
 }
 
-/* Bodies with corners are apart as long as one plane parts them: they touch at the face whose gap would be widest
-   at the end of the step. */
+/* Bodies with corners are apart as long as one plane parts them: they touch at the face whose gap would be
+   widest at the end of the step. */
 static void choose_face(mpm_pair *p, const tobi_float4 *first, const tobi_float4 *second, double dt)
 {
     double widest = -INFINITY;

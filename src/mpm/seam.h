@@ -1,5 +1,5 @@
-/* Where two velocities of a node push and rub: those of the two sides of a cut, of two solids that meet, or any
-   two where cuts cross. docs/theory/cutting.md. */
+/* Where two velocities of a node push and rub: those of the two sides of a cut, of two solids that meet, or
+   any two where cuts cross. docs/theory/cutting.md. */
 #pragma once
 #include "mpm/view.h"
 
@@ -31,9 +31,11 @@ typedef struct mpm_crossing {
     double  lost;                      /* J, of the last walk                                      */
 } mpm_crossing;
 
-/* What a walk over seams does: before a step's first sweep, and that sweep; another sweep; the gaps at the end. */
+/* What a walk over seams does: before a step's first sweep, and that sweep; another sweep; the gaps at the
+   end. */
 typedef enum mpm_visit { MPM_BEGIN, MPM_PRESS, MPM_SETTLE } mpm_visit;
 
 /* Each returns what the pushes have cost, J; only MPM_SETTLE costs. */
-double mpm_seams_visit(mpm_seam *seam, int64_t begin, int64_t end, tobi_float4 *node, double dt, mpm_visit what);
+double mpm_seams_visit(mpm_seam *seam, int64_t begin, int64_t end, tobi_float4 *node, double dt,
+                       mpm_visit what);
 double mpm_pairs_visit(mpm_pair *pair, int64_t count, tobi_float4 *node, double dt, mpm_visit what);

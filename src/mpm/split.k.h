@@ -78,8 +78,8 @@ TOBI_FN uint32_t mpm_match_all(const mpm_view *v, int64_t i, const float *side, 
 }
 
 /* The nodes across the cuts of every level from a particle, and those whose second velocity is its solid's.
-   Found anew when its base node is another: masks are cleared whenever sides are found, so that it can only be
-   one beside it, which parities tell apart. */
+   Found anew when its base node is another: masks are cleared whenever sides are found, so that it can only
+   be one beside it, which parities tell apart. */
 TOBI_FN mpm_hidden mpm_find_hidden(const mpm_view *v, int64_t i, const float *side, int levels, int32_t first,
                                    int dim)
 {

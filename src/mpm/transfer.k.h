@@ -39,7 +39,8 @@ TOBI_FN void mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
 }
 
 /* Adds the cell's sums to the tile, those of hidden nodes to the twins'. reach: of all. */
-TOBI_FN void mpm_leave_cell(tobi_float4 *const *tile, int levels, mpm_cell *c, mpm_reach *reach, const int dim)
+TOBI_FN void mpm_leave_cell(tobi_float4 *const *tile, int levels, mpm_cell *c, mpm_reach *reach,
+                            const int dim)
 {
     if (c->first < 0) return;
     mpm_note_rows(&reach[0], c->first, dim);

@@ -38,8 +38,8 @@ TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
 
 /* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. Where cuts are, a node has two
    velocities, where they cross 2^levels: blocks of particles and of nodes have 2^levels - 1 twins for the
-   others, which follow one another behind all blocks. A twin block has the tile of its velocity, no particles,
-   and around it twins of node blocks where there are any. */
+   others, which follow one another behind all blocks. A twin block has the tile of its velocity, no
+   particles, and around it twins of node blocks where there are any. */
 typedef struct mpm_block {
     int32_t corner[3];                 /* cells from the domain's lower corner                    */
     int64_t begin, end;                /* particles                                               */

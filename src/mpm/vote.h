@@ -7,8 +7,9 @@
 
 enum { MPM_VOTES = 4 };                /* cuts that one node looks at                              */
 
-/* What is heard at a node from the particles on one side of a cut: sums, by mass and weight, of places (m, from
-   the corner of the block) with the weights themselves, and of normals with distances from the cut (m). */
+/* What is heard at a node from the particles on one side of a cut: sums, by mass and weight, of places (m,
+   from the corner of the block) with the weights themselves, and of normals with distances from the cut
+   (m). */
 typedef struct mpm_heard { quad place, face; } mpm_heard;
 
 /* Of one cut, side 0 being +. */
@@ -35,8 +36,9 @@ static inline void mpm_vote_add(mpm_vote votes[MPM_VOTES], float mark, float w, 
     mpm_vote_hear(&votes[k].side[mark < 0], w, place, face);
 }
 
-/* Of the cuts that have both sides here the one that most know, since who does not know it may be put on the wrong
-   side; of those the one whose lesser side weighs more. NULL = there are none. both: how many there are. */
+/* Of the cuts that have both sides here the one that most know, since who does not know it may be put on
+   the wrong side; of those the one whose lesser side weighs more. NULL = there are none. both: how many
+   there are. */
 static inline const mpm_vote *mpm_vote_pick(const mpm_vote votes[MPM_VOTES], int *both)
 {
     const mpm_vote *best = NULL;

@@ -1,5 +1,5 @@
-/* Cuts that cross: what they part moves as if alone, presses and slides as two halves do, wherever the cuts lie
-   in the grid, and in the same bits for any number of threads and after a restart. */
+/* Cuts that cross: what they part moves as if alone, presses and slides as two halves do, wherever the cuts
+   lie in the grid, and in the same bits for any number of threads and after a restart. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -34,7 +34,8 @@ static void write_blade(const char *path)
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     for (int z = 0; z < 2; z++)
-        fprintf(f, "v 0 0 %g\nv 1e-3 0.02 %g\nv -1e-3 0.02 %g\n", 0.04*z - 0.02, 0.04*z - 0.02, 0.04*z - 0.02);
+        for (int i = 0; i < 3; i++)
+            fprintf(f, "v %g %g %g\n", (int[]){0, 1, -1}[i]*1e-3, i ? 0.02 : 0, 0.04*z - 0.02);
     fprintf(f, "f 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\nf 3 1 4\nf 3 4 6\nf 1 3 2\nf 4 5 6\n");
     fclose(f);
 }
@@ -127,7 +128,8 @@ static void keep_piece(tobi_world *world, const cuts *c, int piece)
     p->count = kept;
 }
 
-/* Velocities away from (speed > 0) or towards the crossing, different for each piece, with some spin and shear. */
+/* Velocities away from (speed > 0) or towards the crossing, different for each piece, with some spin and
+   shear. */
 static void set_off(tobi_world *world, const cuts *c, double speed, double turn)
 {
     tobi_particles *p = &world->sim.particles;
@@ -135,7 +137,8 @@ static void set_off(tobi_world *world, const cuts *c, double speed, double turn)
         double d[3], u[3] = {0, 0, 0};
         const int piece = find_piece(p, i, c);
         find_way(p, i, c, d);
-        for (int k = 0; k < c->count; k++) vec3_add_scaled(u, u, piece >> k & 1 ? speed : -speed, c->normal[k]);
+        for (int k = 0; k < c->count; k++)
+            vec3_add_scaled(u, u, piece >> k & 1 ? speed : -speed, c->normal[k]);
         const double spin = turn*(1 + 0.3*piece);
         u[0] += -spin*d[1] + turn*d[0]*(1 + 0.1*piece);
         u[1] += spin*d[0] + turn*d[1];
@@ -148,8 +151,8 @@ static void set_off(tobi_world *world, const cuts *c, double speed, double turn)
 
 static void advance(tobi_world *world, double time) { OK(tobi_world_advance(world, time, NULL, &err)); }
 
-/* Largest difference of positions, m, between the pieces of a block and each of them alone, after 4 ms. notched: that of
-   the half that c->tip is in, instead of counting it. */
+/* Largest difference of positions, m, between the pieces of a block and each of them alone, after 4 ms.
+   notched: that of the half that c->tip is in, instead of counting it. */
 static double compare_alone(const cuts *c, int transfer, double *notched)
 {
     static double together[MOST][3];
@@ -216,9 +219,9 @@ static void pieces_move_as_if_alone(void **state)
             }
 }
 
-/* The edge of the second blade has just got through the first cut: what it has left behind is parted, the half
-   that it is in is one piece with a notch. It moves by 2 mm; which of the two faces at the end of the notch holds
-   the particles ahead of it is a matter of who else is heard at a node, and may differ. */
+/* The edge of the second blade has just got through the first cut: what it has left behind is parted, the
+   half that it is in is one piece with a notch. It moves by 2 mm; which of the two faces at the end of the
+   notch holds the particles ahead of it is a matter of who else is heard at a node, and may differ. */
 static void a_half_that_is_being_cut_is_one_piece(void **state)
 {
     (void)state;
@@ -227,7 +230,8 @@ static void a_half_that_is_being_cut_is_one_piece(void **state)
             cuts c = make_cuts(dimension, 2, 0.4*k, PI/2, 0.25*k);
             c.tip = 0.6*k*CELL + 1e-3;
             double notched = 0, worst = compare_alone(&c, TOBI_APIC, &notched);
-            printf("%d-D, %.2f cells beyond the first cut: positions differ by %.1e m, about the notch by %.1e m\n",
+            printf("%d-D, %.2f cells beyond the first cut: positions differ by %.1e m, about the notch by "
+                   "%.1e m\n",
                    dimension, c.tip/CELL, worst, notched);
             assert_true(worst < 1e-8);
             assert_true(notched < 0.03*2e-3);
@@ -293,8 +297,8 @@ static void press(const cuts *c)
     find_momentum(world, after);
     const double last = find_parting(world, c);
     for (int a = 0; a < 3; a++) drift = fmax(drift, fabs(after[a] - before[a])/size);
-    printf("%d-D, %d cuts: from %.2f to %.2f m/s, overlap %.2f spacings, momentum changes by %.1e\n", c->dimension,
-           c->count, first, last, most/SPACING, drift);
+    printf("%d-D, %d cuts: from %.2f to %.2f m/s, overlap %.2f spacings, momentum changes by %.1e\n",
+           c->dimension, c->count, first, last, most/SPACING, drift);
     assert_true(last > 0);
     assert_true(most < 0.25*SPACING);
     assert_true(drift < 1e-6);
@@ -346,15 +350,15 @@ static void pieces_slide_as_halves_do(void **state)
                 const double quarters = slide(&c, 0.3*rough);
                 c.count = 1;
                 const double halves = slide(&c, 0.3*rough);
-                printf("%d-D, at %d degrees, friction %.1f: %.4f of the speed is left, of halves %.4f\n", dimension,
-                       25*k, 0.3*rough, quarters, halves);
+                printf("%d-D, at %d degrees, friction %.1f: %.4f of the speed is left, of halves %.4f\n",
+                       dimension, 25*k, 0.3*rough, quarters, halves);
                 if (rough) assert_true(fabs(quarters - halves) < 0.1*(1 - halves));
                 else assert_true(fabs(quarters - halves) < 1e-3);
             }
 }
 
-/* Pieces pressed together, one world that writes checkpoints, one with other threads that does not, and one that goes
-   on from the last of them, between two findings of sides. */
+/* Pieces pressed together, one world that writes checkpoints, one with other threads that does not, and one
+   that goes on from the last of them, between two findings of sides. */
 static void same_bits(void **state)
 {
     (void)state;
