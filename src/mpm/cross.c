@@ -111,15 +111,71 @@ static int walk_on(walk *w)
 /* The cut of the tree that a branch of this level meets. */
 static int place_of(int level, int branch) { return (1 << level) - 1 + (branch & ((1 << level) - 1)); }
 
-/* The branch that a particle takes through so many levels. */
-static int find_branch(const float *mark, int levels, const tobi_columns *cuts)
+static int has(const tobi_columns *cuts, float mark)
+{
+    int found = 0;
+    for (int k = 0; mark != 0 && k < TOBI_CUTS_EACH; k++) found |= cuts->c[k].w == mark;
+    return found;
+}
+
+/* The branch that a particle takes through so many levels, as mpm_find_hidden has it. */
+static int find_branch(const mpm_crossing *at, int levels, const tobi_columns *cuts)
 {
     int q = 0;
     for (int l = 0; l < levels; l++) {
-        const float here = mark[place_of(l, q)];
-        for (int k = 0; here != 0 && k < TOBI_CUTS_EACH; k++) q |= (cuts->c[k].w == -here) << l;
+        const int n = place_of(l, q);
+        int guest = 0;
+        for (int m = 0; m < MPM_GUESTS; m++) guest |= has(cuts, at->guest[m][n]);
+        q |= (has(cuts, -at->mark[n]) || (guest && !has(cuts, at->mark[n]))) << l;
     }
     return q;
+}
+
+/* Particles of one side of a cut that know another cut too: how much of them on either side of that. */
+typedef struct company { float mark, weight[2]; } company;
+
+enum { COMPANIES = 2*MPM_VOTES };
+
+static void join(company list[COMPANIES], float mark, int across, float weight)
+{
+    int k = 0;
+    while (k < COMPANIES && list[k].mark != 0 && list[k].mark != mark) k++;
+    if (k == COMPANIES) return;
+    list[k].mark = mark;
+    list[k].weight[across] += weight;
+}
+
+/* The marks of most of those that are rather across. */
+static void choose_guests(mpm_crossing *at, int place, const company list[COMPANIES])
+{
+    float before = INFINITY;
+    for (int m = 0; m < MPM_GUESTS; m++) {
+        const company *best = NULL;
+        for (int k = 0; k < COMPANIES && list[k].mark != 0; k++)
+            if (list[k].weight[1] > list[k].weight[0] && list[k].weight[1] < before &&
+                (!best || list[k].weight[1] > best->weight[1]))
+                best = &list[k];
+        at->guest[m][place] = best ? best->mark : 0;
+        before = best ? best->weight[1] : 0;
+    }
+}
+
+/* Who does not know the cuts of a level goes with those who share his other sides. */
+static void find_guests(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
+                        const mpm_view *v)
+{
+    company list[MPM_VELOCITIES/2][COMPANIES];
+    memset(list, 0, sizeof list);
+    for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
+        const tobi_columns *cuts = &v->cuts[w.particle];
+        const int q = find_branch(at, level, cuts);
+        const float mark = at->mark[place_of(level, q)];
+        const int across = has(cuts, -mark);
+        if (!across && !has(cuts, mark)) continue;
+        for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
+            if (fabsf(cuts->c[k].w) != fabsf(mark)) join(list[q], cuts->c[k].w, across, w.weight);
+    }
+    for (int q = 0; q < 1 << level; q++) choose_guests(at, place_of(level, q), list[q]);
 }
 
 /* The cuts of one level of the tree; returns whether there are any. */
@@ -131,7 +187,7 @@ static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, cons
     memset(votes, 0, sizeof votes);
     for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
         const tobi_columns *cuts = &v->cuts[w.particle];
-        const int q = find_branch(at->mark, level, cuts);
+        const int q = find_branch(at, level, cuts);
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
             mpm_vote_add(votes[q], cuts->c[k].w, w.weight, w.place, quad_load(&c->face[w.particle].c[k]), 0);
     }
@@ -147,9 +203,12 @@ static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, cons
 static void grow_tree(mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v)
 {
     memset(at->mark, 0, sizeof at->mark);
+    memset(at->guest, 0, sizeof at->guest);
     at->mark[0] = c->side[at->node];
     at->levels = 1;
-    while (at->levels < MPM_LEVELS && grow_level(at, at->levels, c, g, v)) at->levels++;
+    find_guests(at, 0, c, g, v);
+    while (at->levels < MPM_LEVELS && grow_level(at, at->levels, c, g, v))
+        find_guests(at, at->levels++, c, g, v);
 }
 
 /* What is heard of each piece: of the cuts that it knows, with its side, 0 = no more. */
@@ -173,7 +232,7 @@ static void hear_pieces(const mpm_crossing *at, const struct mpm_cut *c, const m
     memset(pieces, 0, MPM_VELOCITIES*sizeof *pieces);
     for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
         const tobi_columns *cuts = &v->cuts[w.particle];
-        piece *p = &pieces[find_branch(at->mark, at->levels, cuts)];
+        piece *p = &pieces[find_branch(at, at->levels, cuts)];
         p->weight += w.weight;
         p->friction += w.weight*v->material[v->solid[w.particle]].cut_friction;
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)

@@ -147,22 +147,33 @@ static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int di
             }
 }
 
-/* The marks of the deeper levels around a block, as its other tiles. */
+/* Tiles of sides of a block with so many levels. */
+static int count_tiles(int levels)
+{
+    const int twins = (1 << levels) - 1;
+    return levels > 1 ? (1 + MPM_GUESTS)*twins : twins;
+}
+
+/* The marks of the deeper levels around a block and the guests, as its other tiles. */
 static void copy_marks(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
 {
     const int three = dim == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
-    memset(tile + MPM_SIDES, 0, (size_t)((1 << b->levels) - 2)*MPM_SIDES*sizeof *tile);
+    const int twins = (1 << b->levels) - 1;
+    memset(tile + MPM_SIDES, 0, (size_t)(count_tiles(b->levels) - 1)*MPM_SIDES*sizeof *tile);
     for (int o = 0; o < 27; o++) {
         if (b->around[o] < 0) continue;
         const int64_t first = (int64_t)b->around[o]*nodes;
         for (int64_t k = mpm_cross_first(&c->cross, first);
              k < c->cross.count && c->cross.at[k].node < first + nodes; k++) {
-            const int n = (int)(c->cross.at[k].node - first);
+            const mpm_crossing *at = &c->cross.at[k];
+            const int n = (int)(at->node - first);
             const int x = o/9*4 - 3 + (three ? n/16 : n/4), y = o/3%3*4 - 3 + (three ? n/4%4 : n%4),
                       z = three ? o%3*4 - 3 + n%4 : 0;
             if (x < 0 || y < 0 || z < 0 || x > 7 || y > 7 || z > 7) continue;
-            for (int m = 1; m < (1 << b->levels) - 1; m++)
-                tile[m*MPM_SIDES + tile_place(x, y, z, dim)] = c->cross.at[k].mark[m];
+            float *to = tile + tile_place(x, y, z, dim);
+            for (int m = 1; m < twins; m++) to[m*MPM_SIDES] = at->mark[m];
+            for (int m = 0; m < MPM_GUESTS*twins; m++)
+                to[(twins + m)*MPM_SIDES] = at->guest[m/twins][m%twins];
         }
     }
 }
@@ -192,20 +203,15 @@ static int list_other_sides(const mpm_view *v, const mpm_block *b, float other[M
     return count;
 }
 
-/* The deepest level, counted from 1, at which a particle of the block may have a node of its tiles hidden
-   from it; 0 = none. */
+/* Whether a particle of the block may have a node of its tile hidden from it: 1 for each that is so. */
 static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int nodes)
 {
     float other[MOST];
     const int count = list_other_sides(v, b, other);
-    for (int level = b->levels; level > 0; level--) {
-        int found = count < 0;
-        for (int m = (1 << (level - 1)) - 1; m < (1 << level) - 1; m++)
-            for (int k = 0; k < count; k++)
-                for (int n = 0; n < nodes; n++) found |= tile[m*MPM_SIDES + n] == other[k];
-        if (found) return level;
-    }
-    return 0;
+    int found = count < 0;
+    for (int k = 0; k < count; k++)
+        for (int n = 0; n < nodes; n++) found |= tile[n] == other[k];
+    return found;
 }
 
 /* Finds the levels of the particle blocks, and gives those that have any tiles of sides. */
@@ -220,7 +226,7 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
             if (b->around[o] >= 0 && g->patch[b->around[o]].levels > b->levels)
                 b->levels = g->patch[b->around[o]].levels;
         b->sides = b->levels > 0 ? (int32_t)c->tile_count : -1;
-        c->tile_count += (1 << b->levels) - 1;
+        c->tile_count += count_tiles(b->levels);
     }
     if (c->tile_count > c->tile_room) {
         free(c->tile);
@@ -239,7 +245,7 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
         float *tile = c->tile + (int64_t)b->sides*MPM_SIDES;
         copy_sides(c, b, tile, g->dimension);
         if (b->levels > 1) copy_marks(c, b, tile, g->dimension);
-        b->levels = hides(v, b, tile, nodes);
+        else b->levels = hides(v, b, tile, nodes);
     }
     return TOBI_OK;
 }

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SEAM_ROW, TREE_ROW, FACE_ROW, KIND = TOBI_RECALL_ROW - 1 };
+enum { SEAM_ROW, TREE_ROW, GUEST_ROW, FACE_ROW = GUEST_ROW + MPM_GUESTS, KIND = TOBI_RECALL_ROW - 1 };
 _Static_assert((int)MPM_VELOCITIES <= (int)KIND, "a node and the cuts of its tree in one row");
 
 static int64_t count_rows(const mpm_cut *c)
 {
-    int64_t count = c->seam_count + c->cross.count;
+    int64_t count = c->seam_count + (1 + MPM_GUESTS)*c->cross.count;
     for (int64_t k = 0; k < c->cross.pair_count; k++) count += c->cross.pair[k].count;
     return count;
 }
@@ -25,9 +25,12 @@ static double *put_row(double *at, const double row[KIND], int kind)
 
 static double *put_crossing(const mpm_cut *c, const mpm_crossing *x, double *to)
 {
-    double tree[KIND] = {x->node};
-    for (int m = 0; m < MPM_VELOCITIES - 1; m++) tree[1 + m] = x->mark[m];
-    to = put_row(to, tree, TREE_ROW);
+    for (int kind = TREE_ROW; kind < FACE_ROW; kind++) {
+        const float *from = kind == TREE_ROW ? x->mark : x->guest[kind - GUEST_ROW];
+        double tree[KIND] = {x->node};
+        for (int m = 0; m < MPM_VELOCITIES - 1; m++) tree[1 + m] = from[m];
+        to = put_row(to, tree, kind);
+    }
     for (int64_t n = x->begin; n < x->end; n++)
         for (int k = 0; k < c->cross.pair[n].count; k++) {
             const mpm_face *f = &c->cross.pair[n].face[k];
@@ -80,11 +83,16 @@ static int get_tree(mpm_cut *c, const double *row, int64_t node)
     return x->levels;
 }
 
-/* Returns 0 if there is no such pair. */
-static int get_face(mpm_cut *c, const double *row, int64_t node)
+/* What belongs to a crossing: guests or a face. Returns 0 if there is no such crossing or pair. */
+static int get_rest(mpm_cut *c, const double *row, int64_t node)
 {
     const int64_t k = mpm_cross_first(&c->cross, node);
     if (k == c->cross.count || c->cross.at[k].node != node) return 0;
+    if (row[KIND] < FACE_ROW) {
+        float *guest = c->cross.at[k].guest[(int)row[KIND] - GUEST_ROW];
+        for (int m = 0; m < MPM_VELOCITIES - 1; m++) guest[m] = (float)row[1 + m];
+        return 1;
+    }
     if (!(row[1] >= 0 && row[1] < (double)(c->cross.at[k].end - c->cross.at[k].begin))) return 0;
     mpm_pair *p = &c->cross.pair[c->cross.at[k].begin + (int64_t)row[1]];
     if (p->count == MPM_LEVELS) return 0;
@@ -107,21 +115,21 @@ tobi_status mpm_cut_read(mpm_cut *c, mpm_grid *g, tobi_error *err)
     memset(c->side, 0, (size_t)(g->patch_count*nodes)*sizeof *c->side);
     for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].levels = 0;
     TOBI_TRY(reserve_crossings(c, err));
-    for (int faces = 0; faces < 2; faces++) {
+    for (int rest = 0; rest < 2; rest++) {
         for (int64_t i = 0; i < c->row_count; i++) {
             const double *row = c->rows + TOBI_RECALL_ROW*i;
             const int64_t k = row[0] >= 0 && row[0] < (double)(g->patch_count*nodes) ? (int64_t)row[0] : -1;
             int levels = 1;
-            if (k < 0 || (faces && row[KIND] == FACE_ROW && !get_face(c, row, k)))
+            if (k < 0 || (rest && row[KIND] >= GUEST_ROW && !get_rest(c, row, k)))
                 return tobi_fail(err, TOBI_DAMAGED,
                                  "the checkpoint remembers a cut at node %g, the grid has %lld", row[0],
                                  (long long)(g->patch_count*nodes));
-            if (faces || row[KIND] == FACE_ROW) continue;
+            if (rest || row[KIND] >= GUEST_ROW) continue;
             if (row[KIND] == TREE_ROW) levels = get_tree(c, row, k);
             else get_seam(c, row, k);
             if (g->patch[k/nodes].levels < levels) g->patch[k/nodes].levels = levels;
         }
-        if (faces) break;
+        if (rest) break;
         TOBI_TRY(mpm_cross_reserve_pairs(&c->cross, err));
         for (int64_t k = 0; k < c->cross.count; k++) mpm_cross_pair(&c->cross, &c->cross.at[k]);
     }

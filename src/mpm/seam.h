@@ -22,9 +22,9 @@ typedef struct mpm_pair {
     int count;                         /* of faces; 0: they do not touch                           */
 } mpm_pair;
 
-/* A node where cuts cross. mark: of the tree, as the tiles of mpm_view.sides. */
+/* A node where cuts cross. mark, guest: of the tree, as the tiles of mpm_view.sides. */
 typedef struct mpm_crossing {
-    float   mark[MPM_VELOCITIES - 1];
+    float   mark[MPM_VELOCITIES - 1], guest[MPM_GUESTS][MPM_VELOCITIES - 1];
     int32_t node;                      /* place of its first velocity in the nodes' array          */
     int32_t levels;
     int64_t begin, end;                /* its pairs                                                */

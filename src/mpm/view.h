@@ -15,7 +15,7 @@ enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16
        MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
 
 /* Cuts that part one node, one after the other, and the velocities it then has (docs/theory/cutting.md). */
-enum { MPM_LEVELS = 3, MPM_VELOCITIES = 1 << MPM_LEVELS };
+enum { MPM_LEVELS = 3, MPM_VELOCITIES = 1 << MPM_LEVELS, MPM_GUESTS = 2 };
 
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
@@ -81,7 +81,9 @@ typedef struct mpm_view {
     const float *TOBI_RESTRICT sides;  /* tiles of MPM_SIDES, around blocks with a twin: number of the cut at
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity. One for each twin, by level of the
-                                          tree and branch: 2^level - 1 + branch                    */
+                                          tree and branch: 2^level - 1 + branch; where there are several
+                                          levels, MPM_GUESTS times as many with the sides whose particles
+                                          go across, if they do not know the cut                   */
     uint32_t *hidden[MPM_LEVELS];      /* of particles in blocks with a twin: bits (x*3 + y)*3 + z, 2-D
                                           x*3 + y, for the nodes that feel it: 1 across the cut of this level;
                                           in [0], above MPM_HIDDEN, for which base node that was found, 0 =
