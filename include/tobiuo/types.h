@@ -146,6 +146,11 @@ typedef struct tobi_fluid_def {
     int    visible;       /* 0: left out of pictures */
 } tobi_fluid_def;
 
+/* Velocities (m/s) at n places (m) when the world starts, added to velocity and spin of a region. Returns
+   TOBI_OK, or a status with a text in err. */
+typedef tobi_status (*tobi_flow_fn)(void *user, int64_t n, const double (*place)[3], double (*velocity)[3],
+                                    tobi_error *err);
+
 /* One region filled with a fluid or solid at the start: a box, a sphere (in 2-D a disc), or the inside
    of a mesh. */
 typedef struct tobi_fill_def {
@@ -156,6 +161,8 @@ typedef struct tobi_fill_def {
     double      rotation_axis[3], rotation_angle;  /* degrees; after the scale, before the translation */
     double      velocity[3];             /* m/s */
     double      spin[3];                 /* rad/s, about the middle of the region */
+    tobi_flow_fn flow;                   /* NULL = none; called once, by tobi_world_start */
+    void       *flow_user;               /* handed to flow; owned by the caller, must outlive that call */
 } tobi_fill_def;
 
 /* Maps rest positions to positions at time t. Points are mesh vertices, in metres, already placed

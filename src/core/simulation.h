@@ -10,7 +10,7 @@
 #include "core/still.h"
 #include "tobiuo/tobiuo.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16, TOBI_RECALL_ROW = 8 };
+enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_STAGE_LIMIT = 16, TOBI_RECALL_ROW = 9 };
 
 typedef struct tobi_fluid {
     char name[64];

@@ -15,11 +15,12 @@ void mpm_cut_free(mpm_cut *c)
     free(c->seam);
     free(c->tile);
     free(c->face);
-    free(c->hidden);
+    for (int l = 0; l < MPM_LEVELS; l++) free(c->hidden[l]);
     free(c->voter);
     free(c->voters);
     free(c->crowd);
     free(c->rows);
+    mpm_cross_free(&c->cross);
     memset(c, 0, sizeof *c);
 }
 
@@ -31,18 +32,24 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
     if (nodes > c->node_room) {
         free(c->side);
         free(c->seam);
+        free(c->cross.doubt);
+        c->cross.doubt = malloc((size_t)g->patch_room*sizeof *c->cross.doubt);
         c->side = malloc((size_t)nodes*sizeof *c->side);
         c->seam = malloc((size_t)nodes*sizeof *c->seam);
-        c->node_room = c->side && c->seam ? nodes : 0;
+        c->node_room = c->side && c->seam && c->cross.doubt ? nodes : 0;
     }
     if (particles > c->particle_room) {
+        int hidden = 1;
         free(c->face);
-        free(c->hidden);
         free(c->voter);
+        for (int l = 0; l < MPM_LEVELS; l++) {
+            free(c->hidden[l]);
+            c->hidden[l] = calloc((size_t)particles, sizeof *c->hidden[l]);
+            hidden &= c->hidden[l] != NULL;
+        }
         c->voter = malloc((size_t)particles*sizeof *c->voter);
         c->face = malloc((size_t)particles*sizeof *c->face);
-        c->hidden = calloc((size_t)particles, sizeof *c->hidden);
-        c->particle_room = c->face && c->hidden && c->voter ? particles : 0;
+        c->particle_room = c->face && hidden && c->voter ? particles : 0;
     }
     if (g->block_room > c->block_room) {
         free(c->voters);
@@ -122,7 +129,10 @@ void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number)
         if (s->bodies[k].blade) mark_blade(s, &s->bodies[k], v, number);
 }
 
-/* The sides of the nodes around a block, as its tile. */
+/* Place of the node in row x, y and column z of a block's tile: -1 .. 6 of its own counting. */
+static int tile_place(int x, int y, int z, int dim) { return dim == 3 ? (x*8 + y)*8 + z : x*8 + y; }
+
+/* The sides of the nodes around a block, as its first tile. */
 static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
 {
     const int deep = dim == 3 ? 8 : 1;
@@ -131,10 +141,41 @@ static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int di
             for (int z = 0; z < deep; z++) {
                 const int o = ((x + 3)/4*3 + (y + 3)/4)*3 + (dim == 3 ? (z + 3)/4 : 1);
                 const int row = (x + 3)%4*4 + (y + 3)%4;
-                tile[dim == 3 ? (x*8 + y)*8 + z : x*8 + y] =
+                tile[tile_place(x, y, z, dim)] =
                     c->side[(int64_t)b->around[o]*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) +
                             (dim == 3 ? row*4 + (z + 3)%4 : row)];
             }
+}
+
+/* Tiles of sides of a block with so many levels. */
+static int count_tiles(int levels)
+{
+    const int twins = (1 << levels) - 1;
+    return levels > 1 ? (1 + MPM_GUESTS)*twins : twins;
+}
+
+/* The marks of the deeper levels around a block and the guests, as its other tiles. */
+static void copy_marks(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
+{
+    const int three = dim == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    const int twins = (1 << b->levels) - 1;
+    memset(tile + MPM_SIDES, 0, (size_t)(count_tiles(b->levels) - 1)*MPM_SIDES*sizeof *tile);
+    for (int o = 0; o < 27; o++) {
+        if (b->around[o] < 0) continue;
+        const int64_t first = (int64_t)b->around[o]*nodes;
+        for (int64_t k = mpm_cross_first(&c->cross, first);
+             k < c->cross.count && c->cross.at[k].node < first + nodes; k++) {
+            const mpm_crossing *at = &c->cross.at[k];
+            const int n = (int)(at->node - first);
+            const int x = o/9*4 - 3 + (three ? n/16 : n/4), y = o/3%3*4 - 3 + (three ? n/4%4 : n%4),
+                      z = three ? o%3*4 - 3 + n%4 : 0;
+            if (x < 0 || y < 0 || z < 0 || x > 7 || y > 7 || z > 7) continue;
+            float *to = tile + tile_place(x, y, z, dim);
+            for (int m = 1; m < twins; m++) to[m*MPM_SIDES] = at->mark[m];
+            for (int m = 0; m < MPM_GUESTS*twins; m++)
+                to[(twins + m)*MPM_SIDES] = at->guest[m/twins][m%twins];
+        }
+    }
 }
 
 enum { MOST = 16 };                    /* sides that a block of particles is asked about          */
@@ -150,32 +191,42 @@ static int note(float list[MOST], int *count, float side)
     return 1;
 }
 
+/* Lists the sides whose nodes may be hidden from particles of a block; -1: too many. */
+static int list_other_sides(const mpm_view *v, const mpm_block *b, float other[MOST])
+{
+    int count = 0;
+    for (int64_t i = b->begin; i < b->end; i++) {
+        if (v->apart && !note(other, &count, mpm_side_of(v->material[v->solid[i]].group))) return -1;
+        for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
+            if (!note(other, &count, -v->cuts[i].c[k].w)) return -1;
+    }
+    return count;
+}
+
 /* Whether a particle of the block may have a node of its tile hidden from it: 1 for each that is so. */
 static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int nodes)
 {
     float other[MOST];
-    int count = 0, found = 0;
-    for (int64_t i = b->begin; i < b->end; i++) {
-        if (v->apart && !note(other, &count, mpm_side_of(v->material[v->solid[i]].group))) return 1;
-        for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++)
-            if (!note(other, &count, -v->cuts[i].c[k].w)) return 1;
-    }
+    const int count = list_other_sides(v, b, other);
+    int found = count < 0;
     for (int k = 0; k < count; k++)
         for (int n = 0; n < nodes; n++) found |= tile[n] == other[k];
     return found;
 }
 
-/* Marks the particle blocks that need a twin, as twin == 1, and gives them tiles of sides. */
+/* Finds the levels of the particle blocks, and gives those that have any tiles of sides. */
 static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const tobi_exec *x, tobi_error *err)
 {
     const int nodes = g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D;
     c->tile_count = 0;
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
-        b->twin = 0;
+        b->levels = 0;
         for (int o = 0; o < 27 && (v->apart || c->voters[k] > 0); o++)
-            b->twin |= b->around[o] >= 0 && g->patch[b->around[o]].twin >= 0;
-        b->sides = b->twin ? (int32_t)c->tile_count++ : -1;
+            if (b->around[o] >= 0 && g->patch[b->around[o]].levels > b->levels)
+                b->levels = g->patch[b->around[o]].levels;
+        b->sides = b->levels > 0 ? (int32_t)c->tile_count : -1;
+        c->tile_count += count_tiles(b->levels);
     }
     if (c->tile_count > c->tile_room) {
         free(c->tile);
@@ -190,56 +241,88 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
     #pragma omp parallel for num_threads(tobi_team(x, c->tile_count, 4)) schedule(dynamic, 4)
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
-        if (!b->twin) continue;
-        copy_sides(c, b, c->tile + (int64_t)b->sides*MPM_SIDES, g->dimension);
-        b->twin = hides(v, b, c->tile + (int64_t)b->sides*MPM_SIDES, nodes);
+        if (b->levels == 0) continue;
+        float *tile = c->tile + (int64_t)b->sides*MPM_SIDES;
+        copy_sides(c, b, tile, g->dimension);
+        if (b->levels > 1) copy_marks(c, b, tile, g->dimension);
+        else b->levels = hides(v, b, tile, nodes);
     }
     return TOBI_OK;
 }
 
-/* Numbers the twins of the node blocks with two velocities. */
+/* Numbers the twins of the node blocks. */
 static void number_patches(mpm_grid *g)
 {
-    g->patch_twins = 0;
-    for (int64_t k = 0; k < g->patch_count; k++)
-        g->patch[k].twin = g->patch[k].twin == 1 ? (int32_t)(g->patch_count + g->patch_twins++) : -1;
+    g->patch_twins = g->levels = 0;
+    for (int64_t k = 0; k < g->patch_count; k++) {
+        mpm_patch *p = &g->patch[k];
+        p->twin = p->levels > 0 ? (int32_t)(g->patch_count + g->patch_twins) : -1;
+        g->patch_twins += (1 << p->levels) - 1;
+        if (p->levels > g->levels) g->levels = p->levels;
+    }
 }
 
-/* Twins of the particle blocks that find_split has marked, and of the node blocks. */
-static void make_twins(mpm_grid *g)
+/* and of the blocks of particles. */
+static void number_blocks(mpm_grid *g)
 {
     g->block_twins = 0;
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
-        b->twin = b->twin ? (int32_t)(g->block_count + g->block_twins++) : -1;
-        if (b->twin < 0) continue;
-        mpm_block *t = &g->block[b->twin];
-        *t = *b;
-        t->begin = t->end = 0;
-        t->twin = -1;
-        for (int o = 0; o < 27; o++) {
-            const int32_t twin = b->around[o] >= 0 ? g->patch[b->around[o]].twin : -1;
-            if (twin >= 0) t->around[o] = twin;
+        b->twin = b->levels > 0 ? (int32_t)(g->block_count + g->block_twins) : -1;
+        g->block_twins += (1 << b->levels) - 1;
+    }
+}
+
+/* Index of velocity q of a node block, by as many bits as it has levels. */
+static int32_t patch_of(const mpm_grid *g, int32_t patch, int q)
+{
+    const mpm_patch *p = &g->patch[patch];
+    q &= (1 << p->levels) - 1;
+    return q ? p->twin + q - 1 : patch;
+}
+
+static void make_twins(mpm_grid *g)
+{
+    for (int64_t k = 0; k < g->block_count; k++) {
+        const mpm_block *b = &g->block[k];
+        for (int q = 1; q < 1 << b->levels; q++) {
+            mpm_block *t = &g->block[b->twin + q - 1];
+            *t = *b;
+            t->begin = t->end = 0;
+            t->twin = -1;
+            t->levels = 0;
+            for (int o = 0; o < 27; o++)
+                if (b->around[o] >= 0) t->around[o] = patch_of(g, b->around[o], q);
         }
     }
     for (int64_t k = 0; k < g->patch_count; k++) {
         const mpm_patch *p = &g->patch[k];
-        if (p->twin < 0) continue;
-        mpm_patch *t = &g->patch[p->twin];
-        *t = *p;
-        t->twin = -1;
-        for (int o = 0; o < 27; o++) t->cover[o] = p->cover[o] >= 0 ? g->block[p->cover[o]].twin : -1;
+        for (int q = 1; q < 1 << p->levels; q++) {
+            mpm_patch *t = &g->patch[p->twin + q - 1];
+            *t = *p;
+            t->twin = -1;
+            t->levels = 0;
+            for (int o = 0; o < 27; o++) {
+                const mpm_block *b = p->cover[o] >= 0 ? &g->block[p->cover[o]] : NULL;
+                t->cover[o] = b && q < 1 << b->levels ? b->twin + q - 1 : -1;
+            }
+        }
     }
 }
 
-/* Packs the seams of the nodes with a side. */
+/* Packs the seams of the nodes with a side at which no cuts cross. */
 static void list_seams(mpm_cut *c, const mpm_grid *g)
 {
     const int nodes = nodes_of(g);
+    int64_t crossing = 0;
     c->seam_count = 0;
     for (int64_t k = 0; k < g->patch_count; k++)
         for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
             if (c->side[k*nodes + n] == 0) continue;
+            if (crossing < c->cross.count && c->cross.at[crossing].node == k*nodes + n) {
+                crossing++;
+                continue;
+            }
             mpm_seam *seam = &c->seam[c->seam_count++];
             *seam = c->seam[k*nodes + n];
             seam->first = (int32_t)(k*nodes + n);
@@ -261,10 +344,13 @@ static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, con
                                 tobi_error *err)
 {
     number_patches(g);
+    mpm_cross_place(&c->cross, g);
     list_seams(c, g);
     TOBI_TRY(find_split(c, g, v, &s->exec, err));
+    number_blocks(g);
+    TOBI_TRY(mpm_grid_reserve_twins(g, &s->exec, err));
     make_twins(g);
-    memset(c->hidden, 0, (size_t)s->particles.count*sizeof *c->hidden);
+    memset(c->hidden[0], 0, (size_t)s->particles.count*sizeof *c->hidden[0]);
     return TOBI_OK;
 }
 
@@ -275,156 +361,41 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
     look_at_blocks(c, s, g, v);
     #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
-        g->patch[k].twin = mpm_vote_count(c, g, v, k);
+        g->patch[k].levels = mpm_vote_count(c, g, v, k);
         if (v->apart)
-            g->patch[k].twin |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
-                                              c->seam + k*nodes);
+            g->patch[k].levels |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
+                                                c->seam + k*nodes);
     }
+    TOBI_TRY(mpm_cross_find(c, &s->exec, g, v, err));
     return split_blocks(c, s, g, v, err);
-}
-
-tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err)
-{
-    *count = c->rows ? c->row_count : c->seam_count;       /* loaded and not run since */
-    *rows = malloc((size_t)(*count + 1)*TOBI_RECALL_ROW*sizeof **rows);
-    if (!*rows)
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld nodes with two velocities",
-                         (long long)*count);
-    if (c->rows) memcpy(*rows, c->rows, (size_t)*count*TOBI_RECALL_ROW*sizeof **rows);
-    for (int64_t k = 0; k < *count && !c->rows; k++) {
-        const mpm_seam *m = &c->seam[k];
-        const double row[TOBI_RECALL_ROW] = {m->first, c->side[m->first], m->normal[0], m->normal[1],
-                                             m->normal[2], m->gap, m->friction, m->fixed};
-        memcpy(*rows + TOBI_RECALL_ROW*k, row, sizeof row);
-    }
-    return TOBI_OK;
 }
 
 tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
-    const int nodes = nodes_of(g);
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    memset(c->side, 0, (size_t)(g->patch_count*nodes)*sizeof *c->side);
-    for (int64_t k = 0; k < g->patch_count; k++) g->patch[k].twin = 0;
-    for (int64_t i = 0; i < c->row_count; i++) {
-        const double *row = c->rows + TOBI_RECALL_ROW*i;
-        if (!(row[0] >= 0 && row[0] < (double)(g->patch_count*nodes)))
-            return tobi_fail(err, TOBI_DAMAGED,
-                             "the checkpoint remembers a cut at node %g, the grid has %lld", row[0],
-                             (long long)(g->patch_count*nodes));
-        const int64_t k = (int64_t)row[0];
-        g->patch[k/nodes].twin = 1;
-        c->side[k] = (float)row[1];
-        c->seam[k] = (mpm_seam){ .normal = {(float)row[2], (float)row[3], (float)row[4]},
-                                 .gap = (float)row[5], .friction = (float)row[6], .fixed = (int)row[7] };
-    }
+    TOBI_TRY(mpm_cut_read(c, g, err));
     look_at_blocks(c, s, g, v);
     return split_blocks(c, s, g, v, err);
 }
 
-/* A seam and the two velocities it couples. */
-typedef struct joint {
-    double along, u[3], n[3];          /* m/s, of the second relative to the first                 */
-} joint;
-
-static joint look_at(const mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second)
+/* A walk over the seams and over the nodes where cuts cross. */
+static double visit(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, mpm_visit what)
 {
-    joint j;
-    for (int a = 0; a < 3; a++) {
-        j.n[a] = seam->normal[a];
-        j.u[a] = (double)(&second->x)[a] - (&first->x)[a];
-    }
-    j.along = vec3_dot(j.u, j.n);
-    return j;
-}
-
-/* One sweep of contact between the faces, eq. (3): the sum of its impulses pushes and obeys friction;
-   momentum is kept. */
-static void press(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second, double dt)
-{
-    const joint j = look_at(seam, first, second);
-    const double lack = -fmax(seam->gap, 0)/dt - j.along;
-    double was[3] = {seam->push[0], seam->push[1], seam->push[2]}, slide[3];
-    if (lack <= 0 && was[0] == 0 && was[1] == 0 && was[2] == 0) return;
-    const double mass = seam->fixed == 1   ? second->w
-                        : seam->fixed == 2 ? first->w
-                                           : (double)first->w*second->w/((double)first->w + second->w);
-    double normal = fmax(0, vec3_dot(was, j.n) + mass*lack);
-    for (int a = 0; a < 3; a++) slide[a] = was[a] - mass*(j.u[a] - j.along*j.n[a]);
-    vec3_add_scaled(slide, slide, -vec3_dot(slide, j.n), j.n);
-    double size = vec3_length(slide), grip = seam->friction*normal, keep = size > grip ? grip/size : 1;
-    for (int a = 0; a < 3; a++) {
-        double push = normal*j.n[a] + keep*slide[a], change = push - was[a];
-        if (seam->fixed != 1) (&first->x)[a] -= (float)(change/first->w);
-        if (seam->fixed != 2) (&second->x)[a] += (float)(change/second->w);
-        seam->push[a] = (float)push;
-    }
-}
-
-/* The gap at the end of the step; returns what the push has cost, J. */
-static double settle_seam(mpm_seam *seam, const tobi_float4 *first, const tobi_float4 *second, double dt)
-{
-    const joint j = look_at(seam, first, second);
-    seam->gap += (float)(j.along*dt);
-    return -(seam->push[0]*j.u[0] + seam->push[1]*j.u[1] + seam->push[2]*j.u[2]);
-}
-
-/* What is stationary does not even fall. */
-static void begin_seam(mpm_seam *seam, tobi_float4 *first, tobi_float4 *second)
-{
-    tobi_float4 *fixed = seam->fixed == 1 ? first : second;
-    if (seam->fixed) fixed->x = fixed->y = fixed->z = 0;
-    memset(seam->push, 0, sizeof seam->push);
-}
-
-enum { BEGIN, PRESS, SETTLE };
-
-/* A walk over the seams. */
-typedef struct walk {
-    mpm_seam *seam;
-    tobi_float4 *node;
-    double dt;
-    int what;
-} walk;
-
-/* Returns what the pushes have cost, J. */
-static double visit_range(const walk *w, int64_t begin, int64_t end)
-{
-    double lost = 0;
-    for (int64_t k = begin; k < end; k++) {
-        mpm_seam *seam = &w->seam[k];
-        tobi_float4 *first = &w->node[seam->first], *second = &w->node[seam->second];
-        if (!(first->w > 0) || !(second->w > 0)) continue;
-        if (w->what == BEGIN) begin_seam(seam, first, second);
-        if (w->what == SETTLE) lost += settle_seam(seam, first, second, w->dt);
-        else press(seam, first, second, w->dt);
-    }
-    return lost;
-}
-
-static double visit_seams(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, int what)
-{
-    const walk w = { .seam = c->seam, .node = g->node, .dt = dt, .what = what };
     const int64_t parts = (c->seam_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     double *part = x->partial, lost = 0;
     #pragma omp parallel for num_threads(tobi_team(x, parts, 8))
     for (int64_t q = 0; q < parts; q++)
-        part[q] = visit_range(&w, q*TOBI_BLOCK, q < parts - 1 ? (q + 1)*TOBI_BLOCK : c->seam_count);
+        part[q] = mpm_seams_visit(c->seam, q*TOBI_BLOCK, q < parts - 1 ? (q + 1)*TOBI_BLOCK : c->seam_count,
+                                  g->node, dt, what);
     for (int64_t q = 0; q < parts; q++) lost += part[q];
-    return lost;
+    return lost + mpm_cross_visit(&c->cross, x, g->node, dt, what);
 }
 
-void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
-{
-    visit_seams(c, x, g, dt, BEGIN);
-}
+void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit(c, x, g, dt, MPM_BEGIN); }
 
-void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
-{
-    visit_seams(c, x, g, dt, PRESS);
-}
+void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit(c, x, g, dt, MPM_PRESS); }
 
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
-    return visit_seams(c, x, g, dt, SETTLE);
+    return visit(c, x, g, dt, MPM_SETTLE);
 }

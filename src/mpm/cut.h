@@ -2,6 +2,7 @@
    how far apart the faces of the cut are there. docs/theory/cutting.md. */
 #pragma once
 #include "core/simulation.h"
+#include "mpm/cross.h"
 #include "mpm/grid.h"
 #include "mpm/meet.h"
 
@@ -12,14 +13,15 @@ typedef struct mpm_voter {
 } mpm_voter;
 
 typedef struct mpm_cut {
-    float *side;                       /* [patches][nodes], see mpm_view.sides                    */
-    mpm_seam *seam;                    /* [seam_count] of the nodes with a side, in their order   */
+    float *side;                       /* [patches][nodes] of the first level, see mpm_view.sides */
+    mpm_seam *seam;                    /* [seam_count] of the nodes with two velocities, in order */
     int64_t seam_count;
+    mpm_cross cross;                   /* the nodes with more                                     */
     float *tile;                       /* [tile_count] see mpm_view.sides                         */
     int64_t tile_count, tile_room;
     tobi_columns *face;                /* [particles] of each cut it remembers: normal towards the
                                           particle's side now, w: distance from the cut now, m    */
-    uint32_t *hidden;                  /* [particles], see mpm_view                               */
+    uint32_t *hidden[MPM_LEVELS];      /* [particles], see mpm_view                               */
     mpm_voter *voter;                  /* [particles] those of a block from its first particle on  */
     int32_t *voters;                   /* [blocks] how many                                       */
     mpm_crowd *crowd;                  /* [blocks], see mpm/meet.h                                */
@@ -31,7 +33,7 @@ typedef struct mpm_cut {
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
    made, counted up. */
 void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
-/* Finds the nodes with two velocities and makes their twins. The caller then points
+/* Finds the nodes with several velocities and makes their twins. The caller then points
    view.sides and view.hidden at what is here. */
 tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
@@ -39,8 +41,10 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_
 void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
-/* The nodes with two velocities as they are now, for a checkpoint: rows of TOBI_RECALL_ROW numbers, the
+/* The nodes with several velocities as they are now, for a checkpoint: rows of TOBI_RECALL_ROW numbers, the
    caller's to free; and back from c->rows, after the blocks are built, instead of finding them. */
 tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err);
 tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
+/* The nodes of c->rows as they were, before their twins are made. */
+tobi_status mpm_cut_read(mpm_cut *c, mpm_grid *g, tobi_error *err);
 void mpm_cut_free(mpm_cut *c);

@@ -6,30 +6,26 @@
 TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    const int nodes = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D;
-    tobi_float4 tile[MPM_TILE_3D + 8], *calm = mpm_clear_tile(v->calm, number, dim);
-    tobi_float4 twin[MPM_TILE_3D + 8], *calm_twin = mpm_clear_tile(v->calm, b->twin, dim);
+    tobi_float4 tile[MPM_VELOCITIES*(MPM_TILE_3D + 8)], *calm[MPM_VELOCITIES];
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     row g[9];
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
-    mpm_copy_tile(v->wave, b->around, tile, dim);
-    mpm_clear(tile + nodes, 8);
-    mpm_clear(twin + nodes, 8);
-    if (calm_twin) mpm_copy_tile(v->wave, v->block[b->twin].around, twin, dim);
+    mpm_clear_tiles(b, v->calm, number, calm, dim);
+    mpm_copy_tiles(v, b, v->wave, tile, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_find_stencil(v, b, i, dim, &s);
         for (int k = 0; k < count; k++) {
-            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
+            const mpm_hidden hidden = mpm_read_hidden(v, i + k, b->levels);
             quad u, mass = quad_set(v->strain[i + k].c[2].w);
-            if (hidden) mpm_load_split(tile, twin, s.first[k], hidden, g, dim);
+            if (mpm_is_hidden(&hidden)) mpm_load_split(tile, b->levels, s.first[k], &hidden, g, dim);
             else mpm_load_rows(tile, s.first[k], g, dim);
             u = row_first(mpm_interpolate(g, &s, k, dim));
             u[3] = 1;
-            if (hidden) mpm_add_split(calm, calm_twin, &s, k, hidden, u*mass, zero, dim);
-            else mpm_add_calm(calm, &s, k, u*mass, dim);
+            if (mpm_is_hidden(&hidden)) mpm_add_split(calm, b->levels, &s, k, &hidden, u*mass, zero, dim);
+            else mpm_add_calm(calm[0], &s, k, u*mass, dim);
         }
     }
 }
@@ -55,8 +51,8 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    tobi_float4 *calm = mpm_clear_tile(v->calm, number, dim),
-                *calm_twin = mpm_clear_tile(v->calm, b->twin, dim);
+    tobi_float4 *calm[MPM_VELOCITIES];
+    mpm_clear_tiles(b, v->calm, number, calm, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -82,8 +78,8 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
                 column[c][3] = 0;
                 if (c < dim) base = base - column[c]*quad_set(s.offset[c][k]);
             }
-            const uint32_t hidden = calm_twin ? v->hidden[i + k] & MPM_HIDDEN : 0;
-            mpm_add_split(calm, calm_twin, &s, k, hidden, base, column, dim);
+            const mpm_hidden hidden = mpm_read_hidden(v, i + k, b->levels);
+            mpm_add_split(calm, b->levels, &s, k, &hidden, base, column, dim);
         }
     }
 }

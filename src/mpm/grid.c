@@ -70,38 +70,60 @@ static tobi_status list_runs(mpm_grid *g, const uint32_t *keys, int64_t n, int b
     return TOBI_OK;
 }
 
-static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
+/* The same, with the first `used` of its items. */
+static int extend(void **array, int64_t used, int64_t count, size_t size)
 {
-    const int64_t need = count*(1 + g->twins);
+    void *before = *array;
+    *array = NULL;
+    const int grown = grow(array, count, size);
+    if (grown && used > 0) memcpy(*array, before, (size_t)used*size);
+    free(before);
+    return grown;
+}
+
+/* Room for `need` blocks; the first `used` stay. */
+static tobi_status extend_blocks(mpm_grid *g, int64_t used, int64_t need, tobi_error *err)
+{
     if (need > g->block_room) {
         g->block_room = need + need/8 + 8;
-        if (!grow((void **)&g->block, g->block_room, sizeof *g->block) ||
+        if (!extend((void **)&g->block, used, g->block_room, sizeof *g->block) ||
             !grow((void **)&g->reach, g->block_room, sizeof *g->reach) ||
-            !grow((void **)&g->block_key, g->block_room, sizeof *g->block_key)) {
+            !extend((void **)&g->block_key, used, g->block_room, sizeof *g->block_key)) {
             g->block_room = 0;
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)count);
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks", (long long)need);
         }
     }
+    return TOBI_OK;
+}
+
+static tobi_status reserve_blocks(mpm_grid *g, int64_t count, tobi_error *err)
+{
+    TOBI_TRY(extend_blocks(g, 0, count, err));
     g->block_count = count;
     g->block_twins = 0;
     return TOBI_OK;
 }
 
-static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
+static tobi_status extend_patches(mpm_grid *g, int64_t used, int64_t need, tobi_error *err)
 {
-    const int64_t need = count*(1 + g->twins);
     if (need > g->patch_room) {
         g->patch_room = need + need/8 + 8;
         int64_t nodes = g->patch_room*block_nodes(g);
-        if (!grow((void **)&g->patch, g->patch_room, sizeof *g->patch) ||
-            !grow((void **)&g->patch_key, g->patch_room, sizeof *g->patch_key) ||
+        if (!extend((void **)&g->patch, used, g->patch_room, sizeof *g->patch) ||
+            !extend((void **)&g->patch_key, used, g->patch_room, sizeof *g->patch_key) ||
             !grow((void **)&g->node, nodes, sizeof *g->node) ||
             (g->layers > 1 && !grow((void **)&g->old, nodes, sizeof *g->old)) ||
             (g->layers > 2 && !grow((void **)&g->wave, nodes, sizeof *g->wave))) {
             g->patch_room = 0;
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)count);
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld blocks of nodes", (long long)need);
         }
     }
+    return TOBI_OK;
+}
+
+static tobi_status reserve_patches(mpm_grid *g, int64_t count, tobi_error *err)
+{
+    TOBI_TRY(extend_patches(g, 0, count, err));
     g->patch_count = count;
     g->patch_twins = 0;
     return TOBI_OK;
@@ -193,6 +215,7 @@ static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tob
         g->block[k].begin = g->begin[k];
         g->block[k].end = g->begin[k + 1];
         g->block[k].twin = -1;
+        g->block[k].levels = 0;
         corner_of(g, g->block_key[k], g->block[k].corner);
     }
     return TOBI_OK;
@@ -241,6 +264,7 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
         mpm_patch *p = &g->patch[k];
         corner_of(g, g->patch_key[k], p->corner);
         p->twin = -1;
+        p->levels = 0;
         for (int o = 0; o < 27; o++)
             p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count,
                                                      beside(g, g->patch_key[k], o)) : -1;
@@ -255,10 +279,17 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
 
 static tobi_status reserve_rest(mpm_grid *g, tobi_exec *x, tobi_error *err)
 {
-    int64_t most = (g->patch_count > g->block_count ? g->patch_count : g->block_count)*(1 + g->twins);
-    TOBI_TRY(tobi_exec_reserve(x, most*TOBI_BLOCK, err));
-    int64_t tiles = g->block_count*(g->layers > 1 ? 2 : 1)*(1 + g->twins);
+    const int64_t patches = g->patch_count + g->patch_twins, blocks = g->block_count + g->block_twins;
+    TOBI_TRY(tobi_exec_reserve(x, (patches > blocks ? patches : blocks)*TOBI_BLOCK, err));
+    int64_t tiles = blocks*(g->layers > 1 ? 2 : 1);
     return reserve_scratch(g, tiles*tile_nodes(g)*(int64_t)sizeof(tobi_float4), err);
+}
+
+tobi_status mpm_grid_reserve_twins(mpm_grid *g, tobi_exec *x, tobi_error *err)
+{
+    TOBI_TRY(extend_blocks(g, g->block_count, g->block_count + g->block_twins, err));
+    TOBI_TRY(extend_patches(g, g->patch_count, g->patch_count + g->patch_twins, err));
+    return reserve_rest(g, x, err);
 }
 
 tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err)
@@ -309,5 +340,5 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
     v->old = g->layers > 1 ? g->old : NULL;
     v->wave = g->layers > 2 ? g->wave : NULL;
     v->tile = (tobi_float4 *)(void *)g->scratch;
-    v->calm = g->layers > 1 ? v->tile + g->block_count*(1 + g->twins)*tile_nodes(g) : NULL;
+    v->calm = g->layers > 1 ? v->tile + (g->block_count + g->block_twins)*tile_nodes(g) : NULL;
 }

@@ -12,7 +12,7 @@ typedef struct mpm_grid {
     uint32_t *block_key, *patch_key;   /* in rising order, for finding neighbours                */
     int64_t block_count, patch_count, block_room, patch_room;
     int64_t block_twins, patch_twins;  /* behind the others                                       */
-    int     twins;                     /* 1: there is room for a twin of each                      */
+    int     levels;                    /* of cuts at the nodes that most cut: mpm_patch.levels     */
     tobi_float4 *node, *old, *wave;    /* [patch_room][nodes]; see view.h                         */
     char *scratch;                     /* of the sort; the tiles in between                       */
     int64_t scratch_bytes;
@@ -30,6 +30,8 @@ int64_t mpm_grid_bytes(const mpm_grid *g);
 tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, tobi_exec *x, tobi_error *err);
 /* Builds the blocks of particles that are sorted: affine[i].c[a].w holds the corner of the block of each. */
 tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_error *err);
+/* Room for block_twins and patch_twins behind the blocks, once they are counted. */
+tobi_status mpm_grid_reserve_twins(mpm_grid *g, tobi_exec *x, tobi_error *err);
 /* The block of nodes that has node `at` (cells from the domain's corner), -1 = none. */
 int64_t mpm_grid_find_patch(const mpm_grid *g, const int at[3]);
 /* Points the view at the blocks, nodes and tiles. */

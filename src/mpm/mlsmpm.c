@@ -95,7 +95,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->affine = p->affine;
     v->solid = p->fluid;
     v->cuts = p->cuts;
-    m->blades = m->grid.twins = p->cuts != NULL || m->view.apart;
+    m->blades = p->cuts != NULL || m->view.apart;
     v->material = m->material;
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
@@ -219,7 +219,7 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_erro
     free(m->cut.rows);
     m->cut.rows = NULL;
     m->view.sides = m->cut.tile;
-    m->view.hidden = m->cut.hidden;
+    memcpy(m->view.hidden, m->cut.hidden, sizeof m->view.hidden);
     return TOBI_OK;
 }
 
@@ -252,10 +252,14 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     if (m->fresh)
         for (int64_t k = 0; k < m->grid.patch_count; k++)
             m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
+    if (m->blades) {
+        const tobi_status status = find_cuts(s, m, stale, err);
+        if (status != TOBI_OK) m->memory[AGE] = SORT_AGE;  /* there may be no room left for the blocks */
+        TOBI_TRY(status);
+    }
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
-    if (m->blades) TOBI_TRY(find_cuts(s, m, stale, err));
     tobi_stage_end(&s->stages, "sort", clock);
     return TOBI_OK;
 }

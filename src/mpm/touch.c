@@ -1,5 +1,6 @@
 #include "mpm/touch.h"
 #include "base/error.h"
+#include "mpm/split.k.h"
 #include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
@@ -29,11 +30,11 @@ static int64_t count_nodes(const mpm_grid *g)
     return (g->patch_count + g->patch_twins)*(g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D);
 }
 
-/* Entries of contact k begin here: one for each node that a particle feels; for an edge two, of both
-   velocities. */
+/* Entries of contact k begin here: one for each node that a particle feels; for an edge as many as a node may
+   have velocities. */
 static int64_t entry_of(const mpm_touch *t, int64_t k, int64_t each)
 {
-    return k < t->edge_first ? k*each : (2*k - t->edge_first)*each;
+    return k < t->edge_first ? k*each : (t->edge_first + t->ways*(k - t->edge_first))*each;
 }
 
 static tobi_status reserve_entries(mpm_touch *t, int64_t count)
@@ -103,8 +104,8 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
     #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256))
     for (int64_t k = 0; k < t->edge_first; k++) {
         const int64_t particle = c->list[k].particle;
-        const mpm_block *b = block_of(g, particle), *twin = b->twin < 0 ? NULL : &g->block[b->twin];
-        const uint32_t hidden = twin ? v->hidden[particle] : 0;
+        const mpm_block *b = block_of(g, particle);
+        const mpm_hidden hidden = mpm_read_hidden(v, particle, b->levels);
         const double *at = &v->position[particle].x;
         double w[3][3] = {{1}, {1}, {1}};
         int block[3][3] = {{0}, {0}, {1}}, inner[3][3] = {{0}};      /* block around, node in it */
@@ -121,7 +122,8 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
             for (int j = 0; j < 3; j++) {
                 const int row = dim == 3 ? (inner[0][i]*4 + inner[1][j])*4 : inner[0][i]*4 + inner[1][j];
                 for (int l = 0; l < deep; l++, n++) {
-                    const mpm_block *from = hidden >> n & 1 ? twin : b;
+                    const int q = mpm_number_at(&hidden, n);
+                    const mpm_block *from = q ? &g->block[b->twin + q - 1] : b;
                     const int64_t patch = from->around[(block[0][i]*3 + block[1][j])*3 + block[2][l]];
                     node[n] = (uint32_t)(patch*nodes + row + inner[2][l]);
                     weight[n] = (float)(w[0][i]*w[1][j]*w[2][l]);
@@ -130,9 +132,9 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
     }
 }
 
-/* The nodes around a place: of both velocities, with their weights. */
+/* The nodes around a place: of all velocities, with their weights. */
 typedef struct mpm_surroundings {
-    int64_t place[2][27];
+    int64_t place[MPM_VELOCITIES][27]; /* -1 = none                                                */
     double weight[27];
     double full;                       /* mass over that of a full cell                            */
 } surroundings;
@@ -170,12 +172,13 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
         const int far[3] = {at[0] >> 2 != first[0] >> 2, at[1] >> 2 != first[1] >> 2,
                             dim == 3 && at[2] >> 2 != first[2] >> 2};
         const int inner = ((at[0] & 3)*4 + (at[1] & 3))*(dim == 3 ? 4 : 1) + (dim == 3 ? at[2] & 3 : 0);
-        const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]], twin = g->patch[p].twin;
-        s->place[0][n] = p*nodes + inner;
-        s->place[1][n] = twin < 0 ? -1 : twin*nodes + inner;
+        const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]];
         s->weight[n] = w[0][i]*w[1][j]*w[2][l];
-        s->full += s->weight[n]*g->node[s->place[0][n]].w/cell_mass;
-        if (twin >= 0) s->full += s->weight[n]*g->node[s->place[1][n]].w/cell_mass;
+        for (int m = 0; m < MPM_VELOCITIES; m++) {
+            const int64_t at = m == 0 ? p : m < 1 << g->patch[p].levels ? g->patch[p].twin + m - 1 : -1;
+            s->place[m][n] = at < 0 ? -1 : at*nodes + inner;
+            if (at >= 0) s->full += s->weight[n]*g->node[s->place[m][n]].w/cell_mass;
+        }
     }
     return 1;
 }
@@ -218,16 +221,18 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
         float *weight = t->weight + entry_of(t, k, each);
         double sum = 0;
         for (int n = 0; n < each; n++) {
-            double mass[2], both;
-            for (int m = 0; m < 2; m++) mass[m] = s->place[m][n] < 0 ? 0 : g->node[s->place[m][n]].w;
-            both = mass[0] + mass[1];
-            for (int m = 0; m < 2; m++) {
-                node[2*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
-                weight[2*n + m] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/both) : 0;
+            double mass[MPM_VELOCITIES], all = 0;
+            for (int m = 0; m < t->ways; m++) {
+                mass[m] = s->place[m][n] < 0 ? 0 : g->node[s->place[m][n]].w;
+                all += mass[m];
             }
-            if (both > 0) sum += s->weight[n];
+            for (int m = 0; m < t->ways; m++) {
+                node[t->ways*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
+                weight[t->ways*n + m] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/all) : 0;
+            }
+            if (all > 0) sum += s->weight[n];
         }
-        for (int n = 0; n < 2*each; n++) weight[n] /= (float)sum;
+        for (int n = 0; n < t->ways*each; n++) weight[n] /= (float)sum;
     }
 }
 
@@ -241,7 +246,7 @@ static tobi_status pack_contacts(mpm_touch *t, const tobi_contacts *c, const mpm
 {
     const mpm_pack_entries e = { .node = t->node, .weight = t->weight, .contacts = c->count,
                                  .edge_first = t->edge_first, .each = nodes_each(g),
-                                 .edge_each = 2*nodes_each(g) };
+                                 .edge_each = t->ways*nodes_each(g) };
     return mpm_packs_make(&t->packs, &e, &c->list->particle, sizeof *c->list, g, err);
 }
 
@@ -279,6 +284,7 @@ static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, co
     tobi_contacts *c = &s->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
     t->edge_first = c->count;
+    t->ways = g->levels > 1 ? 1 << g->levels : 2;
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
         TOBI_TRY(list_edges(t, c, b, g, v, step, err));
     if (c->count == 0) return TOBI_OK;

@@ -20,6 +20,7 @@ typedef struct mpm_touch {
     int64_t piece_room;
     double cell_mass;                  /* kg of a full cell: the caller's to set                  */
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
+    int ways;                          /* velocities that a node may have: entries of an edge there */
     tobi_contact_work work;            /* J, of the last step                                     */
     tobi_float4 *push, *moving;        /* [contacts] see mpm_pack_view                            */
     int64_t push_room;

@@ -19,7 +19,7 @@ typedef struct mpm_cell {
     row sum[9];
     row across[3];                     /* 3-D: goes to the rows along y times 1, -2, 1            */
     int32_t first;                     /* node of the tile; -1 = none                             */
-    uint32_t hidden;                   /* see mpm_view                                            */
+    mpm_hidden hidden;
 } mpm_cell;
 
 TOBI_FN void mpm_clear_cell(mpm_cell *c)
@@ -27,7 +27,7 @@ TOBI_FN void mpm_clear_cell(mpm_cell *c)
     for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
     for (int n = 0; n < 3; n++) c->across[n] = row_set(0);
     c->first = -1;
-    c->hidden = 0;
+    c->hidden = (mpm_hidden){{0}};
 }
 
 /* Notes the rows of the 3 x 3 x 3 nodes from `first` on. */
@@ -40,8 +40,8 @@ TOBI_FN void mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
     reach->rows[2] |= z == 0 ? rows : 0;
 }
 
-/* Adds the cell's sums to the tile, those of hidden nodes to the twin's. reach: of both. */
-TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, mpm_reach reach[2],
+/* Adds the cell's sums to the tile, those of hidden nodes to the twins'. reach: of all; bent: eq. (3b). */
+TOBI_FN void mpm_leave_cell(tobi_float4 *const *tile, int levels, mpm_cell *c, mpm_reach *reach,
                             const int dim, const int bent)
 {
     if (c->first < 0) return;
@@ -52,14 +52,15 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *tile, tobi_float4 *twin, mpm_cell *c, m
         c->sum[3*n + 2] = row_add(c->sum[3*n + 2], c->across[n]);
         c->across[n] = row_set(0);
     }
-    if (twin && c->hidden) {
-        mpm_note_rows(&reach[1], c->first, dim);
-        mpm_leave_split(tile, twin, c->sum, c->first, c->hidden, dim);
+    if (levels > 0 && mpm_is_hidden(&c->hidden)) {
+        for (int q = 1; q < 1 << levels; q++)
+            if (mpm_part(&c->hidden, q, levels)) mpm_note_rows(&reach[q], c->first, dim);
+        mpm_leave_split(tile, levels, c->sum, c->first, &c->hidden, dim);
         for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
         return;
     }
     for (int r = 0; r < (dim == 3 ? 9 : 3); r++) {
-        tobi_float4 *at = tile + c->first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
+        tobi_float4 *at = tile[0] + c->first + (dim == 3 ? 64*(r/3) + 8*(r%3) : 8*r);
         row_store(at, row_add(row_load(at), c->sum[r]));
         c->sum[r] = row_set(0);
     }
@@ -118,30 +119,40 @@ TOBI_FN tobi_float4 *mpm_clear_tile(tobi_float4 *tiles, int64_t number, const in
     return tiles + number*nodes;
 }
 
-/* Where a block's particles add to beside its own tile, each NULL = nowhere. */
+/* Where a block's particles add to: tiles of each velocity. */
 typedef struct mpm_targets {
-    tobi_float4 *calm, *twin, *calm_twin;  /* without stress: FLIP and XPIC; across a cut          */
-    const float *side;                     /* sides of the nodes at cuts                           */
+    tobi_float4 *tile[MPM_VELOCITIES], *calm[MPM_VELOCITIES];  /* calm: without stress; NULL with APIC */
+    const float *side;                                         /* sides of the nodes at cuts       */
 } mpm_targets;
 
-TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, mpm_targets *t, const int dim)
+/* Clears the tiles in `tiles` of a block and its twins. */
+TOBI_FN void mpm_clear_tiles(const mpm_block *b, tobi_float4 *tiles, int64_t number, tobi_float4 **out,
+                             const int dim)
 {
-    const mpm_block *b = &v->block[number];
-    t->calm = mpm_clear_tile(v->old ? v->calm : NULL, number, dim);
-    t->twin = mpm_clear_tile(v->tile, b->twin, dim);
-    t->calm_twin = mpm_clear_tile(v->old ? v->calm : NULL, b->twin, dim);
-    t->side = t->twin ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
+    out[0] = mpm_clear_tile(tiles, number, dim);
+    for (int q = 1; q < 1 << b->levels; q++) out[q] = mpm_clear_tile(tiles, b->twin + q - 1, dim);
 }
 
-/* Where a block's particles add to: their tile alone, its twin too, all targets. */
+/* own: the block's tile, in the making. */
+TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, tobi_float4 *own, mpm_targets *t,
+                              const int dim)
+{
+    const mpm_block *b = &v->block[number];
+    t->tile[0] = own;
+    for (int q = 1; q < 1 << b->levels; q++) t->tile[q] = mpm_clear_tile(v->tile, b->twin + q - 1, dim);
+    mpm_clear_tiles(b, v->old ? v->calm : NULL, number, t->calm, dim);
+    t->side = b->levels > 0 ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
+}
+
+/* Where a block's particles add to: their tile alone, its twins too, all targets. */
 enum { MPM_PLAIN, MPM_SPLIT, MPM_CALM };
 
-/* bent: eq. (3b) is on. Returns the kinetic energy that damping takes, J. */
-TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
-                             mpm_reach reach[2], const int dim, const int kind, const int bent)
+/* Returns the kinetic energy that damping takes, J. */
+TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_targets *t, mpm_reach *reach,
+                             const int dim, const int kind, const int bent)
 {
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
-    tobi_float4 *const twin = kind == MPM_PLAIN ? NULL : t->twin;
+    const int levels = kind == MPM_PLAIN ? 0 : b->levels;
     double taken = 0;
     mpm_cell cell;
     mpm_clear_cell(&cell);
@@ -152,29 +163,30 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, tobi_float4 
         mpm_find_stencil(v, b, i, dim, &s);
         taken += mpm_find_load(v, i, count, &s, dim, &load);
         for (int k = 0; k < count; k++) {
-            const uint32_t hidden = twin ? mpm_find_hidden(v, i + k, t->side, s.first[k], dim) : 0;
-            if (s.first[k] != cell.first || (twin && hidden != cell.hidden)) {
-                mpm_leave_cell(tile, twin, &cell, reach, dim, bent);
+            mpm_hidden hidden = {{0}};
+            if (levels > 0) hidden = mpm_find_hidden(v, i + k, t->side, levels, s.first[k], dim);
+            if (s.first[k] != cell.first || (levels > 0 && !mpm_is_same(&hidden, &cell.hidden))) {
+                mpm_leave_cell(t->tile, levels, &cell, reach, dim, bent);
                 cell.first = s.first[k];
                 cell.hidden = hidden;
             }
             mpm_add_particle(&cell, &s, &load, k, dim, bent);
             if (kind != MPM_CALM) continue;
             const quad momentum = quad_load(&load.momentum[k]);
-            if (hidden) mpm_add_split(t->calm, t->calm_twin, &s, k, hidden, momentum, zero, dim);
-            else mpm_add_calm(t->calm, &s, k, momentum, dim);
+            if (mpm_is_hidden(&hidden)) mpm_add_split(t->calm, levels, &s, k, &hidden, momentum, zero, dim);
+            else mpm_add_calm(t->calm[0], &s, k, momentum, dim);
         }
     }
-    mpm_leave_cell(tile, twin, &cell, reach, dim, bent);
+    mpm_leave_cell(t->tile, levels, &cell, reach, dim, bent);
     return taken;
 }
 
-TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, tobi_float4 *tile, const mpm_targets *t,
-                            mpm_reach reach[2], const int dim, const int bent)
+TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, const mpm_targets *t, mpm_reach *reach,
+                            const int dim, const int bent)
 {
-    if (t->calm) return mpm_add_block(v, b, tile, t, reach, dim, MPM_CALM, bent);
-    if (t->twin) return mpm_add_block(v, b, tile, t, reach, dim, MPM_SPLIT, bent);
-    return mpm_add_block(v, b, tile, t, reach, dim, MPM_PLAIN, bent);
+    if (t->calm[0]) return mpm_add_block(v, b, t, reach, dim, MPM_CALM, bent);
+    if (b->levels > 0) return mpm_add_block(v, b, t, reach, dim, MPM_SPLIT, bent);
+    return mpm_add_block(v, b, t, reach, dim, MPM_PLAIN, bent);
 }
 
 /* Copies the rows of a tile that something reaches. */
@@ -195,13 +207,13 @@ TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, c
     const int nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
     tobi_float4 tile[MPM_TILE_3D + 8];
     mpm_targets targets;
-    mpm_reach reach[2] = {{{0, 0, 0}}, {{0, 0, 0}}};       /* of the tile and its twin */
+    mpm_reach reach[MPM_VELOCITIES] = {{{0, 0, 0}}};       /* of the tile and its twins */
     mpm_clear(tile, nodes);
-    mpm_find_targets(&v, number, &targets, dim);
-    totals[0] += v.bent ? mpm_add_kind(&v, b, tile, &targets, reach, dim, 1) :
-                          mpm_add_kind(&v, b, tile, &targets, reach, dim, 0);
+    mpm_find_targets(&v, number, tile, &targets, dim);
+    totals[0] += v.bent ? mpm_add_kind(&v, b, &targets, reach, dim, 1) :
+                          mpm_add_kind(&v, b, &targets, reach, dim, 0);
     v.reach[number] = reach[0];
-    if (b->twin >= 0) v.reach[b->twin] = reach[1];
+    for (int q = 1; q < 1 << b->levels; q++) v.reach[b->twin + q - 1] = reach[q];
     mpm_copy_rows(v.tile + number*nodes, tile, &reach[0], dim);
 }
 
@@ -375,23 +387,25 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
     return out;
 }
 
-/* The nodes around a block as its particles feel them: velocity, and what replaces their own. */
+/* The nodes around a block as its particles feel them, by velocity: velocity, and what replaces their own. */
 typedef struct mpm_around {
-    tobi_float4 now[MPM_TILE_3D + 8], old[MPM_TILE_3D + 8];
-    tobi_float4 now_twin[MPM_TILE_3D + 8], old_twin[MPM_TILE_3D + 8];
+    tobi_float4 now[MPM_VELOCITIES*(MPM_TILE_3D + 8)], old[MPM_VELOCITIES*(MPM_TILE_3D + 8)];
 } mpm_around;
+
+/* Tiles of all velocities from a layer of nodes. */
+TOBI_FN void mpm_copy_tiles(const mpm_view *v, const mpm_block *b, const tobi_float4 *node, tobi_float4 *tile,
+                            const int dim)
+{
+    for (int q = 0; q < 1 << b->levels; q++, tile += MPM_TILE_3D + 8) {
+        mpm_copy_tile(node, q ? v->block[b->twin + q - 1].around : b->around, tile, dim);
+        mpm_clear(tile + (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D), 8);   /* what the last rows read beyond */
+    }
+}
 
 TOBI_FN void mpm_copy_nodes(const mpm_view *v, const mpm_block *b, mpm_around *t, const int dim)
 {
-    const int beyond = dim == 3 ? MPM_TILE_3D : MPM_TILE_2D, split = b->twin >= 0, flip = v->old != NULL;
-    mpm_copy_tile(v->node, b->around, t->now, dim);
-    if (flip) mpm_copy_tile(v->old, b->around, t->old, dim);
-    if (split) mpm_copy_tile(v->node, v->block[b->twin].around, t->now_twin, dim);
-    if (split && flip) mpm_copy_tile(v->old, v->block[b->twin].around, t->old_twin, dim);
-    mpm_clear(t->now + beyond, 8);                         /* what the last rows read beyond the tile */
-    mpm_clear(t->old + beyond, 8);
-    mpm_clear(t->now_twin + beyond, 8);
-    mpm_clear(t->old_twin + beyond, 8);
+    mpm_copy_tiles(v, b, v->node, t->now, dim);
+    if (v->old) mpm_copy_tiles(v, b, v->old, t->old, dim);
 }
 
 /* Eight particles in motion. */
@@ -445,32 +459,32 @@ TOBI_FN void mpm_end_motion(const mpm_motion *m, double dt, double *totals)
 typedef struct mpm_felt {
     row g[9];
     int32_t first;
-    uint32_t hidden;                   /* from the twin's tile                                     */
+    mpm_hidden hidden;                 /* from the twins' tiles                                    */
 } mpm_felt;
 
 TOBI_FN void mpm_begin_felt(mpm_felt *f)
 {
     for (int r = 0; r < 9; r++) f->g[r] = row_set(0);
     f->first = -1;
-    f->hidden = 0;
+    f->hidden = (mpm_hidden){{0}};
 }
 
-TOBI_FN void mpm_find_rows(const tobi_float4 *tile, const tobi_float4 *twin, int32_t first, uint32_t hidden,
+TOBI_FN void mpm_find_rows(const tobi_float4 *tile, int levels, int32_t first, const mpm_hidden *hidden,
                            mpm_felt *f, const int dim)
 {
-    if (f->first == first && f->hidden == hidden) return;
+    if (f->first == first && mpm_is_same(&f->hidden, hidden)) return;
     f->first = first;
-    f->hidden = hidden;
-    if (hidden) mpm_load_split(tile, twin, first, hidden, f->g, dim);
+    f->hidden = *hidden;
+    if (mpm_is_hidden(hidden)) mpm_load_split(tile, levels, first, hidden, f->g, dim);
     else mpm_load_rows(tile, first, f->g, dim);
 }
 
-/* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. hidden: nodes across a cut.
+/* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. levels: of the block.
    plain: no FLIP, no cuts. felt: of `now` and `old`. The w of the velocity: the force
    of a contact in this step is kept for the next, and only that long. The w of the gradient: where the
    particle is at home, for mpm_grid_restore. */
 TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil *s, int k, int64_t i,
-                      uint32_t hidden, quad home, mpm_motion *m, mpm_felt felt[2], const int dim,
+                      int levels, quad home, mpm_motion *m, mpm_felt felt[2], const int dim,
                       const int plain)
 {
     const float scale = (float)(4*v->inverse_cell);
@@ -478,8 +492,12 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     tobi_double3 *const position = v->position + i;
     tobi_float4 *const velocity = v->velocity + i;
     row g[9];
+    mpm_hidden hidden;
     if (plain) mpm_load_rows(t->now, s->first[k], g, dim);
-    else mpm_find_rows(t->now, t->now_twin, s->first[k], hidden, &felt[0], dim);
+    else {
+        hidden = mpm_read_hidden(v, i, levels);
+        mpm_find_rows(t->now, levels, s->first[k], &hidden, &felt[0], dim);
+    }
     row all = mpm_interpolate(plain ? g : felt[0].g, s, k, dim);
     quad u = row_first(all);
     all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
@@ -490,7 +508,7 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     quad_store(&m->moved[k], u);
     if (!plain && v->old) {
         const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own);
-        mpm_find_rows(t->old, t->old_twin, s->first[k], hidden, &felt[1], dim);
+        mpm_find_rows(t->old, levels, s->first[k], &hidden, &felt[1], dim);
         u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(felt[1].g, s, k, dim)));
     }
     if (!plain) quad_store(&m->speed[k], u);
@@ -511,8 +529,7 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
         mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
             if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) continue;
-            mpm_move(v, t, &s, k, i + k, b->twin >= 0 ? v->hidden[i + k] & MPM_HIDDEN : 0, home, m, felt, dim,
-                     plain);
+            mpm_move(v, t, &s, k, i + k, b->levels, home, m, felt, dim, plain);
         }
         mpm_note_speed(m, plain);
     }
@@ -540,7 +557,7 @@ TOBI_FN void mpm_gather(const mpm_view *view, int64_t number, double *totals, co
     mpm_motion motion;
     mpm_copy_nodes(&v, b, &around, dim);
     mpm_begin_motion(&motion);
-    if (!v.old && b->twin < 0) mpm_move_block(&v, b, &around, &motion, dim, 1);
+    if (!v.old && b->levels == 0) mpm_move_block(&v, b, &around, &motion, dim, 1);
     else mpm_move_block(&v, b, &around, &motion, dim, 0);
     totals[0] += (double)mpm_keep_block_inside(&v, b, dim);
     mpm_end_motion(&motion, v.dt, totals);

@@ -14,6 +14,9 @@
 enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
        MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
 
+/* Cuts that part one node, one after the other, and the velocities it then has (docs/theory/cutting.md). */
+enum { MPM_LEVELS = 3, MPM_VELOCITIES = 1 << MPM_LEVELS, MPM_GUESTS = 2 };
+
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
     float mu, lambda;                  /* Pa, Lame's                                              */
@@ -34,15 +37,15 @@ typedef struct mpm_material {
 TOBI_FN float mpm_side_of(int group) { return 33554432.0f + 4.0f*(float)group; }
 
 /* Particles of one block, and the 27 (2-D: 9) blocks of nodes around it. Where cuts are, a node has two
-   velocities (docs/theory/cutting.md): blocks of particles and of nodes have twins for the second, behind all
-   others. A twin block has the tile of the second velocity, no particles, and around it twins of node blocks
-   where there are any. */
+   velocities, where they cross 2^levels: blocks of particles and of nodes have 2^levels - 1 twins for the
+   others, which follow one another behind all blocks. A twin block has the tile of its velocity, no
+   particles, and around it twins of node blocks where there are any. */
 typedef struct mpm_block {
     int32_t corner[3];                 /* cells from the domain's lower corner                    */
     int64_t begin, end;                /* particles                                               */
     int32_t around[27];                /* index of the node block at offset (x + 1)*9 + (y + 1)*3 + z + 1 */
-    int32_t twin;                      /* index of the twin block, -1 = none                      */
-    int32_t sides;                     /* of a block with a twin: number of its tile of sides     */
+    int32_t twin, levels;              /* index of the first twin block, -1 = none                */
+    int32_t sides;                     /* of a block with a twin: number of its first tile of sides */
 } mpm_block;
 
 /* Nodes of one block, and the particle blocks (of a twin: twins) whose tiles reach it, -1 = none. */
@@ -50,7 +53,7 @@ typedef struct mpm_patch {
     int32_t corner[3];
     int32_t planes;                    /* 1: a plane may reach it                                 */
     int32_t cover[27];
-    int32_t twin;                      /* index of the twin, -1 = none                            */
+    int32_t twin, levels;              /* index of the first twin, -1 = none                      */
 } mpm_patch;
 
 /* Rows of a tile, bit 8 x + y, in which a node carries something: of the nodes 4 to 6, 0 to 3 and -1 along z,
@@ -77,10 +80,14 @@ typedef struct mpm_view {
     const tobi_columns *TOBI_RESTRICT cuts;   /* core/cuts.h; NULL in scenes without blades        */
     const float *TOBI_RESTRICT sides;  /* tiles of MPM_SIDES, around blocks with a twin: number of the cut at
                                           a node, with the sign of the side its first velocity belongs to;
-                                          mpm_side_of; 0 = one velocity                            */
-    uint32_t *TOBI_RESTRICT hidden;    /* nodes across a cut, of particles in blocks with a twin: bit
-                                          (x*3 + y)*3 + z, 2-D x*3 + y, of the nodes that feel it; above
-                                          MPM_HIDDEN for which base node that was found, 0 = never */
+                                          mpm_side_of; 0 = one velocity. One for each twin, by level of the
+                                          tree and branch: 2^level - 1 + branch; where there are several
+                                          levels, MPM_GUESTS times as many with the sides whose particles
+                                          go across, if they do not know the cut                   */
+    uint32_t *hidden[MPM_LEVELS];      /* of particles in blocks with a twin: bits (x*3 + y)*3 + z, 2-D
+                                          x*3 + y, for the nodes that feel it: 1 across the cut of this level;
+                                          in [0], above MPM_HIDDEN, for which base node that was found, 0 =
+                                          never                                                    */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
     tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
     mpm_reach *TOBI_RESTRICT reach;    /* [blocks] of their tiles                                  */

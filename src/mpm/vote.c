@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { VOTES = 2 };                    /* cuts that one node looks at                             */
 enum { SPAN = 6, CELLS = SPAN*SPAN*SPAN };     /* base nodes whose particles reach a patch         */
 
 void mpm_vote_deformation(const mpm_view *v, int64_t i, double f[3][3])
@@ -69,53 +68,36 @@ void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t nu
     c->voters[number] = count;
 }
 
-/* What the particles on the two sides of one cut say at one node, side 0 being +: sums, by mass and weight,
-   of places (m, from the corner of the block) with the weights themselves, and of normals with distances from
-   the cut (m). */
-typedef struct vote {
-    quad place[2], face[2];
-    float number, friction;
-} vote;
-
-/* mark: of the particle, with its side. */
-static void add_vote(vote votes[VOTES], float mark, float w, quad place, quad face, float friction)
+mpm_face mpm_vote_measure(const mpm_heard *first, const mpm_heard *second)
 {
-    const int side = mark < 0;
-    int k = 0;
-    while (k < VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
-    if (k == VOTES) return;
-    vote *to = &votes[k];
-    to->number = fabsf(mark);
-    to->friction += w*friction;
-    to->place[side] = to->place[side] + place*quad_set(w);
-    to->face[side] = to->face[side] + face*quad_set(w);
-}
-
-/* The node's side and seam by its votes; returns whether it has two velocities. */
-static int decide(const vote votes[VOTES], float *side, mpm_seam *seam)
-{
-    const vote *best = NULL;
-    float most = 0;
-    for (int k = 0; k < VOTES && votes[k].number != 0; k++) {
-        float least = fminf(votes[k].place[0][3], votes[k].place[1][3]);
-        if (least > most) { most = least; best = &votes[k]; }
-    }
-    *side = 0;
-    if (!best) return 0;
-    const double weight[2] = {best->place[0][3], best->place[1][3]};
-    const int own = weight[1] > weight[0], other = !own;
-    double n[3], gap = -best->face[0][3]/weight[0] - best->face[1][3]/weight[1];
-    for (int a = 0; a < 3; a++) n[a] = (double)best->face[other][a] - best->face[own][a];
+    mpm_face f;
+    const double weight[2] = {first->place[3], second->place[3]};
+    double n[3], gap = -first->face[3]/weight[0] - second->face[3]/weight[1];
+    for (int a = 0; a < 3; a++) n[a] = (double)second->face[a] - first->face[a];
     vec3_normalize(n);
     for (int a = 0; a < 3; a++) {
-        gap += n[a]*(best->place[other][a]/weight[other] - best->place[own][a]/weight[own]);
-        seam->normal[a] = (float)n[a];
+        gap += n[a]*(second->place[a]/weight[1] - first->place[a]/weight[0]);
+        f.normal[a] = (float)n[a];
     }
-    seam->gap = (float)gap;
+    f.gap = (float)gap;
+    return f;
+}
+
+/* The node's side and seam by its votes; returns how many cuts have both sides there. */
+static int decide(const mpm_vote votes[MPM_VOTES], float *side, mpm_seam *seam)
+{
+    int both = 0;
+    const mpm_vote *best = mpm_vote_pick(votes, &both);
+    *side = 0;
+    if (!best) return 0;
+    const int own = mpm_vote_own(best);
+    const mpm_face face = mpm_vote_measure(&best->side[own], &best->side[!own]);
+    memcpy(seam->normal, face.normal, sizeof seam->normal);
+    seam->gap = face.gap;
     seam->fixed = 0;
-    seam->friction = (float)(best->friction/(weight[0] + weight[1]));
+    seam->friction = (float)(best->friction/((double)best->side[0].place[3] + best->side[1].place[3]));
     *side = own ? -best->number : best->number;
-    return 1;
+    return both;
 }
 
 /* Nodes of a patch and base nodes around it, by place. */
@@ -180,7 +162,7 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
 
 /* Adds the votes of one particle to the wanted nodes of a block that feel it. */
 static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
-                          const poll *q, int64_t i, vote votes[][VOTES])
+                          const poll *q, int64_t i, mpm_vote votes[][MPM_VOTES])
 {
     const int dim = g->dimension;
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
@@ -205,8 +187,8 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
                 const double along = mass*w[0][p0]*w[1][p1];
                 for (int p2 = low[2]; p2 <= high[2]; p2++)
                     if (q->wanted[cell_of(first[0] + p0, first[1] + p1, first[2] + p2)])
-                        add_vote(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark, (float)(along*w[2][p2]),
-                                 place, face, friction);
+                        mpm_vote_add(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark,
+                                     (float)(along*w[2][p2]), place, face, friction);
             }
     }
 }
@@ -215,9 +197,10 @@ int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t pat
 {
     const mpm_patch *p = &g->patch[patch];
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    vote votes[MPM_NODES_3D][VOTES];
+    mpm_vote votes[MPM_NODES_3D][MPM_VOTES];
     poll q;
     int two = 0;
+    c->cross.doubt[patch] = 0;
     memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
     if (!v->cuts || !find_wanted(c, g, p, &q)) return 0;
     memset(votes, 0, sizeof votes);
@@ -229,7 +212,10 @@ int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t pat
             if (cell >= 0 && q.near[cell]) vote_particle(c, g, v, p, &q, list[k].particle, votes);
         }
     }
-    for (int n = 0; n < nodes; n++)
-        two |= decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
+    for (int n = 0; n < nodes; n++) {
+        const int cuts = decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
+        two |= cuts > 0;
+        if (cuts > 1) c->cross.doubt[patch] |= UINT64_C(1) << n;
+    }
     return two;
 }

@@ -1,4 +1,4 @@
-/* Motion and control scripts on LuaJIT.
+/* Motion, control and flow scripts on LuaJIT.
 
    Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
    user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
@@ -92,8 +92,8 @@ static const char DRIVER[] =
     "              \"to the next \" .. remembered .. \" is remembered\", 2)\n"
     "    end })\n"
     "end\n"
-    "local f, g, h\n"
-    "local function bind(deform, place, control) f, g, h = deform, place, control end\n"
+    "local f, g, h, walked\n"
+    "local function bind(name, points, place, control) walked, f, g, h = name, points, place, control end\n"
     "local function deform(n, t, rest, position, at)\n"
     "    rest, position = ffi.cast('const double *', rest), ffi.cast('double *', position)\n"
     "    at = ffi.cast('double *', at)\n"
@@ -102,7 +102,7 @@ static const char DRIVER[] =
     "        at[0], count, look = i, 0, 256\n"
     "        local x, y, z, more = f(rest[k], rest[k + 1], rest[k + 2], t)\n"
     "        if type(x) ~= 'number' or type(y) ~= 'number' or type(z) ~= 'number' or more ~= nil then\n"
-    "            error('deform must return three numbers', 0)\n"
+    "            error(walked .. ' must return three numbers', 0)\n"
     "        end\n"
     "        position[k], position[k + 1], position[k + 2] = x, y, z\n"
     "    end\n"
@@ -287,18 +287,22 @@ static int load_protected(lua_State *lua)
     lua_call(lua, 0, 0);
 
     read_pivot(lua, user, job->script->pivot);
+    const char *walked = job->script->role == TOBI_FLOW_SCRIPT ? "velocity" : "deform";
     lua_pushvalue(lua, bind);
-    lua_getfield(lua, user, "deform");
+    lua_pushstring(lua, walked);
+    lua_getfield(lua, user, walked);
     lua_getfield(lua, user, "place");
     lua_getfield(lua, user, "control");
     bool deforms = lua_isfunction(lua, -3), places = lua_isfunction(lua, -2);
     if (job->script->role == TOBI_CONTROL_SCRIPT) {
         if (!lua_isfunction(lua, -1)) return luaL_error(lua, "define function control(t, body)");
+    } else if (job->script->role == TOBI_FLOW_SCRIPT) {
+        if (!deforms) return luaL_error(lua, "define function velocity(x, y, z)");
     } else if (deforms == places)
         return luaL_error(lua, "define either function deform(x, y, z, t) or function place(t)%s",
                           deforms ? ", not both" : "");
     job->script->rigid = places;
-    lua_call(lua, 3, 0);
+    lua_call(lua, 4, 0);
     lua_pushvalue(lua, seal);
     lua_pushstring(lua, job->script->role == TOBI_CONTROL_SCRIPT ? "only the phase that control returns"
                                                                  : "nothing");
@@ -354,9 +358,11 @@ static tobi_status guard_and_load(tobi_script *script, const json_t *params, tob
     return status;
 }
 
+static const char *const role_name[] = { "motion", "control", "flow" };
+
 static tobi_status set_label(tobi_script *script, const char *path, tobi_script_role role)
 {
-    const char *kind = role == TOBI_CONTROL_SCRIPT ? "control" : "motion";
+    const char *kind = role_name[role];
     size_t room = strlen(path) + 20;
     script->role = role;
     script->label = malloc(room);
@@ -374,8 +380,7 @@ tobi_status tobi_script_load(const char *path, const char *params_json, tobi_scr
     json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
     if (!json_is_object(params)) {
         json_decref(params);
-        return tobi_fail(err, TOBI_INVALID, "%s params: %s",
-                         role == TOBI_CONTROL_SCRIPT ? "control" : "motion",
+        return tobi_fail(err, TOBI_INVALID, "%s params: %s", role_name[role],
                          params ? "must be a JSON object" : where.text);
     }
     tobi_script *script = calloc(1, sizeof *script);
@@ -401,8 +406,10 @@ void tobi_script_free(tobi_script *script)
 
 int tobi_script_is_rigid(const tobi_script *script) { return script->rigid; }
 
-tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const double (*rest)[3],
-                               double (*position)[3], tobi_error *err)
+/* Calls the function of points. *why: what went wrong at point *bad, "" if its answer is not finite, NULL if
+   nothing. */
+static void walk(tobi_script *script, double t, int64_t n, const double (*from)[3], double (*to)[3],
+                 int64_t *bad, const char **why)
 {
     lua_State *lua = script->lua;
     double at = 0.0;
@@ -410,18 +417,42 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
     lua_rawgeti(lua, LUA_REGISTRYINDEX, script->deform);
     lua_pushnumber(lua, (double)n);
     lua_pushnumber(lua, t);
-    lua_pushlightuserdata(lua, (void *)rest);
-    lua_pushlightuserdata(lua, position);
+    lua_pushlightuserdata(lua, (void *)from);
+    lua_pushlightuserdata(lua, to);
     lua_pushlightuserdata(lua, &at);
     bool failed = lua_pcall(lua, 5, 0, 0) != 0;
-    const char *why = failed ? message(lua) : "deform returned a number that is not finite";
     int64_t i = failed ? (int64_t)at : 0;
-    while (!failed && i < n && isfinite(position[i][0] + position[i][1] + position[i][2])) i++;
-    if (!failed && i == n) return TOBI_OK;
+    while (!failed && i < n && isfinite(to[i][0] + to[i][1] + to[i][2])) i++;
+    *bad = i;
+    *why = failed ? message(lua) : i == n ? NULL : "";
+}
+
+tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const double (*rest)[3],
+                               double (*position)[3], tobi_error *err)
+{
+    int64_t i;
+    const char *why;
+    walk(script, t, n, rest, position, &i, &why);
+    if (!why) return TOBI_OK;
     if (i >= n) return tobi_fail(err, TOBI_SCRIPT, "%s: %s", script->label, why);
     return tobi_fail(err, TOBI_SCRIPT,
                      "motion script %s: %s (t = %.9g s, rest point %.6g %.6g %.6g)", script->path,
-                     why, t, rest[i][0], rest[i][1], rest[i][2]);
+                     *why ? why : "deform returned a number that is not finite", t, rest[i][0], rest[i][1],
+                     rest[i][2]);
+}
+
+tobi_status tobi_script_flow(void *script, int64_t n, const double (*place)[3], double (*velocity)[3],
+                             tobi_error *err)
+{
+    const tobi_script *s = script;
+    int64_t i;
+    const char *why;
+    walk(script, 0, n, place, velocity, &i, &why);
+    if (!why) return TOBI_OK;
+    if (i >= n) i = 0;
+    return tobi_fail(err, TOBI_SCRIPT, "flow script %s: %s (at %.6g %.6g %.6g m)", s->path,
+                     *why ? why : "velocity returned a number that is not finite", place[i][0], place[i][1],
+                     place[i][2]);
 }
 
 /* Axis to unit length; a turn needs one. */

@@ -27,10 +27,16 @@
    assigned after loading, tables and locals outside control are not watched. hold names the axes that stand
    still in this step, like `locked` of a body.
 
-   The script sees `params` (motion.params or control.params of the scene: numbers, texts, true/false,
-   arrays from 1, objects), math (without random), table, ipairs, pairs, next, select, tonumber, tostring,
-   type, unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no files,
-   no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
+   A flow script defines
+
+     function velocity(x, y, z)         -- place (m)
+         return vx, vy, vz              -- velocity of what is there at the start (m/s)
+     end
+
+   The script sees `params` (motion.params, control.params or flow.params of the scene: numbers, texts,
+   true/false, arrays from 1, objects), math (without random), table, ipairs, pairs, next, select, tonumber,
+   tostring, type, unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no
+   files, no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
    global is an error, because it is nearly always a misspelt name, and because a motion that
    remembers things would break restarts. */
 #pragma once
@@ -47,7 +53,7 @@ typedef struct tobi_pose {
     double pivot[3];      /* m        */
 } tobi_pose;
 
-typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT } tobi_script_role;
+typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT, TOBI_FLOW_SCRIPT } tobi_script_role;
 
 /* Loads and runs the file once. Errors as in tobi_motion_script. */
 tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
@@ -62,6 +68,9 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
                                double (*position)[3], tobi_error *err);
 /* Calls place(). */
 tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, tobi_error *err);
+/* Calls velocity() for n places: a tobi_flow_fn, user is the script. */
+tobi_status tobi_script_flow(void *script, int64_t n, const double (*place)[3], double (*velocity)[3],
+                             tobi_error *err);
 /* Calls control(): a tobi_control_fn, user is the script. TOBI_SCRIPT when it fails or answers nonsense. */
 tobi_status tobi_script_control(void *script, const tobi_control_input *in, tobi_control_output *out,
                                 tobi_error *err);

@@ -15,18 +15,33 @@ static const tobi_param rows[] = {
              "locals outside of itself is lost on resume." },
     { 0 }
 };
+static const tobi_param flow_rows[] = {
+    { .key = "script", .type = TOBI_PARAM_TEXT, .offset = offsetof(tobi_control_def, script), .unit = "path",
+      .required = true,
+      .doc = "A Lua file with a function velocity(x, y, z) that returns the velocity vx, vy, vz (m/s) of "
+             "what is at that place (m) at the start; in 2-D z is 0 and vz is not used." },
+    { 0 }
+};
+const tobi_param_table tobi_flow_table = {
+    "flow", "A velocity of each place, in addition to velocity and spin of the region.",
+    sizeof(tobi_control_def), flow_rows };
 const tobi_param_table tobi_control_table = {
     "control", "The control program of a controlled body: a force (N) and a torque (N m) in every step.",
     sizeof(tobi_control_def), rows };
 
-tobi_script *tobi_control_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
-                               tobi_control_def *def)
+static const tobi_param_table *table_of(tobi_script_role role)
+{
+    return role == TOBI_FLOW_SCRIPT ? &tobi_flow_table : &tobi_control_table;
+}
+
+tobi_script *tobi_control_bind(const tobi_binder *binder, tobi_script_role role, json_t *value,
+                               const tobi_place *place, tobi_control_def *def)
 {
     const char *also[TOBI_PARTS];
-    tobi_part_keys("control", also);
+    tobi_part_keys(table_of(role)->name, also);
     *def = (tobi_control_def){ 0 };
     int64_t before = tobi_report_total(binder->source->report);
-    tobi_bind(binder, &tobi_control_table, value, place, also, def);
+    tobi_bind(binder, table_of(role), value, place, also, def);
     def->params = json_object_get(value, "params");
     tobi_place params = { place, "params", 0 }, script_place = { place, "script", 0 };
     if (def->params && !json_is_object(def->params))
@@ -37,15 +52,15 @@ tobi_script *tobi_control_bind(const tobi_binder *binder, json_t *value, const t
     tobi_script *script = NULL;
     tobi_error err = { 0 };
     char *text = def->params ? json_dumps(def->params, 0) : NULL;
-    if (tobi_script_load(def->script, text, TOBI_CONTROL_SCRIPT, &script, &err) != TOBI_OK)
+    if (tobi_script_load(def->script, text, role, &script, &err) != TOBI_OK)
         tobi_source_mistake(binder->source, &script_place, "%s", err.text);
     free(text);
     return script;
 }
 
-json_t *tobi_control_write(const tobi_control_def *def)
+json_t *tobi_control_write(tobi_script_role role, const tobi_control_def *def)
 {
-    json_t *object = tobi_write_def(&tobi_control_table, def);
+    json_t *object = tobi_write_def(table_of(role), def);
     int failed = !object;
     if (def->params) failed |= json_object_set(object, "params", def->params);
     if (!failed) return object;

@@ -46,12 +46,18 @@ static tobi_status read_fills(const tobi_binder *binder, json_t *value, const to
     }
     *fills = calloc(json_array_size(list), sizeof **fills);
     if (!*fills) return TOBI_NO_MEMORY;
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("fill", also);
     for (size_t i = 0; i < json_array_size(list); i++) {
-        tobi_place entry = { &fill, NULL, i };
+        tobi_place entry = { &fill, NULL, i }, flow = { &entry, "flow", 0 };
+        json_t *region = json_array_get(list, i), *flows = json_object_get(region, "flow");
         tobi_scene_fill *f = &(*fills)[(*count)++];
         f->def = tobi_default_fill_def();
-        f->bound =
-            tobi_bind(binder, &tobi_fill_table, json_array_get(list, i), &entry, NULL, &f->def);
+        f->bound = tobi_bind(binder, &tobi_fill_table, region, &entry, also, &f->def);
+        if (!flows) continue;
+        f->flow = tobi_control_bind(binder, TOBI_FLOW_SCRIPT, flows, &flow, &f->flow_def);
+        f->def.flow = f->flow ? tobi_script_flow : NULL;
+        f->def.flow_user = f->flow;
     }
     return TOBI_OK;
 }
@@ -119,7 +125,8 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
         json_t *moves = json_object_get(value, "motion"), *controls = json_object_get(value, "control");
         if (controls) {
             tobi_place control = { &entry, "control", 0 };
-            body->control = tobi_control_bind(binder, controls, &control, &body->control_def);
+            body->control =
+                tobi_control_bind(binder, TOBI_CONTROL_SCRIPT, controls, &control, &body->control_def);
             body->def.control = body->control ? tobi_script_control : NULL;
             body->def.control_user = body->control;
         }
@@ -327,11 +334,19 @@ tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi
     return status;
 }
 
+static void free_fills(tobi_scene_fill *fills, int count)
+{
+    for (int i = 0; i < count; i++) tobi_script_free(fills[i].flow);
+    free(fills);
+}
+
 void tobi_scene_free(tobi_scene *scene)
 {
     if (!scene) return;
-    for (int i = 0; i < scene->fluid_count; i++) free(scene->fluids[i].fills);
-    for (int i = 0; i < scene->solid_count; i++) free(scene->solids[i].fills);
+    for (int i = 0; i < scene->fluid_count; i++)
+        free_fills(scene->fluids[i].fills, scene->fluids[i].fill_count);
+    for (int i = 0; i < scene->solid_count; i++)
+        free_fills(scene->solids[i].fills, scene->solids[i].fill_count);
     for (int i = 0; i < scene->body_count; i++) {
         tobi_motion_free(scene->bodies[i].motion);
         tobi_script_free(scene->bodies[i].control);
@@ -439,6 +454,8 @@ static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int cou
         if (def->mesh || !(def->radius > 0)) json_object_del(fill, "sphere");
         for (int k = 0; !def->mesh && k < 3; k++)
             json_object_del(fill, (const char *[]){ "scale", "translation", "rotation" }[k]);
+        json_t *flow = fills[i].flow ? tobi_control_write(TOBI_FLOW_SCRIPT, &fills[i].flow_def) : NULL;
+        if (fills[i].flow) failed |= json_object_set_new(fill, "flow", flow);
         failed |= json_array_append_new(list, fill);
     }
     failed |= json_object_set_new(object, "fill", list);
@@ -469,7 +486,8 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
     if (body->motion_def.table)
         failed = json_object_set_new(object, "motion", tobi_motion_write(&body->motion_def));
     if (body->control)
-        failed |= json_object_set_new(object, "control", tobi_control_write(&body->control_def));
+        failed |= json_object_set_new(object, "control",
+                                      tobi_control_write(TOBI_CONTROL_SCRIPT, &body->control_def));
     return whole(object, failed);
 }
 

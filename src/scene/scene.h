@@ -7,6 +7,8 @@
 typedef struct tobi_scene_fill {
     tobi_fill_def def;
     tobi_bound bound;              /* rows of the fill table that the file gives  */
+    tobi_control_def flow_def;
+    tobi_script *flow;             /* owned; NULL = none                          */
 } tobi_scene_fill;
 
 typedef struct tobi_scene_fluid {

@@ -74,6 +74,11 @@ static void bind_view(tobi_simulation *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
+    tobi_particles *p = &s->particles;
+    v->midway = v->exact;
+    v->lean[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
+    v->lean[1] = p->residual;
+    v->lean[2] = p->correction;
     for (int a = 0; a < 3; a++) {
         v->cells_per_metre[a] = m->grid.per_metre[a];
         v->nodes[a] = m->grid.grid[0].n[a];
@@ -197,11 +202,20 @@ static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock,
     return TOBI_OK;
 }
 
+/* Share of the shortest wave that the least viscous fluid damps away in dt. */
+static double viscous_share(const tobi_simulation *s, const dfsph *m, double dt)
+{
+    double least = m->view.kinematic[0];
+    for (int f = 1; f < s->fluid_count; f++) least = fmin(least, m->view.kinematic[f]);
+    return 4*least*s->smoothing.rate*dt;
+}
+
 static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
 {
-    double scale = 2*s->smoothing.rate;
     /* per motion step: a step made short by viscosity or by the user filters less */
-    m->view.filter = (float)(m->def.filter/(fmax(s->dt, m->motion_dt)*scale*scale));
+    double scale = 2*s->smoothing.rate, dt = fmax(s->dt, m->motion_dt), share = m->def.filter;
+    if (m->view.exact) share = fmax(share - viscous_share(s, m, dt), 0);
+    m->view.filter = (float)(share/(dt*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
 }
 

@@ -1,5 +1,6 @@
 /* Turns kernels.def into loops, compiled once per instruction set. */
 #include "sph/kernels.h"
+#include "sph/filter.k.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"

@@ -104,6 +104,36 @@ TOBI_FN float sph_floor(const sph_view *v, int64_t i)
     return c < 0 ? c : 0;
 }
 
+/* The divergence asked for, eq. (10d): dt/2 tr(grad v grad v), into delta, free until the solve. */
+typedef struct sph_midway_acc { lane ux, uy, uz, g[9]; sph_tensor t; } sph_midway_acc;
+TOBI_FN void sph_midway_start(const sph_view *v, int64_t i, sph_midway_acc *a)
+{
+    tobi_float4 u = v->velocity[i];
+    a->t = sph_tensor_of(v, i);
+    a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
+    for (int k = 0; k < 9; k++) a->g[k] = lane_set(0);
+}
+TOBI_FN void sph_midway_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_midway_acc *a,
+                             const int shape)
+{
+    lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r), tilted[3];
+    (void)i;
+    lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
+    x = f*(a->ux - x); y = f*(a->uy - y); z = f*(a->uz - z);
+    sph_tensor_times(&a->t, n->dx, n->dy, n->dz, tilted);
+    for (int k = 0; k < 3; k++) {
+        a->g[3*k] += tilted[k]*x; a->g[3*k + 1] += tilted[k]*y; a->g[3*k + 2] += tilted[k]*z;
+    }
+}
+TOBI_FN void sph_midway_finish(const sph_view *v, int64_t i, sph_midway_acc *a, double *totals)
+{
+    float g[9];
+    (void)totals;
+    for (int k = 0; k < 9; k++) g[k] = v->slope*lane_sum(a->g[k]);
+    float squares = g[0]*g[0] + g[4]*g[4] + g[8]*g[8], mixed = g[1]*g[3] + g[5]*g[7] + g[6]*g[2];
+    v->delta[i] = 0.5f*v->dt*(squares + 2*mixed);
+}
+
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
    surface pressure only pushes: a particle that neither is compressed nor holds pressure is left out
    (precondition 0), and so is one that hardly touches another. Elsewhere s has either sign. In the same
@@ -137,6 +167,7 @@ TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, s
 TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, double *totals)
 {
     float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
+    if (v->midway) rate += v->delta[i];
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));

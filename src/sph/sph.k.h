@@ -89,16 +89,30 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
     sph_moments_add(&a->second, f*f, n);
 }
 
-/* T of a particle: (7c), or (7b) at walls where that is not asked for or has no answer. */
-TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_density_acc *a, float share)
+/* c of eq. (13b): M^-1 sum V F x, of size 3/h at most; 0 where M has no inverse. */
+TOBI_FN void sph_lean(const sph_view *v, int64_t i, const sph_matrix *inverse, tobi_float4 g)
+{
+    tobi_float4 c = sph_matrix_times(inverse, g);
+    float size = v->slope*v->h*sqrtf(c.x*c.x + c.y*c.y + c.z*c.z), k = -v->slope*(size > 3 ? 3/size : 1);
+    v->lean[0][i] = k*c.x;
+    v->lean[1][i] = k*c.y;
+    v->lean[2][i] = k*c.z;
+}
+
+/* T of a particle: (7c), or (7b) at walls where that is not asked for or has no answer, as on the rim of a
+   cavity (open): what is exact across a gap does not see it close. */
+TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_density_acc *a, float share,
+                                   int open)
 {
     sph_matrix t = {1, 1, 1, 0, 0, 0};
     if (!v->stretch) return t;
     int walled = share > 0 && (v->full || (v->near && v->near[i] >= 0)), made = 0;
     if (v->exact) {
         sph_matrix m = sph_moments_sum(&a->first, v->slope);
+        sph_matrix b = {0, 0, 0, 0, 0, 0};
         if (v->dimension == 2) m.zz = 1;
-        made = sph_invert(&m, v->wall[i], share, &t);
+        made = sph_invert(&m, &b) && !open && sph_tilt(&m, &b, v->wall[i], share, &t);
+        if (v->lean[0]) sph_lean(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
     }
     if (!made && walled) t = sph_along_wall(v->wall[i], sph_wall_density(v, share), v->dimension);
     sph_tensor_store(v, i, &t, walled);
@@ -142,7 +156,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     v->product[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
-    sph_matrix t = sph_make_tensor(v, i, a, share);
+    sph_matrix t = sph_make_tensor(v, i, a, share, sure);
     v->diagonal[i] = sph_diagonal(v, i, g, a, &t);
     float error = rho > 1 ? rho - 1 : v->surface[i] ? 0 : 1 - rho;
     totals[0] += error;

@@ -204,8 +204,19 @@ static void apply_tension(tobi_simulation *s, sph_view *v, const sph_kernels *k)
     launch(s, v, k->sph_tension, NULL);
 }
 
+/* Eq. (13b); nothing is left for that of (13). */
+static void apply_filter(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+{
+    if (!(v->filter > 0)) return;
+    launch(s, v, k->sph_ripple, NULL);
+    launch(s, v, k->sph_calm, NULL);
+    v->filter = 0;
+}
+
 void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
 {
+    if (v->midway) launch(s, v, k->sph_midway, NULL);
+    if (v->lean[0]) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->body_count > 0) tobi_near_add_forces(s);

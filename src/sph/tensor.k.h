@@ -113,9 +113,8 @@ TOBI_FN sph_matrix sph_along_wall(tobi_float4 gradient, float lack, int dimensio
     return t;
 }
 
-/* The symmetric part of (I - w n n^T) M^-1, eq. (7c), with w what M lacks along the wall's normal. 0 where
-   the neighbours lie on one side or in a plane. */
-TOBI_FN int sph_invert(const sph_matrix *m, tobi_float4 gradient, float share, sph_matrix *t)
+/* M^-1, M with the sums of V F x x. 0 where the neighbours lie on one side or in a plane. */
+TOBI_FN int sph_invert(const sph_matrix *m, sph_matrix *out)
 {
     float a = m->yy*m->zz - m->yz*m->yz, d = m->zx*m->yz - m->xy*m->zz, e = m->xy*m->yz - m->zx*m->yy;
     float det = m->xx*a + m->xy*d + m->zx*e;
@@ -123,18 +122,30 @@ TOBI_FN int sph_invert(const sph_matrix *m, tobi_float4 gradient, float share, s
     float k = 1/det;
     sph_matrix b = {k*a, k*(m->xx*m->zz - m->zx*m->zx), k*(m->xx*m->yy - m->xy*m->xy),
                     k*d, k*(m->xy*m->zx - m->xx*m->yz), k*e};
-    tobi_float4 n = sph_unit(gradient);
-    float x = m->xx*n.x + m->xy*n.y + m->zx*n.z, y = m->xy*n.x + m->yy*n.y + m->yz*n.z,
-          z = m->zx*n.x + m->yz*n.y + m->zz*n.z;
-    float fade = share < 0.02f ? 50*share : 1, half = 0.5f*fade*(1 - (n.x*x + n.y*y + n.z*z));
-    x = half*(b.xx*n.x + b.xy*n.y + b.zx*n.z);
-    y = half*(b.xy*n.x + b.yy*n.y + b.yz*n.z);
-    z = half*(b.zx*n.x + b.yz*n.y + b.zz*n.z);
-    t->xx = b.xx - 2*n.x*x;
-    t->yy = b.yy - 2*n.y*y;
-    t->zz = b.zz - 2*n.z*z;
-    t->xy = b.xy - (n.x*y + n.y*x);
-    t->yz = b.yz - (n.y*z + n.z*y);
-    t->zx = b.zx - (n.z*x + n.x*z);
+    *out = b;
+    return 1;
+}
+
+TOBI_FN tobi_float4 sph_matrix_times(const sph_matrix *m, tobi_float4 x)
+{
+    tobi_float4 out = {m->xx*x.x + m->xy*x.y + m->zx*x.z, m->xy*x.x + m->yy*x.y + m->yz*x.z,
+                       m->zx*x.x + m->yz*x.y + m->zz*x.z, 0};
+    return out;
+}
+
+/* The symmetric part of (I - w n n^T) M^-1, eq. (7c), with w what M lacks along the wall's normal; b = M^-1.
+   0 where that is none to use. */
+TOBI_FN int sph_tilt(const sph_matrix *m, const sph_matrix *b, tobi_float4 gradient, float share,
+                     sph_matrix *t)
+{
+    tobi_float4 n = sph_unit(gradient), mn = sph_matrix_times(m, n), bn = sph_matrix_times(b, n);
+    float fade = share < 0.02f ? 50*share : 1, half = 0.5f*fade*(1 - (n.x*mn.x + n.y*mn.y + n.z*mn.z));
+    float x = half*bn.x, y = half*bn.y, z = half*bn.z;
+    t->xx = b->xx - 2*n.x*x;
+    t->yy = b->yy - 2*n.y*y;
+    t->zz = b->zz - 2*n.z*z;
+    t->xy = b->xy - (n.x*y + n.y*x);
+    t->yz = b->yz - (n.y*z + n.z*y);
+    t->zx = b->zx - (n.z*x + n.x*z);
     return t->xx > 0 && t->yy > 0 && t->zz > 0 && t->xx < 20 && t->yy < 20 && t->zz < 20;
 }

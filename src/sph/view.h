@@ -21,6 +21,7 @@ typedef struct sph_view {
     const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
+    float *lean[3];                           /* 1/m, eq. (13b); NULL: the filter is that of (13)   */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand */
     uint8_t *TOBI_RESTRICT surface;
@@ -37,6 +38,7 @@ typedef struct sph_view {
     int   dimension;
     int   full;                               /* 1: a vessel without a free surface          */
     int   exact;                              /* 1: eq. (7c), linear flows are exact         */
+    int   midway;                             /* 1: divergence-free in the middle of the way, (10d) */
     float open_limit;                         /* div x below this: neighbours are missing       */
     float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */

@@ -83,6 +83,31 @@ static void add_particle(tobi_simulation *s, const tobi_region *r, const double 
     if (p->rest) p->rest[i] = (tobi_float4){(float)x[0], (float)x[1], (float)x[2], 0};
 }
 
+/* What the region's flow adds to the velocities of its particles. */
+static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, tobi_error *err)
+{
+    tobi_particles *p = &s->particles;
+    int64_t n = p->count - first;
+    r->flow_speed = 0;
+    if (!r->flow || n == 0) return TOBI_OK;
+    double (*at)[3] = malloc((size_t)n*sizeof *at), (*v)[3] = malloc((size_t)n*sizeof *v);
+    for (int64_t i = 0; at && i < n; i++)
+        for (int a = 0; a < 3; a++) at[i][a] = (&p->position[first + i].x)[a] + s->box.lower[a];
+    tobi_status status = at && v ? r->flow(r->flow_user, n, (const double (*)[3])at, v, err)
+                                 : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the flow of a region");
+    for (int64_t i = 0; status == TOBI_OK && i < n; i++) {
+        double speed2 = 0;
+        for (int a = 0; a < s->box.dimension; a++) {
+            (&p->velocity[first + i].x)[a] += (float)v[i][a];
+            speed2 += v[i][a]*v[i][a];
+        }
+        r->flow_speed = fmax(r->flow_speed, sqrt(speed2));
+    }
+    free(at);
+    free(v);
+    return status;
+}
+
 /* Solids: the particles of a region share its exact volume, those that were cut off included. */
 static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first, int64_t whole)
 {
@@ -197,6 +222,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
         else add_particle(s, r, x);
     }
     r->placed = s->particles.count - first;
+    TOBI_TRY(add_flow(s, r, first, err));
     set_volumes(s, r, first, count);
     mark_core(s, r, tree, first);
     return TOBI_OK;

@@ -12,6 +12,9 @@ typedef struct tobi_region {
     double radius;                 /* m, of the sphere in the middle of that box; 0 = none */
     double volume;                 /* m3, exact; 2-D: m2 */
     double velocity[3], spin[3];   /* m/s, rad/s about the middle of the box */
+    tobi_flow_fn flow;             /* what is added to them, NULL = nothing */
+    void *flow_user;
+    double flow_speed;             /* m/s, the most that it added */
     int64_t placed;                /* particles */
     int64_t outside, covered, behind;   /* points left out beyond the domain, inside bodies, behind planes */
     int blade;                     /* 1 + number of a blade that stands in it, 0 = none */

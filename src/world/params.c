@@ -116,7 +116,9 @@ static const tobi_param dfsph_rows[] = {
       RANGE(0, 1000000), .unit = "1", .doc = "Most iterations of the divergence solve in a step." },
     { .key = "filter", REAL, AT(tobi_dfsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
       .text = "off",
-      .doc = "Share of particle-scale motion taken out per step; longer waves are left alone." },
+      .doc = "Share of particle-scale motion taken out per step; longer waves are left alone. In full "
+             "vessels, unless bodies move there by forces, what viscosity takes counts, and linear flows "
+             "are left alone as well." },
     { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0.5 }, RANGE(0, 1),
       .unit = "1", .text = "off",
       .doc = "Strength of particle shifting in a vessel full of liquid, where without it cavities open "

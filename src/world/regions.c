@@ -60,6 +60,8 @@ static tobi_status measure_region(const tobi_world *w, const char *name, const t
     memcpy(r->upper, f->box_max, sizeof r->upper);
     memcpy(r->velocity, f->velocity, sizeof r->velocity);
     memcpy(r->spin, f->spin, sizeof r->spin);
+    r->flow = f->flow;
+    r->flow_user = f->flow_user;
     r->radius = f->radius;
     if (f->mesh) TOBI_TRY(load_shape(f, s->box.dimension, r, err));
     for (int a = 0; a < 3; a++) {

@@ -305,7 +305,7 @@ static double start_head(const tobi_world *w)
     return head;
 }
 
-/* Of a region: its velocity, and its spin at the farthest corner. */
+/* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
 double tobi_world_start_speed(const tobi_world *w)
 {
     double fastest = 0;
@@ -314,7 +314,7 @@ double tobi_world_start_speed(const tobi_world *w)
         double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
                           0.5*(r->upper[2] - r->lower[2])};
         double reach = r->radius > 0 ? r->radius : length(half);
-        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach);
+        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
     }
     return fastest;
 }

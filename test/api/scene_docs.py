@@ -128,6 +128,8 @@ def full_scene(library):
         scene["bodies"].append(body)
     scene["fluids"][0]["fill"].append(
         {"mesh": "box.obj", "scale": 0.02, "translation": [0.1, 0.05, 0.2], "velocity": [0, 0, 0]})
+    pathlib.Path("full/flow.lua").write_text("function velocity(x, y, z) return 0, 0, 0 end\n")
+    scene["fluids"][0]["fill"][0]["flow"] = {"script": "flow.lua", "params": {"any": 1}}
     scene["probes"] = [{"name": "gauge", "kind": "level", "position": [0.1, 0.05, 0.1]}]
     rest = {"file": "box.obj", "x": "t [s]", "y": "F/m, g", "x_scale": 0.001, "y_scale": -1, "label": "a, b"}
     scene["references"] = [{"body": "body0", "column": "position_x", **rest},

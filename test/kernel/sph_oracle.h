@@ -10,14 +10,14 @@
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
     FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
-    TENSOR, WALLED = TENSOR + 6, COLUMNS
+    TENSOR, WALLED = TENSOR + 6, CORRECTION, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
-    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled"
+    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled", "correction"
 };
 
 enum { TABLE = 4000 };
@@ -227,14 +227,14 @@ static int oracle_renormalised(const oracle *o, const row *in, int i, const doub
 }
 
 /* Eq. (7c) in a full vessel; eq. (7b), n n^T + (I - n n^T)/(1 - L), beside bodies. */
-static void oracle_tensor(const oracle *o, const row *in, row *out, int i)
+static void oracle_tensor(const oracle *o, const row *in, row *out, int i, int open)
 {
     double share = in[i][RHO], lack = fmin(oracle_fill(o, share), 0.45), size = 0;
     double n[3] = {0}, t[3][3] = {{0}};
     int walled = share > 0 && !(o->near && o->near[i] < 0);
     for (int c = 0; c < 3; c++) size += in[i][WALL + c]*in[i][WALL + c];
     for (int c = 0; c < 3; c++) n[c] = size > 0 ? in[i][WALL + c]/sqrt(size) : 0;
-    if (o->near || !oracle_renormalised(o, in, i, n, share, t))
+    if (o->near || open || !oracle_renormalised(o, in, i, n, share, t))
         for (int a = 0; a < 9; a++) {
             double across = n[a/3]*n[a%3], unit = a%4 == 0;
             t[a/3][a%3] = walled ? across + (unit - across)/(1 - lack) : unit;
@@ -245,15 +245,35 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i)
     out[i][WALLED] = walled;
 }
 
+static void oracle_lean(const oracle *o, const row *in, row *out, int i);
+
+/* 1: beyond doubt at a surface or on the rim of a cavity, 2: even beside walls. */
+static int oracle_open(const oracle *o, const row *in, int i)
+{
+    double div = o->dimension*in[i][RHO], slant[3], steep = 0;
+    memcpy(slant, &in[i][WALL], sizeof slant);
+    EACH_NEIGHBOUR(o, in, i, j, x, r)
+        for (int a = 0; a < 3; a++) {
+            double g = -o->volume*o->g_scale*oracle_f(o, r)*x[a];      /* V grad W */
+            slant[a] += g;
+            div -= g*x[a];
+        }
+    for (int a = 0; a < 3; a++) steep += slant[a]*slant[a];
+    int sure = div < o->surface_limit && (div < o->sheet_limit || sqrt(steep) > o->surface_gradient);
+    return sure ? 1 + (in[i][RHO] == 0 || div <= 0.7*o->dimension) : 0;
+}
+
 /* Eq. (3) and (9), the kernel mean of the pressure, the surface test. */
 static void oracle_density(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {
         double ww = o->volume*o->w_scale, gg = o->volume*o->g_scale, share = in[i][RHO], own[3], rest = 0;
         double rho = ww*oracle_w(o, 0), mean = (rho + share)*in[i][PAYLOAD], div = o->dimension*share;
-        double slant[3], tilted[3];
-        if (o->along) oracle_tensor(o, in, out, i);
-        for (int a = 0; a < 3; a++) own[a] = 2*(slant[a] = in[i][WALL + a]);
+        double tilted[3];
+        const int open = oracle_open(o, in, i);
+        if (o->along) oracle_tensor(o, in, out, i, open == 2);
+        if (o->along == 1) oracle_lean(o, in, out, i);
+        for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
             mean += ww*oracle_w(o, r)*in[j][PAYLOAD];
@@ -261,7 +281,6 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
             for (int a = 0; a < 3; a++) {
                 double g = -gg*oracle_f(o, r)*x[a], own_g = -gg*oracle_f(o, r)*tilted[a];      /* V grad W */
                 own[a] += own_g;
-                slant[a] += g;
                 rest += own_g*own_g;
                 div -= g*x[a];
             }
@@ -279,11 +298,9 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         t[0] += e;
         t[1] += out[i][SURF];
         t[2] += out[i][DIAG];
-        double steep = sqrt(slant[0]*slant[0] + slant[1]*slant[1] + slant[2]*slant[2]);
-        int sure = div < o->surface_limit && (div < o->sheet_limit || steep > o->surface_gradient);
-        t[3] += sure;
+        t[3] += open > 0;
         for (int a = 0; a < 3; a++) drop += o->still.down[a]*(in[i][POS + a] - o->still.corner[a]);
-        out[i][DELTA] = sure && (share == 0 || div <= 0.7*o->dimension) ? drop : 0;
+        out[i][DELTA] = open == 2 ? drop : 0;
         t[7] = fmax(t[7], out[i][DELTA]);
         t[6] = fmax(t[6], e);
     }
@@ -442,6 +459,7 @@ static void oracle_vorticity(const oracle *o, const row *in, row *out, double *t
 }
 
 #include "sph_pressure_oracle.h"
+#include "sph_vessel_oracle.h"
 
 /* Eq. (21), (22) of wcsph.md: Tait along the particle, and the damping of sound in the payload. */
 static void oracle_tait(const oracle *o, const row *in, row *out, double *t)

@@ -92,7 +92,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
     v->stretch = k->along ? p->stretch : NULL;
     v->shear = p->shear;
-    v->beside = p->beside; v->near = p->near; v->full = v->exact = k->along == 1;
+    v->beside = p->beside; v->near = p->near; v->full = v->exact = v->midway = k->along == 1;
+    v->lean[0] = p->precondition; v->lean[1] = p->residual; v->lean[2] = p->correction;
     v->normal = p->normal; v->capillary = p->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -233,7 +234,7 @@ static void rig_get(const rig *g, row *s)
         s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
         s[i][RES] = p->residual[i]; s[i][PROD] = p->product[i]; s[i][DELTA] = p->delta[i];
         s[i][PRES] = p->pressure[i]; s[i][SURF] = p->surface[i];
-        s[i][WET] = p->velocity[i].w;
+        s[i][WET] = p->velocity[i].w; s[i][CORRECTION] = p->correction[i];
     }
 }
 
@@ -246,7 +247,7 @@ static void rig_set(rig *g, const row *s)
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
             (&p->accel[i].x)[a] = (float)s[i][ACC + a];
         }
-        p->velocity[i].w = (float)s[i][WET];
+        p->velocity[i].w = (float)s[i][WET]; p->correction[i] = (float)s[i][CORRECTION];
         for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&p->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&p->stretch[i].x)[a] = (float)s[i][TENSOR + a];

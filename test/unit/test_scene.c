@@ -210,7 +210,7 @@ static void every_shipped_scene_loads(void **state)
                                          "hydrostatic_tank", "poiseuille", "towed_sphere",
                                          "apple_cut",        "apple_cut_seed", "slicing",
                                          "wedge_split",      "cheese_wire",    "twisted_knife",
-                                         "knife_leaves",     "carrot" };
+                                         "knife_leaves",     "carrot",         "apple_quarters" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[1024];
         tobi_scene *scene;

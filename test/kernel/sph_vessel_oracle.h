@@ -1,0 +1,69 @@
+/* The kernels of full vessels for sph_oracle.h, which includes this after what both use. */
+#pragma once
+
+/* Half a step times tr(grad v grad v), eq. (10d). */
+static void oracle_midway(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        double g[3][3] = {{0}}, sum = 0;
+        EACH_NEIGHBOUR(o, in, i, j, x, r) {
+            double own[3];
+            double f = o->volume*o->g_scale*oracle_f(o, r);
+            tilt(o, in, i, x, own);
+            for (int a = 0; a < 9; a++) g[a/3][a%3] += f*own[a/3]*(in[i][VEL + a%3] - in[j][VEL + a%3]);
+        }
+        for (int a = 0; a < 9; a++) sum += g[a/3][a%3]*g[a%3][a/3];
+        out[i][DELTA] = o->dt/2*sum;
+    }
+}
+
+/* c of eq. (13b): M^-1 times the sum of V F x_ji. */
+static void oracle_lean(const oracle *o, const row *in, row *out, int i)
+{
+    double m[3][3] = {{0}}, sum[3] = {0}, c[3], size = 0;
+    EACH_NEIGHBOUR(o, in, i, j, x, r) {
+        double f = o->volume*o->g_scale*oracle_f(o, r);
+        for (int a = 0; a < 9; a++) m[a/3][a%3] += f*x[a/3]*x[a%3];
+        for (int a = 0; a < 3; a++) sum[a] -= f*x[a];
+    }
+    if (o->dimension == 2) m[2][2] = 1;
+    int exists = oracle_inverse(m) > 1e-3;
+    for (int a = 0; a < 3; a++) {
+        c[a] = exists ? m[a][0]*sum[0] + m[a][1]*sum[1] + m[a][2]*sum[2] : 0;
+        size += c[a]*c[a];
+    }
+    double cut = fmin(1, 3/(o->h*fmax(sqrt(size), 1e-30)));
+    out[i][PRE] = cut*c[0];
+    out[i][RES] = cut*c[1];
+    out[i][CORRECTION] = cut*c[2];
+}
+
+/* The weight of neighbour j in L' at i, eq. (13b). */
+static double leaning(const oracle *o, const row *in, int i, const double x[3], double r, double side)
+{
+    double c[3] = {in[i][PRE], in[i][RES], in[i][CORRECTION]};
+    return o->volume*o->g_scale*oracle_f(o, r)*(1 + side*(c[0]*x[0] + c[1]*x[1] + c[2]*x[2]));
+}
+
+static void oracle_ripple(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        for (int a = 0; a < 3; a++) out[i][ACC + a] = 0;
+        EACH_NEIGHBOUR(o, in, i, j, x, r)
+            for (int a = 0; a < 3; a++)
+                out[i][ACC + a] += leaning(o, in, i, x, r, 1)*(in[j][VEL + a] - in[i][VEL + a]);
+    }
+}
+
+/* v -= dt k times the transpose of L'. */
+static void oracle_calm(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++)
+        EACH_NEIGHBOUR(o, in, i, j, x, r)
+            for (int a = 0; a < 3; a++)
+                out[i][VEL + a] -= o->dt*o->filter*(leaning(o, in, j, x, r, -1)*in[j][ACC + a] -
+                                                    leaning(o, in, i, x, r, 1)*in[i][ACC + a]);
+}
