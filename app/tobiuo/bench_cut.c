@@ -44,6 +44,7 @@ static tobi_world *make_ball(const bench_options *o, int cut)
     tobi_solid_def solid = tobi_default_solid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def blade = make_blade();
+    tobi_mlsmpm_def m = tobi_default_mlsmpm_def();
     tobi_world *world = NULL;
     tobi_error err = { 0 };
     w.method = "mlsmpm";
@@ -61,7 +62,8 @@ static tobi_world *make_ball(const bench_options *o, int cut)
     solid.poissons_ratio = 0.17;
     fill.radius = RADIUS;
     fill.centre[2] = RADIUS;
-    if (tobi_world_create(&w, NULL, &world, &err) != TOBI_OK ||
+    m.gradient = TOBI_GRADIENT_MLS;      /* that of scenes with blades: like with like */
+    if (tobi_world_create(&w, &m, &world, &err) != TOBI_OK ||
         tobi_world_add_solid(world, &solid, &fill, 1, &err) != TOBI_OK ||
         (cut && tobi_world_add_body(world, &blade, &err) != TOBI_OK)) {
         complain("%s", err.text);
