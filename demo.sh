@@ -31,6 +31,7 @@ echo "    $out/fluid.pvd    the water; Representation: Point Gaussian, colour by
 for series in "$out"/*.pvd; do
     case $(basename "$series" .pvd) in
     fluid) ;;
+    all) echo "    $series      all of it in one list" ;;
     bodies) echo "    $series   the body's own particles" ;;
     *) echo "    $series     the body's moving surface" ;;
     esac
