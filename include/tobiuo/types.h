@@ -41,8 +41,8 @@ typedef enum tobi_model {
     TOBI_STATIONARY
 } tobi_model;
 typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
-/* Of the weights, where stress pushes the grid. */
-typedef enum tobi_gradient { TOBI_GRADIENT_SPLINE, TOBI_GRADIENT_MLS } tobi_gradient;
+/* Of the weights, where stress pushes the grid; automatic: spline where nothing is cut or breaks. */
+typedef enum tobi_gradient { TOBI_GRADIENT_AUTOMATIC, TOBI_GRADIENT_SPLINE, TOBI_GRADIENT_MLS } tobi_gradient;
 /* Of particles beyond a side that is not open. */
 typedef enum tobi_leaving { TOBI_KEEP, TOBI_REMOVE } tobi_leaving;
 typedef enum tobi_seeding { TOBI_SEED_REGULAR, TOBI_SEED_BLUE_NOISE } tobi_seeding;

@@ -78,3 +78,11 @@ double mpm_material_squeezed_sound(tobi_simulation *s, const mpm_view *v)
     tobi_launch(&s->exec, find_squeezed, v, 0, s->particles.count, t);
     return t[6];
 }
+
+/* Crack bands, eq. (20), are measured with mls, and so are cuts. */
+int mpm_takes_spline(const tobi_simulation *s, int gradient)
+{
+    int measured = s->particles.cuts != NULL;
+    for (int k = 0; k < s->solid_count; k++) measured |= s->solids[k].def.strength > 0;
+    return gradient == TOBI_GRADIENT_SPLINE || (gradient == TOBI_GRADIENT_AUTOMATIC && !measured);
+}

@@ -11,3 +11,5 @@ double mpm_material_viscous_dt(const tobi_solid_def *d, double cell);
 double mpm_material_dt(const tobi_simulation *s, const tobi_mlsmpm_def *def, double sound, double speed);
 /* The fastest sound in liquids as they are squeezed or stretched after the last step, m/s, eq. (15b). */
 double mpm_material_squeezed_sound(tobi_simulation *s, const mpm_view *v);
+/* Whether stress pushes by the splines' gradient, eq. (3). gradient: tobi_gradient. */
+int mpm_takes_spline(const tobi_simulation *s, int gradient);

@@ -100,9 +100,7 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
     v->affine_momentum = m->def.transfer == TOBI_APIC;
-    v->bent = m->def.gradient == TOBI_GRADIENT_SPLINE && !p->cuts;
-    for (int k = 0; k < s->solid_count; k++)        /* crack bands, eq. (20), are measured with mls */
-        if (s->solids[k].def.strength > 0) v->bent = 0;
+    v->bent = mpm_takes_spline(s, m->def.gradient);
     v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 1;
     v->own = m->def.transfer == TOBI_FLIP;
     for (int a = 0; a < 3; a++) {

@@ -162,11 +162,11 @@ static const tobi_param mlsmpm_rows[] = {
       .doc = "Share of FLIP in its blend with PIC, if transfer is flip." },
     { .key = "xpic_order", INT, AT(tobi_mlsmpm_def, xpic_order), .def = { 2 }, RANGE(1, 5),
       .unit = "1", .doc = "Order of the filter, if transfer is xpic; 1 is PIC." },
-    { .key = "gradient", CHOICE("spline|mls", 2), AT(tobi_mlsmpm_def, gradient),
+    { .key = "gradient", CHOICE("automatic|spline|mls", 3), AT(tobi_mlsmpm_def, gradient),
       .doc = "How stress pushes the grid: by the gradient of the splines, or by that of moving least "
              "squares, with which slender solids that lean in the grid bend up to a tenth too easily and a "
-             "step takes 4 % less time, without AVX-512 a fifth. Scenes with blades or with a solid that "
-             "has a strength always take mls." },
+             "step takes 4 % less time, without AVX-512 a fifth. Automatic is spline, and mls in scenes with "
+             "blades or with a solid that has a strength." },
     { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
       .positive = true, .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
