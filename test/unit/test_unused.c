@@ -69,7 +69,7 @@ typedef struct row { const char *key; lines bad, good; const char *place, *why; 
       { "mlsmpm", "", "", FREE ", \"" key_ "\": " value, "" },                \
       "s.json:5:", "bodies[0]." key_ ": is for free and controlled bodies, this one is prescribed" }
 #define CUTS(key_, value) \
-    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value, "" },                                               \
+    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value, "" },                                              \
       { "mlsmpm", "", "", ", \"blade\": true, \"" key_ "\": " value, "" }, "s.json:5:",  \
       "bodies[0]." key_ ": is for a blade, which this body is not" }
 #define SAND ", \"model\": \"sand\""
