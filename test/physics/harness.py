@@ -8,7 +8,6 @@ plot go to docs/validation/<case>.{md,svg}. Only the standard library is needed.
 import argparse
 import array
 import csv
-import html
 import json
 import os
 import pathlib
@@ -21,9 +20,10 @@ import tempfile
 import time
 import zlib
 
+import plots
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 VALIDATION = ROOT / "docs" / "validation"
-COLOURS = ["#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910", "#555555"]
 TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B"}
 
 
@@ -158,7 +158,7 @@ class Case:
         lines = [f"# {self.title}", "", self.text.strip(), "", "| figure | value | goal | result |", "|---|---|---|---|"]
         lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:
-            (VALIDATION / f"{self.name}.svg").write_text(draw(self.plots))
+            (VALIDATION / f"{self.name}.svg").write_text(plots.draw(self.plots))
             lines += ["", f"![plot]({self.name}.svg)"]
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
@@ -296,39 +296,3 @@ def interpolate(xs, ys, x):
 def crossings(xs, ys):
     """Where ys go through zero, linear between xs."""
     return [a + (b - a)*y/(y - z) for a, b, y, z in zip(xs, xs[1:], ys, ys[1:]) if y*z < 0]
-
-
-def draw(plots):
-    """Line plots side by side as SVG."""
-    width, height, parts = 460, 340, []
-    for number, (title, x_label, y_label, curves) in enumerate(plots):
-        xs = [x for curve in curves for x in curve[1]]
-        ys = [y for curve in curves for y in curve[2] if y == y]
-        x0, x1, y0, y1 = min(xs), max(xs), min(ys), max(ys)
-        y0, y1 = (y0 - 0.05*(y1 - y0 or 1), y1 + 0.05*(y1 - y0 or 1))
-        x1 = x1 if x1 > x0 else x0 + 1
-        def at(x, y):
-            return 60 + (x - x0)/(x1 - x0)*(width - 80), height - 45 - (y - y0)/(y1 - y0)*(height - 80)
-        part = [f'<g transform="translate({number*width},0)">',
-                f'<rect x="60" y="35" width="{width - 80}" height="{height - 80}" fill="none" stroke="#888"/>',
-                f'<text x="{width/2}" y="20" text-anchor="middle" font-weight="bold">{html.escape(title)}</text>',
-                f'<text x="{width/2}" y="{height - 8}" text-anchor="middle">{x_label}</text>',
-                f'<text x="12" y="{height/2}" text-anchor="middle" '
-                f'transform="rotate(-90 12 {height/2})">{y_label}</text>']
-        for step in range(5):
-            x, y = x0 + (x1 - x0)*step/4, y0 + (y1 - y0)*step/4
-            part.append(f'<text x="{at(x, y0)[0]:.1f}" y="{height - 28}" text-anchor="middle">{x:.3g}</text>')
-            part.append(f'<text x="56" y="{at(x0, y)[1] + 4:.1f}" text-anchor="end">{y:.3g}</text>')
-        for index, (label, cx, cy, points) in enumerate(curves):
-            colour = COLOURS[index % len(COLOURS)]
-            pairs = [at(x, y) for x, y in zip(cx, cy) if y == y]
-            if points:
-                part += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{colour}"/>' for x, y in pairs]
-            else:
-                line = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
-                part.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
-            part.append(f'<text x="70" y="{52 + 14*index}" fill="{colour}">{html.escape(label)}</text>')
-        parts += part + ["</g>"]
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width*len(plots)}" height="{height}" '
-            f'font-family="sans-serif" font-size="11">\n<rect width="100%" height="100%" fill="white"/>\n'
-            + "\n".join(parts) + "\n</svg>\n")
