@@ -186,21 +186,27 @@ def find_machine():
 
 
 def write_index():
-    """docs/validation/README.md: the rows of all case pages in one table."""
-    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
-             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
-             "cases use the few values that stand in their run.py. Every figure stands here, met or missed; those without a goal",
-             "are stated.", "",
-             "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
+    """docs/validation/README.md: how many goals each case page meets, and every goal that is missed."""
+    cases, misses, goals = [], [], [0, 0]
     for page in sorted(VALIDATION.glob("*.md")):
         text = page.read_text()
         found = re.search(r"^Commit: (.*?)\. Machine: (.*)\.$", text, re.M)
         if page.name == "README.md" or not found:
             continue
-        for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*|stated)) \|$", text, re.M):
-            lines.append(f"| [{page.stem}]({page.name}) | {row} | {found[1]} | {found[2]} |")
-    cases = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
-    missing = [name for name in cases if not (VALIDATION / f"{name}.md").exists()]
+        link, title = f"[{page.stem}]({page.name})", text.splitlines()[0].lstrip("# ")
+        rows = re.findall(r"^\| (?!figure )(.* \| .* \| .*) \| (met|\*\*missed\*\*) \|$", text, re.M)
+        met = sum(result == "met" for _, result in rows)
+        goals = [goals[0] + met, goals[1] + len(rows)]
+        cases.append(f"| {link} | {title} | {met} of {len(rows)} | {found[1]} | {found[2]} |")
+        misses += [f"| {link} | {row} |" for row, result in rows if result != "met"]
+    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
+             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
+             "cases use the few values that stand in their run.py. A page has every figure, met, missed or without a goal, what it is",
+             f"compared with, and the commands. Of {goals[1]} goals {goals[0]} are met; the others stand below.", "",
+             "| case | | goals met | commit | machine |", "|---|---|---|---|---|", *cases, "",
+             "## Goals that are missed", "", "| case | figure | value | goal |", "|---|---|---|---|", *misses]
+    known = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
+    missing = [name for name in known if not (VALIDATION / f"{name}.md").exists()]
     if missing:
         lines += ["", f"Without a page, so not run to the end at reference size: {', '.join(missing)}."]
     (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
