@@ -94,14 +94,14 @@ class Case:
             sys.exit(1)
         return target
 
-    def unit(self, name):
+    def unit(self, name, *options):
         """What a unit test beside the program prints. Exits if it fails; 77, skipped, if there is none."""
         program = pathlib.Path(self.program).resolve().parent / "test" / name
         if not program.is_file():
             print(f"{self.name}: no {program}: the unit tests are built where libcmocka-dev is installed", flush=True)
             sys.exit(77)
-        self.commands.append(f"test/{name}")
-        done = subprocess.run([program], capture_output=True, text=True)
+        self.commands.append(" ".join([f"test/{name}", *options]))
+        done = subprocess.run([program, *options], capture_output=True, text=True)
         if done.returncode:
             print(f"{self.name}: {name} failed:\n{done.stderr.strip()}", flush=True)
             sys.exit(1)
