@@ -432,7 +432,8 @@ static void same_bits(void **state)
     OK(tobi_world_advance(later, 0.03, NULL, &err));
     assert_true(tobi_world_hash(one) == tobi_world_hash(four));
     assert_true(tobi_world_hash(one) == tobi_world_hash(later));
-    assert_memory_equal(one->sim.particles.cuts, later->sim.particles.cuts, (size_t)count*sizeof(tobi_columns));
+    assert_memory_equal(one->sim.particles.cuts, later->sim.particles.cuts,
+                        (size_t)count*sizeof(tobi_columns));
     tobi_error why = { 0 };
     double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);
     assert_non_null(nowhere);
