@@ -198,7 +198,7 @@ static int hold_pulling(tobi_simulation *s, dfsph *m, const solve *q, double *t)
     return 1;
 }
 
-/* Solves for the pressure from the state a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
+/* Solves from the state that a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
 static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
 {
     const sph_kernels *k = m->kernel;

@@ -11,8 +11,9 @@ A column of width a and height n2 a is set free; 2-D, no-slip walls as in a real
 of the foremost particle's far side against T = t sqrt(n2 g / a). Slope: least squares over 2 < Z < 6, of the computation and of the
 experiment alike (n2 = 1: over the experiment's own range). Lag: mean over the experiment's points in that range of
 T(computation) - T(experiment) at equal Z, in units of T; "at the first point": at the first one measured at which the front has moved by a tenth
-of a, so what the start of the experiment, its sheet or gate, has to do with it. Against a wall: a = 57 mm, n2 = 2 in a box 8 a long, until water has run
-up both ends and fallen back several times (1.2 s); energy gained: rises of kinetic and potential energy from one output to the next (1 ms), summed. Experiments: J. C. Martin and W. J. Moyce, Phil.
+of a, so what the start of the experiment, its sheet or gate, has to do with it. Against a wall: a = 57 mm, n2 = 2 in a box 8 a long for
+1.2 s, in which water runs up and falls back several times; energy gained: rises of kinetic and potential energy from one output to the next
+(1 ms), summed. Experiments: J. C. Martin and W. J. Moyce, Phil.
 Trans. R. Soc. A 244 (1952) 312; S. Koshizuka and Y. Oka, Nucl. Sci. Eng. 123 (1996) 421.""")
 
 G = 9.81
