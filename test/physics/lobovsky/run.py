@@ -13,7 +13,11 @@ Levels at x = 300, 865, 1114 and 1362.5 mm: arrival is the first level above 20 
 or until the same time after the computed arrival as after the measured one, so that a lead in time does not count
 twice. Experiment: L. Lobovsky, E. Botia-Vera, F. Castellana, J. Mas-Soler, A. Souto-Iglesias, Ocean Eng. 82 (2014) 150,
 two campaigns averaged for the levels, the event with the median peak of P1 for the pressures. P1 sits 3 mm above the
-floor, below the lowest particle of this run: stated only. Its goal is for a 2-D run at 5 mm (smoke size: 10 mm).""")
+floor, below the lowest particle of this run: stated only. Its goal is for a 2-D run at 5 mm (smoke size: 10 mm). Stated: 2-D at
+2.5 mm, as it is and behind a gate, which the experiment has and these runs otherwise lack. Its speed is not in the data; 3 m/s is a guess.
+Levels and pressures of the experiment do not share one clock: by the gauges the front does the 0.25 m from H3 to H4 in T = 0.53, and
+then the 0.25 m to the wall in T = 0.18. The signals of P3 and P4 are doubtful: P3 reads more than P1 and P2 from T = 2.75 to 3.1, and at
+T = 3.4 to 4 the head at P4, p + rho g z, is 0.83 and that at P1 to P3 0.76, 0.73 and 0.69.""")
 
 H, G = 0.3, 9.81
 TO_T = (G/H)**0.5
@@ -24,6 +28,8 @@ LEVELS = {"H1": [(2, 0.782), (3, 0.630), (4, 0.500), (5, 0.402), (6, 0.324)],
           "H3": [(2, 0.150), (3, 0.173), (4, 0.225), (5, 0.241), (6, 0.237)],
           "H4": [(3, 0.135), (4, 0.157), (5, 0.213)]}
 IMPULSE = {"P1": 2.333, "P2": 2.146, "P3": 1.916, "P4": 1.135}
+GAUGE = {"H1": 0.3, "H2": 0.865, "H3": 1.114, "H4": 1.3625}       # x, m
+HEIGHT = {"P1": 0.003, "P2": 0.015, "P3": 0.03, "P4": 0.08}        # z, m
 IMPACT = 2.46       # T at which P2 first passes 0.2
 
 
@@ -61,23 +67,49 @@ for name, expected in IMPULSE.items():
               case.measured("Lobovsky et al. 2014", "dambreak/lobovsky2014_H300_pressure.csv", "T", name))
     # The water's momentum is turned at this wall: half or double its impulse would be another physics.
     case.hold(f"{name}: impulse between half and double", 0.5 < value/expected < 2)
-# --- P1 in 2-D: the side of the tank, y up -------------------------------------------------------------------
-flat = case.write_scene("flat", {
-    "dimension": 2, "domain": {"min": [0, 0], "max": [1.61, 0.6], "walls": {"x": "no-slip", "y": "no-slip"}}, "gravity": [0, -G],
-    "spacing": case.pick(0.01, 0.005), "end_time": 0.95,
-    "fluids": [{"name": "water", "density": 1000, "viscosity": 1e-3, "fill": [{"box": {"min": [0, 0], "max": [0.6, H]}}]}],
-    "probes": [{"name": "P1", "position": [1.61, 0.003, 0]}, {"name": "P2", "position": [1.61, 0.015, 0]}],
-    "output": {"interval": 0.05, "fields": ["velocity"]}})
-table = read_table(case.run("flat", scene=flat) / "probes.csv")
-T = [t*TO_T for t in table["time"]]
-signals = {name: [p/(1000*G*H) for p in table[f"{name}_pressure"]] for name in ("P1", "P2")}
-impact = next((t for t, p in zip(T, signals["P2"]) if p > 0.2), 99)
+# --- in 2-D: the side of the tank, y up ----------------------------------------------------------------------
+
+
+def run_flat(label, spacing, gate=0):
+    """T, levels at the gauges and pressures over rho g H; gate: speed at which it is lifted, m/s."""
+    scene = {
+        "dimension": 2, "domain": {"min": [0, 0], "max": [1.61, 0.6 + gate], "walls": {"x": "no-slip", "y": "no-slip"}}, "gravity": [0, -G],
+        "spacing": spacing, "end_time": 0.95,
+        "fluids": [{"name": "water", "density": 1000, "viscosity": 1e-3, "fill": [{"box": {"min": [0, 0], "max": [0.6, H]}}]}],
+        "probes": [{"name": name, "position": [1.61, z, 0]} for name, z in HEIGHT.items()] +
+                  [{"name": name, "kind": "level", "position": [x, 0, 0]} for name, x in GAUGE.items()],
+        "output": {"interval": 0.05, "fields": ["velocity"]}}
+    if gate:
+        scene["bodies"] = [{"name": "gate", "box": {"min": [0.6, 0, -0.1], "max": [0.61, 0.35, 0.1]},
+                            "motion": {"translation": {"velocity": [0, gate, 0]}}}]
+    table = read_table(case.run(label, scene=case.write_scene(label, scene)) / "probes.csv")
+    return ([t*TO_T for t in table["time"]], {name: table[f"{name}_level"] for name in GAUGE},
+            {name: [p/(1000*G*H) for p in table[f"{name}_pressure"]] for name in HEIGHT})
+
+
+def impulse_of(T, signals, name):
+    impact = next((t for t, p in zip(T, signals["P2"]) if p > 0.2), 99)
+    return impact, integral(T, signals[name], impact + 2.3 - IMPACT, impact + 5 - IMPACT)
+
+
+T, levels, signals = run_flat("flat", case.pick(0.01, 0.005))
+impact = impulse_of(T, signals, "P2")[0]
 case.figure(f"2-D: impact, T = {impact:.3f} against {IMPACT:.3f}, deviation", impact/IMPACT - 1, "within 0.05", abs(impact/IMPACT - 1) <= 0.05)
-for name, signal in signals.items():
-    value = integral(T, signal, impact + 2.3 - IMPACT, impact + 5 - IMPACT)
+for name in ("P1", "P2"):
+    value = impulse_of(T, signals, name)[1]
     case.figure(f"2-D, {name}: impulse {value:.3f} against {IMPULSE[name]:.3f}, deviation", value/IMPULSE[name] - 1, "within 0.15",
                 abs(value/IMPULSE[name] - 1) <= 0.15)
     case.hold(f"2-D, {name}: impulse between half and double", 0.5 < value/IMPULSE[name] < 2)
-    case.plot(f"Pressure {name}, 2-D", "T", "p / rho g H", [("tobiuo", T, signal, False)] +
+    case.plot(f"Pressure {name}, 2-D", "T", "p / rho g H", [("tobiuo", T, signals[name], False)] +
               case.measured("Lobovsky et al. 2014", "dambreak/lobovsky2014_H300_pressure.csv", "T", name))
+for gate in case.pick((), (0, 3)):
+    T, levels, signals = run_flat(f"flat_fine_{gate}", 0.0025, gate)
+    text = f"2-D, 2.5 mm, {f'gate lifted at {gate} m/s' if gate else 'no gate'}"
+    for name, expected in ARRIVAL.items():
+        arrival = next((t for t, h in zip(T, levels[name]) if h > 0.02), 99)
+        case.state(f"{text}, {name}: arrival, T = {arrival:.3f} against {expected:.3f}, deviation", arrival/expected - 1)
+    for name, expected in IMPULSE.items():
+        impact, value = impulse_of(T, signals, name)
+        case.state(f"{text}, {name}: impulse {value:.3f} against {expected:.3f}, deviation", value/expected - 1)
+    case.state(f"{text}: impact, T = {impact:.3f} against {IMPACT:.3f}, deviation", impact/IMPACT - 1)
 case.finish()
