@@ -13,7 +13,7 @@ above 50 mm at x = 1.488, 0.992 and 0.496 m. Impulse: integral of the pressure o
 impulse on the box's face from 0.40 to 0.60 s is that of its force, and again that of 20 sensors spread over it. What a free
 steady stream can do at P2, P3, P4 is known (jet): of the head at P1, p + rho g z, at most 0.97, 0.90 and 0.70, in a stream without
 bounds (Kirchhoff); 0.93, 0.78 and 0.49 in one 1/1.6 as high as the box, about that of this wave. Measured from 0.5 to 0.6 s is 0.99, 0.98 and
-0.96; and from 0.75 to 1.45 s P3 reads 100 to 600 Pa more than P2, 40 mm below it. Heads of the run are stated.
+0.96; and from 0.75 to 1.4 s P3 reads 100 to 600 Pa more than P2, 40 mm below it. Heads of the run are stated.
 Experiment: K. M. T. Kleefsman, G. Fekken, A. E. P. Veldman, B. Iwanowski, B. Buchner, J. Comput. Phys. 206
 (2005) 363, distributed as SPHERIC test 2.""")
 
