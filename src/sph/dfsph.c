@@ -299,7 +299,7 @@ static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
 
 /* Before the first step: a lattice cut by a body has gaps along it that water would leak through, and pairs
    that crowd. Near bodies the shift of (12) takes place without time passing. Bodies that move by forces
-   set off slowly and gain nothing, decision 30. */
+   set off slowly and gain nothing, decision 31. */
 static tobi_status settle(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (s->step > 0 || s->body_count == 0 || tobi_body_any_free(s->bodies, s->body_count)) return TOBI_OK;
