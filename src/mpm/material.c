@@ -79,7 +79,8 @@ double mpm_material_squeezed_sound(tobi_simulation *s, const mpm_view *v)
     return t[6];
 }
 
-/* Crack bands, eq. (20), are measured with mls, and so are cuts. */
+/* Crack bands, eq. (20), are measured with mls. Edges of blades ask nodes that hold next to no mass, where
+   only mls leaves no wild velocity. */
 int mpm_takes_spline(const tobi_simulation *s, int gradient)
 {
     int measured = s->particles.cuts != NULL;

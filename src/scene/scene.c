@@ -468,9 +468,10 @@ static json_t *write_fluid(const tobi_scene_fluid *fluid)
 }
 
 /* What counts: density or mass, and the constants of its model. */
-static json_t *write_solid(const tobi_scene_solid *solid)
+static json_t *write_solid(const tobi_scene *scene, const tobi_scene_solid *solid)
 {
     json_t *object = tobi_write_def(&tobi_solid_table, &solid->def);
+    tobi_unused_drop(scene, &tobi_solid_table, &solid->def, object);
     json_object_del(object, solid->def.mass > 0 ? "density" : "mass");
     for (const tobi_param *row = tobi_solid_table.rows; row->key; row++)
         if (!tobi_solid_uses(solid->def.model, row->key)) json_object_del(object, row->key);
@@ -503,7 +504,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     for (int i = 0; i < scene->fluid_count; i++)
         failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->solid_count; i++)
-        failed |= json_array_append_new(solids, write_solid(&scene->solids[i]));
+        failed |= json_array_append_new(solids, write_solid(scene, &scene->solids[i]));
     for (int i = 0; i < scene->body_count; i++)
         failed |= json_array_append_new(bodies, write_body(scene, &scene->bodies[i]));
     for (int i = 0; i < scene->plane_count; i++)

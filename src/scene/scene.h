@@ -84,9 +84,9 @@ int  tobi_check_has_domain(const tobi_scene *scene);
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);
 
 /* unused.c: reports keys that are given and that nothing would read; takes them out of what the definition
-   of a table has become, for resolved.json. body: whose, NULL for other tables. */
+   of a table has become, for resolved.json. def: the body's or solid's definition, NULL for other tables. */
 void tobi_unused_check(const tobi_scene *scene, tobi_source *source);
-void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const tobi_body_def *body,
+void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const void *def,
                       json_t *object);
 
 /* Reports what no table can see: corners, pairs of walls, regions, names, files. */

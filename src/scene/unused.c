@@ -12,6 +12,8 @@ typedef enum reader {
     SOLIDS,          /* the method of solids                      */
     FORCES,          /* bodies that move by forces                */
     BLADE,           /* bodies that cut                           */
+    RISE,            /* sand whose friction rises with its flow   */
+    SLOPE,           /* solids that break; sand always has one    */
     FLIP, XPIC       /* ways to the grid and back                 */
 } reader;
 
@@ -39,13 +41,20 @@ static const struct {
 #define EDGE(key) { &tobi_body_table, key, BLADE, "is for a blade, which this body is not" }
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
 #undef EDGE
+#define RISING(key) { &tobi_solid_table, key, RISE, "is for a friction_rise, which this solid has not" }
+    RISING("grain_diameter"), RISING("inertial_number"),
+#undef RISING
+    { &tobi_solid_table, "friction_angle", SLOPE, "is for a strength, which this solid has not" },
     { &tobi_mlsmpm_table, "flip", FLIP, "is for \"transfer\": \"flip\"" },
     { &tobi_mlsmpm_table, "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
 
-static int is_there(const tobi_scene *scene, const tobi_body_def *body, reader who)
+/* def: of the body or solid whose keys are asked for, else NULL. */
+static int is_there(const tobi_scene *scene, const void *def, reader who)
 {
+    const tobi_body_def *body = def;
+    const tobi_solid_def *solid = def;
     const tobi_method *method = tobi_method_find(scene->world.method);
     const tobi_mlsmpm_def *solids = scene->method == &tobi_mlsmpm_table ? scene->method_def : NULL;
     switch (who) {
@@ -53,6 +62,8 @@ static int is_there(const tobi_scene *scene, const tobi_body_def *body, reader w
     case SOLIDS: return (method->fields & TOBI_MPM) != 0;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
+    case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;
+    case SLOPE: return !tobi_solid_uses(solid->model, "strength") || solid->strength > 0;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;
     default: return !solids || solids->transfer == TOBI_XPIC;
     }
@@ -66,13 +77,13 @@ static void split(const char *key, char outer[32], const char **inner)
     *inner = dot ? dot + 1 : key;
 }
 
-void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const tobi_body_def *body,
+void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, const void *def,
                       json_t *object)
 {
     char outer[32];
     const char *inner;
     for (int k = 0; k < KEYS; k++) {
-        if (keys[k].table != table || is_there(scene, body, keys[k].reader)) continue;
+        if (keys[k].table != table || is_there(scene, def, keys[k].reader)) continue;
         split(keys[k].key, outer, &inner);
         json_object_del(outer[0] ? json_object_get(object, outer) : object, inner);
     }
@@ -80,13 +91,13 @@ void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, co
 
 /* Where some value is wrong, a key may be for what the value was to say: one mistake after the other. */
 static void check(const tobi_scene *scene, tobi_source *source, const tobi_param_table *table,
-                  const tobi_place *place, const tobi_body_def *body, tobi_bound bound)
+                  const tobi_place *place, const void *def, tobi_bound bound)
 {
     char outer[32];
     const char *inner;
     for (int k = 0; bound.given == bound.good && k < KEYS; k++) {
         if (keys[k].table != table || !tobi_bind_has(table, bound.given, keys[k].key) ||
-            is_there(scene, body, keys[k].reader)) continue;
+            is_there(scene, def, keys[k].reader)) continue;
         split(keys[k].key, outer, &inner);
         tobi_place middle = { place, outer, 0 }, key = { outer[0] ? &middle : place, inner, 0 };
         tobi_source_mistake_at_key(source, &key, "%s", keys[k].why);
@@ -122,12 +133,17 @@ static void check_friction(const tobi_scene *scene, tobi_source *source, const t
 
 void tobi_unused_check(const tobi_scene *scene, tobi_source *source)
 {
-    tobi_place root = { 0 }, bodies = { &root, "bodies", 0 };
+    tobi_place root = { 0 }, bodies = { &root, "bodies", 0 }, solids = { &root, "solids", 0 };
     if (!scene->method) return;
     tobi_place method = { &root, scene->method->name, 0 };
     check(scene, source, &tobi_world_table, &root, NULL, scene->world_bound);
     check(scene, source, scene->method, &method, NULL, scene->method_bound);
     check_friction(scene, source, &root);
+    for (int i = 0; i < scene->solid_count && !tobi_report_full(source->report); i++) {
+        tobi_place entry = { &solids, NULL, (size_t)i };
+        const tobi_scene_solid *solid = &scene->solids[i];
+        check(scene, source, &tobi_solid_table, &entry, &solid->def, solid->bound);
+    }
     for (int i = 0; i < scene->body_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &bodies, NULL, (size_t)i };
         const tobi_scene_body *body = &scene->bodies[i];

@@ -24,6 +24,9 @@ static const double SETTLED = 0.01;
 /* Share of the kernel average in the pressure a step starts from. */
 static const double PRESSURE_SMOOTHING = 0.02;
 
+/* Share of all pressure that may pull at a free surface before the rest is solved for again. */
+static const double PULL_TOLERANCE = 1e-3;
+
 /* Spacings: the shortest support at which particle shifting closes cavities instead of stirring. */
 static const double SHIFTING_SUPPORT = 2.5;
 
@@ -155,17 +158,13 @@ static double precondition(tobi_simulation *s, dfsph *m, const solve *q, double 
     return q->grid ? jacobi + sph_multigrid_apply(&m->grid, s) : jacobi;
 }
 
-/* Conjugate gradients from the state a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
-static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
+/* Conjugate gradients until the residual at hand is small enough. t: |r|^2/diagonal, |r|; largest |r|. */
+static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
 {
     const sph_kernels *k = m->kernel;
-    double t[TOBI_TOTALS], scale = s->dt*s->dt/(double)s->particles.count;
-    memcpy(t, start, sizeof t);
-    center(s, m, q, k->sph_center_residual, t[2], t);
-    double rz = 0;
-    m->view.coarse = q->grid ? m->grid.grid[0].value : NULL;
+    double rz = 0, scale = s->dt*s->dt/(double)s->particles.count;
     m->view.beta = 0;
-    for (q->iterations = 0;; q->iterations++) {
+    for (;; q->iterations++) {
         q->error = t[1]*scale;
         q->worst = t[6];
         q->relative = relative_residual(s, m, q, t[0]);
@@ -185,6 +184,34 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
         m->view.alpha = (float)(rz/t[0]);
         launch(s, m, k->sph_cg_update, t);
     }
+}
+
+/* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
+   without their pull is the new residual; 0 if they are next to nothing. */
+static int hold_pulling(tobi_simulation *s, dfsph *m, const solve *q, double *t)
+{
+    const sph_kernels *k = m->kernel;
+    double pull[TOBI_TOTALS];
+    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max) return 0;
+    launch(s, m, k->sph_hold, pull);
+    if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
+    launch(s, m, k->sph_pressure_accel, NULL);
+    launch(s, m, k->sph_product, t);
+    if (q->coupled) tobi_couple_product(s, t);
+    m->view.alpha = 1;
+    launch(s, m, k->sph_cg_update, t);
+    return 1;
+}
+
+/* Solves from the state that a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
+static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
+{
+    const sph_kernels *k = m->kernel;
+    double t[TOBI_TOTALS];
+    memcpy(t, start, sizeof t);
+    center(s, m, q, k->sph_center_residual, t[2], t);
+    m->view.coarse = q->grid ? m->grid.grid[0].value : NULL;
+    do iterate(s, m, q, t); while (hold_pulling(s, m, q, t));
     launch(s, m, k->sph_correct_pressure, t);
     center(s, m, q, k->sph_center_pressure, t[1], NULL);
     q->head = 2*t[0]/(double)s->particles.count;

@@ -297,6 +297,22 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
     v->record[i].w = v->pressure[i];
 }
 
+/* A pressure of a free surface that would pull goes to its floor and stays there; payload = the change, a
+   direction of the search. totals: sum of the changes, sum of |p|. */
+TOBI_FN void sph_hold(const sph_view *v, int64_t i, double *totals)
+{
+    float p = v->pressure[i] + v->delta[i], least = sph_floor(v, i);
+    int pulls = v->surface[i] && v->precondition[i] > 0 && p < least;
+    v->record[i].w = pulls ? least - p : 0;
+    if (pulls) {
+        v->delta[i] = least - v->pressure[i];
+        v->precondition[i] = 0;
+        v->residual[i] = 0;
+    }
+    totals[0] += v->record[i].w;
+    totals[1] += fabsf(p);
+}
+
 /* Adds the correction, clamped at free surfaces; payload = the pressure. totals: |p|/rho, m2/s2; p. */
 TOBI_FN void sph_correct_pressure(const sph_view *v, int64_t i, double *totals)
 {

@@ -186,6 +186,21 @@ static void oracle_center_product(const oracle *o, const row *in, row *out, doub
     }
 }
 
+static void oracle_hold(const oracle *o, const row *in, row *out, double *t)
+{
+    for (int i = 0; i < o->count; i++) {
+        double p = in[i][PRES] + in[i][DELTA], least = fmin(in[i][CAPILLARY], 0);
+        int pulls = in[i][SURF] > 0 && in[i][PRE] > 0 && p < least;
+        out[i][PAYLOAD] = pulls ? least - p : 0;
+        if (pulls) {
+            out[i][DELTA] = least - in[i][PRES];
+            out[i][PRE] = out[i][RES] = 0;
+        }
+        t[0] += out[i][PAYLOAD];
+        t[1] += fabs(p);
+    }
+}
+
 static void oracle_correct_pressure(const oracle *o, const row *in, row *out, double *t)
 {
     for (int i = 0; i < o->count; i++) {

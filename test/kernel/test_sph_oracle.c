@@ -35,6 +35,7 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_center_residual oracle_center_residual
 #define oracle_sph_center_product oracle_center_product
 #define oracle_sph_cg_update oracle_cg_update
+#define oracle_sph_hold oracle_hold
 #define oracle_sph_cg_direction oracle_cg_direction
 #define oracle_sph_correct_pressure oracle_correct_pressure
 #define oracle_sph_shift oracle_shift

@@ -8,7 +8,6 @@ plot go to docs/validation/<case>.{md,svg}. Only the standard library is needed.
 import argparse
 import array
 import csv
-import html
 import json
 import os
 import pathlib
@@ -21,9 +20,10 @@ import tempfile
 import time
 import zlib
 
+import plots
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 VALIDATION = ROOT / "docs" / "validation"
-COLOURS = ["#1b6ca8", "#c0392b", "#2e8b57", "#8e44ad", "#d68910", "#555555"]
 TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B"}
 
 
@@ -94,14 +94,14 @@ class Case:
             sys.exit(1)
         return target
 
-    def unit(self, name):
+    def unit(self, name, *options):
         """What a unit test beside the program prints. Exits if it fails; 77, skipped, if there is none."""
         program = pathlib.Path(self.program).resolve().parent / "test" / name
         if not program.is_file():
             print(f"{self.name}: no {program}: the unit tests are built where libcmocka-dev is installed", flush=True)
             sys.exit(77)
-        self.commands.append(f"test/{name}")
-        done = subprocess.run([program], capture_output=True, text=True)
+        self.commands.append(" ".join([f"test/{name}", *options]))
+        done = subprocess.run([program, *options], capture_output=True, text=True)
         if done.returncode:
             print(f"{self.name}: {name} failed:\n{done.stderr.strip()}", flush=True)
             sys.exit(1)
@@ -158,7 +158,7 @@ class Case:
         lines = [f"# {self.title}", "", self.text.strip(), "", "| figure | value | goal | result |", "|---|---|---|---|"]
         lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:
-            (VALIDATION / f"{self.name}.svg").write_text(draw(self.plots))
+            (VALIDATION / f"{self.name}.svg").write_text(plots.draw(self.plots))
             lines += ["", f"![plot]({self.name}.svg)"]
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
@@ -186,21 +186,27 @@ def find_machine():
 
 
 def write_index():
-    """docs/validation/README.md: the rows of all case pages in one table."""
-    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
-             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
-             "cases use the few values that stand in their run.py. Every figure stands here, met or missed; those without a goal",
-             "are stated.", "",
-             "| case | figure | value | goal | result | commit | machine |", "|---|---|---|---|---|---|---|"]
+    """docs/validation/README.md: how many goals each case page meets, and every goal that is missed."""
+    cases, misses, goals = [], [], [0, 0]
     for page in sorted(VALIDATION.glob("*.md")):
         text = page.read_text()
         found = re.search(r"^Commit: (.*?)\. Machine: (.*)\.$", text, re.M)
         if page.name == "README.md" or not found:
             continue
-        for row in re.findall(r"^\| (?!figure )(.* \| .* \| .* \| (?:met|\*\*missed\*\*|stated)) \|$", text, re.M):
-            lines.append(f"| [{page.stem}]({page.name}) | {row} | {found[1]} | {found[2]} |")
-    cases = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
-    missing = [name for name in cases if not (VALIDATION / f"{name}.md").exists()]
+        link, title = f"[{page.stem}]({page.name})", text.splitlines()[0].lstrip("# ")
+        rows = re.findall(r"^\| (?!figure )(.* \| .* \| .*) \| (met|\*\*missed\*\*) \|$", text, re.M)
+        met = sum(result == "met" for _, result in rows)
+        goals = [goals[0] + met, goals[1] + len(rows)]
+        cases.append(f"| {link} | {title} | {met} of {len(rows)} | {found[1]} | {found[2]} |")
+        misses += [f"| {link} | {row} |" for row, result in rows if result != "met"]
+    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
+             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
+             "cases use the few values that stand in their run.py. A page has every figure, met, missed or without a goal, what it is",
+             f"compared with, and the commands. Of {goals[1]} goals {goals[0]} are met; the others stand below.", "",
+             "| case | | goals met | commit | machine |", "|---|---|---|---|---|", *cases, "",
+             "## Goals that are missed", "", "| case | figure | value | goal |", "|---|---|---|---|", *misses]
+    known = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
+    missing = [name for name in known if not (VALIDATION / f"{name}.md").exists()]
     if missing:
         lines += ["", f"Without a page, so not run to the end at reference size: {', '.join(missing)}."]
     (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
@@ -296,39 +302,3 @@ def interpolate(xs, ys, x):
 def crossings(xs, ys):
     """Where ys go through zero, linear between xs."""
     return [a + (b - a)*y/(y - z) for a, b, y, z in zip(xs, xs[1:], ys, ys[1:]) if y*z < 0]
-
-
-def draw(plots):
-    """Line plots side by side as SVG."""
-    width, height, parts = 460, 340, []
-    for number, (title, x_label, y_label, curves) in enumerate(plots):
-        xs = [x for curve in curves for x in curve[1]]
-        ys = [y for curve in curves for y in curve[2] if y == y]
-        x0, x1, y0, y1 = min(xs), max(xs), min(ys), max(ys)
-        y0, y1 = (y0 - 0.05*(y1 - y0 or 1), y1 + 0.05*(y1 - y0 or 1))
-        x1 = x1 if x1 > x0 else x0 + 1
-        def at(x, y):
-            return 60 + (x - x0)/(x1 - x0)*(width - 80), height - 45 - (y - y0)/(y1 - y0)*(height - 80)
-        part = [f'<g transform="translate({number*width},0)">',
-                f'<rect x="60" y="35" width="{width - 80}" height="{height - 80}" fill="none" stroke="#888"/>',
-                f'<text x="{width/2}" y="20" text-anchor="middle" font-weight="bold">{html.escape(title)}</text>',
-                f'<text x="{width/2}" y="{height - 8}" text-anchor="middle">{x_label}</text>',
-                f'<text x="12" y="{height/2}" text-anchor="middle" '
-                f'transform="rotate(-90 12 {height/2})">{y_label}</text>']
-        for step in range(5):
-            x, y = x0 + (x1 - x0)*step/4, y0 + (y1 - y0)*step/4
-            part.append(f'<text x="{at(x, y0)[0]:.1f}" y="{height - 28}" text-anchor="middle">{x:.3g}</text>')
-            part.append(f'<text x="56" y="{at(x0, y)[1] + 4:.1f}" text-anchor="end">{y:.3g}</text>')
-        for index, (label, cx, cy, points) in enumerate(curves):
-            colour = COLOURS[index % len(COLOURS)]
-            pairs = [at(x, y) for x, y in zip(cx, cy) if y == y]
-            if points:
-                part += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{colour}"/>' for x, y in pairs]
-            else:
-                line = " ".join(f"{x:.1f},{y:.1f}" for x, y in pairs)
-                part.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
-            part.append(f'<text x="70" y="{52 + 14*index}" fill="{colour}">{html.escape(label)}</text>')
-        parts += part + ["</g>"]
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width*len(plots)}" height="{height}" '
-            f'font-family="sans-serif" font-size="11">\n<rect width="100%" height="100%" fill="white"/>\n'
-            + "\n".join(parts) + "\n</svg>\n")

@@ -349,6 +349,12 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     text = tobi_scene_describe("motion");
     assert_non_null(strstr(text, "degrees/s"));
     free(text);
+    text = tobi_scene_describe("fill");
+    assert_non_null(strstr(text, "tobiuo describe flow"));
+    free(text);
+    text = tobi_scene_describe("flow");
+    assert_non_null(strstr(text, "velocity(x, y, z)"));
+    free(text);
     text = tobi_scene_describe(NULL);
     assert_non_null(strstr(text, "dfsph"));
     free(text);

@@ -9,8 +9,9 @@
 #include <string.h>
 #include "scene/scene.h"
 
-/* A scene of a method with a body; further lines of the world, of the domain and of the body. */
-typedef struct lines { const char *method, *world, *domain, *body; } lines;
+/* A scene of a method with a body; further lines of the world, of the domain, of the body, of the fluid or
+   solid. */
+typedef struct lines { const char *method, *world, *domain, *body, *matter; } lines;
 
 static void make(const lines *l, char *text, size_t size)
 {
@@ -19,10 +20,11 @@ static void make(const lines *l, char *text, size_t size)
              "{ \"method\": \"%s\", \"spacing\": 0.1, \"end_time\": 1, %s\n"
              "\"domain\": { \"min\": [0, 0, 0], \"max\": [2, 2, 2]%s,\n"
              "\"walls\": { \"x\": \"separate\" } },\n"
-             "\"%s\": [ { \"name\": \"a\", \"fill\": [ { \"sphere\": { \"centre\": [1, 1, 1], "
+             "\"%s\": [ { \"name\": \"a\"%s, \"fill\": [ { \"sphere\": { \"centre\": [1, 1, 1], "
              "\"radius\": 0.3 } } ] } ],\n"
              "\"bodies\": [ { \"name\": \"b\", \"box\": { \"min\": [1.5,1,1], \"max\": [2,2,2] }%s } ] }\n",
-             l->method, l->world, l->domain, solids ? "solids" : "fluids", l->body);
+             l->method, l->world, l->domain, solids ? "solids" : "fluids",
+             l->matter, l->body);
 }
 
 static int has_key(const char *resolved, const char *key)
@@ -59,17 +61,22 @@ static char *first_mistake(const lines *l, const char *key, int *resolved)
 typedef struct row { const char *key; lines bad, good; const char *place, *why; } row;
 
 #define FREE ", \"dynamics\": \"free\""
-#define IN_WORLD(text, bad, good) { bad, text, "", "" }, { good, text, "", "" }
-#define IN_DOMAIN(text, bad, good) { bad, "", text, "" }, { good, "", text, "" }
-#define IN_BODY(text, bad, good) { bad, "", "", text }, { good, "", "", text }
+#define IN_WORLD(text, bad, good) { bad, text, "", "", "" }, { good, text, "", "", "" }
+#define IN_DOMAIN(text, bad, good) { bad, "", text, "", "" }, { good, "", text, "", "" }
+#define IN_BODY(text, bad, good) { bad, "", "", text, "" }, { good, "", "", text, "" }
 #define MOVES(key_, value) \
-    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value },               \
-      { "mlsmpm", "", "", FREE ", \"" key_ "\": " value },                \
+    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value, "" },               \
+      { "mlsmpm", "", "", FREE ", \"" key_ "\": " value, "" },                \
       "s.json:5:", "bodies[0]." key_ ": is for free and controlled bodies, this one is prescribed" }
 #define CUTS(key_, value) \
-    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value },                                               \
-      { "mlsmpm", "", "", ", \"blade\": true, \"" key_ "\": " value }, "s.json:5:",  \
+    { key_, { "mlsmpm", "", "", ", \"" key_ "\": " value, "" },                                              \
+      { "mlsmpm", "", "", ", \"blade\": true, \"" key_ "\": " value, "" }, "s.json:5:",  \
       "bodies[0]." key_ ": is for a blade, which this body is not" }
+#define SAND ", \"model\": \"sand\""
+#define RISES(key_, value) \
+    { key_, { "mlsmpm", "", "", "", SAND ", \"" key_ "\": " value },                                     \
+      { "mlsmpm", "", "", "", SAND ", \"friction_rise\": 0.2, \"" key_ "\": " value }, "s.json:4:",     \
+      "solids[0]." key_ ": is for a friction_rise, which this solid has not" }
 
 static const row rows[] = {
     { "cfl", IN_WORLD("\n\"cfl\": 0.2,", "mlsmpm", "wcsph"), "s.json:2:1: cfl: ", "mlsmpm has its own" },
@@ -81,16 +88,19 @@ static const row rows[] = {
       "bodies[0].friction: is for liquids of dfsph and wcsph" },
     { "contact_angle", IN_BODY(", \"contact_angle\": 60", "mlsmpm", "wcsph"), "s.json:5:",
       "bodies[0].contact_angle: is for liquids of dfsph and wcsph" },
-    { "flip", { "mlsmpm", "\"mlsmpm\": {\n\"flip\": 0.9 },", "", "" },
-      { "mlsmpm", "\"mlsmpm\": { \"transfer\": \"flip\", \"flip\": 0.9 },", "", "" },
+    { "flip", { "mlsmpm", "\"mlsmpm\": {\n\"flip\": 0.9 },", "", "", "" },
+      { "mlsmpm", "\"mlsmpm\": { \"transfer\": \"flip\", \"flip\": 0.9 },", "", "", "" },
       "s.json:2:1: mlsmpm.flip: ", "is for \"transfer\": \"flip\"" },
-    { "xpic_order", { "mlsmpm", "\"mlsmpm\": {\n\"xpic_order\": 3 },", "", "" },
-      { "mlsmpm", "\"mlsmpm\": { \"transfer\": \"xpic\", \"xpic_order\": 3 },", "", "" },
+    { "xpic_order", { "mlsmpm", "\"mlsmpm\": {\n\"xpic_order\": 3 },", "", "", "" },
+      { "mlsmpm", "\"mlsmpm\": { \"transfer\": \"xpic\", \"xpic_order\": 3 },", "", "", "" },
       "s.json:2:1: mlsmpm.xpic_order: ", "is for \"transfer\": \"xpic\"" },
     MOVES("velocity", "[1, 0, 0]"), MOVES("angular_velocity", "[1, 0, 0]"), MOVES("force", "[1, 0, 0]"),
     MOVES("torque", "[1, 0, 0]"), MOVES("air_resistance", "1"), MOVES("locked", "\"x\""),
     CUTS("edge_resistance", "200"), CUTS("edge_angle", "50"), CUTS("edge_start", "[1, 1, 1]"),
-    CUTS("edge_end", "[1, 1, 1]"),
+    CUTS("edge_end", "[1, 1, 1]"), RISES("grain_diameter", "1e-4"), RISES("inertial_number", "0.3"),
+    { "friction_angle", { "mlsmpm", "", "", "", ", \"friction_angle\": 20" },
+      { "mlsmpm", "", "", "", SAND ", \"friction_angle\": 20" }, "s.json:4:",
+      "solids[0].friction_angle: is for a strength, which this solid has not" },
 };
 
 static void test_keys(void **state)
@@ -118,10 +128,10 @@ static void test_resolved(void **state)
         { "mlsmpm", "contact_angle", 0 }, { "dfsph", "contact_angle", 1 }, { "mlsmpm", "flip", 0 },
         { "mlsmpm", "locked", 0 },        { "mlsmpm", "edge_angle", 0 },   { "wcsph", "restitution", 1 },
         { "dfsph", "restitution", 1 },    { "mlsmpm", "velocity", 1 },     /* of the fill */
-        { "mlsmpm", "angular_velocity", 0 },
+        { "mlsmpm", "angular_velocity", 0 }, { "mlsmpm", "friction_angle", 0 },
     };
     for (size_t k = 0; k < sizeof resolved/sizeof *resolved; k++) {
-        const lines plain = { resolved[k].method, "", "", "" };
+        const lines plain = { resolved[k].method, "", "", "", "" };
         int has = 0;
         char *line = first_mistake(&plain, resolved[k].key, &has);
         assert_string_equal(line, "");
@@ -134,8 +144,8 @@ static void test_resolved(void **state)
 static void test_what_is_let_be(void **state)
 {
     (void)state;
-    const lines waits = { "dfsph", "\"mlsmpm\": { \"flip\": 0.9 },", "", "" };
-    const lines wrong = { "mlsmpm", "", "", ", \"dynamics\": \"fre\", \"velocity\": [1, 0, 0]" };
+    const lines waits = { "dfsph", "\"mlsmpm\": { \"flip\": 0.9 },", "", "", "" };
+    const lines wrong = { "mlsmpm", "", "", ", \"dynamics\": \"fre\", \"velocity\": [1, 0, 0]", "" };
     int unused;
     char *line = first_mistake(&waits, "x", &unused);
     assert_string_equal(line, "");
