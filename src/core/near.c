@@ -385,6 +385,35 @@ void tobi_near_add_forces(tobi_simulation *s)
     }
 }
 
+/* Keeps the place x + way of particle i at least that far from the bodies it sees. */
+static void keep_away(const tobi_simulation *s, int64_t i, double least, double way[3])
+{
+    int32_t k = s->particles.near[i];
+    for (const tobi_near_entry *e = k >= 0 ? &s->near.entry[k] : NULL; e; e = next_entry(s, e)) {
+        double lack = least - e->distance - dot(way, e->foot_normal);
+        for (int a = 0; a < 3 && lack > 0; a++) way[a] += lack*e->foot_normal[a];
+    }
+}
+
+void tobi_near_settle(tobi_simulation *s)
+{
+    const tobi_particles *p = &s->particles;
+    const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
+    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    for (int64_t i = 0; i < p->count; i++) {
+        if (!p->beside[i]) continue;
+        double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
+               scale = s->dt*s->dt, *x = &p->position[i].x;
+        if (size*scale > most) scale = most/size;
+        for (int a = 0; a < 3; a++) way[a] *= scale;
+        keep_away(s, i, least, way);
+        for (int a = 0; a < s->box.dimension; a++) {
+            x[a] += way[a];
+            if (!s->box.periodic[a]) x[a] = fmin(fmax(x[a], least), s->box.size[a] - least);
+        }
+    }
+}
+
 void tobi_near_contact(tobi_simulation *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {

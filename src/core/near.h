@@ -49,6 +49,9 @@ void tobi_near_mark_beside(struct tobi_simulation *s);
 void tobi_near_add_gradients(struct tobi_simulation *s);
 /* Adds dt times lift and no-slip friction of the bodies to the velocities. */
 void tobi_near_add_forces(struct tobi_simulation *s);
+/* Moves the particles with `beside` by dt^2 accel, a tenth of a spacing at most and not into bodies or sides;
+ * velocities stay. */
+void tobi_near_settle(struct tobi_simulation *s);
 /* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
 void tobi_near_contact(struct tobi_simulation *s);
 /* Force and torque on one body by lift, friction and surface tension: all that does not wait for pressure. */
