@@ -177,15 +177,18 @@ static double pull(tobi_world *world, const int half[COUNT])
 }
 
 /* m, by how much particles of the two faces are nearer than a spacing across the cut, of those opposite to
-   each other. Where the cut passes near a column the face may have steps, at which others come nearer. */
+   each other. Where the cut passes near a column the face has a step: particles of one column lie above each
+   other there, in different halves, and are not opposite, however the halves slide. */
 static double find_overlap(tobi_world *world, const int half[COUNT])
 {
-    static double place[COUNT][3];
+    static double place[COUNT][3], rest[COUNT][3];
     double most = 0;
     read_field(world, "position", place[0], 3);
+    read_field(world, "rest_position", rest[0], 3);
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < COUNT; k++)
-            if (half[i] < half[k] && fabs(place[i][1] - place[k][1]) < 0.5*SPACING)
+            if (half[i] < half[k] && fabs(place[i][1] - place[k][1]) < 0.5*SPACING &&
+                fabs(rest[i][0] - rest[k][0]) > 0.5*SPACING)
                 most = fmax(most, SPACING - fabs(place[i][0] - place[k][0]));
     return most;
 }
