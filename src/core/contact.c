@@ -50,13 +50,12 @@ static double find_lack(const tobi_contact *k, double along, double dt)
 static void find_change(tobi_contact *k, const tobi_contacts *c, double friction, double dt, double pace)
 {
     double relative[3], wanted[3], normal, slide[3];
-    const double mass = pace/k->mobility;
     find_relative(k, c->velocity, c->spin, relative);
     double along = vec3_dot(relative, k->normal), lack = find_lack(k, along, dt);
-    normal = larger(0, vec3_dot(k->impulse, k->normal) + lack*mass);
+    normal = larger(0, vec3_dot(k->impulse, k->normal) + lack*pace/k->mobility[0]);
     for (int a = 0; a < 3; a++) {
         double sliding = relative[a] - along*k->normal[a];
-        wanted[a] = k->impulse[a] - sliding*mass;
+        wanted[a] = k->impulse[a] - sliding*pace/k->mobility[1];
     }
     vec3_add_scaled(slide, wanted, -vec3_dot(wanted, k->normal), k->normal);
     double size = vec3_length(slide), grip = friction*normal;
@@ -72,7 +71,7 @@ static void find_edge_change(tobi_contact *k, const tobi_contacts *c, double pac
     double relative[3], wanted[3];
     find_relative(k, c->velocity, c->spin, relative);
     vec3_add_scaled(relative, relative, -vec3_dot(relative, k->normal), k->normal);
-    vec3_add_scaled(wanted, k->impulse, -pace/k->mobility, relative);
+    vec3_add_scaled(wanted, k->impulse, -pace/k->mobility[1], relative);
     double size = vec3_length(wanted);
     double most = size > 0 ? k->limit*larger(0, vec3_dot(wanted, k->ahead)/size) : 0;
     k->sliding = size > most;
@@ -89,8 +88,8 @@ static void find_start(tobi_contact *k, const tobi_contacts *c, double friction)
     if (!(normal > 0)) return;
     find_relative(k, c->velocity, c->spin, relative);
     vec3_add_scaled(slide, relative, -vec3_dot(relative, k->normal), k->normal);
-    const double size = vec3_length(slide)/k->mobility;
-    vec3_add_scaled(k->change, k->change, -(size > grip ? grip/size : 1)/k->mobility, slide);
+    const double size = vec3_length(slide)/k->mobility[1];
+    vec3_add_scaled(k->change, k->change, -(size > grip ? grip/size : 1)/k->mobility[1], slide);
 }
 
 /* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact
@@ -102,11 +101,12 @@ static void add_contact(const tobi_contact *k, const tobi_contacts *c, double dt
     find_relative(k, c->velocity, c->spin, relative);
     const int edge = k->particle < 0, stick = !k->sliding;
     double lack = find_lack(k, vec3_dot(relative, k->normal), dt);
-    if (edge ? !stick : vec3_dot(k->impulse, k->normal) + lack/k->mobility <= 0) return;
+    if (edge ? !stick : vec3_dot(k->impulse, k->normal) + lack/k->mobility[0] <= 0) return;
     double allowed = k->bounce > 0 || edge ? k->bounce : -larger(k->gap, 0)/dt;
+    const double along = edge ? 0 : 1/k->mobility[0], across = stick ? 1/k->mobility[1] : 0;
     for (int r = 0; r < 3; r++)
         for (int n = 0; n < 3; n++)
-            p[r][n] = ((edge ? -1 : !stick)*k->normal[r]*k->normal[n] + (r == n && stick))/k->mobility;
+            p[r][n] = (along - across)*k->normal[r]*k->normal[n] + (r == n ? across : 0);
     for (int a = 0; a < 3; a++) {
         g[a][a] = 1;
         aim[a] = k->velocity[a] - k->deforming[a] - allowed*k->normal[a];
@@ -267,7 +267,7 @@ static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *
     find_relative(k, c->velocity, c->spin, relative);
     *(edge ? &sum->fracture : &sum->rubbing) -= vec3_dot(k->impulse, relative);
     sum->material += vec3_dot(k->impulse, k->velocity);
-    if (!edge && normal > 0) sum->mass += 1/k->mobility;
+    if (!edge && normal > 0) sum->mass += 1/k->mobility[0];
     sum->pushing += edge ? vec3_dot(k->impulse, k->impulse) > 0 : normal > 0;
     if (!edge) return;
     for (int a = 0; a < 3; a++) sum->edge[a] -= k->impulse[a];

@@ -21,12 +21,15 @@ typedef struct tobi_contact {
     int32_t sliding;                 /* 1: friction was not enough in the last sweep             */
     double  normal[3];               /* outward from the body; of an edge that of the cut        */
     double  ahead[3], limit;         /* of an edge: direction of cutting, and N s                */
-    double  arm[3];                  /* m, from the body's centre to the particle                */
+    double  arm[3];                  /* m, from the body's centre to the place of contact        */
+    double  depth;                   /* m, of the particle below that place, against the normal  */
     double  deforming[3];            /* m/s, what the surface moves besides the rigid motion     */
     double  gap;                     /* m, between the particle's edge and the surface           */
     double  bounce;                  /* m/s, by which it shall leave                             */
-    double  mobility;                /* 1/kg, velocity by impulses of this size at all contacts  */
-    double  velocity[3];             /* m/s, of the material; the method's to bring up to date   */
+    double  mobility[2];             /* 1/kg, velocity by impulses of this size at all contacts:
+                                        along the normal, along the surface                      */
+    double  velocity[3];             /* m/s, of the material: along the normal that of the particle, along
+                                        the surface that of the place; the method's to bring up to date */
     double  impulse[3];              /* N s, on the particle so far                              */
     double  change[3];               /* N s, by the last sweep                                   */
 } tobi_contact;

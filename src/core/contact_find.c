@@ -207,7 +207,8 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
         else *clear = hit.signed_distance > 0 ? hit.distance : hit.distance - far + at->reach;
         return 0;
     }
-    out->gap = hit.signed_distance - at->step->radius;
+    out->depth = at->step->radius;
+    out->gap = hit.signed_distance - out->depth;
     *clear = larger(*clear, hit.signed_distance);
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
@@ -263,6 +264,7 @@ static int touch_blade(const pose *at, const double x[3], const double local[3],
         out->gap = side*place.aside - radius;
         memcpy(out->normal, normal, sizeof normal);
     }
+    out->depth = depth;
     out->gap += radius - depth;
     return out->gap < at->step->margin;
 }
@@ -371,6 +373,19 @@ static int is_idle(const pose *at, const tobi_contact *k, const tobi_float4 *vel
     return k->gap + along*at->step->dt > IDLE*at->step->margin;
 }
 
+/* From the particle to the edge of its material, where it meets the surface. What deforms is known at the
+   surface already. */
+static void go_to_edge(const tobi_body *b, tobi_contact *k)
+{
+    double way[3], turning[3];
+    for (int a = 0; a < 3; a++) way[a] = -k->depth*k->normal[a];
+    vec3_cross(turning, b->rigid.angular_velocity, way);
+    for (int a = 0; a < 3; a++) {
+        k->arm[a] += way[a];
+        if (b->rigid.kind == TOBI_PRESCRIBED) k->deforming[a] -= turning[a];
+    }
+}
+
 static void prefetch(const tobi_particles *p, int64_t i)
 {
     __builtin_prefetch(&p->position[i]);
@@ -399,6 +414,7 @@ static int look(const pose *at, const tobi_particles *p, double way, candidate *
         one->sure = (float)((way + known.way)*(1 - 1e-6) - slack);
     }
     if (!touches) return 0;
+    go_to_edge(at->body, out);
     const double start = larger(0, -p->velocity[i].w)*at->step->dt;
     for (int a = 0; a < 3; a++) out->change[a] = start*out->normal[a];
     return 1;

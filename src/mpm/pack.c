@@ -94,16 +94,16 @@ static void join(mpm_packs *p, const mpm_pack_entries *e, const mpm_pack_run *ru
     const int32_t c = (int32_t)k;
     p->pack[p->count++] = (mpm_pack){ .contact = {c, c, c, c}, .used = 1, .count = (int32_t)count,
                                       .node = first, .weight = p->weight_count };
-    p->weight_count += 4*count;
+    p->weight_count += 8*count;
 }
 
 static void spread_weights(const mpm_packs *p, const mpm_pack_entries *e, const mpm_pack *at)
 {
-    static const float none[MPM_PACK_NODES] = { 0 };
+    static const float none[2*MPM_PACK_NODES] = { 0 };
     const float *from[4];
     float *to = p->weight + at->weight;
-    for (int k = 0; k < 4; k++) from[k] = k < at->used ? e->weight + entry_of(e, at->contact[k]) : none;
-    for (int n = 0; n < at->count; n++)
+    for (int k = 0; k < 4; k++) from[k] = k < at->used ? e->weight + 2*entry_of(e, at->contact[k]) : none;
+    for (int n = 0; n < 2*at->count; n++)
         for (int k = 0; k < 4; k++) to[4*n + k] = from[k][n];
 }
 

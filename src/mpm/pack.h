@@ -22,7 +22,8 @@ typedef struct mpm_packs {
     int64_t colour[MPM_PACK_COLOURS + 1];  /* where its runs begin                                 */
 } mpm_packs;
 
-/* What is packed: `each` nodes and weights of every contact, edge_each of those from edge_first on. */
+/* What is packed: `each` nodes and pairs of weights of every contact, edge_each of those from edge_first
+   on. */
 typedef struct mpm_pack_entries {
     const uint32_t *node;
     const float *weight;

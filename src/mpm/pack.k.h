@@ -1,6 +1,7 @@
 /* Between contacts and nodes, four contacts at a time. Particles of one cell feel the same nodes, so that one
-   read of a node serves four. A pack that writes to nodes must not run while another of the same nodes does:
-   mpm_packs_visit sees to that. */
+   read of a node serves four. Every contact has two weights at a node, for what is along its normal and along
+   the surface, eq. (2b), (2c) of docs/theory/contact.md. A pack that writes to nodes must not run while
+   another of the same nodes does: mpm_packs_visit sees to that. */
 #pragma once
 #include "exec/rows.h"
 
@@ -8,11 +9,11 @@ typedef struct mpm_pack {
     int32_t contact[4];                /* empty lanes repeat the first, with weights of 0          */
     int32_t used;                      /* lanes                                                    */
     int32_t count;                     /* nodes, a multiple of three                               */
-    int64_t node, weight;              /* where its nodes begin; its weights, four for each node   */
+    int64_t node, weight;              /* where its nodes begin; its weights, twice four for each  */
 } mpm_pack;
 
-/* 1/kg: of a node, and times the sum of the weights there. */
-typedef struct mpm_yield { float inverse, crowd; } mpm_yield;
+/* 1/kg: of a node, and times the sum of the weights there, of each kind. */
+typedef struct mpm_yield { float inverse, crowd[2]; } mpm_yield;
 
 typedef struct mpm_pack_view {
     const mpm_pack *TOBI_RESTRICT pack;
@@ -20,21 +21,25 @@ typedef struct mpm_pack_view {
     const float *TOBI_RESTRICT weight;
     tobi_float4 *TOBI_RESTRICT velocity;   /* [nodes] m/s, and mass, kg                            */
     mpm_yield *TOBI_RESTRICT yield;        /* [nodes]                                              */
-    tobi_float4 *TOBI_RESTRICT push;       /* [contacts] N s, to be put on the nodes               */
-    tobi_float4 *TOBI_RESTRICT moving;     /* [contacts] m/s, w: 1/kg, see mpm_pack_answer         */
+    tobi_float4 *TOBI_RESTRICT push;       /* [contacts][2] N s, to be put on the nodes            */
+    tobi_float4 *TOBI_RESTRICT moving;     /* [contacts][2] m/s, w: 1/kg, see mpm_pack_answer      */
 } mpm_pack_view;
 
-/* Adds the weights up at the nodes. */
+TOBI_FN quad mpm_pack_size(quad a) { return quad_larger(a, quad_set(0) - a); }
+
+/* Adds the sizes of the weights up at the nodes. */
 TOBI_FN void mpm_pack_crowd(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
     const uint32_t *node = v->node + p->node;
     const float *weight = v->weight + p->weight;
     const int count = p->count;
-    for (int n = 0; n < count; n++, weight += 4) {
+    for (int n = 0; n < count; n++, weight += 8) {
         mpm_yield *y = &v->yield[node[n]];
-        if (y->crowd == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
-        y->crowd += ((weight[0] + weight[1]) + (weight[2] + weight[3]))*y->inverse;
+        const quad along = quad_load(weight), across = mpm_pack_size(quad_load(weight + 4));
+        if (y->crowd[0] == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
+        y->crowd[0] += ((along[0] + along[1]) + (along[2] + along[3]))*y->inverse;
+        y->crowd[1] += ((across[0] + across[1]) + (across[2] + across[3]))*y->inverse;
     }
 }
 
@@ -46,10 +51,16 @@ TOBI_FN void mpm_pack_answer(const mpm_pack_view *v, int64_t number)
     const uint32_t *node = v->node + p->node;
     const float *weight = v->weight + p->weight;
     const int count = p->count;
-    quad sum = quad_set(0);
-    for (int n = 0; n < count; n++, weight += 4)
-        sum = sum + quad_load(weight)*quad_set(v->yield[node[n]].crowd);
-    for (int k = 0; k < p->used; k++) v->moving[p->contact[k]].w = sum[k];
+    quad along = quad_set(0), across = quad_set(0);
+    for (int n = 0; n < count; n++, weight += 8) {
+        const mpm_yield *y = &v->yield[node[n]];
+        along = along + quad_load(weight)*quad_set(y->crowd[0]);
+        across = across + mpm_pack_size(quad_load(weight + 4))*quad_set(y->crowd[1]);
+    }
+    for (int k = 0; k < p->used; k++) {
+        v->moving[2*p->contact[k]].w = along[k];
+        v->moving[2*p->contact[k] + 1].w = across[k];
+    }
 }
 
 /* The sums are wanted empty by the next step. */
@@ -58,7 +69,7 @@ TOBI_FN void mpm_pack_forget(const mpm_pack_view *v, int64_t number)
     const mpm_pack *p = &v->pack[number];
     const uint32_t *node = v->node + p->node;
     const int count = p->count;
-    for (int n = 0; n < count; n++) v->yield[node[n]].crowd = 0;
+    for (int n = 0; n < count; n++) v->yield[node[n]].crowd[0] = v->yield[node[n]].crowd[1] = 0;
 }
 
 TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)
@@ -67,14 +78,18 @@ TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)
     const uint32_t *node = v->node + p->node;
     const float *weight = v->weight + p->weight;
     const int count = p->count;
-    row u[3] = {row_set(0), row_set(0), row_set(0)};
-    tobi_float4 out[4];
+    row u[2][3];
+    tobi_float4 out[2][4];
+    for (int k = 0; k < 3; k++) u[0][k] = u[1][k] = row_set(0);
     for (int n = 0; n < count; n += 3)
-        for (int k = 0; k < 3; k++)
-            u[k] = row_fma(row_spread(quad_load(weight + 4*(n + k))),
-                           row_repeat(quad_load(&v->velocity[node[n + k]])), u[k]);
-    row_store(out, row_add(row_add(u[0], u[1]), u[2]));
-    for (int k = 0; k < p->used; k++) v->moving[p->contact[k]] = out[k];
+        for (int k = 0; k < 3; k++, weight += 8) {
+            const row velocity = row_repeat(quad_load(&v->velocity[node[n + k]]));
+            u[0][k] = row_fma(row_spread(quad_load(weight)), velocity, u[0][k]);
+            u[1][k] = row_fma(row_spread(quad_load(weight + 4)), velocity, u[1][k]);
+        }
+    for (int m = 0; m < 2; m++) row_store(out[m], row_add(row_add(u[m][0], u[m][1]), u[m][2]));
+    for (int k = 0; k < p->used; k++)
+        for (int m = 0; m < 2; m++) v->moving[2*p->contact[k] + m] = out[m][k];
 }
 
 TOBI_FN void mpm_pack_push(const mpm_pack_view *v, int64_t number)
@@ -83,12 +98,14 @@ TOBI_FN void mpm_pack_push(const mpm_pack_view *v, int64_t number)
     const uint32_t *node = v->node + p->node;
     const float *weight = v->weight + p->weight;
     const int count = p->count;
-    tobi_float4 in[4];
-    for (int k = 0; k < 4; k++) in[k] = v->push[p->contact[k]];
-    const row push = row_load(in);
-    for (int n = 0; n < count; n++, weight += 4) {
+    tobi_float4 in[2][4];
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 2; m++) in[m][k] = v->push[2*p->contact[k] + m];
+    const row along = row_load(in[0]), across = row_load(in[1]);
+    for (int n = 0; n < count; n++, weight += 8) {
         tobi_float4 *to = &v->velocity[node[n]];
-        const quad sum = row_fold(row_mul(row_spread(quad_load(weight)), push));
+        const quad sum = row_fold(row_fma(row_spread(quad_load(weight + 4)), across,
+                                          row_mul(row_spread(quad_load(weight)), along)));
         quad_store(to, quad_load(to) + sum*quad_set(v->yield[node[n]].inverse));
     }
 }

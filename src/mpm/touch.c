@@ -1,5 +1,6 @@
 #include "mpm/touch.h"
 #include "base/error.h"
+#include "geom/vec3.h"
 #include "mpm/split.k.h"
 #include "mpm/spline.h"
 #include <math.h>
@@ -44,7 +45,7 @@ static tobi_status reserve_entries(mpm_touch *t, int64_t count)
     free(t->weight);
     t->room = count + count/4 + 4096;
     t->node = malloc((size_t)t->room*sizeof *t->node);
-    t->weight = malloc((size_t)t->room*sizeof *t->weight);
+    t->weight = malloc((size_t)t->room*2*sizeof *t->weight);
     if (t->node && t->weight) return TOBI_OK;
     t->room = 0;
     return TOBI_NO_MEMORY;
@@ -56,8 +57,8 @@ static tobi_status reserve_contacts(mpm_touch *t, int64_t count)
     free(t->push);
     free(t->moving);
     t->push_room = count + count/4 + 64;
-    t->push = malloc((size_t)t->push_room*sizeof *t->push);
-    t->moving = malloc((size_t)t->push_room*sizeof *t->moving);
+    t->push = malloc((size_t)t->push_room*2*sizeof *t->push);
+    t->moving = malloc((size_t)t->push_room*2*sizeof *t->moving);
     if (t->push && t->moving) return TOBI_OK;
     t->push_room = 0;
     return TOBI_NO_MEMORY;
@@ -96,6 +97,7 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
     return &g->block[low];
 }
 
+/* Eq. (2b), (2c). */
 static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
                        tobi_exec *x)
 {
@@ -106,18 +108,20 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
         const int64_t particle = c->list[k].particle;
         const mpm_block *b = block_of(g, particle);
         const mpm_hidden hidden = mpm_read_hidden(v, particle, b->levels);
-        const double *at = &v->position[particle].x;
-        double w[3][3] = {{1}, {1}, {1}};
+        const double *at = &v->position[particle].x, reach = -4*c->list[k].depth*v->inverse_cell;
+        double w[3][3] = {{1}, {1}, {1}}, lean[3][3] = {{0}};
         int block[3][3] = {{0}, {0}, {1}}, inner[3][3] = {{0}};      /* block around, node in it */
         for (int a = 0; a < dim; a++) {
-            const int first = (int)mpm_spline(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 4;
+            const double place = at[a]*v->inverse_cell;
+            const int base = (int)mpm_spline(place, w[a]), first = base - b->corner[a] + 4;
             for (int n = 0; n < 3; n++) {
+                lean[a][n] = (base + n - place)*reach*c->list[k].normal[a];
                 block[a][n] = (first + n)/4;
                 inner[a][n] = (first + n)%4;
             }
         }
         uint32_t *node = t->node + k*each;
-        float *weight = t->weight + k*each;
+        float *weight = t->weight + 2*k*each;
         for (int i = 0, n = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) {
                 const int row = dim == 3 ? (inner[0][i]*4 + inner[1][j])*4 : inner[0][i]*4 + inner[1][j];
@@ -126,7 +130,9 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
                     const mpm_block *from = q ? &g->block[b->twin + q - 1] : b;
                     const int64_t patch = from->around[(block[0][i]*3 + block[1][j])*3 + block[2][l]];
                     node[n] = (uint32_t)(patch*nodes + row + inner[2][l]);
-                    weight[n] = (float)(w[0][i]*w[1][j]*w[2][l]);
+                    const double all = w[0][i]*w[1][j]*w[2][l];
+                    weight[2*n] = (float)all;
+                    weight[2*n + 1] = (float)(all*(1 + lean[0][i] + lean[1][j] + lean[2][l]));
                 }
             }
     }
@@ -218,7 +224,7 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
     for (int64_t k = t->edge_first; k < c->count; k++) {
         const surroundings *s = &t->around[k - t->edge_first];
         uint32_t *node = t->node + entry_of(t, k, each);
-        float *weight = t->weight + entry_of(t, k, each);
+        float *weight = t->weight + 2*entry_of(t, k, each);
         double sum = 0;
         for (int n = 0; n < each; n++) {
             double mass[MPM_VELOCITIES], all = 0;
@@ -228,11 +234,11 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
             }
             for (int m = 0; m < t->ways; m++) {
                 node[t->ways*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
-                weight[t->ways*n + m] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/all) : 0;
+                weight[2*(t->ways*n + m)] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/all) : 0;
             }
             if (all > 0) sum += s->weight[n];
         }
-        for (int n = 0; n < t->ways*each; n++) weight[n] /= (float)sum;
+        for (int n = 0; n < t->ways*each; n++) weight[2*n + 1] = weight[2*n] /= (float)sum;
     }
 }
 
@@ -257,23 +263,34 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
     mpm_packs_visit(&t->packs, t->kernels->crowd, &v, team);
     mpm_packs_visit(&t->packs, t->kernels->answer, &v, team);
     mpm_packs_visit(&t->packs, t->kernels->forget, &v, team);
-    for (int64_t k = 0; k < c->count; k++) c->list[k].mobility = t->moving[k].w;
+    for (int64_t k = 0; k < c->count; k++)
+        for (int m = 0; m < 2; m++) c->list[k].mobility[m] = t->moving[2*k + m].w;
 }
 
 static void read_velocities(const mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const mpm_pack_view v = view_packs(t, g);
     mpm_packs_visit(&t->packs, t->kernels->read, &v, team_of(t, x));
-    for (int64_t k = 0; k < c->count; k++)
-        for (int a = 0; a < 3; a++) c->list[k].velocity[a] = (&t->moving[k].x)[a];
+    for (int64_t k = 0; k < c->count; k++) {
+        tobi_contact *one = &c->list[k];
+        const float *inside = &t->moving[2*k].x, *edge = &t->moving[2*k + 1].x;
+        double along = 0;
+        for (int a = 0; a < 3; a++) along += one->normal[a]*((double)inside[a] - edge[a]);
+        for (int a = 0; a < 3; a++) one->velocity[a] = edge[a] + along*one->normal[a];
+    }
 }
 
 static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_exec *x)
 {
     const mpm_pack_view v = view_packs(t, g);
     for (int64_t k = 0; k < c->count; k++) {
-        const double *change = c->list[k].change;
-        t->push[k] = (tobi_float4){(float)change[0], (float)change[1], (float)change[2], 0};
+        const double *change = c->list[k].change, *normal = c->list[k].normal;
+        const double along = vec3_dot(change, normal);
+        double part[3];
+        vec3_add_scaled(part, change, -along, normal);
+        t->push[2*k] = (tobi_float4){(float)(along*normal[0]), (float)(along*normal[1]),
+                                     (float)(along*normal[2]), 0};
+        t->push[2*k + 1] = (tobi_float4){(float)part[0], (float)part[1], (float)part[2], 0};
     }
     mpm_packs_visit(&t->packs, t->kernels->push, &v, team_of(t, x));
 }

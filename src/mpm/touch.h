@@ -9,7 +9,7 @@ typedef struct mpm_touch {
     mpm_cut *cut;                      /* whose faces push at the same time, NULL = no blades: the caller's */
     int64_t count;                     /* entries: contacts times nodes each feels                */
     uint32_t *node;                    /* place in the nodes' array                               */
-    float *weight;
+    float *weight;                     /* two of each: along the normal, along the surface         */
     int64_t room;
     mpm_packs packs;                   /* the contacts by their nodes                             */
     const mpm_pack_kernels *kernels;   /* the caller's to set                                     */
@@ -22,7 +22,7 @@ typedef struct mpm_touch {
     int64_t edge_first;                /* the first contact of a blade's edge: they are the last  */
     int ways;                          /* velocities that a node may have: entries of an edge there */
     tobi_contact_work work;            /* J, of the last step                                     */
-    tobi_float4 *push, *moving;        /* [contacts] see mpm_pack_view                            */
+    tobi_float4 *push, *moving;        /* [contacts][2] see mpm_pack_view                         */
     int64_t push_room;
     double far;                        /* m, largest shift of a particle in the last step         */
 } mpm_touch;

@@ -13,9 +13,8 @@ friction 0.5: x = x0 + 5/14 g sin t^2 (a disc in 2-D: 1/3 g sin t^2). Slip, fric
 of the centre of mass, its acceleration twice the slope of the way against t^2 over the run. Balls from a lattice have
 flats and roll over edges; those from shells are round: particles on spheres (circles) a spacing apart, each a fill of its own.
 
-What round balls lack has two parts. Sticking stops the outer particles, half a spacing d inside the surface that the slope carries: they roll
-on r = R - d/2, spin R/r too fast and feel friction with that lever, a = g sin/(1 + I/(m r^2)), 2.1 % less in 2-D with 8 cells in R, 3.8 % in
-3-D with 4. The rest is energy lost. It is not apic's: flip and xpic lose more.""")
+What round balls lack is energy that is lost where material goes through the contact, which is a cell or two wide: 11 mm in 2-D, 27 mm
+in 3-D. It is not apic's: flip and xpic lose more.""")
 
 R, ANGLE, GRAVITY, END, SMALL = 0.1, math.radians(30), 9.81, 0.6, 0.5
 
@@ -89,10 +88,12 @@ for dim, across, seeding in case.pick([(2, 8, "shells"), (2, 8, "lattice")], [
         case.state(f"{text}: spin times R over speed at the end", turn)
         if name == "stick":
             case.state(f"{text}: energy lost over what gravity gave", lost)
-        # Contact is a quarter of a cell beyond the outer particles: of 8 cells in R, 3 %. A ball from a lattice has flats
-        # a radius/2 wide and rolls over their edges, which costs it energy: only its sliding is judged.
+        # A ball from a lattice has flats a radius/2 wide and rolls over their edges, which costs it energy: only its sliding
+        # is judged. A ball that rolled on its outer particles would be 4 % too slow, and turn 4 % too fast.
         if across == 8 and dim == 2 and (seeding == "shells" or name == "slip"):
-            case.hold(f"{text}: acceleration within 4 %", abs(found/exact - 1) <= 0.04)
+            case.hold(f"{text}: acceleration within 2.5 %", abs(found/exact - 1) <= 0.025)
+        if across == 8 and dim == 2 and seeding == "shells" and name == "stick":
+            case.hold(f"{text}: it turns as it rolls, within 2 %", abs(turn - 1) <= 0.02)
 for transfer, options in case.pick([], [("flip", {"flip": 1}), ("xpic", {"xpic_order": 5})]):
     found, _, lost = roll(2, 8, "shells", 0.5, transfer, **options)
     text = f"2-D, 8 cells in R, shells, stick, {transfer} ({list(options.values())[0]})"
