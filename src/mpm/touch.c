@@ -136,7 +136,7 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
 typedef struct mpm_surroundings {
     int64_t place[MPM_VELOCITIES][27]; /* -1 = none                                                */
     double weight[27];
-    double full;                       /* mass over that of a full cell                            */
+    double mass;                       /* kg, by these weights                                     */
 } surroundings;
 
 /* The blocks of nodes that the 3 nodes from `first` along each axis lie in; 0 if one is missing. */
@@ -155,9 +155,8 @@ static int find_patches(const mpm_grid *g, const int first[3], int64_t patch[8])
     return 1;
 }
 
-/* 0 if no material is near. */
-static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, double cell_mass,
-                       surroundings *s)
+/* ways: velocities that are looked for at a node. 0 if no material is near. */
+static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, int ways, surroundings *s)
 {
     const int dim = g->dimension, each = nodes_each(g), nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
@@ -165,7 +164,7 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
     int64_t patch[8];
     for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
     if (!find_patches(g, first, patch)) return 0;
-    s->full = 0;
+    s->mass = 0;
     for (int n = 0; n < each; n++) {
         const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
         const int at[3] = {first[0] + i, first[1] + j, first[2] + l};
@@ -173,12 +172,15 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
                             dim == 3 && at[2] >> 2 != first[2] >> 2};
         const int inner = ((at[0] & 3)*4 + (at[1] & 3))*(dim == 3 ? 4 : 1) + (dim == 3 ? at[2] & 3 : 0);
         const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]];
-        s->weight[n] = w[0][i]*w[1][j]*w[2][l];
-        for (int m = 0; m < MPM_VELOCITIES; m++) {
-            const int64_t at = m == 0 ? p : m < 1 << g->patch[p].levels ? g->patch[p].twin + m - 1 : -1;
-            s->place[m][n] = at < 0 ? -1 : at*nodes + inner;
-            if (at >= 0) s->full += s->weight[n]*g->node[s->place[m][n]].w/cell_mass;
+        const int velocities = 1 << g->patch[p].levels;
+        double mass = 0;
+        for (int m = 0; m < ways; m++) {
+            const int64_t place = (m == 0 ? p : g->patch[p].twin + m - 1)*nodes + inner;
+            s->place[m][n] = m < velocities ? place : -1;
+            if (m < velocities) mass += g->node[place].w;
         }
+        s->weight[n] = w[0][i]*w[1][j]*w[2][l];
+        s->mass += s->weight[n]*mass;
     }
     return 1;
 }
@@ -202,8 +204,8 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
     TOBI_TRY(tobi_blade_recall(b, count, err));
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
-        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, s)) continue;
-        const double full = fmin(1, 2*s->full - 0.5);
+        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->ways, s)) continue;
+        const double full = fmin(1, 2*s->mass/t->cell_mass - 0.5);
         if (!(full > 0)) continue;
         TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], full, step, err));
         listed++;
