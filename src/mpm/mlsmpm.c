@@ -199,19 +199,14 @@ static tobi_status accept_solid(const tobi_simulation *s, const void *def, int s
     return status ? tobi_fail(err, status, "solid '%s': %s %s", d->name, key, why.text) : TOBI_OK;
 }
 
-/* Whether sides have to be found anew, docs/theory/cutting.md. */
-static int are_sides_due(const mlsmpm *m) { return m->memory[MOVED] > MPM_MEET_STALE*m->cell; }
-
-/* A sort forgets the sides of cuts, so that it waits until they are due. */
 static int is_stale(const mlsmpm *m)
 {
-    const int old = m->memory[AGE] >= SORT_AGE && (!m->view.cuts || are_sides_due(m));
-    return m->memory[AGE] < 0 || old || m->memory[DRIFT] > 0.95*m->cell;
+    return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
 }
 
 static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_error *err)
 {
-    if (stale || are_sides_due(m)) {
+    if (stale || m->memory[MOVED] > MPM_MEET_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
         s->contacts.marked = 1;
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
@@ -257,7 +252,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
             m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
     if (m->blades) {
         const tobi_status status = find_cuts(s, m, stale, err);
-        if (status != TOBI_OK) m->memory[DRIFT] = m->cell;    /* there may be no room left for the blocks */
+        if (status != TOBI_OK) m->memory[AGE] = SORT_AGE;  /* there may be no room left for the blocks */
         TOBI_TRY(status);
     }
     m->built = 1;

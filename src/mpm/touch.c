@@ -96,39 +96,61 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
     return &g->block[low];
 }
 
+/* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut, which
+   mostly follow one another, share it. */
+typedef struct felt {
+    const mpm_block *block;            /* NULL = none yet                                          */
+    int first[3];                      /* the lowest node, from the node -4 of the block           */
+    mpm_hidden hidden;
+    const uint32_t *node;
+} felt;
+
+static void list_nodes(const mpm_grid *g, const felt *f, uint32_t *node)
+{
+    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int n = 0; n < nodes_each(g); n++) {
+        const int at[3] = {f->first[0] + (three ? n/9 : n/3), f->first[1] + (three ? n/3 : n)%3,
+                           f->first[2] + (three ? n%3 : 0)};
+        const int q = mpm_number_at(&f->hidden, n);
+        const mpm_block *from = q ? &g->block[f->block->twin + q - 1] : f->block;
+        const int64_t patch = from->around[((at[0] >> 2)*3 + (at[1] >> 2))*3 + (three ? at[2] >> 2 : 1)];
+        const int row = (at[0] & 3)*4 + (at[1] & 3);
+        node[n] = (uint32_t)(patch*nodes + (three ? row*4 + (at[2] & 3) : row));
+    }
+}
+
+static int is_felt(const felt *f, const mpm_block *b, const int first[3], const mpm_hidden *hidden)
+{
+    return f->block == b && !memcmp(f->first, first, sizeof f->first) && mpm_is_same(&f->hidden, hidden);
+}
+
 static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
                        tobi_exec *x)
 {
     const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
-    const int64_t nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256))
+    felt last = { 0 };
+    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256)) firstprivate(last)
     for (int64_t k = 0; k < t->edge_first; k++) {
-        const int64_t particle = c->list[k].particle;
-        const mpm_block *b = block_of(g, particle);
-        const mpm_hidden hidden = mpm_read_hidden(v, particle, b->levels);
-        const double *at = &v->position[particle].x;
-        double w[3][3] = {{1}, {1}, {1}};
-        int block[3][3] = {{0}, {0}, {1}}, inner[3][3] = {{0}};      /* block around, node in it */
-        for (int a = 0; a < dim; a++) {
-            const int first = (int)mpm_spline(at[a]*v->inverse_cell, w[a]) - b->corner[a] + 4;
-            for (int n = 0; n < 3; n++) {
-                block[a][n] = (first + n)/4;
-                inner[a][n] = (first + n)%4;
-            }
-        }
+        const int64_t i = c->list[k].particle;
+        const mpm_block *b = last.block;
+        if (!b || i < b->begin || i >= b->end) b = block_of(g, i);
+        const mpm_hidden hidden = mpm_read_hidden(v, i, b->levels);
         uint32_t *node = t->node + k*each;
         float *weight = t->weight + k*each;
-        for (int i = 0, n = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) {
-                const int row = dim == 3 ? (inner[0][i]*4 + inner[1][j])*4 : inner[0][i]*4 + inner[1][j];
-                for (int l = 0; l < deep; l++, n++) {
-                    const int q = mpm_number_at(&hidden, n);
-                    const mpm_block *from = q ? &g->block[b->twin + q - 1] : b;
-                    const int64_t patch = from->around[(block[0][i]*3 + block[1][j])*3 + block[2][l]];
-                    node[n] = (uint32_t)(patch*nodes + row + inner[2][l]);
-                    weight[n] = (float)(w[0][i]*w[1][j]*w[2][l]);
-                }
-            }
+        double w[3][3] = {{1}, {1}, {1}};
+        int first[3] = {0, 0, 0};
+        for (int a = 0; a < dim; a++)
+            first[a] = (int)mpm_spline((&v->position[i].x)[a]*v->inverse_cell, w[a]) - b->corner[a] + 4;
+        if (is_felt(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
+        else {
+            last = (felt){ .block = b, .first = {first[0], first[1], first[2]}, .hidden = hidden };
+            list_nodes(g, &last, node);
+        }
+        last.node = node;
+        for (int m = 0; m < 9; m++) {
+            const double across = w[0][m/3]*w[1][m%3];
+            for (int l = 0; l < deep; l++) weight[deep*m + l] = (float)(across*w[2][l]);
+        }
     }
 }
 
