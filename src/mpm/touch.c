@@ -156,53 +156,84 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
 
 /* The nodes around a place: of all velocities, with their weights. */
 typedef struct mpm_surroundings {
+    int first[3];                      /* the lowest node                                          */
     int64_t place[MPM_VELOCITIES][27]; /* -1 = none                                                */
+    double mass[27];                   /* kg, of all velocities                                    */
     double weight[27];
-    double mass;                       /* kg, by these weights                                     */
+    double full;                       /* kg, by these weights                                     */
 } surroundings;
 
-/* The blocks of nodes that the 3 nodes from `first` along each axis lie in; 0 if one is missing. */
-static int find_patches(const mpm_grid *g, const int first[3], int64_t patch[8])
+/* The blocks of nodes around one place, kept for the next, which mostly has the same. */
+typedef struct region {
+    int low[3], high[3];               /* blocks of the lowest node and of the highest             */
+    int known, complete;               /* complete: 1 if all of them exist                         */
+    int64_t patch[8];
+} region;
+
+/* The blocks of nodes that the 3 nodes from `first` along each axis lie in. */
+static void find_region(const mpm_grid *g, const int first[3], region *r)
 {
-    for (int n = 0; n < 8; n++) {
-        const int step[3] = {n >> 2, n >> 1 & 1, n & 1};
-        int at[3], from = n;
-        for (int a = 0; a < 3; a++) {
-            at[a] = a < g->dimension ? first[a] + 2*step[a] : 0;
-            if (step[a] && (a >= g->dimension || at[a] >> 2 == first[a] >> 2)) from = n & ~(4 >> a);
-        }
-        patch[n] = from < n ? patch[from] : mpm_grid_find_patch(g, at);
-        if (patch[n] < 0) return 0;
+    int same = r->known;
+    for (int a = 0; a < g->dimension; a++) {
+        same &= r->low[a] == first[a] >> 2 && r->high[a] == (first[a] + 2) >> 2;
+        r->low[a] = first[a] >> 2;
+        r->high[a] = (first[a] + 2) >> 2;
     }
-    return 1;
+    if (same) return;
+    r->known = r->complete = 1;
+    for (int n = 0; n < 8 && r->complete; n++) {
+        const int step[3] = {n >> 2, n >> 1 & 1, n & 1};
+        int at[3] = {0, 0, 0}, from = n;
+        for (int a = 0; a < 3; a++) {
+            if (a < g->dimension) at[a] = 4*(step[a] ? r->high[a] : r->low[a]);
+            if (step[a] && (a >= g->dimension || r->low[a] == r->high[a])) from = n & ~(4 >> a);
+        }
+        r->patch[n] = from < n ? r->patch[from] : mpm_grid_find_patch(g, at);
+        r->complete = r->patch[n] >= 0;
+    }
 }
 
-/* ways: velocities that are looked for at a node. 0 if no material is near. */
-static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, int ways, surroundings *s)
+/* The nodes of s->first, as many velocities of each as `ways`. */
+static void list_around(const mpm_grid *g, const region *r, int ways, surroundings *s)
 {
-    const int dim = g->dimension, each = nodes_each(g), nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    int first[3] = {0, 0, -1};
-    int64_t patch[8];
-    for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
-    if (!find_patches(g, first, patch)) return 0;
-    s->mass = 0;
-    for (int n = 0; n < each; n++) {
-        const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
-        const int at[3] = {first[0] + i, first[1] + j, first[2] + l};
-        const int far[3] = {at[0] >> 2 != first[0] >> 2, at[1] >> 2 != first[1] >> 2,
-                            dim == 3 && at[2] >> 2 != first[2] >> 2};
-        const int inner = ((at[0] & 3)*4 + (at[1] & 3))*(dim == 3 ? 4 : 1) + (dim == 3 ? at[2] & 3 : 0);
-        const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]];
-        const int velocities = 1 << g->patch[p].levels;
-        double mass = 0;
+    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int n = 0; n < nodes_each(g); n++) {
+        const int at[3] = {s->first[0] + (three ? n/9 : n/3), s->first[1] + (three ? n/3 : n)%3,
+                           s->first[2] + (three ? n%3 : 0)};
+        const int far = (at[0] >> 2 != r->low[0])*4 + (at[1] >> 2 != r->low[1])*2 +
+                        (three && at[2] >> 2 != r->low[2]), row = (at[0] & 3)*4 + (at[1] & 3);
+        const mpm_patch *p = &g->patch[r->patch[far]];
+        s->mass[n] = 0;
         for (int m = 0; m < ways; m++) {
-            const int64_t place = (m == 0 ? p : g->patch[p].twin + m - 1)*nodes + inner;
-            s->place[m][n] = m < velocities ? place : -1;
-            if (m < velocities) mass += g->node[place].w;
+            const int64_t place = (m ? p->twin + m - 1 : r->patch[far])*nodes +
+                                  (three ? row*4 + (at[2] & 3) : row);
+            const int there = m < 1 << p->levels;
+            s->place[m][n] = there ? place : -1;
+            s->mass[n] += there ? g->node[place].w : 0;
         }
-        s->weight[n] = w[0][i]*w[1][j]*w[2][l];
-        s->mass += s->weight[n]*mass;
+    }
+}
+
+/* before: of another place, NULL = none. 0 if no material is near. */
+static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, int ways, region *r,
+                       const surroundings *before, surroundings *s)
+{
+    const int dim = g->dimension, deep = dim == 3 ? 3 : 1;
+    double w[3][3] = {{1}, {1}, {1}};
+    memset(s->first, 0, sizeof s->first);
+    for (int a = 0; a < dim; a++) s->first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
+    find_region(g, s->first, r);
+    if (!r->complete) return 0;
+    if (before && !memcmp(before->first, s->first, sizeof s->first)) {
+        memcpy(s->place, before->place, (size_t)ways*sizeof *s->place);
+        memcpy(s->mass, before->mass, sizeof s->mass);
+    } else {
+        list_around(g, r, ways, s);
+    }
+    s->full = 0;
+    for (int n = 0; n < nodes_each(g); n++) {
+        s->weight[n] = w[0][n/(3*deep)]*w[1][n/deep%3]*w[2][n%deep];
+        s->full += s->weight[n]*s->mass[n];
     }
     return 1;
 }
@@ -224,10 +255,12 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
     TOBI_TRY(tobi_blade_recall(b, count, err));
+    region last = { .known = 0 };
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
-        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->ways, s)) continue;
-        const double full = fmin(1, 2*s->mass/t->cell_mass - 0.5);
+        const surroundings *before = listed > 0 ? s - 1 : NULL;
+        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->ways, &last, before, s)) continue;
+        const double full = fmin(1, 2*s->full/t->cell_mass - 0.5);
         if (!(full > 0)) continue;
         TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], full, step, err));
         listed++;
@@ -245,16 +278,13 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
         float *weight = t->weight + entry_of(t, k, each);
         double sum = 0;
         for (int n = 0; n < each; n++) {
-            double mass[MPM_VELOCITIES], all = 0;
             for (int m = 0; m < t->ways; m++) {
-                mass[m] = s->place[m][n] < 0 ? 0 : g->node[s->place[m][n]].w;
-                all += mass[m];
+                const int64_t place = s->place[m][n];
+                const double mass = place < 0 ? 0 : g->node[place].w;
+                node[t->ways*n + m] = (uint32_t)(mass > 0 ? place : s->place[0][n]);
+                weight[t->ways*n + m] = mass > 0 ? (float)(s->weight[n]*mass/s->mass[n]) : 0;
             }
-            for (int m = 0; m < t->ways; m++) {
-                node[t->ways*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
-                weight[t->ways*n + m] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/all) : 0;
-            }
-            if (all > 0) sum += s->weight[n];
+            if (s->mass[n] > 0) sum += s->weight[n];
         }
         for (int n = 0; n < t->ways*each; n++) weight[n] /= (float)sum;
     }
