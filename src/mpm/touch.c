@@ -231,9 +231,12 @@ static int look_around(const mpm_grid *g, const double x[3], double inverse_cell
         list_around(g, r, ways, s);
     }
     s->full = 0;
-    for (int n = 0; n < nodes_each(g); n++) {
-        s->weight[n] = w[0][n/(3*deep)]*w[1][n/deep%3]*w[2][n%deep];
-        s->full += s->weight[n]*s->mass[n];
+    for (int m = 0, n = 0; m < 9; m++) {
+        const double across = w[0][m/3]*w[1][m%3];
+        for (int l = 0; l < deep; l++, n++) {
+            s->weight[n] = across*w[2][l];
+            s->full += s->weight[n]*s->mass[n];
+        }
     }
     return 1;
 }

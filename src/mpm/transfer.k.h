@@ -302,54 +302,44 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
     }
 }
 
-/* Momentum of node n of a block becomes velocity, eq. (12), which gravity and planes change. calm: the same
-   without stress, unset with APIC. given: what the planes get. Returns the work done on them. */
-TOBI_FN double mpm_find_velocity(const mpm_view *v, int64_t number, int n, quad sum, const quad *calm,
-                                 quad *given, const int dim)
-{
-    const mpm_patch *g = &v->patch[number];
-    const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
-    const int64_t at = number*(dim == 3 ? MPM_NODES_3D : MPM_NODES_2D) + n;
-    const float mass = sum[3], divisor = mass > 0 ? mass : INFINITY;
-    quad u = sum/quad_set(divisor);
-    double work = 0;
-    if (v->old) {
-        quad before = *calm/quad_set(divisor);
-        if (v->wave) quad_store(&v->wave[at], before);
-        quad_store(&v->old[at], v->wave ? before*quad_set(1 - v->order) : before);
-    }
-    if (mass > 0) u = u + fall;
-    if (g->planes && mass > 0) {
-        float after[3] = {u[0], u[1], u[2]};
-        mpm_meet_planes(v, g, n, after, dim);
-        quad change = {u[0] - after[0], u[1] - after[1], u[2] - after[2], 0};
-        *given = *given + change*quad_set(mass);
-        u = u - change;
-        work = (double)mass*(change[0]*u[0] + change[1]*u[1] + change[2]*u[2]);
-    }
-    u[3] = mass;
-    quad_store(&v->node[at], u);
-    return work;
-}
-
-/* A block of nodes, row by row: at the surface and among second velocities many have nothing.
+/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change. At the surface and
+   among second velocities many rows have nothing.
    totals: 0..2 momentum given to the planes, 3 work done on them. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_patch *g = &v->patch[number];
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
+    const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
+    tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
     const uint32_t some = mpm_sum_tiles(v, g, v->tile, sum, dim);
+    for (int n = 0; n < nodes; n += 4) {
+        if (some >> (n >> 2) & 1) continue;
+        mpm_clear(node + n, 4);
+        if (v->old) mpm_clear(v->old + number*nodes + n, 4);
+        if (v->wave) mpm_clear(v->wave + number*nodes + n, 4);
+    }
     if (v->old && some) mpm_sum_tiles(v, g, v->calm, calm, dim);
-    for (int r = 0; r < nodes; r += 4) {
-        if (some >> (r >> 2) & 1) {
-            for (int n = r; n < r + 4; n++)
-                totals[3] += mpm_find_velocity(v, number, n, sum[n], &calm[n], &given, dim);
-            continue;
+    for (int n = 0; n < nodes; n++) {
+        if (!(some >> (n >> 2) & 1)) continue;
+        const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
+        quad u = sum[n]/quad_set(divisor);
+        if (v->old) {
+            quad before = calm[n]/quad_set(divisor);
+            if (v->wave) quad_store(&v->wave[number*nodes + n], before);
+            quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
         }
-        mpm_clear(v->node + number*nodes + r, 4);
-        if (v->old) mpm_clear(v->old + number*nodes + r, 4);
-        if (v->wave) mpm_clear(v->wave + number*nodes + r, 4);
+        if (mass > 0) u = u + fall;
+        if (g->planes && mass > 0) {
+            float after[3] = {u[0], u[1], u[2]};
+            mpm_meet_planes(v, g, n, after, dim);
+            quad change = {u[0] - after[0], u[1] - after[1], u[2] - after[2], 0};
+            given = given + change*quad_set(mass);
+            u = u - change;
+            totals[3] += (double)mass*(change[0]*u[0] + change[1]*u[1] + change[2]*u[2]);
+        }
+        u[3] = mass;
+        quad_store(&node[n], u);
     }
     for (int a = 0; a < 3; a++) totals[a] += given[a];
 }
