@@ -7,8 +7,9 @@
 
 enum { BLOCK = 4, CELL_BITS = 6 };
 
-/* Bits of a key below its block: the cell and, where there may be cuts, the side of the first that the particle
-   remembers. Particles of one cell and side see the same nodes; taken together, they are added up together. */
+/* Bits of a key below its block: the cell and, where there may be cuts, the side of the first that the
+   particle remembers. Particles of one cell and side see the same nodes, and are added up together as long as
+   they follow one another. */
 static int key_bits(const tobi_particles *p) { return CELL_BITS + (p->cuts != NULL); }
 
 static double most_blocks(const tobi_particles *p) { return (double)(UINT64_C(1) << (32 - key_bits(p))); }

@@ -96,8 +96,8 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
     return &g->block[low];
 }
 
-/* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut, which
-   mostly follow one another, share it. */
+/* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut,
+   which mostly follow one another, share it. */
 typedef struct felt {
     const mpm_block *block;            /* NULL = none yet                                          */
     int first[3];                      /* the lowest node, from the node -4 of the block           */

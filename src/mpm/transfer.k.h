@@ -31,7 +31,10 @@ TOBI_FN void mpm_clear_cell(mpm_cell *c)
 }
 
 /* The rows of a tile that something reaches. */
-TOBI_FN uint64_t mpm_all_rows(const mpm_reach *reach) { return reach->rows[0] | reach->rows[1] | reach->rows[2]; }
+TOBI_FN uint64_t mpm_all_rows(const mpm_reach *reach)
+{
+    return reach->rows[0] | reach->rows[1] | reach->rows[2];
+}
 
 /* Notes the rows of the 3 x 3 x 3 nodes from `first` on. Returns those that are new. */
 TOBI_FN uint64_t mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
@@ -302,8 +305,8 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
     }
 }
 
-/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change. At the surface and
-   among second velocities many rows have nothing.
+/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change. At the surface
+   and among second velocities many rows have nothing.
    totals: 0..2 momentum given to the planes, 3 work done on them. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
