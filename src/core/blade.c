@@ -98,7 +98,6 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
     tobi_quaternion_matrix(b->rigid.orientation, turn);
     for (int64_t k = 0; k < b->edge_count; k++) {
         const tobi_blade_edge *e = &b->edge_now[k];
-        double middle[3];
         if (!e->cuts) continue;
         int64_t parts = dimension == 2 ? 1 : (int64_t)ceil(e->length/size*(1 - 1e-12));
         for (int64_t n = 0; n < parts; n++, count++) {
@@ -106,10 +105,10 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
             tobi_blade_piece *p = &out[count];
             p->length = e->length/(double)parts;
             p->number = (int32_t)count;
-            vec3_add_scaled(middle, e->from, dimension == 2 ? 0 : ((double)n + 0.5)*p->length, e->along);
-            if (dimension == 2) middle[2] = 0;
+            vec3_add_scaled(p->rest, e->from, dimension == 2 ? 0 : ((double)n + 0.5)*p->length, e->along);
+            if (dimension == 2) p->rest[2] = 0;
             for (int a = 0; a < 3; a++) {
-                p->middle[a] = b->rigid.position[a] + vec3_dot(turn[a], middle);
+                p->middle[a] = b->rigid.position[a] + vec3_dot(turn[a], p->rest);
                 p->ahead[a] = vec3_dot(turn[a], e->ahead);
                 p->normal[a] = vec3_dot(turn[a], e->normal);
             }
@@ -122,8 +121,11 @@ tobi_status tobi_blade_recall(tobi_body *b, int64_t count, tobi_error *err)
 {
     if (count == b->piece_count) return TOBI_OK;
     free(b->edge_share);
+    free(b->edge_foot);
     b->edge_share = calloc((size_t)count + 1, sizeof *b->edge_share);
-    b->piece_count = b->edge_share ? count : 0;
-    if (b->edge_share) return TOBI_OK;
+    b->edge_foot = malloc((size_t)(count + 1)*sizeof *b->edge_foot);
+    b->piece_count = b->edge_share && b->edge_foot ? count : 0;
+    for (int64_t k = 0; k < b->piece_count; k++) b->edge_foot[k].triangle = -1;
+    if (b->piece_count == count) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
 }

@@ -14,6 +14,7 @@ typedef struct tobi_blade_place {
 /* A piece of the edge in world axes. */
 typedef struct tobi_blade_piece {
     double middle[3];                  /* m, from the domain's corner                             */
+    double rest[3];                    /* m, the same in rest axes about the body's centre        */
     double length;                     /* m; in 2-D 1, per metre of depth                         */
     int32_t number;
     double ahead[3], normal[3];        /* direction of cutting, normal of the cut                 */

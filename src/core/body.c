@@ -402,6 +402,7 @@ void tobi_body_free(tobi_body *b)
     free(b->edge);
     free(b->edge_now);
     free(b->edge_share);
+    free(b->edge_foot);
     tobi_bvh_free(b->rest_bvh);
     memset(b, 0, sizeof *b);
 }
@@ -473,12 +474,15 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
         fastest = fmax(fastest, vec3_dot(b->vertex_velocity[i], b->vertex_velocity[i]));
     }
     *speed = fmax(*speed, sqrt(fastest));
-    if (!prescribed) return TOBI_OK;
+    return TOBI_OK;
+}
+
+void tobi_body_drive_points(tobi_body *b)
+{
     tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
                              (const double (*)[3])b->vertex_velocity, b->piece_velocity);
     gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity);
     divide_by_weight(b, b->point_velocity);
-    return TOBI_OK;
 }
 
 static void swap_vertices(tobi_body *b)
@@ -515,7 +519,7 @@ tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err
     memcpy(old_centre, b->centre, sizeof old_centre);
     memcpy(old_frame, b->frame, sizeof old_frame);
     swap_vertices(b);
-    update_surface(b);
+    if (b->deforms) update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
     for (int a = 0; a < 3; a++) b->info.velocity[a] = (b->centre[a] - old_centre[a])/dt;
     memcpy(b->info.position, b->centre, sizeof b->centre);

@@ -19,6 +19,12 @@ typedef struct tobi_blade_edge {
     int cuts;                        /* 0: tagged without a direction, and at rest             */
 } tobi_blade_edge;
 
+/* What of the mesh is nearest to a piece of the edge, in the rest pose. */
+typedef struct tobi_edge_foot {
+    int32_t triangle;                /* -1: not looked for yet                                 */
+    double  barycentric[3];
+} tobi_edge_foot;
+
 typedef struct tobi_body {
     char name[64];
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
@@ -32,6 +38,7 @@ typedef struct tobi_body {
     double (*edge_share)[3];         /* [piece_count] 1: what each piece of the edge pushed the material with
                                         in the last step, over the most that it can; the mean of all where
                                         there is no material                                   */
+    tobi_edge_foot *edge_foot;       /* [piece_count]                                          */
     int64_t piece_count;
     double contact_cosine;           /* of the angle of contact, in the liquid                 */
     int friction;                    /* tobi_friction                                          */
@@ -45,8 +52,9 @@ typedef struct tobi_body {
     double (*vertex)[3];             /* now                                                    */
     double (*next)[3];               /* at the end of the step                                 */
     double (*vertex_velocity)[3];    /* mean over the step                                     */
-    tobi_bvh *bvh;                   /* of `vertex`; of a free body, as the quadrature points, only
-                                        where tobi_body_place last put it: contact uses rest_bvh */
+    tobi_bvh *bvh;                   /* of `vertex`; of a rigid body, as the quadrature points, only
+                                        where tobi_body_place or tobi_body_bring_surface last put
+                                        it: contact uses rest_bvh */
 
     tobi_surface surface;            /* pieces of the triangles                                */
     double (*piece)[3], (*piece_normal)[3], (*piece_velocity)[3];
@@ -95,7 +103,10 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3]);
-/* Brings the quadrature points and the tree of a free body to its present pose. */
+/* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
+   vertices. */
+void tobi_body_drive_points(tobi_body *b);
+/* Brings the quadrature points and the tree of a rigid body to its present pose. */
 void tobi_body_bring_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);

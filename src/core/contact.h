@@ -79,8 +79,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
 tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_body *b,
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err);
 /* Adds a piece of a blade's edge to the list; full: the share of it that lies in material. */
-tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const tobi_blade_piece *piece,
-                                  double full, const tobi_contact_step *step, tobi_error *err);
+tobi_status tobi_contact_add_edge(tobi_contacts *c, tobi_body *b, const tobi_blade_piece *piece, double full,
+                                  const tobi_contact_step *step, tobi_error *err);
 /* Whether and how fast contacts shall bounce, from the velocities as they are. */
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
 /* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to

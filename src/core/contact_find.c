@@ -142,16 +142,16 @@ static double find_outside(const pose *at, const double x[3], const double local
     return sqrt(square);
 }
 
-/* What the surface moves at the hit besides the body's rigid motion. */
-static void find_deforming(const tobi_body *b, const tobi_bvh_hit *hit, tobi_contact *c)
+/* What the surface moves at a point of a triangle besides the body's rigid motion. */
+static void find_deforming(const tobi_body *b, int32_t triangle, const double barycentric[3], tobi_contact *c)
 {
-    const int32_t *t = b->mesh.triangles[hit->triangle];
+    const int32_t *t = b->mesh.triangles[triangle];
     double turning[3];
     vec3_cross(turning, b->rigid.angular_velocity, c->arm);
     for (int a = 0; a < 3; a++) {
         c->deforming[a] = b->rigid.kind == TOBI_PRESCRIBED ? -b->rigid.velocity[a] - turning[a] : 0;
         for (int k = 0; k < 3 && b->rigid.kind == TOBI_PRESCRIBED; k++)
-            c->deforming[a] += hit->barycentric[k]*b->vertex_velocity[t[k]][a];
+            c->deforming[a] += barycentric[k]*b->vertex_velocity[t[k]][a];
     }
 }
 
@@ -213,7 +213,7 @@ static int touch(const pose *at, const double x[3], const double local[3], tobi_
     if (!(hit.signed_distance < at->reach)) return 0;
     for (int a = 0; a < 3; a++)
         out->normal[a] = b->deforms ? hit.normal[a] : vec3_dot(at->matrix[a], hit.normal);
-    find_deforming(b, &hit, out);
+    find_deforming(b, hit.triangle, hit.barycentric, out);
     return 1;
 }
 
@@ -517,11 +517,22 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
     return TOBI_OK;
 }
 
-tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const tobi_blade_piece *piece,
-                                  double full, const tobi_contact_step *step, tobi_error *err)
+/* Looked for once: a piece does not move in rest axes. */
+static const tobi_edge_foot *find_foot(tobi_body *b, const tobi_blade_piece *piece, double radius)
 {
+    tobi_edge_foot *foot = &b->edge_foot[piece->number];
     tobi_bvh_hit hit;
-    double local[3], turn[3][3];
+    if (foot->triangle >= 0) return foot;
+    if (!tobi_bvh_closest(b->rest_bvh, piece->rest, 0.1*radius, &hit) &&     /* most edges lie on the mesh */
+        !tobi_bvh_closest(b->rest_bvh, piece->rest, INFINITY, &hit)) return NULL;
+    foot->triangle = hit.triangle;
+    memcpy(foot->barycentric, hit.barycentric, sizeof foot->barycentric);
+    return foot;
+}
+
+tobi_status tobi_contact_add_edge(tobi_contacts *c, tobi_body *b, const tobi_blade_piece *piece, double full,
+                                  const tobi_contact_step *step, tobi_error *err)
+{
     TOBI_TRY(make_room(c, c->count + 1, err));
     tobi_contact *k = &c->list[c->count++];
     *k = (tobi_contact){ .particle = -1 - piece->number,
@@ -533,11 +544,7 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, const tobi_body *b, const to
     for (int a = 0; a < 3; a++) k->change[a] *= k->limit;
     vec3_sub(k->arm, piece->middle, b->rigid.position);
     if (b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
-    tobi_quaternion_matrix(b->rigid.orientation, turn);
-    for (int a = 0; a < 3; a++)
-        local[a] = turn[0][a]*k->arm[0] + turn[1][a]*k->arm[1] + turn[2][a]*k->arm[2];
-    if (tobi_bvh_closest(b->rest_bvh, local, 0.1*step->radius, &hit) ||      /* most edges lie on the mesh */
-        tobi_bvh_closest(b->rest_bvh, local, INFINITY, &hit))
-        find_deforming(b, &hit, k);
+    const tobi_edge_foot *foot = find_foot(b, piece, step->radius);
+    if (foot) find_deforming(b, foot->triangle, foot->barycentric, k);
     return TOBI_OK;
 }

@@ -6,10 +6,11 @@
 #include "mpm/grid.h"
 #include "mpm/meet.h"
 
-/* A particle that remembers a cut. */
+/* A particle that remembers a cut. Those with one base node mostly follow one another: a run. */
 typedef struct mpm_voter {
     int32_t base[3], particle;         /* its lowest node                                         */
-    int32_t sides;                     /* of any cut: 1 +, 2 -, 3 both                            */
+    int32_t sides;                     /* of any cut: 1 +, 2 -, 3 both; of the first of a run: of all */
+    int32_t end;                       /* of the first of a run: where it ends                    */
 } mpm_voter;
 
 typedef struct mpm_cut {

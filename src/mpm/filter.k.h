@@ -12,7 +12,7 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_clear_tiles(b, v->calm, number, calm, dim);
-    mpm_copy_tiles(v, b, v->wave, tile, dim);
+    mpm_copy_tiles(v, number, v->wave, tile, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;

@@ -5,7 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 4, KEY_BITS = 6, MOST_BLOCKS = 1 << 26 };
+enum { BLOCK = 4, CELL_BITS = 6 };
+
+/* Bits of a key below its block: the cell and, where there may be cuts, the side of the first that the
+   particle remembers. Particles of one cell and side see the same nodes, and are added up together as long as
+   they follow one another. */
+static int key_bits(const tobi_particles *p) { return CELL_BITS + (p->cuts != NULL); }
+
+static double most_blocks(const tobi_particles *p) { return (double)(UINT64_C(1) << (32 - key_bits(p))); }
 
 static int tile_nodes(const mpm_grid *g) { return (g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8; }
 static int block_nodes(const mpm_grid *g) { return g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D; }
@@ -168,11 +175,11 @@ static tobi_status find_box(mpm_grid *g, const tobi_particles *p, double inverse
         g->count[a] = hi[a] - lo[a] + 3;
         total *= g->count[a];
     }
-    if (total < MOST_BLOCKS) return TOBI_OK;
+    if (total < most_blocks(p)) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED,
-                     "the solids reach over %d x %d x %d blocks of cells; allowed are %d together. "
+                     "the solids reach over %d x %d x %d blocks of cells; allowed are %.0f together. "
                      "Fewer particles astray or a larger spacing help",
-                     g->count[0], g->count[1], g->count[2], MOST_BLOCKS);
+                     g->count[0], g->count[1], g->count[2], most_blocks(p));
 }
 
 static uint32_t block_key(const mpm_grid *g, const int b[3])
@@ -199,19 +206,22 @@ static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse
         find_block(p, i, inverse_cell, home, g->dimension, b);
         for (int a = 0; a < g->dimension && !home; a++)
             cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], inverse_cell)%BLOCK;
-        keys[i] = block_key(g, b) << KEY_BITS | cell;
+        if (p->cuts && !home) cell = cell*2 + (p->cuts[i].c[0].w < 0);
+        keys[i] = block_key(g, b) << key_bits(p) | cell;
     }
 }
 
 /* Blocks of particles from their sorted keys. */
-static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, int64_t n, tobi_exec *x, tobi_error *err)
+static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, const tobi_particles *p, tobi_exec *x,
+                               tobi_error *err)
 {
+    const int bits = key_bits(p);
     int64_t count;
-    TOBI_TRY(list_runs(g, keys, n, KEY_BITS, &count, x, err));
+    TOBI_TRY(list_runs(g, keys, p->count, bits, &count, x, err));
     TOBI_TRY(reserve_blocks(g, count, err));
     #pragma omp parallel for num_threads(x->threads)
     for (int64_t k = 0; k < count; k++) {
-        g->block_key[k] = keys[g->begin[k]] >> KEY_BITS;
+        g->block_key[k] = keys[g->begin[k]] >> bits;
         g->block[k].begin = g->begin[k];
         g->block[k].end = g->begin[k + 1];
         g->block[k].twin = -1;
@@ -302,8 +312,8 @@ tobi_status mpm_grid_sort(mpm_grid *g, tobi_particles *p, double inverse_cell, t
     uint32_t *keys = (uint32_t *)(void *)(order + 2*n), *key_scratch = keys + n;
     find_keys(g, p, inverse_cell, 0, x, keys);
     uint32_t blocks = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
-    tobi_sort_by_key(x, n, blocks << KEY_BITS, keys, order, key_scratch, order_scratch, g->histogram);
-    TOBI_TRY(make_blocks(g, keys, n, x, err));
+    tobi_sort_by_key(x, n, blocks << key_bits(p), keys, order, key_scratch, order_scratch, g->histogram);
+    TOBI_TRY(make_blocks(g, keys, p, x, err));
     size_t room = ((size_t)n*sizeof *order + 63)/64*64;
     tobi_particles_permute(p, order, g->scratch + room, x->threads);
     TOBI_TRY(make_patches(g, x, err));
@@ -316,7 +326,7 @@ tobi_status mpm_grid_restore(mpm_grid *g, tobi_particles *p, tobi_exec *x, tobi_
     TOBI_TRY(reserve_scratch(g, p->count*(int64_t)sizeof(uint32_t), err));
     uint32_t *keys = (uint32_t *)(void *)g->scratch;
     find_keys(g, p, 0, 1, x, keys);
-    TOBI_TRY(make_blocks(g, keys, p->count, x, err));
+    TOBI_TRY(make_blocks(g, keys, p, x, err));
     TOBI_TRY(make_patches(g, x, err));
     return reserve_rest(g, x, err);
 }

@@ -97,93 +97,156 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
     return &g->block[low];
 }
 
+/* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut,
+   which mostly follow one another, share it. */
+typedef struct felt {
+    const mpm_block *block;            /* NULL = none yet                                          */
+    int first[3];                      /* the lowest node, from the node -4 of the block           */
+    mpm_hidden hidden;
+    const uint32_t *node;
+} felt;
+
+static void list_nodes(const mpm_grid *g, const felt *f, uint32_t *node)
+{
+    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int n = 0; n < nodes_each(g); n++) {
+        const int at[3] = {f->first[0] + (three ? n/9 : n/3), f->first[1] + (three ? n/3 : n)%3,
+                           f->first[2] + (three ? n%3 : 0)};
+        const int q = mpm_number_at(&f->hidden, n);
+        const mpm_block *from = q ? &g->block[f->block->twin + q - 1] : f->block;
+        const int64_t patch = from->around[((at[0] >> 2)*3 + (at[1] >> 2))*3 + (three ? at[2] >> 2 : 1)];
+        const int row = (at[0] & 3)*4 + (at[1] & 3);
+        node[n] = (uint32_t)(patch*nodes + (three ? row*4 + (at[2] & 3) : row));
+    }
+}
+
+static int is_felt(const felt *f, const mpm_block *b, const int first[3], const mpm_hidden *hidden)
+{
+    return f->block == b && !memcmp(f->first, first, sizeof f->first) && mpm_is_same(&f->hidden, hidden);
+}
+
 /* Eq. (2b), (2c). */
 static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
                        tobi_exec *x)
 {
     const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
-    const int64_t nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256))
+    felt last = { 0 };
+    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256)) firstprivate(last)
     for (int64_t k = 0; k < t->edge_first; k++) {
-        const int64_t particle = c->list[k].particle;
-        const mpm_block *b = block_of(g, particle);
-        const mpm_hidden hidden = mpm_read_hidden(v, particle, b->levels);
-        const double *at = &v->position[particle].x, reach = -4*c->list[k].depth*v->inverse_cell;
-        double w[3][3] = {{1}, {1}, {1}}, lean[3][3] = {{0}};
-        int block[3][3] = {{0}, {0}, {1}}, inner[3][3] = {{0}};      /* block around, node in it */
-        for (int a = 0; a < dim; a++) {
-            const double place = at[a]*v->inverse_cell;
-            const int base = (int)mpm_spline(place, w[a]), first = base - b->corner[a] + 4;
-            for (int n = 0; n < 3; n++) {
-                lean[a][n] = (base + n - place)*reach*c->list[k].normal[a];
-                block[a][n] = (first + n)/4;
-                inner[a][n] = (first + n)%4;
-            }
-        }
+        const tobi_contact *contact = &c->list[k];
+        const int64_t i = contact->particle;
+        const mpm_block *b = last.block;
+        if (!b || i < b->begin || i >= b->end) b = block_of(g, i);
+        const mpm_hidden hidden = mpm_read_hidden(v, i, b->levels);
+        const double reach = -4*contact->depth*v->inverse_cell;
         uint32_t *node = t->node + k*each;
         float *weight = t->weight + 2*k*each;
-        for (int i = 0, n = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) {
-                const int row = dim == 3 ? (inner[0][i]*4 + inner[1][j])*4 : inner[0][i]*4 + inner[1][j];
-                for (int l = 0; l < deep; l++, n++) {
-                    const int q = mpm_number_at(&hidden, n);
-                    const mpm_block *from = q ? &g->block[b->twin + q - 1] : b;
-                    const int64_t patch = from->around[(block[0][i]*3 + block[1][j])*3 + block[2][l]];
-                    node[n] = (uint32_t)(patch*nodes + row + inner[2][l]);
-                    const double all = w[0][i]*w[1][j]*w[2][l];
-                    weight[2*n] = (float)all;
-                    weight[2*n + 1] = (float)(all*(1 + lean[0][i] + lean[1][j] + lean[2][l]));
-                }
+        double w[3][3] = {{1}, {1}, {1}}, lean[3][3] = {{0}};
+        int first[3] = {0, 0, 0};
+        for (int a = 0; a < dim; a++) {
+            const double place = (&v->position[i].x)[a]*v->inverse_cell;
+            const int base = (int)mpm_spline(place, w[a]);
+            first[a] = base - b->corner[a] + 4;
+            for (int n = 0; n < 3; n++) lean[a][n] = (base + n - place)*reach*contact->normal[a];
+        }
+        if (is_felt(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
+        else {
+            last = (felt){ .block = b, .first = {first[0], first[1], first[2]}, .hidden = hidden };
+            list_nodes(g, &last, node);
+        }
+        last.node = node;
+        for (int m = 0; m < 9; m++)
+            for (int l = 0; l < deep; l++) {
+                const double all = w[0][m/3]*w[1][m%3]*w[2][l];
+                float *to = weight + 2*(deep*m + l);
+                to[0] = (float)all;
+                to[1] = (float)(all*(1 + lean[0][m/3] + lean[1][m%3] + lean[2][l]));
             }
     }
 }
 
 /* The nodes around a place: of all velocities, with their weights. */
 typedef struct mpm_surroundings {
+    int first[3];                      /* the lowest node                                          */
     int64_t place[MPM_VELOCITIES][27]; /* -1 = none                                                */
+    double mass[27];                   /* kg, of all velocities                                    */
     double weight[27];
-    double full;                       /* mass over that of a full cell                            */
+    double full;                       /* kg, by these weights                                     */
 } surroundings;
 
-/* The blocks of nodes that the 3 nodes from `first` along each axis lie in; 0 if one is missing. */
-static int find_patches(const mpm_grid *g, const int first[3], int64_t patch[8])
+/* The blocks of nodes around one place, kept for the next, which mostly has the same. */
+typedef struct region {
+    int low[3], high[3];               /* blocks of the lowest node and of the highest             */
+    int known, complete;               /* complete: 1 if all of them exist                         */
+    int64_t patch[8];
+} region;
+
+/* The blocks of nodes that the 3 nodes from `first` along each axis lie in. */
+static void find_region(const mpm_grid *g, const int first[3], region *r)
 {
-    for (int n = 0; n < 8; n++) {
-        const int step[3] = {n >> 2, n >> 1 & 1, n & 1};
-        int at[3], from = n;
-        for (int a = 0; a < 3; a++) {
-            at[a] = a < g->dimension ? first[a] + 2*step[a] : 0;
-            if (step[a] && (a >= g->dimension || at[a] >> 2 == first[a] >> 2)) from = n & ~(4 >> a);
-        }
-        patch[n] = from < n ? patch[from] : mpm_grid_find_patch(g, at);
-        if (patch[n] < 0) return 0;
+    int same = r->known;
+    for (int a = 0; a < g->dimension; a++) {
+        same &= r->low[a] == first[a] >> 2 && r->high[a] == (first[a] + 2) >> 2;
+        r->low[a] = first[a] >> 2;
+        r->high[a] = (first[a] + 2) >> 2;
     }
-    return 1;
+    if (same) return;
+    r->known = r->complete = 1;
+    for (int n = 0; n < 8 && r->complete; n++) {
+        const int step[3] = {n >> 2, n >> 1 & 1, n & 1};
+        int at[3] = {0, 0, 0}, from = n;
+        for (int a = 0; a < 3; a++) {
+            if (a < g->dimension) at[a] = 4*(step[a] ? r->high[a] : r->low[a]);
+            if (step[a] && (a >= g->dimension || r->low[a] == r->high[a])) from = n & ~(4 >> a);
+        }
+        r->patch[n] = from < n ? r->patch[from] : mpm_grid_find_patch(g, at);
+        r->complete = r->patch[n] >= 0;
+    }
 }
 
-/* 0 if no material is near. */
-static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, double cell_mass,
-                       surroundings *s)
+/* The nodes of s->first, as many velocities of each as `ways`. */
+static void list_around(const mpm_grid *g, const region *r, int ways, surroundings *s)
 {
-    const int dim = g->dimension, each = nodes_each(g), nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    double w[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
-    int first[3] = {0, 0, -1};
-    int64_t patch[8];
-    for (int a = 0; a < dim; a++) first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
-    if (!find_patches(g, first, patch)) return 0;
+    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
+    for (int n = 0; n < nodes_each(g); n++) {
+        const int at[3] = {s->first[0] + (three ? n/9 : n/3), s->first[1] + (three ? n/3 : n)%3,
+                           s->first[2] + (three ? n%3 : 0)};
+        const int far = (at[0] >> 2 != r->low[0])*4 + (at[1] >> 2 != r->low[1])*2 +
+                        (three && at[2] >> 2 != r->low[2]), row = (at[0] & 3)*4 + (at[1] & 3);
+        const mpm_patch *p = &g->patch[r->patch[far]];
+        s->mass[n] = 0;
+        for (int m = 0; m < ways; m++) {
+            const int64_t place = (m ? p->twin + m - 1 : r->patch[far])*nodes +
+                                  (three ? row*4 + (at[2] & 3) : row);
+            const int there = m < 1 << p->levels;
+            s->place[m][n] = there ? place : -1;
+            s->mass[n] += there ? g->node[place].w : 0;
+        }
+    }
+}
+
+/* before: of another place, NULL = none. 0 if no material is near. */
+static int look_around(const mpm_grid *g, const double x[3], double inverse_cell, int ways, region *r,
+                       const surroundings *before, surroundings *s)
+{
+    const int dim = g->dimension, deep = dim == 3 ? 3 : 1;
+    double w[3][3] = {{1}, {1}, {1}};
+    memset(s->first, 0, sizeof s->first);
+    for (int a = 0; a < dim; a++) s->first[a] = (int)mpm_spline(x[a]*inverse_cell, w[a]);
+    find_region(g, s->first, r);
+    if (!r->complete) return 0;
+    if (before && !memcmp(before->first, s->first, sizeof s->first)) {
+        memcpy(s->place, before->place, (size_t)ways*sizeof *s->place);
+        memcpy(s->mass, before->mass, sizeof s->mass);
+    } else {
+        list_around(g, r, ways, s);
+    }
     s->full = 0;
-    for (int n = 0; n < each; n++) {
-        const int i = dim == 3 ? n/9 : n/3, j = dim == 3 ? n/3%3 : n%3, l = dim == 3 ? n%3 : 1;
-        const int at[3] = {first[0] + i, first[1] + j, first[2] + l};
-        const int far[3] = {at[0] >> 2 != first[0] >> 2, at[1] >> 2 != first[1] >> 2,
-                            dim == 3 && at[2] >> 2 != first[2] >> 2};
-        const int inner = ((at[0] & 3)*4 + (at[1] & 3))*(dim == 3 ? 4 : 1) + (dim == 3 ? at[2] & 3 : 0);
-        const int64_t p = patch[far[0]*4 + far[1]*2 + far[2]];
-        s->weight[n] = w[0][i]*w[1][j]*w[2][l];
-        for (int m = 0; m < MPM_VELOCITIES; m++) {
-            const int64_t at = m == 0 ? p : m < 1 << g->patch[p].levels ? g->patch[p].twin + m - 1 : -1;
-            s->place[m][n] = at < 0 ? -1 : at*nodes + inner;
-            if (at >= 0) s->full += s->weight[n]*g->node[s->place[m][n]].w/cell_mass;
+    for (int m = 0, n = 0; m < 9; m++) {
+        const double across = w[0][m/3]*w[1][m%3];
+        for (int l = 0; l < deep; l++, n++) {
+            s->weight[n] = across*w[2][l];
+            s->full += s->weight[n]*s->mass[n];
         }
     }
     return 1;
@@ -206,10 +269,12 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
     TOBI_TRY(tobi_blade_recall(b, count, err));
+    region last = { .known = 0 };
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
-        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->cell_mass, s)) continue;
-        const double full = fmin(1, 2*s->full - 0.5);
+        const surroundings *before = listed > 0 ? s - 1 : NULL;
+        if (!look_around(g, t->piece[k].middle, v->inverse_cell, t->ways, &last, before, s)) continue;
+        const double full = fmin(1, 2*s->full/t->cell_mass - 0.5);
         if (!(full > 0)) continue;
         TOBI_TRY(tobi_contact_add_edge(c, b, &t->piece[k], full, step, err));
         listed++;
@@ -227,16 +292,13 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
         float *weight = t->weight + 2*entry_of(t, k, each);
         double sum = 0;
         for (int n = 0; n < each; n++) {
-            double mass[MPM_VELOCITIES], all = 0;
             for (int m = 0; m < t->ways; m++) {
-                mass[m] = s->place[m][n] < 0 ? 0 : g->node[s->place[m][n]].w;
-                all += mass[m];
+                const int64_t place = s->place[m][n];
+                const double mass = place < 0 ? 0 : g->node[place].w;
+                node[t->ways*n + m] = (uint32_t)(mass > 0 ? place : s->place[0][n]);
+                weight[2*(t->ways*n + m)] = mass > 0 ? (float)(s->weight[n]*mass/s->mass[n]) : 0;
             }
-            for (int m = 0; m < t->ways; m++) {
-                node[t->ways*n + m] = (uint32_t)s->place[mass[m] > 0 ? m : 0][n];
-                weight[2*(t->ways*n + m)] = mass[m] > 0 ? (float)(s->weight[n]*mass[m]/all) : 0;
-            }
-            if (all > 0) sum += s->weight[n];
+            if (s->mass[n] > 0) sum += s->weight[n];
         }
         for (int n = 0; n < t->ways*each; n++) weight[2*n + 1] = weight[2*n] /= (float)sum;
     }

@@ -30,14 +30,32 @@ TOBI_FN void mpm_clear_cell(mpm_cell *c)
     c->hidden = (mpm_hidden){{0}};
 }
 
-/* Notes the rows of the 3 x 3 x 3 nodes from `first` on. */
-TOBI_FN void mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
+/* The rows of a tile that something reaches. */
+TOBI_FN uint64_t mpm_all_rows(const mpm_reach *reach)
+{
+    return reach->rows[0] | reach->rows[1] | reach->rows[2];
+}
+
+/* Notes the rows of the 3 x 3 x 3 nodes from `first` on. Returns those that are new. */
+TOBI_FN uint64_t mpm_note_rows(mpm_reach *reach, int32_t first, const int dim)
 {
     const uint64_t rows = UINT64_C(0x070707) << (dim == 3 ? first >> 3 : first);
+    const uint64_t fresh = rows & ~mpm_all_rows(reach);
     const int z = dim == 3 ? first & 7 : 1;
     reach->rows[0] |= z >= 3 ? rows : 0;
     reach->rows[1] |= z <= 4 ? rows : 0;
     reach->rows[2] |= z == 0 ? rows : 0;
+    return fresh;
+}
+
+/* Clears rows of a tile. */
+TOBI_FN void mpm_clear_rows(tobi_float4 *tile, uint64_t rows, const int dim)
+{
+    for (; rows; rows &= rows - 1) {
+        const int at = tobi_lowest_bit(rows)*(dim == 3 ? 8 : 1);
+        if (dim == 2) tile[at] = (tobi_float4){0, 0, 0, 0};
+        else mpm_clear(tile + at, 8);
+    }
 }
 
 /* Adds the cell's sums to the tile, those of hidden nodes to the twins'. reach: of all; bent: eq. (3b). */
@@ -45,7 +63,7 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *const *tile, int levels, mpm_cell *c, m
                             const int dim, const int bent)
 {
     if (c->first < 0) return;
-    mpm_note_rows(&reach[0], c->first, dim);
+    (void)mpm_note_rows(&reach[0], c->first, dim);
     for (int n = 0; n < 3 && dim == 3 && bent; n++) {
         c->sum[3*n] = row_add(c->sum[3*n], c->across[n]);
         c->sum[3*n + 1] = row_fma(c->across[n], row_set(-2), c->sum[3*n + 1]);
@@ -54,7 +72,8 @@ TOBI_FN void mpm_leave_cell(tobi_float4 *const *tile, int levels, mpm_cell *c, m
     }
     if (levels > 0 && mpm_is_hidden(&c->hidden)) {
         for (int q = 1; q < 1 << levels; q++)
-            if (mpm_part(&c->hidden, q, levels)) mpm_note_rows(&reach[q], c->first, dim);
+            if (mpm_part(&c->hidden, q, levels))
+                mpm_clear_rows(tile[q], mpm_note_rows(&reach[q], c->first, dim), dim);
         mpm_leave_split(tile, levels, c->sum, c->first, &c->hidden, dim);
         for (int r = 0; r < 9; r++) c->sum[r] = row_set(0);
         return;
@@ -133,13 +152,14 @@ TOBI_FN void mpm_clear_tiles(const mpm_block *b, tobi_float4 *tiles, int64_t num
     for (int q = 1; q < 1 << b->levels; q++) out[q] = mpm_clear_tile(tiles, b->twin + q - 1, dim);
 }
 
-/* own: the block's tile, in the making. */
+/* own: the block's tile, in the making. Rows of the twins' tiles are cleared when something reaches them. */
 TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, tobi_float4 *own, mpm_targets *t,
                               const int dim)
 {
     const mpm_block *b = &v->block[number];
+    const int64_t nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
     t->tile[0] = own;
-    for (int q = 1; q < 1 << b->levels; q++) t->tile[q] = mpm_clear_tile(v->tile, b->twin + q - 1, dim);
+    for (int q = 1; q < 1 << b->levels; q++) t->tile[q] = v->tile + (b->twin + q - 1)*nodes;
     mpm_clear_tiles(b, v->old ? v->calm : NULL, number, t->calm, dim);
     t->side = b->levels > 0 ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
 }
@@ -192,7 +212,7 @@ TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, const mpm_tar
 /* Copies the rows of a tile that something reaches. */
 TOBI_FN void mpm_copy_rows(tobi_float4 *to, const tobi_float4 *tile, const mpm_reach *reach, const int dim)
 {
-    for (uint64_t rows = reach->rows[0] | reach->rows[1] | reach->rows[2]; rows; rows &= rows - 1) {
+    for (uint64_t rows = mpm_all_rows(reach); rows; rows &= rows - 1) {
         const int at = tobi_lowest_bit(rows)*(dim == 3 ? 8 : 1);
         if (dim == 2) to[at] = tile[at];
         for (int n = 0; n < 8 && dim == 3; n += 4) row_store(to + at + n, row_load(tile + at + n));
@@ -250,27 +270,26 @@ TOBI_FN uint64_t mpm_rows_at(int x, int y)
 }
 
 /* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
-   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. 0: there is
-   nothing. */
-TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
-                          const int dim)
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. Returns which
+   rows have something, bit n for the nodes 4 n to 4 n + 3. */
+TOBI_FN uint32_t mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
+                               const int dim)
 {
-    int any = 0;
+    uint32_t some = 0;
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) sum[n] = quad_set(0);
     for (int o = 0; o < 27; o++) {
         if (g->cover[o] < 0) continue;
         const int x = o/9, y = o/3%3, z = o%3, count = dim == 2 || z == 2 ? 1 : 3 + z;
         const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*((dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8);
-        uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y);
-        any |= rows != 0;
-        for (; rows; rows &= rows - 1) {
+        for (uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y); rows; rows &= rows - 1) {
             const int row = tobi_lowest_bit(rows), at = 4*((row >> 3) + 4*x - 5) + (row & 7) + 4*y - 5;
             const tobi_float4 *from = dim == 3 ? tile + 8*row + (z == 0 ? 5 : z == 1 ? 1 : 0) : tile + row;
             quad *to = dim == 3 ? sum + 4*at + (z == 2 ? 3 : 0) : sum + at;
+            some |= 1u << (dim == 3 ? at : at >> 2);
             for (int n = 0; n < count; n++) to[n] = to[n] + quad_load(from + n);
         }
     }
-    return any;
+    return some;
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
@@ -286,7 +305,8 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
     }
 }
 
-/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change.
+/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change. At the surface
+   and among second velocities many rows have nothing.
    totals: 0..2 momentum given to the planes, 3 work done on them. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
@@ -295,14 +315,16 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
-    if (!mpm_sum_tiles(v, g, v->tile, sum, dim)) {
-        mpm_clear(node, nodes);
-        if (v->old) mpm_clear(v->old + number*nodes, nodes);
-        if (v->wave) mpm_clear(v->wave + number*nodes, nodes);
-        return;
+    const uint32_t some = mpm_sum_tiles(v, g, v->tile, sum, dim);
+    for (int n = 0; n < nodes; n += 4) {
+        if (some >> (n >> 2) & 1) continue;
+        mpm_clear(node + n, 4);
+        if (v->old) mpm_clear(v->old + number*nodes + n, 4);
+        if (v->wave) mpm_clear(v->wave + number*nodes + n, 4);
     }
-    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, dim);
+    if (v->old && some) mpm_sum_tiles(v, g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
+        if (!(some >> (n >> 2) & 1)) continue;
         const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
         quad u = sum[n]/quad_set(divisor);
         if (v->old) {
@@ -325,23 +347,26 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     for (int a = 0; a < 3; a++) totals[a] += given[a];
 }
 
-/* The nodes around a block, from the node blocks into one tile. Rows along z write a node too many, which the
-   next row corrects; the last one reaches into the eight nodes beyond. */
-TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile,
-                           const int dim)
+/* The nodes around a block, from the node blocks into one tile: the rows that something reaches. Rows along z
+   are read a node too far, so that the one after each is copied, too; the last one reaches into the eight
+   nodes beyond. */
+TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], const mpm_reach *reach,
+                           tobi_float4 *tile, const int dim)
 {
-    for (int x = 3; x < 11; x++)                           /* from the node -4 of the block */
-        for (int y = 3; y < 11; y++, tile += dim == 3 ? 8 : 1) {
-            const int32_t *block = around + 9*(x/4) + 3*(y/4);
-            const tobi_float4 *from = node + (dim == 3 ? 16*(x%4) + 4*(y%4) : 4*(x%4) + y%4);
-            if (dim == 2) {
-                *tile = from[(int64_t)block[1]*MPM_NODES_2D];
-                continue;
-            }
-            tile[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
-            row_store(tile + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
-            row_store(tile + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+    const uint64_t some = mpm_all_rows(reach);
+    for (uint64_t rows = some | some << 1; rows; rows &= rows - 1) {
+        const int at = tobi_lowest_bit(rows), x = (at >> 3) + 3, y = (at & 7) + 3;  /* from the node -4 */
+        const int32_t *block = around + 9*(x >> 2) + 3*(y >> 2);
+        const tobi_float4 *from = node + (dim == 3 ? 16*(x & 3) + 4*(y & 3) : 4*(x & 3) + (y & 3));
+        if (dim == 2) {
+            tile[at] = from[(int64_t)block[1]*MPM_NODES_2D];
+            continue;
         }
+        tobi_float4 *to = tile + 8*at;
+        to[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
+        row_store(to + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
+        row_store(to + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+    }
 }
 
 TOBI_FN void mpm_load_rows(const tobi_float4 *tile, int32_t first, row *g, int dim)
@@ -393,19 +418,21 @@ typedef struct mpm_around {
 } mpm_around;
 
 /* Tiles of all velocities from a layer of nodes. */
-TOBI_FN void mpm_copy_tiles(const mpm_view *v, const mpm_block *b, const tobi_float4 *node, tobi_float4 *tile,
+TOBI_FN void mpm_copy_tiles(const mpm_view *v, int64_t number, const tobi_float4 *node, tobi_float4 *tile,
                             const int dim)
 {
+    const mpm_block *b = &v->block[number];
     for (int q = 0; q < 1 << b->levels; q++, tile += MPM_TILE_3D + 8) {
-        mpm_copy_tile(node, q ? v->block[b->twin + q - 1].around : b->around, tile, dim);
+        const int64_t at = q ? b->twin + q - 1 : number;
+        mpm_copy_tile(node, v->block[at].around, &v->reach[at], tile, dim);
         mpm_clear(tile + (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D), 8);   /* what the last rows read beyond */
     }
 }
 
-TOBI_FN void mpm_copy_nodes(const mpm_view *v, const mpm_block *b, mpm_around *t, const int dim)
+TOBI_FN void mpm_copy_nodes(const mpm_view *v, int64_t number, mpm_around *t, const int dim)
 {
-    mpm_copy_tiles(v, b, v->node, t->now, dim);
-    if (v->old) mpm_copy_tiles(v, b, v->old, t->old, dim);
+    mpm_copy_tiles(v, number, v->node, t->now, dim);
+    if (v->old) mpm_copy_tiles(v, number, v->old, t->old, dim);
 }
 
 /* Eight particles in motion. */
@@ -555,7 +582,7 @@ TOBI_FN void mpm_gather(const mpm_view *view, int64_t number, double *totals, co
     const mpm_block *b = &v.block[number];
     mpm_around around;
     mpm_motion motion;
-    mpm_copy_nodes(&v, b, &around, dim);
+    mpm_copy_nodes(&v, number, &around, dim);
     mpm_begin_motion(&motion);
     if (!v.old && b->levels == 0) mpm_move_block(&v, b, &around, &motion, dim, 1);
     else mpm_move_block(&v, b, &around, &motion, dim, 0);

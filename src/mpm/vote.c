@@ -50,6 +50,15 @@ static void find_faces(mpm_cut *c, const mpm_view *v, int64_t i)
     }
 }
 
+/* The run that begins with voter k of so many in the list. */
+static void join_run(mpm_voter *first, int32_t k, int32_t count)
+{
+    mpm_voter *one = first + 1;
+    for (; one < first + (count - k) && !memcmp(one->base, first->base, sizeof one->base); one++)
+        first->sides |= one->sides;
+    first->end = k + (int32_t)(one - first);
+}
+
 void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension)
 {
     mpm_voter *list = c->voter + b->begin;
@@ -65,6 +74,7 @@ void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t nu
             one->sides |= (v->cuts[i].c[k].w > 0 ? 1 : 0) | (v->cuts[i].c[k].w < 0 ? 2 : 0);
         find_faces(c, v, i);
     }
+    for (int32_t k = 0; k < count; k = list[k].end) join_run(&list[k], k, count);
     c->voters[number] = count;
 }
 
@@ -141,7 +151,7 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0) continue;
         const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
-        for (int32_t k = 0; k < c->voters[p->cover[o]]; k++) {
+        for (int32_t k = 0; k < c->voters[p->cover[o]]; k = list[k].end) {
             const int cell = find_cell(&list[k], p);
             if (cell < 0) continue;
             q->sides[cell] |= list[k].sides;
@@ -207,9 +217,10 @@ int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t pat
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0) continue;
         const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
-        for (int32_t k = 0; k < c->voters[p->cover[o]]; k++) {
+        for (int32_t k = 0; k < c->voters[p->cover[o]]; k = list[k].end) {
             const int cell = find_cell(&list[k], p);
-            if (cell >= 0 && q.near[cell]) vote_particle(c, g, v, p, &q, list[k].particle, votes);
+            for (int32_t n = k; n < list[k].end && cell >= 0 && q.near[cell]; n++)
+                vote_particle(c, g, v, p, &q, list[n].particle, votes);
         }
     }
     for (int n = 0; n < nodes; n++) {

@@ -180,6 +180,7 @@ static tobi_status predict_body(tobi_simulation *s, tobi_body *b, tobi_error *er
 {
     TOBI_TRY(tobi_body_predict(b, s->time, s->dt, &s->body_speed, err));
     if (b->rigid.kind != TOBI_PRESCRIBED) tobi_body_drive(b, b->rigid.velocity, b->rigid.angular_velocity);
+    else if (b->motion) tobi_body_drive_points(b);
     return TOBI_OK;
 }
 
@@ -251,8 +252,9 @@ double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k,
 tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
 {
     for (int k = 0; k < s->body_count; k++) {
-        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
-        if (s->bodies[k].rigid.kind != TOBI_PRESCRIBED) tobi_body_bring_surface(&s->bodies[k]);
+        tobi_body *b = &s->bodies[k];
+        TOBI_TRY(tobi_body_advance(b, s->time + s->dt, s->dt, err));
+        if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_bring_surface(b);
     }
     if (s->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
