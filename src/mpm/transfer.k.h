@@ -270,26 +270,27 @@ TOBI_FN uint64_t mpm_rows_at(int x, int y)
 }
 
 /* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
-   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. Returns which
-   rows have something, bit n for the nodes 4 n to 4 n + 3. */
-TOBI_FN uint32_t mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
-                               const int dim)
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. 0: there is
+   nothing. */
+TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
+                          const int dim)
 {
-    uint32_t some = 0;
+    int any = 0;
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) sum[n] = quad_set(0);
     for (int o = 0; o < 27; o++) {
         if (g->cover[o] < 0) continue;
         const int x = o/9, y = o/3%3, z = o%3, count = dim == 2 || z == 2 ? 1 : 3 + z;
         const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*((dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8);
-        for (uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y); rows; rows &= rows - 1) {
+        uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y);
+        any |= rows != 0;
+        for (; rows; rows &= rows - 1) {
             const int row = tobi_lowest_bit(rows), at = 4*((row >> 3) + 4*x - 5) + (row & 7) + 4*y - 5;
             const tobi_float4 *from = dim == 3 ? tile + 8*row + (z == 0 ? 5 : z == 1 ? 1 : 0) : tile + row;
             quad *to = dim == 3 ? sum + 4*at + (z == 2 ? 3 : 0) : sum + at;
-            some |= 1u << (dim == 3 ? at : at >> 2);
             for (int n = 0; n < count; n++) to[n] = to[n] + quad_load(from + n);
         }
     }
-    return some;
+    return any;
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
@@ -305,8 +306,7 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
     }
 }
 
-/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change. At the surface
-   and among second velocities many rows have nothing.
+/* Momentum of a block of nodes becomes velocity, eq. (12), which gravity and planes change.
    totals: 0..2 momentum given to the planes, 3 work done on them. */
 TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
@@ -315,16 +315,14 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
     quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
-    const uint32_t some = mpm_sum_tiles(v, g, v->tile, sum, dim);
-    for (int n = 0; n < nodes; n += 4) {
-        if (some >> (n >> 2) & 1) continue;
-        mpm_clear(node + n, 4);
-        if (v->old) mpm_clear(v->old + number*nodes + n, 4);
-        if (v->wave) mpm_clear(v->wave + number*nodes + n, 4);
+    if (!mpm_sum_tiles(v, g, v->tile, sum, dim)) {
+        mpm_clear(node, nodes);
+        if (v->old) mpm_clear(v->old + number*nodes, nodes);
+        if (v->wave) mpm_clear(v->wave + number*nodes, nodes);
+        return;
     }
-    if (v->old && some) mpm_sum_tiles(v, g, v->calm, calm, dim);
+    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, dim);
     for (int n = 0; n < nodes; n++) {
-        if (!(some >> (n >> 2) & 1)) continue;
         const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
         quad u = sum[n]/quad_set(divisor);
         if (v->old) {
@@ -347,11 +345,29 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     for (int a = 0; a < 3; a++) totals[a] += given[a];
 }
 
-/* The nodes around a block, from the node blocks into one tile: the rows that something reaches. Rows along z
-   are read a node too far, so that the one after each is copied, too; the last one reaches into the eight
-   nodes beyond. */
-TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], const mpm_reach *reach,
-                           tobi_float4 *tile, const int dim)
+/* The nodes around a block, from the node blocks into one tile. Rows along z write a node too many, which the
+   next row corrects; the last one reaches into the eight nodes beyond. */
+TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile,
+                           const int dim)
+{
+    for (int x = 3; x < 11; x++)                           /* from the node -4 of the block */
+        for (int y = 3; y < 11; y++, tile += dim == 3 ? 8 : 1) {
+            const int32_t *block = around + 9*(x/4) + 3*(y/4);
+            const tobi_float4 *from = node + (dim == 3 ? 16*(x%4) + 4*(y%4) : 4*(x%4) + y%4);
+            if (dim == 2) {
+                *tile = from[(int64_t)block[1]*MPM_NODES_2D];
+                continue;
+            }
+            tile[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
+            row_store(tile + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
+            row_store(tile + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+        }
+}
+
+/* The same of a twin, of whose rows few carry anything: those that something reaches, and, since rows are
+   read a node too far, the one after each. */
+TOBI_FN void mpm_copy_reached(const tobi_float4 *node, const int32_t around[27], const mpm_reach *reach,
+                              tobi_float4 *tile, const int dim)
 {
     const uint64_t some = mpm_all_rows(reach);
     for (uint64_t rows = some | some << 1; rows; rows &= rows - 1) {
@@ -423,8 +439,9 @@ TOBI_FN void mpm_copy_tiles(const mpm_view *v, int64_t number, const tobi_float4
 {
     const mpm_block *b = &v->block[number];
     for (int q = 0; q < 1 << b->levels; q++, tile += MPM_TILE_3D + 8) {
-        const int64_t at = q ? b->twin + q - 1 : number;
-        mpm_copy_tile(node, v->block[at].around, &v->reach[at], tile, dim);
+        const int64_t twin = b->twin + q - 1;
+        if (q == 0) mpm_copy_tile(node, b->around, tile, dim);
+        else mpm_copy_reached(node, v->block[twin].around, &v->reach[twin], tile, dim);
         mpm_clear(tile + (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D), 8);   /* what the last rows read beyond */
     }
 }
