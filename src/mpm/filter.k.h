@@ -1,6 +1,6 @@
 /* What only some runs need: the filter of XPIC, and measuring what transfers cost. */
 #pragma once
-#include "mpm/transfer.k.h"
+#include "mpm/gather.k.h"
 
 /* XPIC, eq. (16): the velocity `wave` goes to the particles and back to the tiles, */
 TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)

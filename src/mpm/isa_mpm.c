@@ -3,6 +3,13 @@
 #include "mpm/filter.k.h"
 #include "mpm/pack.k.h"
 
+/* Kernels over blocks, as tobi_launch wants them. */
+#define MPM_KERNEL(NAME, BODY, DIM)                                                                 \
+    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
+    {                                                                                               \
+        for (int64_t n = begin; n < end; n++) BODY((const mpm_view *)view, n, totals, DIM);         \
+    }
+
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
 
