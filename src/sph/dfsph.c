@@ -187,8 +187,8 @@ static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
 }
 
 /* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
-   without their pull is the new residual; 0 if they are next to nothing. */
-static int hold_pulling(tobi_simulation *s, dfsph *m, const solve *q, double *t)
+   without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
+static int hold_pulling(tobi_simulation *s, dfsph *m, solve *q, double *t)
 {
     const sph_kernels *k = m->kernel;
     double pull[TOBI_TOTALS];
@@ -200,6 +200,7 @@ static int hold_pulling(tobi_simulation *s, dfsph *m, const solve *q, double *t)
     if (q->coupled) tobi_couple_product(s, t);
     m->view.alpha = 1;
     launch(s, m, k->sph_cg_update, t);
+    q->iterations++;
     return 1;
 }
 
