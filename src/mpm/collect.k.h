@@ -36,7 +36,7 @@ TOBI_FN uint64_t mpm_rows_at(int x, int y)
 
 /* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
    of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. frame: the
-   velocity from which the sums are counted, that of the first tile. 0: there is nothing. */
+   velocity from which the sums are counted, that of the first tile, eq. (25). 0: there is nothing. */
 TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
                           quad *frame, const int dim)
 {

@@ -210,7 +210,7 @@ TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane
         lane_store_float4(load->momentum, 1, 8, momentum[0], momentum[1], momentum[2], momentum[3]);
 }
 
-/* What a block's momentum is counted from, m/s, and 0. */
+/* V of eqs. (24) to (26): what a block's momentum is counted from, m/s, and 0. */
 TOBI_FN tobi_float4 mpm_find_frame(const mpm_view *v, const mpm_block *b)
 {
     const tobi_float4 u = v->velocity[b->begin];
