@@ -90,8 +90,8 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
 /* The nodes around a block as its particles feel them, by velocity: velocity, and what replaces their own,
    both less what the block's momentum is counted from, eq. (26); XPIC's second is a difference as it is. */
 typedef struct mpm_around {
-    tobi_float4 frame;
     tobi_float4 now[MPM_VELOCITIES*(MPM_TILE_3D + 8)], old[MPM_VELOCITIES*(MPM_TILE_3D + 8)];
+    tobi_float4 frame;
 } mpm_around;
 
 /* Tiles of all velocities from a layer of nodes, less `frame`. */
