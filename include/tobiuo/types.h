@@ -1,6 +1,6 @@
 /* Definitions: plain structs that say everything about a simulation before it exists.
    Obtain each from its tobi_default_* function, change members, hand it to tobi_world_create and
-   friends. Every member carries its unit, default and range in the tables of src/world/params.c,
+   friends. Every member carries its unit, default and range in the tables of src/world/params*.c,
    which the scene reader, `tobiuo describe`, resolved.json and the documentation all read.
    Strings are borrowed: they must live until the call that takes the definition returns. */
 #ifndef TOBIUO_TYPES_H

@@ -35,24 +35,31 @@ TOBI_FN uint64_t mpm_rows_at(int x, int y)
 }
 
 /* Sums the tiles over a block of nodes: momentum and mass, in the order of `cover`. Counted from the node -4
-   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. 0: there is
-   nothing. */
+   of a block, nodes 4 b .. 4 b + 3 are those of the block at offset b - 1; tiles begin at 3. frame: the
+   velocity from which the sums are counted, that of the first tile, eq. (25). 0: there is nothing. */
 TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_float4 *tiles, quad *sum,
-                          const int dim)
+                          quad *frame, const int dim)
 {
     int any = 0;
+    *frame = quad_set(0);
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) sum[n] = quad_set(0);
     for (int o = 0; o < 27; o++) {
         if (g->cover[o] < 0) continue;
         const int x = o/9, y = o/3%3, z = o%3, count = dim == 2 || z == 2 ? 1 : 3 + z;
         const tobi_float4 *tile = tiles + (int64_t)g->cover[o]*((dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8);
         uint64_t rows = v->reach[g->cover[o]].rows[z] & mpm_rows_at(x, y);
+        const quad own = quad_load(&v->reach[g->cover[o]].frame);
+        if (rows && !any) *frame = own;
+        const quad shift = own - *frame;
         any |= rows != 0;
         for (; rows; rows &= rows - 1) {
             const int row = tobi_lowest_bit(rows), at = 4*((row >> 3) + 4*x - 5) + (row & 7) + 4*y - 5;
             const tobi_float4 *from = dim == 3 ? tile + 8*row + (z == 0 ? 5 : z == 1 ? 1 : 0) : tile + row;
             quad *to = dim == 3 ? sum + 4*at + (z == 2 ? 3 : 0) : sum + at;
-            for (int n = 0; n < count; n++) to[n] = to[n] + quad_load(from + n);
+            for (int n = 0; n < count; n++) {
+                const quad part = quad_load(from + n);
+                to[n] = to[n] + (part + quad_set(part[3])*shift);
+            }
         }
     }
     return any;
@@ -79,23 +86,24 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
-    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0);
-    if (!mpm_sum_tiles(v, g, v->tile, sum, dim)) {
+    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0), frame;
+    if (!mpm_sum_tiles(v, g, v->tile, sum, &frame, dim)) {
         mpm_clear(node, nodes);
         if (v->old) mpm_clear(v->old + number*nodes, nodes);
         if (v->wave) mpm_clear(v->wave + number*nodes, nodes);
         return;
     }
-    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, dim);
+    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
         quad u = sum[n]/quad_set(divisor);
         if (v->old) {
             quad before = calm[n]/quad_set(divisor);
+            if (mass > 0) before = before + frame;
             if (v->wave) quad_store(&v->wave[number*nodes + n], before);
             quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
         }
-        if (mass > 0) u = u + fall;
+        if (mass > 0) u = u + frame + fall;
         if (g->planes && mass > 0) {
             float after[3] = {u[0], u[1], u[2]};
             mpm_meet_planes(v, g, n, after, dim);

@@ -8,11 +8,12 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
     const mpm_block *b = &v->block[number];
     tobi_float4 tile[MPM_VELOCITIES*(MPM_TILE_3D + 8)], *calm[MPM_VELOCITIES];
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
+    const tobi_float4 frame = v->reach[number].frame;
     row g[9];
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
     mpm_clear_tiles(b, v->calm, number, calm, dim);
-    mpm_copy_tiles(v, number, v->wave, tile, dim);
+    mpm_copy_tiles(v, number, v->wave, quad_load(&frame), tile, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -34,13 +35,13 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
 TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    quad sum[MPM_NODES_3D];
+    quad sum[MPM_NODES_3D], frame;
     (void)totals;
-    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3];
         const int64_t at = number*nodes + n;
-        quad u = sum[n]*quad_set(mass > 0 ? 1/mass : 0);
+        quad u = sum[n]*quad_set(mass > 0 ? 1/mass : 0) + (mass > 0 ? frame : quad_set(0));
         quad_store(&v->wave[at], u);
         quad_store(&v->old[at], quad_load(&v->old[at]) - u*quad_set(v->order));
     }
@@ -51,6 +52,7 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
 TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
+    const quad frame = quad_load(&v->reach[number].frame);
     tobi_float4 *calm[MPM_VELOCITIES];
     mpm_clear_tiles(b, v->calm, number, calm, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
@@ -71,7 +73,7 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
             totals[0] += 0.5*mass*square;
             totals[1] += 0.5*mass*keep*keep*square;
             const quad moving = quad_set(mass*keep), cell = quad_set(v->affine_momentum ? v->cell : 0);
-            quad base = quad_load(&v->velocity[i + k])*moving, column[3];
+            quad base = quad_load(&v->velocity[i + k])*moving - frame*quad_set(mass), column[3];
             base[3] = mass;
             for (int c = 0; c < 3; c++) {
                 column[c] = quad_load(&v->affine[i + k].c[c])*cell*moving;
@@ -87,10 +89,11 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
 /* Kinetic energy of a block of nodes into totals[0]: of the calm tiles, */
 TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
-    quad sum[MPM_NODES_3D];
-    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, dim);
+    quad sum[MPM_NODES_3D], frame;
+    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, &frame, dim);
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
-        quad square = sum[n]*sum[n];
+        quad square = sum[n] + quad_set(sum[n][3])*frame;
+        square = square*square;
         if (sum[n][3] > 0) totals[0] += 0.5*(double)(square[0] + square[1] + square[2])/sum[n][3];
     }
 }
@@ -99,13 +102,13 @@ TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, 
 TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D];
-    mpm_sum_tiles(v, &v->patch[number], v->tile, pushed, dim);
-    mpm_sum_tiles(v, &v->patch[number], v->calm, calm, dim);
+    quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D], frame;
+    mpm_sum_tiles(v, &v->patch[number], v->tile, pushed, &frame, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->calm, calm, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         quad u = quad_load(&v->node[number*nodes + n]), square = u*u;
         if (!(u[3] > 0)) continue;
-        quad change = u - calm[n]*quad_set(1/u[3]), stress = u*(pushed[n] - calm[n]);
+        quad change = u - frame - calm[n]*quad_set(1/u[3]), stress = u*(pushed[n] - calm[n]);
         totals[0] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
         square = change*change;
         totals[1] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];

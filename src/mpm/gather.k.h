@@ -2,43 +2,45 @@
 #pragma once
 #include "mpm/collect.k.h"
 
-/* The nodes around a block, from the node blocks into one tile. Rows along z write a node too many, which the
-   next row corrects; the last one reaches into the eight nodes beyond. */
-TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], tobi_float4 *tile,
+/* The nodes around a block, from the node blocks into one tile, less `frame`. Rows along z write a node too
+   many, which the next row corrects; the last one reaches into the eight nodes beyond. */
+TOBI_FN void mpm_copy_tile(const tobi_float4 *node, const int32_t around[27], quad frame, tobi_float4 *tile,
                            const int dim)
 {
+    const row frames = row_repeat(frame);
     for (int x = 3; x < 11; x++)                           /* from the node -4 of the block */
         for (int y = 3; y < 11; y++, tile += dim == 3 ? 8 : 1) {
             const int32_t *block = around + 9*(x/4) + 3*(y/4);
             const tobi_float4 *from = node + (dim == 3 ? 16*(x%4) + 4*(y%4) : 4*(x%4) + y%4);
             if (dim == 2) {
-                *tile = from[(int64_t)block[1]*MPM_NODES_2D];
+                quad_store(tile, quad_load(from + (int64_t)block[1]*MPM_NODES_2D) - frame);
                 continue;
             }
-            tile[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
-            row_store(tile + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
-            row_store(tile + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+            quad_store(tile, quad_load(from + (int64_t)block[0]*MPM_NODES_3D + 3) - frame);
+            row_store(tile + 1, row_sub(row_load(from + (int64_t)block[1]*MPM_NODES_3D), frames));
+            row_store(tile + 5, row_sub(row_load(from + (int64_t)block[2]*MPM_NODES_3D), frames));
         }
 }
 
 /* The same of a twin, of whose rows few carry anything: those that something reaches, and, since rows are
    read a node too far, the one after each. */
 TOBI_FN void mpm_copy_reached(const tobi_float4 *node, const int32_t around[27], const mpm_reach *reach,
-                              tobi_float4 *tile, const int dim)
+                              quad frame, tobi_float4 *tile, const int dim)
 {
+    const row frames = row_repeat(frame);
     const uint64_t some = mpm_all_rows(reach);
     for (uint64_t rows = some | some << 1; rows; rows &= rows - 1) {
         const int at = tobi_lowest_bit(rows), x = (at >> 3) + 3, y = (at & 7) + 3;  /* from the node -4 */
         const int32_t *block = around + 9*(x >> 2) + 3*(y >> 2);
         const tobi_float4 *from = node + (dim == 3 ? 16*(x & 3) + 4*(y & 3) : 4*(x & 3) + (y & 3));
         if (dim == 2) {
-            tile[at] = from[(int64_t)block[1]*MPM_NODES_2D];
+            quad_store(tile + at, quad_load(from + (int64_t)block[1]*MPM_NODES_2D) - frame);
             continue;
         }
         tobi_float4 *to = tile + 8*at;
-        to[0] = from[(int64_t)block[0]*MPM_NODES_3D + 3];
-        row_store(to + 1, row_load(from + (int64_t)block[1]*MPM_NODES_3D));
-        row_store(to + 5, row_load(from + (int64_t)block[2]*MPM_NODES_3D));
+        quad_store(to, quad_load(from + (int64_t)block[0]*MPM_NODES_3D + 3) - frame);
+        row_store(to + 1, row_sub(row_load(from + (int64_t)block[1]*MPM_NODES_3D), frames));
+        row_store(to + 5, row_sub(row_load(from + (int64_t)block[2]*MPM_NODES_3D), frames));
     }
 }
 
@@ -85,28 +87,32 @@ TOBI_FN int mpm_keep_inside(tobi_double3 *x, const mpm_view *v, int dim)
     return out;
 }
 
-/* The nodes around a block as its particles feel them, by velocity: velocity, and what replaces their own. */
+/* The nodes around a block as its particles feel them, by velocity: velocity, and what replaces their own,
+   both less what the block's momentum is counted from, eq. (26); XPIC's second is a difference as it is. */
 typedef struct mpm_around {
     tobi_float4 now[MPM_VELOCITIES*(MPM_TILE_3D + 8)], old[MPM_VELOCITIES*(MPM_TILE_3D + 8)];
+    tobi_float4 frame;
 } mpm_around;
 
-/* Tiles of all velocities from a layer of nodes. */
-TOBI_FN void mpm_copy_tiles(const mpm_view *v, int64_t number, const tobi_float4 *node, tobi_float4 *tile,
-                            const int dim)
+/* Tiles of all velocities from a layer of nodes, less `frame`. */
+TOBI_FN void mpm_copy_tiles(const mpm_view *v, int64_t number, const tobi_float4 *node, quad frame,
+                            tobi_float4 *tile, const int dim)
 {
     const mpm_block *b = &v->block[number];
     for (int q = 0; q < 1 << b->levels; q++, tile += MPM_TILE_3D + 8) {
         const int64_t twin = b->twin + q - 1;
-        if (q == 0) mpm_copy_tile(node, b->around, tile, dim);
-        else mpm_copy_reached(node, v->block[twin].around, &v->reach[twin], tile, dim);
+        if (q == 0) mpm_copy_tile(node, b->around, frame, tile, dim);
+        else mpm_copy_reached(node, v->block[twin].around, &v->reach[twin], frame, tile, dim);
         mpm_clear(tile + (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D), 8);   /* what the last rows read beyond */
     }
 }
 
 TOBI_FN void mpm_copy_nodes(const mpm_view *v, int64_t number, mpm_around *t, const int dim)
 {
-    mpm_copy_tiles(v, number, v->node, t->now, dim);
-    if (v->old) mpm_copy_tiles(v, number, v->old, t->old, dim);
+    const quad frame = quad_load(&v->reach[number].frame);
+    quad_store(&t->frame, frame);
+    mpm_copy_tiles(v, number, v->node, frame, t->now, dim);
+    if (v->old) mpm_copy_tiles(v, number, v->old, frame*quad_set(v->own), t->old, dim);
 }
 
 /* Eight particles in motion. */
@@ -202,13 +208,15 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     row all = mpm_interpolate(plain ? g : felt[0].g, s, k, dim);
     quad u = row_first(all);
     all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
+    u = u + quad_load(&t->frame);
     row_store_others(v->affine + i, row_take_w(row_mul(all, row_spread(factor)), row_spread(home)));
     position->x += (double)u[0]*v->dt;
     position->y += (double)u[1]*v->dt;
     if (dim == 3) position->z += (double)u[2]*v->dt;
     quad_store(&m->moved[k], u);
     if (!plain && v->old) {
-        const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own);
+        const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own) -
+                         quad_load(&t->frame)*quad_set(v->own);
         mpm_find_rows(t->old, levels, s->first[k], &hidden, &felt[1], dim);
         u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(felt[1].g, s, k, dim)));
     }

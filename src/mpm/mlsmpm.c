@@ -3,45 +3,20 @@
    numbers: docs/theory/mlsmpm.md. */
 #include "mpm/mlsmpm.h"
 #include "base/error.h"
-#include "mpm/cut.h"
 #include "mpm/damage.h"
+#include "mpm/energy.h"
 #include "mpm/fields.h"
-#include "mpm/grid.h"
-#include "mpm/kernels.h"
 #include "mpm/material.h"
 #include "mpm/nodes.h"
-#include "mpm/touch.h"
+#include "mpm/state.h"
 #include "tobiuo/types.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What a restart needs besides the particles. */
-enum { SPEED, STRAIN_DT, DRIFT, AGE, START_ENERGY, BODY_WORK, NODE_ENERGY, TRANSFER, CUTS, FRACTURE,
-       FRICTION, DAMPING, SIDES, STEPS, FLOW, MOVED, SQUEEZED, MEMORY };
-
 #define ALL_SIDES(dimension) ((1 << 2*(dimension)) - 1)
 
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
-
-typedef struct mlsmpm {
-    tobi_mlsmpm_def def;
-    mpm_view view;
-    mpm_grid grid;
-    mpm_touch touch;
-    mpm_cut cut;
-    const mpm_kernels *kernels;
-    mpm_material material[TOBI_SOLID_LIMIT + 1];
-    double damping[TOBI_SOLID_LIMIT + 1];
-    double sound;                      /* m/s, the fastest of the materials                        */
-    double liquid_sound;               /* m/s, the slowest of the liquids; infinite: there are none */
-    double viscous_dt;                 /* s                                                        */
-    double cell;                       /* m                                                        */
-    double memory[MEMORY];             /* AGE: steps since the sort, -1 = never sorted             */
-    int built;                         /* blocks fit the particles                                 */
-    int fresh;                         /* 1: they were built in this step                          */
-    int blades;                        /* 1: nodes may have two velocities                         */
-} mlsmpm;
 
 static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
 {
@@ -138,7 +113,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->def = *(const tobi_mlsmpm_def *)def;
     m->cell = m->def.cell*s->smoothing.spacing;
     m->kernels = mpm_kernels_for(s->exec.isa, s->box.dimension);
-    m->memory[AGE] = -1;
+    m->memory.age = -1;
     m->viscous_dt = m->liquid_sound = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
@@ -171,8 +146,8 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
 
 static double choose_dt(const tobi_simulation *s, const mlsmpm *m)
 {
-    const double speed = fmax(m->memory[SPEED], s->body_speed);
-    double dt = mpm_material_dt(s, &m->def, fmax(m->sound, m->memory[SQUEEZED]), speed);
+    const double speed = fmax(m->memory.speed, s->body_speed);
+    double dt = mpm_material_dt(s, &m->def, fmax(m->sound, m->memory.squeezed), speed);
     dt = fmin(fmin(dt, m->viscous_dt), 0.1);
     if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
     if (s->def.time_step > 0) dt = s->def.time_step/ceil(s->def.time_step/dt*(1 - 1e-9));
@@ -201,16 +176,16 @@ static tobi_status accept_solid(const tobi_simulation *s, const void *def, int s
 
 static int is_stale(const mlsmpm *m)
 {
-    return m->memory[AGE] < 0 || m->memory[AGE] >= SORT_AGE || m->memory[DRIFT] > 0.95*m->cell;
+    return m->memory.age < 0 || m->memory.age >= SORT_AGE || m->memory.drift > 0.95*m->cell;
 }
 
 static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_error *err)
 {
-    if (stale || m->memory[MOVED] > MPM_MEET_STALE*m->cell) {
-        mpm_cut_mark(s, &m->view, &m->memory[CUTS]);
+    if (stale || m->memory.moved > MPM_MEET_STALE*m->cell) {
+        mpm_cut_mark(s, &m->view, &m->memory.cuts);
         s->contacts.marked = 1;
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
-        m->memory[MOVED] = 0;
+        m->memory.moved = 0;
     } else if (m->cut.rows) {
         TOBI_TRY(mpm_cut_recall(&m->cut, s, &m->grid, &m->view, err));
     }
@@ -242,7 +217,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     const int stale = is_stale(m);
     if (stale) {
         TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
-        m->memory[AGE] = m->memory[DRIFT] = 0;
+        m->memory.age = m->memory.drift = 0;
     } else if (!m->built) {
         TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->exec, err));
     }
@@ -252,7 +227,7 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
             m->grid.patch[k].planes = meets_planes(s, m, &m->grid.patch[k]);
     if (m->blades) {
         const tobi_status status = find_cuts(s, m, stale, err);
-        if (status != TOBI_OK) m->memory[AGE] = SORT_AGE;  /* there may be no room left for the blocks */
+        if (status != TOBI_OK) m->memory.age = SORT_AGE;  /* there may be no room left for the blocks */
         TOBI_TRY(status);
     }
     m->built = 1;
@@ -284,44 +259,20 @@ static double dither(const tobi_simulation *s, double speed)
 
 static void use_dt(const tobi_simulation *s, mlsmpm *m)
 {
-    const double shift = dither(s, m->memory[SPEED]);
+    const double shift = dither(s, m->memory.speed);
     for (int a = 0; a < s->box.dimension; a++)
         m->view.fall[a] = (float)(s->def.gravity[a] != 0 ? s->def.gravity[a]*s->dt + shift : 0);
     m->view.dt = (float)s->dt;
-    m->view.strain_dt = (float)m->memory[STRAIN_DT];
+    m->view.strain_dt = (float)m->memory.strain_dt;
     for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);
 }
-
-/* Blocks of nodes, those of second velocities included. */
-static int64_t count_patches(const mlsmpm *m) { return m->grid.patch_count + m->grid.patch_twins; }
 
 static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
     tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
-    m->memory[DAMPING] += t[0];
+    m->memory.damping += t[0];
     tobi_stage_end(&s->stages, "to grid", clock);
-}
-
-/* What the way to the grid takes from the kinetic energy, stress aside, and what the way back of the last
-   step took: nodes have what they have, particles what arrives. */
-static void measure_way_to_grid(tobi_simulation *s, mlsmpm *m)
-{
-    double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
-    if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
-    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, count_patches(m), arrived);
-    if (s->step > 0) m->memory[TRANSFER] += m->memory[NODE_ENERGY] - came[0];
-    m->memory[TRANSFER] += came[1] - arrived[0];
-}
-
-static void measure_nodes(tobi_simulation *s, mlsmpm *m)
-{
-    double t[TOBI_TOTALS];
-    if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, count_patches(m), t);
-    m->memory[NODE_ENERGY] = t[0];
-    m->memory[STEPS] += t[1];
 }
 
 /* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
@@ -333,9 +284,9 @@ static void filter_velocity(tobi_simulation *s, mlsmpm *m)
         share *= -(m->def.xpic_order - k + 1.0)/k;
         m->view.order = (float)share;
         tobi_launch_each(&s->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
-        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, count_patches(m), NULL);
+        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, mpm_count_patches(m), NULL);
     }
-    if (m->def.measure_transfer)           /* the filter has used the tiles that measure_nodes reads */
+    if (m->def.measure_transfer)           /* the filter has used the tiles that mpm_energy_add_nodes reads */
         tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, NULL);
 }
 
@@ -343,11 +294,11 @@ static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
     m->view.order = (float)m->def.xpic_order;
-    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, count_patches(m), t);
+    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, mpm_count_patches(m), t);
     filter_velocity(s, m);
     if (m->blades) mpm_cut_meet(&m->cut, &s->exec, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
-    m->memory[SIDES] += t[3];
+    m->memory.sides += t[3];
     tobi_stage_end(&s->stages, "grid", clock);
 }
 
@@ -357,10 +308,10 @@ static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
     tobi_launch_each(&s->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
     s->info.contacts += (int64_t)t[0];
     s->info.put_back += (int64_t)t[0];
-    s->info.speed_max = m->memory[SPEED] = sqrt(t[6]);
-    m->memory[DRIFT] += t[7];
-    m->memory[MOVED] += t[7] + s->body_speed*s->dt;
-    m->memory[STRAIN_DT] = s->dt;
+    s->info.speed_max = m->memory.speed = sqrt(t[6]);
+    m->memory.drift += t[7];
+    m->memory.moved += t[7] + s->body_speed*s->dt;
+    m->memory.strain_dt = s->dt;
     tobi_stage_end(&s->stages, "to particles", clock);
 }
 
@@ -368,16 +319,16 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
 {
     double g = 0;
     for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
-    double way = (m->memory[SPEED] + s->body_speed + sqrt(g)*s->dt)*s->dt;
+    double way = (m->memory.speed + s->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
-        .dt = s->dt, .before = m->memory[STRAIN_DT], .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
+        .dt = s->dt, .before = m->memory.strain_dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
-    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory[DRIFT],
+    TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory.drift,
                               err));
-    m->memory[DRIFT] += m->touch.far;
-    m->memory[FRACTURE] += m->touch.work.fracture;
-    m->memory[FRICTION] += m->touch.work.friction;
-    m->memory[BODY_WORK] += m->touch.work.bodies;
+    m->memory.drift += m->touch.far;
+    m->memory.fracture += m->touch.work.fracture;
+    m->memory.friction += m->touch.work.friction;
+    m->memory.body_work += m->touch.work.bodies;
     tobi_stage_end(&s->stages, "contact", clock);
     return TOBI_OK;
 }
@@ -390,52 +341,14 @@ static tobi_status move_bodies(tobi_simulation *s, double *clock, tobi_error *er
     return TOBI_OK;
 }
 
-/* The view of reading: strain lags by the last step. */
-static mpm_view look_back(const mlsmpm *m)
-{
-    mpm_view v = m->view;
-    v.strain_dt = (float)m->memory[STRAIN_DT];
-    return v;
-}
-
 /* How fast sound is where a liquid is squeezed, for the next step. What moves slower than 0.3 of the speed of
    sound does not squeeze it that much, so that calm liquids do not pay for the look. */
 static void measure_squeeze(tobi_simulation *s, mlsmpm *m)
 {
-    const double speed = fmax(m->memory[SPEED], s->body_speed);
-    if (speed < 0.3*m->liquid_sound && m->memory[SQUEEZED] <= m->sound) return;
-    const mpm_view v = look_back(m);
-    m->memory[SQUEEZED] = mpm_material_squeezed_sound(s, &v);
-}
-
-/* totals: elastic energy, kinetic, potential; spent on cracks. */
-static void sum_energy(const void *view, int64_t begin, int64_t end, double *totals)
-{
-    const mpm_view *v = view;
-    for (int64_t i = begin; i < end; i++) {
-        const double mass = v->strain[i].c[2].w;
-        totals[0] += mpm_look(v, i).energy;
-        totals[1] += mpm_kinetic(v, i);
-        totals[3] += mpm_damage_spent(v, i);
-        for (int a = 0; a < 3; a++) totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
-    }
-}
-
-/* The energy of all solids, J; t as in sum_energy. */
-static double find_energy(tobi_simulation *s, const mlsmpm *m, double t[TOBI_TOTALS])
-{
-    const mpm_view v = look_back(m);
-    tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
-    return t[0] + t[1] + t[2];
-}
-
-static void measure_flow(tobi_simulation *s, mlsmpm *m)
-{
-    const mpm_view v = look_back(m);
-    double t[TOBI_TOTALS];
-    if (!m->def.measure_transfer) return;
-    tobi_launch(&s->exec, mpm_sum_flow, &v, 0, s->particles.count, t);
-    m->memory[FLOW] += t[0];
+    const double speed = fmax(m->memory.speed, s->body_speed);
+    if (speed < 0.3*m->liquid_sound && m->memory.squeezed <= m->sound) return;
+    const mpm_view v = mpm_look_back(m);
+    m->memory.squeezed = mpm_material_squeezed_sound(s, &v);
 }
 
 static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
@@ -451,16 +364,11 @@ static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
 static void remove_leavers(tobi_simulation *s, mlsmpm *m)
 {
     tobi_particles *p = &s->particles;
-    const mpm_view v = look_back(m);
+    const mpm_view v = mpm_look_back(m);
     int64_t kept = 0;
     for (int64_t i = 0; i < p->count; i++) {
         if (is_beyond(s, &p->position[i])) {
-            double t[4] = {0, 0, 0, 0};
-            sum_energy(&v, i, i + 1, t);
-            m->memory[START_ENERGY] -= t[0] + t[1] + t[2];
-            m->memory[STEPS] -= t[0] + t[3];
-            m->memory[FRACTURE] += t[3];
-            m->memory[NODE_ENERGY] -= t[1];
+            mpm_energy_drop(m, &v, i);
             continue;
         }
         if (kept < i) tobi_particles_copy(p, i, kept);
@@ -473,26 +381,26 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
 static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
 {
     mlsmpm *m = state;
-    double clock = tobi_clock(), t[TOBI_TOTALS];
+    double clock = tobi_clock();
     s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
     TOBI_TRY(predict_bodies(s, &clock, err));
-    if (s->particles.count > 0 && m->memory[AGE] < 0)
-        m->memory[START_ENERGY] = find_energy(s, m, t);
+    if (s->particles.count > 0 && m->memory.age < 0)
+        mpm_energy_start(s, m);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     if (s->particles.count > 0) {
         TOBI_TRY(sort_particles(s, m, &clock, err));
         particles_to_grid(s, m, &clock);
-        measure_way_to_grid(s, m);
+        mpm_energy_add_transfer(s, m);
         solve_grid(s, m, &clock);
         TOBI_TRY(touch_bodies(s, m, &clock, err));
-        if (m->blades) m->memory[FRICTION] += mpm_cut_settle(&m->cut, &s->exec, &m->grid, s->dt);
-        measure_nodes(s, m);
+        if (m->blades) m->memory.friction += mpm_cut_settle(&m->cut, &s->exec, &m->grid, s->dt);
+        mpm_energy_add_nodes(s, m);
         grid_to_particles(s, m, &clock);
-        measure_flow(s, m);
+        mpm_energy_add_flow(s, m);
         measure_squeeze(s, m);
         tobi_contact_shift(&s->contacts, &s->particles);
-        m->memory[AGE]++;
+        m->memory.age++;
     }
     TOBI_TRY(move_bodies(s, &clock, err));
     s->time += s->dt;
@@ -503,7 +411,7 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
 
 static void read_field(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out)
 {
-    const mpm_view v = look_back(state);
+    const mpm_view v = mpm_look_back(state);
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "material")) {
         out[0] = p->fluid[i];
@@ -519,31 +427,15 @@ static void read_field(const tobi_simulation *s, const void *state, const char *
 
 static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err)
 {
-    const mpm_view v = look_back(state);
+    const mpm_view v = mpm_look_back(state);
     return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
-}
-
-static void measure(tobi_simulation *s, const void *state)
-{
-    const mlsmpm *m = state;
-    double t[TOBI_TOTALS], energy = find_energy(s, m, t);
-    s->info.elastic_energy = t[0];
-    s->info.energy_lost = m->memory[AGE] < 0 ? 0 : m->memory[START_ENERGY] + m->memory[BODY_WORK] - energy;
-    s->info.work_bodies = m->memory[BODY_WORK];
-    s->info.fracture_work = m->memory[FRACTURE] + t[3];
-    s->info.friction_work = m->memory[FRICTION];
-    s->info.damping_work = m->memory[DAMPING];
-    s->info.side_work = m->memory[SIDES];
-    s->info.plastic_work = m->memory[FLOW];
-    if (!m->def.measure_transfer || s->step == 0) return;
-    s->info.transfer_dissipation = m->memory[TRANSFER] + m->memory[NODE_ENERGY] - t[1];
-    s->info.step_work = m->memory[STEPS] - m->memory[FLOW] - t[0] - t[3];
 }
 
 static int list_memory(void *state, double **values)
 {
-    *values = ((mlsmpm *)state)->memory;
-    return MEMORY;
+    mpm_memory *memory = &((mlsmpm *)state)->memory;
+    *values = &memory->speed;
+    return (int)(sizeof *memory/sizeof memory->speed);
 }
 
 static tobi_status keep_rows(const tobi_simulation *s, const void *state, double **rows, int64_t *count,
@@ -589,7 +481,7 @@ const tobi_method tobi_mlsmpm = {
     .accept = accept_solid,
     .stable_dt = limit_dt,
     .nodes = find_nodes,
-    .measure = measure,
+    .measure = mpm_energy_tell,
     .memory = list_memory,
     .keep = keep_rows,
     .recall = recall_rows,

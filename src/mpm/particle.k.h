@@ -210,9 +210,16 @@ TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane
         lane_store_float4(load->momentum, 1, 8, momentum[0], momentum[1], momentum[2], momentum[3]);
 }
 
-/* Returns the kinetic energy that damping takes, J. */
-TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, const mpm_stencil *at, const int dim,
-                             mpm_load *load)
+/* V of eqs. (24) to (26): what a block's momentum is counted from, m/s, and 0. */
+TOBI_FN tobi_float4 mpm_find_frame(const mpm_view *v, const mpm_block *b)
+{
+    const tobi_float4 u = v->velocity[b->begin];
+    return (tobi_float4){u.x, u.y, u.z, 0};
+}
+
+/* frame: see mpm_reach. Returns the kinetic energy that damping takes, J. */
+TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, const mpm_stencil *at,
+                             const tobi_float4 *frame, const int dim, mpm_load *load)
 {
     const int32_t next[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     lane velocity[4], momentum[4], gradient[9], e[9], other[3], unused[3], tau[6], keep;
@@ -227,7 +234,7 @@ TOBI_FN double mpm_find_load(const mpm_view *v, int64_t i, int count, const mpm_
     mpm_find_stress(&m, model, present, gradient, e, &other[1], tau);
     mpm_store_columns(v->strain + i, count, e, other);
     const lane mass = other[2], moving = mass*keep;
-    for (int a = 0; a < 3; a++) momentum[a] = moving*velocity[a];
+    for (int a = 0; a < 3; a++) momentum[a] = mass*(keep*velocity[a] - (&frame->x)[a]);
     momentum[3] = mass;
     mpm_store_load(v, at, tau, gradient, momentum,
                    other[0]*(float)(-4.0*v->dt*v->inverse_cell*v->inverse_cell),

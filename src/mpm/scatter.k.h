@@ -176,12 +176,13 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_ta
     double taken = 0;
     mpm_cell cell;
     mpm_clear_cell(&cell);
+    const tobi_float4 frame = reach->frame;
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
         mpm_load load;
         mpm_find_stencil(v, b, i, dim, &s);
-        taken += mpm_find_load(v, i, count, &s, dim, &load);
+        taken += mpm_find_load(v, i, count, &s, &frame, dim, &load);
         for (int k = 0; k < count; k++) {
             mpm_hidden hidden = {{0}};
             if (levels > 0) hidden = mpm_find_hidden(v, i + k, t->side, levels, s.first[k], dim);
@@ -227,9 +228,10 @@ TOBI_FN void mpm_scatter(const mpm_view *view, int64_t number, double *totals, c
     const int nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
     tobi_float4 tile[MPM_TILE_3D + 8];
     mpm_targets targets;
-    mpm_reach reach[MPM_VELOCITIES] = {{{0, 0, 0}}};       /* of the tile and its twins */
+    mpm_reach reach[MPM_VELOCITIES] = {{{0, 0, 0}, {0, 0, 0, 0}}};     /* of the tile and its twins */
     mpm_clear(tile, nodes);
     mpm_find_targets(&v, number, tile, &targets, dim);
+    for (int q = 0; q < 1 << b->levels; q++) reach[q].frame = mpm_find_frame(&v, b);
     totals[0] += v.bent ? mpm_add_kind(&v, b, &targets, reach, dim, 1) :
                           mpm_add_kind(&v, b, &targets, reach, dim, 0);
     v.reach[number] = reach[0];

@@ -58,8 +58,9 @@ typedef struct mpm_patch {
 
 /* Rows of a tile, bit 8 x + y, in which a node carries something: of the nodes 4 to 6, 0 to 3 and -1 along z,
    which belong to the node blocks after, of and before the tile's; in 2-D, where they lie along nothing, of
-   all. The other rows of a tile are not written. */
-typedef struct mpm_reach { uint64_t rows[3]; } mpm_reach;
+   all. The other rows of a tile are not written. frame: the velocity from which the tile's momentum is
+   counted, m/s, and 0: V of eqs. (24) to (26). */
+typedef struct mpm_reach { uint64_t rows[3]; tobi_float4 frame; } mpm_reach;
 
 /* A half space that material may not enter: n . x < offset. x from the domain's lower corner. */
 typedef struct mpm_plane {

@@ -1,5 +1,6 @@
 /* The parameter tables of every definition struct in tobiuo/types.h: the only place that says a
-   member's scene key, unit, default, range and sentence.
+   member's scene key, unit, default, range and sentence. The world's is in params.c, the others are in
+   params_methods.c, params_matter.c, params_bodies.c and params_output.c.
 
    Conventions of the rows, on top of base/param.h:
    - A key with dots is a key of a nested object in a scene: "domain.min" is domain: { min: ... }.

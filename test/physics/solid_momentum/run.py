@@ -11,8 +11,7 @@ mlsmpm in 2-D and 3-D, every step an output. Sides: an elastic block is thrown a
 and slip sides, falls, bounces and slides: momentum P changes by (m g - W) dt, W the force on the sides. Body: the block flies
 without gravity against a free body half as heavy: what the solid loses the body has. Scale: the sum of |F| dt, F weight and
 force on the sides, or the force on the body. Forces and momentum come with 9 digits, sums of float.
-What the body case misses is lost in flight, 1e-8 of the solid's momentum in a step, not in contact, whose 200 steps change the sum by 1.2e-7 of what
-goes over: a lattice has its particles at the same places in all cells, where weights round alike.""")
+A lattice has its particles at the same places in all cells, where sums round alike: they are sums of what differs from the velocity of a block.""")
 
 
 STEP = 2.5e-4      # s, below every limit, so that each step is an output
@@ -79,8 +78,6 @@ for dim in (2, 3):
     case.hold(f"body, {dim}-D: they met", moved > 0.1*1000*0.2**dim*2)
     case.figure(f"body, {dim}-D: solid and body together, change over what went over", error/moved, "<= 1e-6", error/moved <= 1e-6)
 case.plot("Largest error of the balance up to a time, over the sum of |F| dt", "t, s", "1", curves)
-# Float sums over some thousand particles, hundreds of steps of 6e-8 each: at sides they cancel. The lattice that flies
-# freely against the body has its particles at the same places in all cells, which round alike.
-case.hold("sides within 1e-6", max(found[:-2]) <= 1e-6)
-case.hold("all within 1e-5", max(found) <= 1e-5)
+# Float sums over some thousand particles, hundreds of steps of 6e-8 each, which cancel.
+case.hold("all within 1e-6", max(found) <= 1e-6)
 case.finish()

@@ -1,0 +1,104 @@
+/* Parameters of bodies and planes. */
+#include "world/params_rows.h"
+
+static const tobi_param body_rows[] = {
+    { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body",
+      .required = true,
+      .doc = "Name of the body, used once in a scene and in the names of its files." },
+    { .key = "mesh", TEXT, AT(tobi_body_def, mesh), .unit = "path",
+      .doc = "The body's closed surface (OBJ, STL or PLY); a body has either a mesh or a box." },
+    { .key = "box.min", VEC3, AT(tobi_body_def, box_min), ANY, .unit = "m",
+      .doc = "Lower corner of a plain box, instead of a mesh." },
+    { .key = "box.max", VEC3, AT(tobi_body_def, box_max), ANY, .unit = "m",
+      .doc = "Upper corner of the box; scale, rotation and translation apply to it as to a mesh." },
+    { .key = "scale", VEC3, AT(tobi_body_def, scale), .def = { 1, 1, 1 }, POSITIVE, .unit = "1",
+      .doc = "Size factor, one number or one per axis, about the mesh's own origin, applied "
+             "first." },
+    { .key = "rotation.axis", VEC3, AT(tobi_body_def, rotation_axis), .def = { 0, 0, 1 }, ANY,
+      .unit = "1", .doc = "Direction that the mesh is turned about, applied second." },
+    { .key = "rotation.angle", REAL, AT(tobi_body_def, rotation_angle), ANY, .unit = "degrees",
+      .doc = "Angle of that turn, by the right-hand rule." },
+    { .key = "translation", VEC3, AT(tobi_body_def, translation), ANY, .unit = "m",
+      .doc = "Where the origin of the mesh is put, applied last." },
+    { .key = "density", REAL, AT(tobi_body_def, density), .def = { 1000 }, POSITIVE,
+      .unit = "kg/m3", .doc = "Density of the body, for its mass and inertia." },
+    { .key = "spacing", REAL, AT(tobi_body_def, spacing), FROM(0), .unit = "m", .text = "fluid",
+      .doc = "Distance between the body's own particles, whatever the fluid's; fluid takes that of "
+             "the fluid." },
+    { .key = "friction", CHOICE("slip|no-slip", 2), AT(tobi_body_def, friction),
+      .doc = "Whether the fluid slips along the body or sticks to it, rubbing as a turbulent layer where the "
+             "spacing is too coarse for the layer at the surface." },
+    { .key = "contact_angle", REAL, AT(tobi_body_def, contact_angle), .def = { 90 },
+      RANGE(10, 170), .unit = "degrees",
+      .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },
+    { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
+      .doc = "Whether pictures show the body." },
+    { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
+      .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body." },
+    { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
+      .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
+             "program." },
+    { .key = "mass", REAL, AT(tobi_body_def, mass), POSITIVE, .unit = "kg", .text = "by density",
+      .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
+    { .key = "inertia", VEC3, AT(tobi_body_def, inertia), FROM(0), .unit = "kg m2", .text = "mesh",
+      .doc = "Entries xx, yy, zz of the inertia matrix about the centre of mass, in the axes of the domain "
+             "as the body starts; no principal moment may be larger than the sum of the other two. mesh "
+             "takes that of the mesh, for the mass it has." },
+    { .key = "inertia_products", VEC3, AT(tobi_body_def, inertia_products), ANY, .unit = "kg m2",
+      .doc = "Entries xy, xz, yz of a given inertia matrix." },
+    { .key = "velocity", VEC3, AT(tobi_body_def, velocity), ANY, .unit = "m/s",
+      .doc = "Velocity of the centre of mass of a free or controlled body at the start." },
+    { .key = "angular_velocity", VEC3, AT(tobi_body_def, angular_velocity), ANY, .unit = "rad/s",
+      .doc = "Its angular velocity at the start." },
+    { .key = "force", VEC3, AT(tobi_body_def, force), ANY, .unit = "N",
+      .doc = "Constant force on its centre of mass, besides gravity." },
+    { .key = "torque", VEC3, AT(tobi_body_def, torque), ANY, .unit = "N m",
+      .doc = "Constant torque on it." },
+    { .key = "air_resistance", REAL, AT(tobi_body_def, air_resistance), FROM(0), .unit = "1/s",
+      .text = "none", .doc = "Its velocity and its angular momentum decay like exp(-air_resistance t)." },
+    { .key = "restitution", REAL, AT(tobi_body_def, restitution), RANGE(0, 1), .unit = "1",
+      .doc = "Speed after over speed before a collision; of two bodies the larger value counts, against a "
+             "side of the domain, a plane or a solid of mlsmpm the body's alone." },
+    { .key = "friction_coefficient", REAL, AT(tobi_body_def, friction_coefficient), .def = { 0.5 }, FROM(0),
+      .unit = "1",
+      .doc = "Coulomb friction; of two bodies, and of a body with a separate plane, the square root of the "
+             "product counts, against a side of the domain or a solid of mlsmpm the body's alone." },
+    { .key = "blade", BOOL, AT(tobi_body_def, blade),
+      .doc = "Whether the body's edge cuts solids of mlsmpm; what is cut stays cut." },
+    { .key = "edge_resistance", REAL, AT(tobi_body_def, edge_resistance), FROM(0), .unit = "J/m2",
+      .doc = "Energy that the edge of a blade takes for each square metre that it cuts; apple 250." },
+    { .key = "edge_angle", REAL, AT(tobi_body_def, edge_angle), .def = { 60 }, RANGE(1, 120),
+      .unit = "degrees",
+      .doc = "The edge of a blade is where its faces meet at this angle or a sharper one; a rounding or flat "
+             "up to a quarter of the blade's mean thickness counts as the edge." },
+    { .key = "edge_start", VEC3, AT(tobi_body_def, edge_start), ANY, .unit = "m",
+      .doc = "One end of a straight edge that cuts in every direction, as the body starts, instead of the "
+             "edge found in the mesh: for a wire. In 2-D the edge is this point." },
+    { .key = "edge_end", VEC3, AT(tobi_body_def, edge_end), ANY, .unit = "m",
+      .doc = "The other end of that edge." },
+    { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
+      .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a "
+             "free or controlled body does not move, with commas between: \"x,y,turn\"." },
+    { 0 }
+};
+
+const tobi_param_table tobi_body_table = {
+    "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
+    sizeof(tobi_body_def), body_rows };
+
+static const tobi_param plane_rows[] = {
+    { .key = "point", VEC3, AT(tobi_plane_def, point), ANY, .unit = "m", .required = true,
+      .doc = "Any point of the plane, in the domain." },
+    { .key = "normal", VEC3, AT(tobi_plane_def, normal), ANY, .unit = "1", .required = true,
+      .doc = "Direction out of the plane, of any length; what lies behind is closed to solids and bodies." },
+    { .key = "kind", CHOICE("separate|slip|no-slip", 3), AT(tobi_plane_def, kind),
+      .doc = "What solids may do at it: separate and slide with friction, slip along it, stick to it. Bodies "
+             "always separate; slip is without friction for them, no-slip has theirs." },
+    { .key = "friction", REAL, AT(tobi_plane_def, friction), FROM(0), .unit = "1", .text = "none",
+      .doc = "Coulomb friction of a \"separate\" plane; with a body the square root of the product counts." },
+    { 0 }
+};
+
+const tobi_param_table tobi_plane_table = {
+    "plane", "An entry of planes: a fixed plane in the domain, for solids of mlsmpm and for bodies.",
+    sizeof(tobi_plane_def), plane_rows };

@@ -1,0 +1,113 @@
+/* Parameters of the methods. */
+#include "world/params_rows.h"
+
+/* Of every SPH method. */
+#define SMOOTHING(type_)                                                              \
+    { .key = "kernel", CHOICE("wendland-c2|cubic-spline", 2), AT(type_, kernel),      \
+      .doc = "Smoothing kernel." },                                                   \
+    { .key = "support", REAL, AT(type_, support), RANGE(2, 4), .unit = "spacings",      \
+      .text = "automatic",                                                            \
+      .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate. Automatic is 2; dfsph "      \
+             "takes 2.5 where liquid fills the domain and a body or a side moves." }
+
+static const tobi_param dfsph_rows[] = {
+    SMOOTHING(tobi_dfsph_def),
+    { .key = "density_tolerance", REAL, AT(tobi_dfsph_def, density_tolerance), .def = { 5e-4 },
+      .min = 0, .max = 0.1, .positive = true, .unit = "1",
+      .doc = "Mean relative density error at which the density solve may stop." },
+    { .key = "divergence_tolerance", REAL, AT(tobi_dfsph_def, divergence_tolerance),
+      .def = { 1e-3 }, .min = 0, .max = 1, .positive = true, .unit = "1",
+      .doc = "Mean |div v| times the time step at which the divergence solve may stop." },
+    { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 0.05 },
+      .min = 0, .max = 1, .positive = true, .unit = "1",
+      .doc = "Relative pressure residual that both solves must reach as well." },
+    { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min),
+      .def = { 1 },
+      RANGE(0, 1000000), .unit = "1", .doc = "Fewest iterations of the density solve in a step." },
+    { .key = "density_iterations_max", INT, AT(tobi_dfsph_def, density_iterations_max),
+      .def = { 1000 }, RANGE(1, 1000000), .unit = "1",
+      .doc = "Most iterations of the density solve; a step that needs more is reported as not "
+             "converged." },
+    { .key = "divergence_iterations_min", INT, AT(tobi_dfsph_def, divergence_iterations_min),
+      .def = { 1 }, RANGE(0, 1000000), .unit = "1",
+      .doc = "Fewest iterations of the divergence solve in a step." },
+    { .key = "divergence_iterations_max", INT, AT(tobi_dfsph_def, divergence_iterations_max),
+      .def = { 200 },
+      RANGE(0, 1000000), .unit = "1", .doc = "Most iterations of the divergence solve in a step." },
+    { .key = "filter", REAL, AT(tobi_dfsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Share of particle-scale motion taken out per step; longer waves are left alone. In full "
+             "vessels, unless bodies move there by forces, what viscosity takes counts, and linear flows "
+             "are left alone as well." },
+    { .key = "shifting", REAL, AT(tobi_dfsph_def, shifting), .def = { 0.5 }, RANGE(0, 1),
+      .unit = "1", .text = "off",
+      .doc = "Strength of particle shifting in a vessel full of liquid, where without it cavities open "
+             "behind moving bodies; off with a free surface, and with a support below 2.5." },
+    { .key = "still_water", BOOL, AT(tobi_dfsph_def, still_water), .def = { 1 },
+      .doc = "Take the pressure that water at rest has, some layers below the free surface, from gravity and "
+             "solve for the rest: slow bodies and waves then lose far less to the disorder of particles." },
+    { 0 }
+};
+
+const tobi_param_table tobi_dfsph_table = {
+    "dfsph", "Divergence-free SPH (Bender & Koschier 2015, 2017) for incompressible liquids.",
+    sizeof(tobi_dfsph_def), dfsph_rows };
+
+static const tobi_param wcsph_rows[] = {
+    SMOOTHING(tobi_wcsph_def),
+    { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, POSITIVE,
+      .unit = "Pa",
+      .doc = "B of the Tait equation p = B ((rho/rho0)^exponent - 1). The speed of sound is "
+             "sqrt(exponent B/rho0); ten times the fastest flow keeps the density within 1 %." },
+    { .key = "exponent", REAL, AT(tobi_wcsph_def, exponent), .def = { 7 }, RANGE(1, 20),
+      .unit = "1", .doc = "Exponent of the Tait equation." },
+    { .key = "damping", REAL, AT(tobi_wcsph_def, damping), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Damping of sound: a bulk viscosity of damping times density, speed of sound and "
+             "spacing. Shear and slow flow do not feel it." },
+    { .key = "filter", REAL, AT(tobi_wcsph_def, filter), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Share of particle-scale motion taken out per step of a tenth of the speed of sound; "
+             "longer waves are left alone." },
+    { .key = "still_water", BOOL, AT(tobi_wcsph_def, still_water), .def = { 1 },
+      .doc = "Start with the pressure that water at rest has, and take it, some layers below the free "
+             "surface, from gravity: the water does not ring, and slow bodies and waves lose far less to the "
+             "disorder of particles." },
+    { 0 }
+};
+
+const tobi_param_table tobi_wcsph_table = {
+    "wcsph", "Weakly compressible SPH: pressure from density by the Tait equation, no solver.",
+    sizeof(tobi_wcsph_def), wcsph_rows };
+
+static const tobi_param mlsmpm_rows[] = {
+    { .key = "cell", REAL, AT(tobi_mlsmpm_def, cell), .def = { 2 }, RANGE(1, 8), .unit = "spacings",
+      .doc = "Side of a grid cell: 2 puts 8 particles in a cell of a 3-D scene." },
+    { .key = "transfer", CHOICE("apic|flip|xpic", 3), AT(tobi_mlsmpm_def, transfer),
+      .doc = "How velocities go between particles and grid: apic keeps angular momentum, flip keeps "
+             "the most energy, xpic filters noise." },
+    { .key = "flip", REAL, AT(tobi_mlsmpm_def, flip), .def = { 0.99 }, RANGE(0, 1), .unit = "1",
+      .doc = "Share of FLIP in its blend with PIC, if transfer is flip." },
+    { .key = "xpic_order", INT, AT(tobi_mlsmpm_def, xpic_order), .def = { 2 }, RANGE(1, 5),
+      .unit = "1", .doc = "Order of the filter, if transfer is xpic; 1 is PIC." },
+    { .key = "gradient", CHOICE("automatic|spline|mls", 3), AT(tobi_mlsmpm_def, gradient),
+      .doc = "How stress pushes the grid: by the gradient of the splines, or by that of moving least "
+             "squares, with which slender solids that lean in the grid bend up to a tenth too easily and a "
+             "step takes 4 % less time, without AVX-512 a fifth. Automatic is spline, and mls in scenes with "
+             "blades or with a solid that has a strength." },
+    { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
+      .positive = true, .unit = "1",
+      .doc = "Largest part of a cell that sound and particles together cross in a step." },
+    { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
+      .doc = "Sum up in every step what the way to the grid and back, time steps and plastic flow cost, for "
+             "transfer_dissipation, step_work and plastic_work in history.csv, which are 0 without it; steps "
+             "take up to 5 times as long, where material flows 20 times." },
+    { .key = "leaving", CHOICE("keep|remove", 2), AT(tobi_mlsmpm_def, leaving),
+      .doc = "What becomes of particles that get past a side: they are put back to it and counted (put_back "
+             "in history.csv), or removed (particles_lost); those past an open side are removed." },
+    { 0 }
+};
+
+const tobi_param_table tobi_mlsmpm_table = {
+    "mlsmpm", "The material point method (MLS-MPM, Hu et al. 2018) for solids that deform, sand, snow.",
+    sizeof(tobi_mlsmpm_def), mlsmpm_rows };

@@ -1,0 +1,81 @@
+/* Parameters of what a run measures and writes, and of what it is compared with. */
+#include "world/params_rows.h"
+
+static const tobi_param probe_rows[] = {
+    { .key = "name", TEXT, AT(tobi_probe_def, name), .unit = "name", .text = "probe", .required = true,
+      .doc = "Name of the probe, used once in a scene and in the columns of probes.csv." },
+    { .key = "kind", CHOICE("point|level", 2), AT(tobi_probe_def, kind),
+      .doc = "A point measures pressure and velocity, a level the height of the surface above or below it." },
+    { .key = "position", VEC3, AT(tobi_probe_def, position), ANY, .unit = "m", .required = true,
+      .doc = "Where it sits; for a level any point of its plumb line." },
+    { 0 }
+};
+
+const tobi_param_table tobi_probe_table = {
+    "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
+
+static const tobi_param output_rows[] = {
+    { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, POSITIVE,
+      .unit = "s", .doc = "Simulated time between outputs, hit exactly." },
+    { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), FROM(0),
+      .unit = "s", .text = "end",
+      .doc = "Simulated time between checkpoints; end writes one when the run ends." },
+    { .key = "probe_interval", REAL, AT(tobi_output_def, probe_interval), FROM(0), .unit = "s",
+      .text = "step", .doc = "Simulated time between rows of probes.csv, at least; step writes every step." },
+    { .key = "compression", CHOICE("none|zlib|lz4|ascii", 4), AT(tobi_output_def, compression),
+      .def = { TOBI_COMPRESS_ZLIB }, .doc = "Form of the VTU and VTP files." },
+    { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
+      .text = "usual",
+      .doc = "Fields to write for every particle. usual, alone or among others, stands for velocity, "
+             "pressure, density, object_id and particle_id, for mlsmpm von_mises and material too, where "
+             "there is a blade piece and cut_side, and texture_coordinates if a solid's mesh has them." },
+    { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
+      .doc = "Write the moving surface of each body as VTP and STL." },
+    { .key = "frames", BOOL, AT(tobi_output_def, frames),
+      .doc = "Write a PNG picture at each output." },
+    { .key = "grid", BOOL, AT(tobi_output_def, grid),
+      .doc = "Write the nodes of the grid of mlsmpm with velocity, mass and stress." },
+    { .key = "ply", BOOL, AT(tobi_output_def, ply),
+      .doc = "Write the positions of the fluid's particles as PLY, for other programs." },
+    { .key = "obj", BOOL, AT(tobi_output_def, obj),
+      .doc = "Write the moving surface of each body as OBJ, for other programs." },
+    { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), ANY, .unit = "m",
+      .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." },
+    { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), ANY, .unit = "m",
+      .doc = "The point in the middle of the pictures." },
+    { .key = "camera.angle", REAL, AT(tobi_output_def, camera_angle), RANGE(0, 150),
+      .unit = "degrees", .text = "fit",
+      .doc = "Vertical field of view; fit shows the whole domain from where it looks best." },
+    { 0 }
+};
+
+const tobi_param_table tobi_output_table = {
+    "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
+
+static const tobi_param reference_rows[] = {
+    { .key = "file", TEXT, AT(tobi_reference_def, file), .unit = "path", .required = true,
+      .doc = "CSV file: a row with the names of its columns, then numbers; lines with # in front "
+             "are comments." },
+    { .key = "column", TEXT, AT(tobi_reference_def, column), .unit = "name", .required = true,
+      .doc = "Column of history.csv that the values belong to, or of bodies.csv with body, or what a "
+             "probe measures." },
+    { .key = "body", TEXT, AT(tobi_reference_def, body), .unit = "name",
+      .doc = "Name of the body, for a column of bodies.csv." },
+    { .key = "probe", TEXT, AT(tobi_reference_def, probe), .unit = "name",
+      .doc = "Name of the probe, for a column of probes.csv: pressure, velocity_x .. z or level." },
+    { .key = "x", TEXT, AT(tobi_reference_def, x), .unit = "text", .text = "time",
+      .doc = "Column of the file with the times." },
+    { .key = "y", TEXT, AT(tobi_reference_def, y), .unit = "text",
+      .doc = "Column of the file with the values; without it the one that is named like column." },
+    { .key = "x_scale", REAL, AT(tobi_reference_def, x_scale), .def = { 1 }, POSITIVE, .unit = "1",
+      .doc = "Factor that turns x into seconds of the run." },
+    { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, ANY, .unit = "1",
+      .doc = "Factor that turns y into the unit of column." },
+    { .key = "label", TEXT, AT(tobi_reference_def, label), .unit = "text",
+      .doc = "Name in the picture, such as the publication; without it the name of the file." },
+    { 0 }
+};
+
+const tobi_param_table tobi_reference_table = {
+    "reference", "An entry of references: data that `tobiuo plot` draws beside the run's.",
+    sizeof(tobi_reference_def), reference_rows };
