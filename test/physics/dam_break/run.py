@@ -86,11 +86,22 @@ def compare_with_potential_flow(n2):
     case.plot(f"Front, no viscosity, slip, n2={n2}", "T", "Z", curves)
 
 
+def state_potential_flow(label, n2, points, low, high):
+    """What slope and lag would be for potential flow."""
+    exact, reference = potential_flow(n2), [(t, z) for t, z in points if low <= z <= high]
+    slope = fit_line(*zip(*[(t, z) for t, z in exact if low <= z <= max(z for _, z in reference)]))[0]
+    case.state(f"{label}: slope of potential flow, deviation", slope/fit_line(*zip(*reference))[0] - 1)
+    times, fronts = zip(*[(0.0, 1.0), *exact])
+    case.state(f"{label}: lag of potential flow in T", mean([interpolate(fronts, times, z) - t for t, z in reference]))
+
+
 def compare(label, a, n2, file, column, quoted):
     times, fronts, history = compute_front(f"column{n2}_{1000*a:.0f}", a, n2, ACROSS, REAL)
     path = case.reference_file(file)
     points = list(zip(*[read_table(path)[c] for c in (column, "Z")])) if path else quoted
-    deviation, lag = judge(label, times, fronts, points, *((2, 6) if n2 == 2 else (min(z for _, z in points), max(z for _, z in points))))
+    low, high = (2, 6) if n2 == 2 else (min(z for _, z in points), max(z for _, z in points))
+    deviation, lag = judge(label, times, fronts, points, low, high)
+    state_potential_flow(label, n2, points, low, high)
     t, z = next((t, z) for t, z in points if z >= 1.1)
     first = interpolate(fronts, times, z) - t
     case.state(f"{label}: lag at the first point, Z = {z}", first)
