@@ -13,7 +13,8 @@ Slope: least squares over 2 < Z < 6, of the computation and of the reference ali
 the reference's points in that range of T(computation) - T(reference) at equal Z, in units of T.
 
 **Potential flow**, the exact answer to water without viscosity between walls that do not rub, by boundary elements: potential.py, which has
-no particles, writes potential.csv; `potential.py 100`, with 100 instead of 160 elements, gives T within 0.016. Computed without viscosity and with slip.
+no particles, writes potential.csv; `potential.py 100`, with 100 instead of 160 elements, gives T within 0.016. Computed without viscosity
+and with slip.
 
 **Experiments**, each at its own size, with no-slip walls and surface tension as in a real tank. "At the first point": lag at the first one
 measured at which the front has moved by a tenth of a, so what the start of the experiment, its sheet or gate, has to do with it; "since then":
