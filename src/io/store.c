@@ -3,6 +3,7 @@
    other file. Drawback: while it is written, a checkpoint is in memory once more. */
 #define _GNU_SOURCE 1
 #include "io/store.h"
+#include "base/plain.h"
 #include "io/file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -240,12 +241,10 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
 tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *err)
 {
     *store = NULL;
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
-    tobi_status status = check_seal(path, fd, err);
-    close(fd);
+    FILE *file;
+    TOBI_TRY(tobi_plain_open(path, "checkpoint", 0, &file, NULL, err));
+    tobi_status status = check_seal(path, fileno(file), err);
+    fclose(file);
     TOBI_TRY(status);
     tobi_store *s = allocate(path);
     if (!s) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
