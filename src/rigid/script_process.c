@@ -201,7 +201,7 @@ static void ring(int signal, siginfo_t *info, void *context)
 {
     process *s = info->si_value.sival_ptr;
     (void)signal, (void)context;
-    if (s->late++) end_late(s);
+    if (info->si_code == SI_TIMER && s->late++) end_late(s);      /* others may send the signal, too */
 }
 
 static void look_in(void *user, lua_State *lua, int samples, int state)

@@ -309,8 +309,7 @@ static void references_to_nothing(void **state)
 
 static void names_are_no_formulas(void **state)
 {
-    char rest[] = ", \"probes\": [ { \"name\": \"=1\", \"position\": [0, 0, 0] } ]";
-    char *first = strchr(rest, '=');
+    char rest[] = ", \"probes\": [ { \"name\": \"=1\", \"position\": [0,0,0] } ]", *first = strchr(rest, '=');
     (void)state;
     for (const char *c = "=+-@"; (*first = *c) != 0; c++)
         CHECK(make(spacing, box, rest),

@@ -252,7 +252,7 @@ static void a_process_that_dies_is_told(void **state)
 static void signals_are_for_the_loader(void **state)
 {
     (void)state;
-    static const int signals[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGALRM, SIGPIPE };
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGALRM, SIGXCPU };
     tobi_error err = { 0 };
     tobi_pose pose;
     tobi_script *s = load_good("function place(t) return t, 2, 3 end", 3);
