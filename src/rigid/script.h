@@ -41,7 +41,7 @@
    remembers things would break restarts. Two runs see the same: pairs goes through numbers, then texts, in
    rising order, and tostring of a table is "table".
 
-   A script has 3 s of processor time for a call (for each 1024 points of deform and velocity) and for
+   A script has 3 s of processor time for a call (for each 8192 points of deform and velocity) and for
    its loading, and 64 MiB. One that needs more time is stopped for good: every later call repeats the
    reason. */
 #pragma once

@@ -5,7 +5,7 @@
 #include "rigid/script.h"
 #include <jansson.h>
 
-enum { TOBI_SCRIPT_BATCH = 1024, TOBI_SCRIPT_MEMORY = 64 << 20 /* bytes */ };
+enum { TOBI_SCRIPT_BATCH = 8192, TOBI_SCRIPT_MEMORY = 64 << 20 /* bytes */ };
 
 typedef enum tobi_script_question {
     TOBI_ASK_LOAD,

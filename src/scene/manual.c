@@ -35,7 +35,7 @@ static const char head[] =
     "- Only plain files are read, no pipes and no devices: scenes of at most 16 MiB, scripts of 4 MiB,\n"
     "  keyframes of 1 GiB, meshes of 4 GiB.\n"
     "- A script runs in a process of its own, without files. A call may take 3 s of processor time (of\n"
-    "  `deform` and `velocity`: 1024 points), and a script may hold 64 MiB.\n"
+    "  `deform` and `velocity`: 8192 points), and a script may hold 64 MiB.\n"
     "- `pairs` in a script goes through numbers, then texts, in rising order; `tostring` and\n"
     "  `string.format` show no addresses, and there is no `next`.\n"
     "- Unknown keys are mistakes, and so are keys that the method or other keys leave unread. Nothing is\n"
