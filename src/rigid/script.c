@@ -1,9 +1,9 @@
 /* Scripts of the user, seen from the process that loaded them.
 
    Each script runs in a process of its own: a fork without exec, which has no files and ends by a
-   timer when a question takes it too long (script_process.c). So nothing that Lua or the user does
+   timer when a request takes it too long (script_process.c). So nothing that Lua or the user does
    can stop or crash the simulation: every call comes back with an answer or a text. Drawback: a
-   process per script, and some ten microseconds per question; points therefore go over in batches. */
+   process per script, and some ten microseconds per request; points therefore go over in batches. */
 #define _GNU_SOURCE 1
 #include "rigid/script_process.h"
 #include "base/plain.h"
@@ -23,7 +23,7 @@
 #include <unistd.h>
 
 enum { FILE_LIMIT = 4 << 20 };      /* bytes of a script file                                         */
-#define SECONDS  3.0                /* of processor time that a question may take                     */
+#define SECONDS  3.0                /* of processor time that a request may take                     */
 #define PATIENCE 20                 /* times as long is waited for a process that somebody has stopped */
 
 struct tobi_script {
@@ -51,15 +51,15 @@ static double now(void)
     return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
 }
 
-/* Whether the process hands the turn back; false when it has ended or its time is over. What this process
+/* Whether the process replies; false when it has ended or its time is over. What this process
    itself was stopped for (Ctrl-Z) does not count. */
-static bool wait_turn(const tobi_script *s)
+static bool wait_reply(const tobi_script *s)
 {
     for (double waited = 0; waited < PATIENCE*s->seconds;) {
-        struct pollfd turn = { .fd = s->fd, .events = POLLIN };
+        struct pollfd event = { .fd = s->fd, .events = POLLIN };
         double since = now();
         char byte;
-        if (poll(&turn, 1, 1000) > 0) {
+        if (poll(&event, 1, 1000) > 0) {
             ssize_t n = recv(s->fd, &byte, 1, 0);
             if (n >= 0 || errno != EINTR) return n == 1;
         }
@@ -78,7 +78,7 @@ static void copy_text(char *to, const char *from, size_t room)
 }
 
 /* Ends the process, if it has not ended itself, and says why it is gone. */
-static void bury(tobi_script *s, bool silent)
+static void end_process(tobi_script *s, bool silent)
 {
     char where[200];
     int state = 0;
@@ -89,7 +89,7 @@ static void bury(tobi_script *s, bool silent)
     close(s->fd);
     s->fd = -1;
     s->process = 0;
-    if (s->channel->answer == TOBI_ANSWER_LATE) {
+    if (s->channel->reply == TOBI_REPLY_LATE) {
         copy_text(where, s->channel->text, sizeof where);
         snprintf(s->why, sizeof s->why, "%sendless loop? stopped after %g s of processor time%s", where,
                  s->seconds, where[0] ? "" : ", inside one call of a function such as table.sort");
@@ -103,34 +103,34 @@ static void bury(tobi_script *s, bool silent)
     }
 }
 
-/* Waits for the answer to what the channel holds. NULL, or what went wrong. */
-static const char *await_answer(tobi_script *s)
+/* Waits for the reply to the request in the channel. NULL, or what went wrong. */
+static const char *take_reply(tobi_script *s)
 {
     tobi_script_channel *c = s->channel;
     bool ended = false;
-    if (!wait_turn(s)) {
+    if (!wait_reply(s)) {
         struct pollfd end = { .fd = s->fd, .events = POLLIN };
         ended = poll(&end, 1, 0) > 0;
-        bury(s, !ended);
+        end_process(s, !ended);
         return s->why;
     }
-    if (c->answer == TOBI_ANSWER_DONE) return NULL;
-    if (c->answer == TOBI_ANSWER_FULL)
+    if (c->reply == TOBI_REPLY_DONE) return NULL;
+    if (c->reply == TOBI_REPLY_FULL)
         snprintf(s->why, sizeof s->why, "needs more memory than a script may have, %d MiB",
                  TOBI_SCRIPT_MEMORY >> 20);
     else copy_text(s->why, c->text, sizeof c->text);
     return s->why;
 }
 
-static const char *ask(tobi_script *s, tobi_script_question question)
+static const char *ask(tobi_script *s, tobi_script_request request)
 {
-    char turn = 0;
+    char byte = 0;
     if (s->loader != getpid()) return "only the process that loaded it can ask it";
     if (s->fd < 0) return s->why;
-    s->channel->question = question;
-    s->channel->answer = TOBI_ANSWER_NONE;
-    send(s->fd, &turn, 1, MSG_NOSIGNAL);      /* to a dead process: no answer comes */
-    return await_answer(s);
+    s->channel->request = request;
+    s->channel->reply = TOBI_REPLY_NONE;
+    send(s->fd, &byte, 1, MSG_NOSIGNAL);      /* a dead process does not reply */
+    return take_reply(s);
 }
 
 static tobi_status fail_start(const tobi_script *s, tobi_error *err)
@@ -182,7 +182,7 @@ static tobi_status load(tobi_script *s, const json_t *params, tobi_error *err)
         tobi_script_job job = { s->role, name, text, length, params, s->seconds };
         status = start(s, &job, err);
     }
-    const char *why = status == TOBI_OK ? await_answer(s) : NULL;
+    const char *why = status == TOBI_OK ? take_reply(s) : NULL;
     if (why) status = tobi_fail(err, TOBI_SCRIPT, "%s: %s", s->label, why);
     free(name);
     free(text);
@@ -239,7 +239,7 @@ tobi_status tobi_script_load(const char *path, const char *params_json, tobi_scr
 void tobi_script_free(tobi_script *s)
 {
     if (!s) return;
-    if (s->process > 0 && s->loader == getpid()) bury(s, false);
+    if (s->process > 0 && s->loader == getpid()) end_process(s, false);
     if (s->fd >= 0) close(s->fd);
     if (s->channel) munmap(s->channel, sizeof *s->channel);
     free(s->label);
@@ -265,7 +265,7 @@ static void walk(tobi_script *s, double t, int64_t n, const double (*from)[3], d
         c->time = t;
         c->at = 0;
         memcpy(c->from, from + first, (size_t)count*sizeof *c->from);
-        *why = ask(s, TOBI_ASK_WALK);
+        *why = ask(s, TOBI_REQUEST_WALK);
         double at = c->at;
         *bad = first + (at > 0 && at < (double)count ? (int64_t)at : 0);
         if (*why) return;
@@ -324,7 +324,7 @@ tobi_status tobi_script_place(tobi_script *s, double t, tobi_pose *pose, tobi_er
 {
     double r[7] = { 0 };
     s->channel->time = t;
-    const char *why = ask(s, TOBI_ASK_PLACE);
+    const char *why = ask(s, TOBI_REQUEST_PLACE);
     if (why) return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", s->label, why, t);
     int64_t count = s->channel->count;
     bool good = count == 3 || count == 7;
@@ -358,7 +358,7 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     from[22] = in->phase_time;
     memcpy(s->channel->from, from, sizeof from);
     memcpy(s->channel->to, into, sizeof into);
-    const char *why = ask(s, TOBI_ASK_CONTROL);
+    const char *why = ask(s, TOBI_REQUEST_CONTROL);
     if (why) return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", s->label, why, in->time);
     memcpy(into, s->channel->to, sizeof into);
     for (int k = 0; k < 7; k++)

@@ -2,9 +2,9 @@
 
    Two Lua environments live in one state: ours, with ffi, which walks the arrays of points, and the
    user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
-   into it and runs at the speed of C. A timer of the process ends it wherever it is, in the midst of a
-   library function too. Where the script is at work in its own text, LuaJIT's profiler, which looks in
-   at every line, finds the line first. Drawback: its looks cost compiled code a few per cent.
+   into it and runs at the speed of C. A timer of the process ends it wherever it is, inside a library
+   function too. Where the script is at work in its own text, LuaJIT's profiler, which can interrupt at
+   every line, finds the line first. Drawback: these checks cost compiled code a few per cent.
 
    The optimiser's constant folding is off: it computes x^2 as x*x where the interpreter calls pow,
    and a restart, which begins interpreted, would not repeat the bits of a run that is compiled.
@@ -40,7 +40,7 @@ typedef struct process {
     size_t bytes;                              /* held by Lua now                                  */
     int walk, place, control;                  /* registry references                              */
     timer_t timer;
-    volatile sig_atomic_t late;                /* times that the timer rang for this question      */
+    volatile sig_atomic_t late;                /* signals of the timer during this request         */
 } process;
 
 /* Our side: gets the user's environment, returns the walks. `at` tells C which point is in work. */
@@ -192,19 +192,19 @@ static void *allocate(void *user, void *p, size_t old, size_t size)
 
 static _Noreturn void end_late(process *s)
 {
-    s->channel->answer = TOBI_ANSWER_LATE;
+    s->channel->reply = TOBI_REPLY_LATE;
     _exit(0);
 }
 
-/* The time is over; when it rings again the script was not in its own text all the while. */
-static void ring(int signal, siginfo_t *info, void *context)
+/* The time is over. At the second signal the script has not reached a line of its text since the first. */
+static void notice_time(int signal, siginfo_t *info, void *context)
 {
     process *s = info->si_value.sival_ptr;
     (void)signal, (void)context;
     if (info->si_code == SI_TIMER && s->late++) end_late(s);      /* others may send the signal, too */
 }
 
-static void look_in(void *user, lua_State *lua, int samples, int state)
+static void notice_line(void *user, lua_State *lua, int samples, int state)
 {
     process *s = user;
     lua_Debug at;
@@ -221,7 +221,7 @@ static bool create_timer(process *s)
 {
     struct sigevent event = { .sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGXCPU,
                               .sigev_value.sival_ptr = s };
-    struct sigaction action = { .sa_sigaction = ring, .sa_flags = SA_SIGINFO | SA_RESTART };
+    struct sigaction action = { .sa_sigaction = notice_time, .sa_flags = SA_SIGINFO | SA_RESTART };
     sigset_t blocked;
     sigfillset(&blocked);
     sigdelset(&blocked, SIGXCPU);
@@ -327,7 +327,7 @@ static int load_protected(lua_State *lua)
 {
     process *s = lua_touserdata(lua, 1);
     luaL_openlibs(lua);
-    luaJIT_profile_start(lua, "li10", look_in, s);
+    luaJIT_profile_start(lua, "li10", notice_line, s);
     lua_newtable(lua);
     int user = lua_gettop(lua), seal = user + 1, bind = user + 2;
     push_json(lua, s->job->params, 0);
@@ -353,9 +353,9 @@ static int load_protected(lua_State *lua)
     return 0;
 }
 
-/* --- questions ---------------------------------------------------------------------------- */
+/* --- requests ----------------------------------------------------------------------------- */
 
-static int ask_walk(process *s)
+static int call_walk(process *s)
 {
     tobi_script_channel *c = s->channel;
     lua_rawgeti(s->lua, LUA_REGISTRYINDEX, s->walk);
@@ -368,7 +368,7 @@ static int ask_walk(process *s)
 }
 
 /* Answers that are no numbers become NAN, which the other side refuses. */
-static int ask_place(process *s)
+static int call_place(process *s)
 {
     lua_rawgeti(s->lua, LUA_REGISTRYINDEX, s->place);
     lua_pushnumber(s->lua, s->channel->time);
@@ -381,7 +381,7 @@ static int ask_place(process *s)
     return code;
 }
 
-static int ask_control(process *s)
+static int call_control(process *s)
 {
     tobi_script_channel *c = s->channel;
     lua_rawgeti(s->lua, LUA_REGISTRYINDEX, s->control);
@@ -393,34 +393,34 @@ static int ask_control(process *s)
     return code;
 }
 
-static int ask(process *s)
+static int call(process *s)
 {
     if (s->lua) lua_settop(s->lua, 0);
-    switch (s->channel->question) {
-    case TOBI_ASK_WALK: return ask_walk(s);
-    case TOBI_ASK_PLACE: return ask_place(s);
-    case TOBI_ASK_CONTROL: return ask_control(s);
-    case TOBI_ASK_LOAD: break;
+    switch (s->channel->request) {
+    case TOBI_REQUEST_WALK: return call_walk(s);
+    case TOBI_REQUEST_PLACE: return call_place(s);
+    case TOBI_REQUEST_CONTROL: return call_control(s);
+    case TOBI_REQUEST_LOAD: break;
     }
     s->lua = lua_newstate(allocate, s);
     return s->lua ? lua_cpcall(s->lua, load_protected, s) : LUA_ERRMEM;
 }
 
-static void answer(process *s)
+static void serve(process *s)
 {
     tobi_script_channel *c = s->channel;
     c->text[0] = '\0';
     start_timer(s);
-    int code = ask(s);
+    int code = call(s);
     if (code != 0 && code != LUA_ERRMEM)
         /* Numbers are left out: converting one allocates, unprotected here. */
         snprintf(c->text, sizeof c->text, "%s",
                  lua_type(s->lua, -1) == LUA_TSTRING ? lua_tostring(s->lua, -1) : "an error without a text");
-    c->answer = code == 0 ? TOBI_ANSWER_DONE : code == LUA_ERRMEM ? TOBI_ANSWER_FULL : TOBI_ANSWER_FAILED;
+    c->reply = code == 0 ? TOBI_REPLY_DONE : code == LUA_ERRMEM ? TOBI_REPLY_FULL : TOBI_REPLY_FAILED;
 }
 
 /* No files, no children; of the descriptors only the socket is left, as 0. */
-static void shut_doors(int fd)
+static void restrict_process(int fd)
 {
     tobi_limit_memory(ADDRESS_SPACE);
     dup2(fd, 0);
@@ -437,10 +437,10 @@ static void shut_doors(int fd)
 _Noreturn void tobi_script_serve(const tobi_script_job *job, tobi_script_channel *channel, int fd)
 {
     process s = { .job = job, .channel = channel };
-    char turn = 0;
-    shut_doors(fd);
+    char byte = 0;
+    restrict_process(fd);
     if (!create_timer(&s)) _exit(1);
-    do answer(&s);
-    while (send(0, &turn, 1, MSG_NOSIGNAL) == 1 && recv(0, &turn, 1, 0) == 1);
+    do serve(&s);
+    while (send(0, &byte, 1, MSG_NOSIGNAL) == 1 && recv(0, &byte, 1, 0) == 1);
     _exit(0);
 }
