@@ -4,7 +4,7 @@
    user's, with mathematics only. Because the walk is itself Lua, the user's function is compiled
    into it and runs at the speed of C. A timer of the process ends it wherever it is, inside a library
    function too. Where the script is at work in its own text, LuaJIT's profiler, which can interrupt at
-   every line, finds the line first. Drawback: these checks cost compiled code a few per cent.
+   every line, finds the line first. Drawback: these checks cost compiled code up to a tenth.
 
    The optimiser's constant folding is off: it computes x^2 as x*x where the interpreter calls pow,
    and a restart, which begins interpreted, would not repeat the bits of a run that is compiled.
