@@ -68,15 +68,19 @@ tobi_status tobi_plain_read(const char *path, const char *what, int64_t limit, c
     *size = 0;
     TOBI_TRY(tobi_plain_open(path, what, limit, &file, &bytes, err));
     char *all = malloc((size_t)bytes + 1);
-    if (all) *size = fread(all, 1, (size_t)bytes, file);
-    int failed = all && ferror(file);
+    size_t done = 0, n = 1;
+    for (; all && n > 0 && done < (size_t)bytes; done += n)
+        n = fread(all + done, 1, (size_t)bytes - done, file);
     fclose(file);
-    if (all && !failed) {
-        all[*size] = '\0';
+    if (all && done == (size_t)bytes) {
+        all[done] = '\0';
         *text = all;
+        *size = done;
         return TOBI_OK;
     }
+    if (!all)
+        return tobi_fail(err, TOBI_NO_MEMORY, "%s %s: no memory for %lld bytes", what, path,
+                         (long long)bytes);
     free(all);
-    if (failed) return tobi_fail(err, TOBI_IO, "%s %s: cannot be read to its end", what, path);
-    return tobi_fail(err, TOBI_NO_MEMORY, "%s %s: no memory for %lld bytes", what, path, (long long)bytes);
+    return tobi_fail(err, TOBI_IO, "%s %s: cannot be read to its end", what, path);
 }

@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 struct tobi_csv {
@@ -120,31 +119,6 @@ static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
     }
 }
 
-/* Reads a whole file; *text is the caller's. */
-static tobi_status read_all(int fd, const char *path, char **text, size_t *bytes, tobi_error *err)
-{
-    struct stat info;
-    *text = NULL;
-    *bytes = 0;
-    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
-    char *all = malloc((size_t)info.st_size + 1);
-    if (!all) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
-    while (*bytes < (size_t)info.st_size) {
-        ssize_t n = pread(fd, all + *bytes, (size_t)info.st_size - *bytes, (off_t)*bytes);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) {
-            int code = errno;
-            free(all);
-            return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
-        }
-        if (n == 0) break;
-        *bytes += (size_t)n;
-    }
-    all[*bytes] = '\0';
-    *text = all;
-    return TOBI_OK;
-}
-
 /* Length of the line at text with its newline; 0 if it has no end. Newlines in quotes belong to it. */
 static size_t line_length(const char *text, size_t bytes)
 {
@@ -161,7 +135,7 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
 {
     char *text;
     size_t bytes, end = 0, n;
-    TOBI_TRY(read_all(csv->fd, csv->path, &text, &bytes, err));
+    TOBI_TRY(tobi_plain_read(csv->path, "table", 0, &text, &bytes, err));
     size_t header = line_length(text, bytes);
     while ((n = line_length(text + end, bytes - end)) > 0) end += n;
     tobi_status status = TOBI_OK;

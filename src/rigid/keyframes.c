@@ -275,7 +275,8 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
     }
     free(line);
     if (status == TOBI_OK && ferror(file))
-        status = tobi_fail(err, TOBI_IO, "keyframes %s: %s", r->path, strerror(errno));
+        status = tobi_fail(err, TOBI_IO, "keyframes %s: cannot be read to its end: %s", r->path,
+                           strerror(errno));
     if (status == TOBI_OK && !f->count)
         status = tobi_fail(err, TOBI_INVALID, "keyframes %s: no rows; a header with the columns' names and a "
                            "row per time are needed", r->path);
