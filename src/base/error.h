@@ -7,6 +7,13 @@
 tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+enum { TOBI_EXCERPT = 16 };      /* bytes */
+
+/* A piece of a file that may not be what it was taken for, short enough to stand in a message: its first
+   bytes, those that are no plain characters as '?', and dots where it goes on. */
+typedef struct tobi_short_text { char text[TOBI_EXCERPT + 4]; } tobi_short_text;
+tobi_short_text tobi_excerpt(const char *text);
+
 #define TOBI_TRY(call)                                  \
     do {                                                \
         tobi_status try_status_ = (call);               \

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE 1
 #include "io/csv.h"
+#include "base/plain.h"
 #include "io/file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -8,7 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 struct tobi_csv {
@@ -119,31 +119,6 @@ static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
     }
 }
 
-/* Reads a whole file; *text is the caller's. */
-static tobi_status read_all(int fd, const char *path, char **text, size_t *bytes, tobi_error *err)
-{
-    struct stat info;
-    *text = NULL;
-    *bytes = 0;
-    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
-    char *all = malloc((size_t)info.st_size + 1);
-    if (!all) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
-    while (*bytes < (size_t)info.st_size) {
-        ssize_t n = pread(fd, all + *bytes, (size_t)info.st_size - *bytes, (off_t)*bytes);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) {
-            int code = errno;
-            free(all);
-            return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
-        }
-        if (n == 0) break;
-        *bytes += (size_t)n;
-    }
-    all[*bytes] = '\0';
-    *text = all;
-    return TOBI_OK;
-}
-
 /* Length of the line at text with its newline; 0 if it has no end. Newlines in quotes belong to it. */
 static size_t line_length(const char *text, size_t bytes)
 {
@@ -160,13 +135,12 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
 {
     char *text;
     size_t bytes, end = 0, n;
-    TOBI_TRY(read_all(csv->fd, csv->path, &text, &bytes, err));
+    TOBI_TRY(tobi_plain_read(csv->path, "table", 0, &text, &bytes, err));
     size_t header = line_length(text, bytes);
     while ((n = line_length(text + end, bytes - end)) > 0) end += n;
     tobi_status status = TOBI_OK;
     if (header > 0 && (header != csv->length || memcmp(text, csv->row, header) != 0))
-        status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes: %.*s", csv->path,
-                           header < 400 ? (int)header - 1 : 400, text);
+        status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes", csv->path);
     else if (end < bytes && ftruncate(csv->fd, (off_t)end) != 0)
         status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
     *empty = header == 0;
@@ -232,17 +206,11 @@ static int keeps_row(const char *text, double time, locale_t plain)
 
 tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
     char *text;
     size_t bytes, n;
-    tobi_status status = read_all(fd, path, &text, &bytes, err);
-    close(fd);
-    TOBI_TRY(status);
+    TOBI_TRY(tobi_plain_read(path, "table", 0, &text, &bytes, err));
     tobi_file file;
-    status = tobi_file_open(&file, path, err);
+    tobi_status status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
         for (size_t at = 0; (n = line_length(text + at, bytes - at)) > 0; at += n)
             if (at == 0 || keeps_row(text + at, time, file.plain)) tobi_file_write(&file, text + at, n);

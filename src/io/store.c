@@ -3,14 +3,13 @@
    other file. Drawback: while it is written, a checkpoint is in memory once more. */
 #define _GNU_SOURCE 1
 #include "io/store.h"
+#include "base/plain.h"
 #include "io/file.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <hdf5.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -211,14 +210,13 @@ tobi_status tobi_store_commit(tobi_store *store, tobi_error *err)
     return status;
 }
 
-static tobi_status check_seal(const char *path, int fd, tobi_error *err)
+static tobi_status check_seal(const char *path, int fd, int64_t bytes, tobi_error *err)
 {
-    struct stat info;
     seal s;
     uint32_t crc = 0;
-    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
     ssize_t n = pread(fd, &s, sizeof s, 0);
-    if (n < 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+    if (n < 0)
+        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(errno));
     if (n >= (ssize_t)sizeof magic && memcmp(s.magic, magic, sizeof magic) != 0)
         return tobi_fail(err, TOBI_DAMAGED,
                          "%s is damaged or not a checkpoint: it does not start with '%.14s'", path, magic);
@@ -227,11 +225,12 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
     if (s.seal_crc != crc32(crc32(0, NULL, 0), (const Bytef *)&s, offsetof(seal, seal_crc)))
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its first %d bytes do not match their checksum",
                          path, SEAL_BYTES);
-    if (s.file_bytes != (uint64_t)info.st_size)
+    if (s.file_bytes != (uint64_t)bytes)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: it has %" PRIu64 " bytes of %" PRIu64, path,
-                         (uint64_t)info.st_size, s.file_bytes);
+                         (uint64_t)bytes, s.file_bytes);
     int code = sum_file(fd, s.file_bytes, &crc);
-    if (code) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
+    if (code)
+        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(code));
     if (crc != s.crc)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its content does not match its checksum", path);
     return TOBI_OK;
@@ -240,12 +239,11 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
 tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *err)
 {
     *store = NULL;
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
-    tobi_status status = check_seal(path, fd, err);
-    close(fd);
+    FILE *file;
+    int64_t bytes;
+    TOBI_TRY(tobi_plain_open(path, "checkpoint", 0, &file, &bytes, err));
+    tobi_status status = check_seal(path, fileno(file), bytes, err);
+    fclose(file);
     TOBI_TRY(status);
     tobi_store *s = allocate(path);
     if (!s) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);

@@ -248,10 +248,11 @@ static void bind_choice(const slot *s)
                             tobi_json_kind(s->value), limits);
 }
 
-/* Names become parts of file names. */
+/* Names become parts of file names and cells of tables: a program that opens a table takes a cell
+   that begins with + - = or @ for a formula and computes it. */
 static int is_name(const char *name)
 {
-    if (!name[0] || name[0] == '.' || strlen(name) > 100) return 0;
+    if (!name[0] || strchr(".+-=@", name[0]) || strlen(name) > 100) return 0;
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 127 || strchr("/\\:*?\"<>|,", *c)) return 0;
     return 1;
@@ -324,8 +325,8 @@ static void bind_text(const slot *s)
         }
     } else if (!is_list && !is_name(given)) {
         tobi_source_mistake(s->binder->source, s->place,
-                            "is not usable as a name: 1 to 100 characters, no "
-                            "dot in front and none of / \\ : * ? \" < > | ,");
+                            "is not usable as a name: 1 to 100 characters, none of "
+                            ". + - = @ in front and none of / \\ : * ? \" < > | ,");
         return;
     }
     memcpy(s->member, &kept, sizeof kept);

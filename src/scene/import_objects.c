@@ -140,7 +140,7 @@ static void name_body(tobi_import *im, json_t *bodies, json_t *body, const char 
     char clean[64], name[80];
     if (length > sizeof clean - 1) length = sizeof clean - 1;
     for (size_t i = 0; i < length; i++)
-        clean[i] = isalnum((unsigned char)stem[i]) || strchr("-_", stem[i]) ? stem[i] : '_';
+        clean[i] = isalnum((unsigned char)stem[i]) || (i > 0 && stem[i] == '-') ? stem[i] : '_';
     clean[length] = '\0';
     if (!length) strcpy(clean, "body");
     snprintf(name, sizeof name, "%s", clean);

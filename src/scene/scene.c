@@ -1,6 +1,7 @@
 /* From the text of a scene to its definitions, and from the definitions to a world. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
+#include "base/plain.h"
 #include "scene/import.h"
 #include "scene/override.h"
 #include "scene/parts.h"
@@ -328,7 +329,7 @@ tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi
     size_t size;
     *scene = NULL;
     if (report) *report = NULL;
-    TOBI_TRY(tobi_source_read_file(path, &text, &size, err));
+    TOBI_TRY(tobi_plain_read(path, "scene", TOBI_SOURCE_LIMIT, &text, &size, err));
     tobi_status status = tobi_scene_parse(path, text, size, overrides, scene, report, err);
     free(text);
     return status;

@@ -125,7 +125,7 @@ static json_t *make_text(const tobi_param *row)
         return schema;
     }
     json_object_set_new(schema, "maxLength", json_integer(100));
-    put_text(schema, "pattern", "^[^./\\\\:*?\"<>|,][^/\\\\:*?\"<>|,]*$");
+    put_text(schema, "pattern", "^[^.+=@/\\\\:*?\"<>|,-][^/\\\\:*?\"<>|,]*$");
     return schema;
 }
 

@@ -1,44 +1,9 @@
 #define _GNU_SOURCE 1
 #include "scene/source.h"
 #include "scene/python.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err)
-{
-    *text = NULL;
-    struct stat info;
-    if (stat(path, &info) != 0)
-        return tobi_fail(err, errno == ENOENT || errno == ENOTDIR ? TOBI_NOT_FOUND : TOBI_IO,
-                         "%s: cannot open the scene: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return tobi_fail(err, TOBI_IO, "%s: is not a file; give the scene's JSON file", path);
-    if (info.st_size > TOBI_SOURCE_LIMIT)
-        return tobi_fail(err, TOBI_INVALID, "%s: has %lld bytes, a scene has at most %d", path,
-                         (long long)info.st_size, TOBI_SOURCE_LIMIT);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return tobi_fail(err, TOBI_IO, "%s: cannot open the scene: %s", path, strerror(errno));
-    char *bytes = malloc((size_t)info.st_size + 1);
-    if (!bytes) {
-        fclose(file);
-        return tobi_fail(err, TOBI_NO_MEMORY, "%s: no memory to read the scene", path);
-    }
-    size_t got = fread(bytes, 1, (size_t)info.st_size, file);
-    int failed = ferror(file);
-    fclose(file);
-    if (failed) {
-        free(bytes);
-        return tobi_fail(err, TOBI_IO, "%s: cannot read the scene", path);
-    }
-    bytes[got] = '\0';
-    *text = bytes;
-    *size = got;
-    return TOBI_OK;
-}
 
 /* Comments and a byte-order mark become spaces, so that every position stays what it was. */
 static void blank_comments(char *text, size_t size)

@@ -45,9 +45,6 @@ typedef struct tobi_source {
    a JSON object; the reason is in the report. Clear the source in any case. */
 tobi_status tobi_source_parse(tobi_source *source, const char *name, const char *text, size_t size,
                               tobi_report *report, tobi_error *err);
-/* Reads a file of at most TOBI_SOURCE_LIMIT bytes; *text is NUL-terminated and owned by the caller.
- */
-tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err);
 void tobi_source_clear(tobi_source *source);
 
 /* Reports a mistake: "file:line:column: path: message", or "--set path=value: path: message". */

@@ -2,6 +2,7 @@
 
    The small file is written first, so that a state file always has its companion; both appear whole
    or not at all. The two newest are kept, because the newest may turn out damaged. */
+#include "base/plain.h"
 #include "io/file.h"
 #include "world/record.h"
 #include <jansson.h>
@@ -10,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEEP = 2, LIMIT = 256 };
+enum { KEEP = 2, LIMIT = 256, COMPANION_LIMIT = 64 << 20 /* bytes */ };
 
 static char *checkpoint_path(const tobi_run *run, int64_t step, const char *extension)
 {
@@ -133,8 +134,10 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 /* The recorder's part; it must fit the world's, which is loaded already. */
 static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *err)
 {
-    json_error_t where;
-    json_t *json = json_load_file(path, 0, &where);
+    char *text;
+    size_t size;
+    tobi_plain_read(path, "checkpoint", COMPANION_LIMIT, &text, &size, NULL);
+    json_t *json = text ? json_loadb(text, size, 0, NULL) : NULL;
     json_t *since = NULL, *total = NULL, *bodies = NULL;
     json_int_t outputs = 0;
     double time = NAN;
@@ -147,6 +150,7 @@ static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *e
            bodies_from_json(bodies, run);
     run->outputs = outputs;
     json_decref(json);
+    free(text);
     if (!good) return tobi_fail(err, TOBI_DAMAGED, "%s: damaged or missing", path);
     if (time != tobi_world_time(run->world) || outputs < 1)
         return tobi_fail(err, TOBI_DAMAGED, "%s: does not belong to its checkpoint", path);

@@ -77,7 +77,11 @@ sed 's/swing.lua/bad.lua/' tank.json > bad_script.json
 printf 'function place(t)\n  return oops, 0, 0\nend\n' > bad.lua
 expect 1 "bad.lua:2:" run bad_script.json --quiet
 printf 'function place(t) while true do end end\n' > bad.lua
-expect 1 "endless loop" run bad_script.json --quiet
+expect 1 "bad.lua:1: endless loop" run bad_script.json --quiet
+printf -- '--\rwhile true do end\n' > bad.lua
+expect 1 "endless loop" check bad_script.json
+rm bad.lua && mkfifo bad.lua
+for command in check run; do expect 1 "bad.lua: is a pipe; only plain files are read" $command bad_script.json; done
 sed 's/"fill": .*/"fill": [] }],/' tank.json > dry.json
 expect 1 "fill" run dry.json
 expect 1 "particles" check tank.json --set spacing=1e-5 --set 'bodies=[]'
@@ -231,20 +235,23 @@ check "resolved.json resolves to itself" diff <(sed '/threads/d' one/resolved.js
 $python make_scene.py long.json 0.2 box.obj
 expect 0 "" run long.json --quiet --out whole
 expect 0 "" run long.json --quiet --out halves --until 0.1
+cp swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
+expect 1 "swing.lua: endless loop? stopped after 3 s of processor time, inside one call" resume halves
+mv good.lua swing.lua
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves
 check "run = run + resume, state" same_hash whole halves
 check "same number of steps" test "$(value whole/summary.json steps)" = "$(value halves/summary.json steps)"
 
-# start_run DIR OUTPUT: starts a run and waits for an output or for its end; pid in $pid
+# start_run DIR OUTPUT: starts a run and waits for an output or for its end; in $pid its number and its group's
 start_run() {
-    "$program" run long.json --quiet --out "$1" > out.txt 2> err.txt &
+    setsid "$program" run long.json --quiet --out "$1" > out.txt 2> err.txt &
     pid=$!
     while [ ! -e "$1/fluid/fluid_$2.vtu" ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
 }
 for signal in INT TERM; do
     start_run stopped_$signal 000007
-    kill -$signal $pid
+    kill -$signal -- -$pid      # as a terminal does: the script's process gets it too
     got=0; wait $pid || got=$?
     check "SIG$signal: exit code 130 (was $got)" test $got = 130
     check "SIG$signal: summary says interrupted" grep -q '"interrupted"' stopped_$signal/summary.json

@@ -20,7 +20,9 @@ points() { grep -c "<use xlink:href='#gpPt[0-9]*' transform=" "$1"; }
 expect 2 "which DIR?" plot
 expect 2 "neither svg nor png" plot nowhere --format gif
 expect 1 "no history.csv" plot nowhere
-mkdir made && : > made/history.csv
+mkdir made && mkfifo made/history.csv
+expect 1 "is not a file" plot made
+rm made/history.csv && : > made/history.csv
 expect 1 "is empty" plot made
 echo "when,what" > made/history.csv
 expect 1 'no column "time"' plot made

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "base/plain.h"
 #include "calls.h"
 #include "geom/mesh.h"
 #include "scene/scene.h"
@@ -481,14 +482,14 @@ static void paths_below_the_new_scene_are_relative(void **state)
     fclose(file);
     char *table, *text;
     size_t size;
-    OK(tobi_source_read_file(TOBI_SOURCE_DIR "/test/meshes/wedge.obj", &text, &size, &err));
+    OK(tobi_plain_read(TOBI_SOURCE_DIR "/test/meshes/wedge.obj", "mesh", 0, &text, &size, &err));
     file = fopen(mesh, "w");
     assert_non_null(file);
     assert_true(fwrite(text, 1, size, file) == size && fclose(file) == 0);
     free(text);
     OK(tobi_scene_import(old, new, 0, &table, NULL, &err));
     assert_non_null(strstr(table, "-> bodies[0].mesh = \"wedge.obj\"\n"));
-    OK(tobi_source_read_file(new, &text, &size, &err));
+    OK(tobi_plain_read(new, "scene", 0, &text, &size, &err));
     assert_non_null(strstr(text, "-> bodies[0].mesh = \"wedge.obj\"\n"));
     assert_null(strstr(text, folder));
     assert_null(strstr(table, "Absolute path"));

@@ -307,6 +307,15 @@ static void references_to_nothing(void **state)
           { "s.json:10:49: references[3].y: ", "is a number, must be a text" });
 }
 
+static void names_are_no_formulas(void **state)
+{
+    char rest[] = ", \"probes\": [ { \"name\": \"=1\", \"position\": [0,0,0] } ]", *first = strchr(rest, '=');
+    (void)state;
+    for (const char *c = "=+-@"; (*first = *c) != 0; c++)
+        CHECK(make(spacing, box, rest),
+              { "s.json:6:25: probes[0].name: ", "none of . + - = @ in front and" });
+}
+
 static void motions_one_at_a_time(void **state)
 {
     (void)state;
@@ -322,7 +331,7 @@ static void motions_one_at_a_time(void **state)
         { "{ \"translation\": 3 }", "motion.translation: ", "is a number, must be an object" },
         { "{ \"rotation\": { \"center\": [0, 0, 0], \"axis\": [0, 0, 0], \"rate\": 1 } }",
           "motion.rotation: ", "must not be zero" },
-        { "{ \"script\": \"/\" }", "motion.script: ", "Is a directory" },
+        { "{ \"script\": \"/\" }", "motion.script: ", "/: is a directory; only plain files are read" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char rest[1024], text[4096];
@@ -355,7 +364,7 @@ static void too_much(void **state)
     fputc(' ', file);
     fclose(file);
     assert_int_equal(tobi_scene_load("large.json", NULL, &scene, NULL, &err), TOBI_INVALID);
-    assert_non_null(strstr(err.text, "has 16777217 bytes, a scene has at most 16777216"));
+    assert_non_null(strstr(err.text, "scene large.json: has 16777217 bytes; allowed are at most 16777216"));
     remove("large.json");
 }
 
@@ -574,6 +583,7 @@ int main(void)
         cmocka_unit_test(bodies_and_motions),
         cmocka_unit_test(rules_between_values),
         cmocka_unit_test(references_to_nothing),
+        cmocka_unit_test(names_are_no_formulas),
         cmocka_unit_test(motions_one_at_a_time),
         cmocka_unit_test(too_much),
         cmocka_unit_test(boxes_colours_and_the_camera),
