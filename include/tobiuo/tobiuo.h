@@ -74,6 +74,13 @@ TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step
 /* Steps until time t (s), hit exactly. */
 TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
 
+/* Asked by the thread that steps, between steps and between the iterations of a solve; an answer other than 0
+   ends the call with TOBI_STOPPED. It may read what a signal handler or another thread sets (sig_atomic_t,
+   an atomic); it may not call functions of this world. */
+typedef int (*tobi_stop_fn)(void *user);
+/* NULL takes it away. user is owned by the caller. */
+TOBI_API void tobi_world_set_stop(tobi_world *world, tobi_stop_fn stop, void *user);
+
 TOBI_API double  tobi_world_time(const tobi_world *world);
 TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);

@@ -90,7 +90,7 @@ static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, t
     int64_t n = p->count - first;
     r->flow_speed = 0;
     if (!r->flow || n == 0) return TOBI_OK;
-    double (*at)[3] = malloc((size_t)n*sizeof *at), (*v)[3] = malloc((size_t)n*sizeof *v);
+    double (*at)[3] = malloc((size_t)n*sizeof *at), (*v)[3] = calloc((size_t)n, sizeof *v);
     for (int64_t i = 0; at && i < n; i++)
         for (int a = 0; a < 3; a++) at[i][a] = (&p->position[first + i].x)[a] + s->box.lower[a];
     tobi_status status = at && v ? r->flow(r->flow_user, n, (const double (*)[3])at, v, err)
@@ -101,6 +101,10 @@ static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, t
             (&p->velocity[first + i].x)[a] += (float)v[i][a];
             speed2 += v[i][a]*v[i][a];
         }
+        if (!(sqrt(speed2) <= TOBI_SPEED_LIMIT))
+            status = tobi_fail(err, TOBI_INVALID, "the flow of fill[%d] answers (%g, %g, %g) m/s at (%g, %g, "
+                               "%g) m; allowed are up to %g m/s", r->number, v[i][0], v[i][1], v[i][2],
+                               at[i][0], at[i][1], at[i][2], TOBI_SPEED_LIMIT);
         r->flow_speed = fmax(r->flow_speed, sqrt(speed2));
     }
     free(at);

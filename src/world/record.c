@@ -158,11 +158,11 @@ static bool reached(const tobi_run *run, double t)
 int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
 
 /* Takes the step's own numbers from inside: tobi_world_info would add up energies in every step. */
-static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
+static tobi_status step_towards(tobi_run *run, double target, double end, tobi_error *err)
 {
     tobi_simulation *sim = &run->world->sim;
     double before = tobi_record_clock(), start = sim->time;
-    TOBI_TRY(tobi_world_step(run->world, target - sim->time, NULL, err));
+    TOBI_TRY(tobi_world_step_towards(run->world, target - sim->time, end - sim->time, NULL, err));
     if (reached(run, target)) sim->time = sim->info.time = target;      /* not a rounding beside it */
     run->step_wall += tobi_record_clock() - before;
     run->particle_steps += (double)sim->info.fluid_particles;
@@ -178,7 +178,7 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
     double target = fmin(next, snap_end(run, end));
     if (reached(run, target) && !reached(run, next)) return TOBI_OK;
 
-    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, err));
+    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, end, err));
     if (info) *info = run->world->sim.info;
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
     if (tobi_world_time(run->world) >= run->next_checkpoint)

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
+#include "world/limits.h"
 #include "world/params.h"
 #include <math.h>
 #include <stdio.h>
@@ -53,6 +54,14 @@ static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
         TOBI_TRY(check_side(d->wall_velocity_max[a], a, d->wall_max[a], d->dimension, err));
     }
     return TOBI_OK;
+}
+
+static tobi_status check_limits(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
+{
+    tobi_error why = { 0 };
+    const char *key;
+    tobi_status status = tobi_limits_check(d, (method->fields & TOBI_SPH) != 0, &key, &why);
+    return status ? tobi_fail(err, status, "world: %s %s", key, why.text) : TOBI_OK;
 }
 
 static tobi_status check_open(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
@@ -126,6 +135,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
                          def->method ? def->method : "", tobi_method_at(0)->name);
     TOBI_TRY(check_open(def, method, err));
+    TOBI_TRY(check_limits(def, method, err));
     const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
     void *params = calloc(1, method->def_size);
@@ -252,13 +262,14 @@ static int needed_fields(const tobi_world *w)
     return owners;
 }
 
-/* Beside the fields: neighbour lists, or sorting, tiles and nodes of the grid (seen: 60 to 90). */
+/* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
+   of the grid (seen: 60 to 90). */
 static int64_t list_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
     if (w->method->fields & TOBI_MPM) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 16);
+    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
 
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
@@ -348,6 +359,9 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     double *memory;
     w->method->memory(w->method_state, &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w);
+    if (s->start_speed > TOBI_SPEED_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
+                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
     s->start_head = start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
     /* How fast the bodies start: their motion around time 0. */
@@ -377,8 +391,9 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
     const char *key = name_cfl(w, &cfl);
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
-        if (s->info.speed_max < 1e14 && s->info.capped <= 20 + s->particles.count/200) return TOBI_OK;
-        limit = 1.4*tobi_simulation_speed_scale(s);
+        const int64_t few = 20 + s->particles.count/200;
+        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
+        limit = fmin(1.4*tobi_simulation_speed_scale(s), TOBI_SPEED_LIMIT);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
     w->diverged = 1;
@@ -412,17 +427,20 @@ static void measure(tobi_world *w)
     if (w->method->measure) w->method->measure(&w->sim, w->method_state);
 }
 
-tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
+tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, tobi_step_info *info,
+                                    tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
+    const double before = s->time;
     TOBI_TRY(tobi_world_start(w, err));
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
-    w->fresh = 0;
+    w->fresh = s->stopped = 0;
+    TOBI_TRY(tobi_simulation_heed(s, err));
     tobi_world_cap_step(w);
     tobi_status status = w->method->step(s, w->method_state, max_dt, err);
     if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
     if (status != TOBI_OK) {
-        w->diverged = 1;
+        w->diverged = status != TOBI_STOPPED;
         return status;
     }
     s->info.step = s->step;
@@ -433,13 +451,18 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
         measure(w);
         *info = s->info;
     }
-    return TOBI_OK;
+    return tobi_limits_progress(s, before, max_dt, left, &w->idle_steps, err);
+}
+
+tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
+{
+    return tobi_world_step_towards(w, max_dt, fmax(w->sim.def.end_time - w->sim.time, max_dt), info, err);
 }
 
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
     while (w->sim.time < t) {
-        TOBI_TRY(tobi_world_step(w, t - w->sim.time, NULL, err));
+        TOBI_TRY(tobi_world_step_towards(w, t - w->sim.time, t - w->sim.time, NULL, err));
         if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
     }
     if (info) {
@@ -447,6 +470,12 @@ tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, to
         *info = w->sim.info;
     }
     return TOBI_OK;
+}
+
+void tobi_world_set_stop(tobi_world *w, tobi_stop_fn stop, void *user)
+{
+    w->sim.stop = stop;
+    w->sim.stop_user = user;
 }
 
 double tobi_world_time(const tobi_world *w) { return w->sim.time; }

@@ -23,6 +23,7 @@ struct tobi_world {
     char **notes;                  /* owned texts                                            */
     int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
@@ -42,6 +43,9 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
+/* tobi_world_step for a caller who goes on for `left` s at least. */
+tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, tobi_step_info *info,
+                                    tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 
