@@ -2,9 +2,19 @@
 
    Ownership: a tobi_world is opaque and owned by the caller from create to destroy. Arrays returned
    by pointer stay owned by the world and are valid until the next call that changes it. A failing
-   call leaves the world as it was, except TOBI_DIVERGED: the world stays readable, steps no more.
-   All units are SI. No call prints, exits or keeps global state; different worlds may be used from
-   different threads. */
+   call leaves the world as it was, except TOBI_DIVERGED (the world stays readable, steps no more) and
+   TOBI_STALLED (the step was made; who wants to go on steps again). All units are SI. No call prints, exits
+   or keeps global state.
+
+   Mistakes of the calling program: a NULL where something must stand, a number out of range and an index of
+   nothing are answered with TOBI_INVALID or TOBI_NOT_FOUND by calls that return a status, with 0 or NULL by
+   the others. A world that was destroyed must not be used; dev builds stop at an assert.
+
+   Threads: different worlds may be used from different threads, one world from one thread at a time. After a
+   fork the child must not use worlds of its parent, whose threads it has not; exec is fine.
+   Callbacks (motions, flows, control programs, stop) are called from the thread that calls the library. They
+   must not use the world that asks them, and they must return: C++ exceptions and longjmp must not leave
+   them. Numbers that are not finite, and speeds above TOBI_SPEED_LIMIT, are refused with body and time. */
 #ifndef TOBIUO_H
 #define TOBIUO_H
 #include "tobiuo/types.h"
@@ -68,10 +78,11 @@ TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_parti
    TOBI_NO_MEMORY before allocating more than the machine has. */
 TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
 
-/* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. */
+/* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. TOBI_STALLED when time stands
+   still, or when the end, end_time of the definition, lies more than 1e9 steps of the present length away. */
 TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info,
                                      tobi_error *err);
-/* Steps until time t (s), hit exactly. */
+/* Steps until time t (s), hit exactly; nothing if the world is there already. */
 TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
 
 /* Asked by the thread that steps, between steps and between the iterations of a solve; an answer other than 0
@@ -105,7 +116,8 @@ TOBI_API const char *tobi_world_field_name(int field, int *components, const cha
 /* Copies a field into buffer (count x components doubles, row-major, id order). */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
                                      double *buffer, int64_t count, tobi_error *err);
-/* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. */
+/* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. TOBI_INVALID,
+   and nothing is set, for numbers that are not finite or speeds above TOBI_SPEED_LIMIT. */
 TOBI_API tobi_status tobi_world_write(tobi_world *world, const char *field, const double *buffer,
                                       int64_t count, tobi_error *err);
 /* The moving surface of a body: vertices (m) and triangles, owned by the world. */

@@ -326,8 +326,10 @@ tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi
 {
     char *text;
     size_t size;
+    TOBI_NEED(scene, "where the scene goes");
     *scene = NULL;
     if (report) *report = NULL;
+    TOBI_NEED(path, "the path");
     TOBI_TRY(tobi_source_read_file(path, &text, &size, err));
     tobi_status status = tobi_scene_parse(path, text, size, overrides, scene, report, err);
     free(text);
@@ -410,7 +412,9 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {
     tobi_world *world;
+    TOBI_NEED(out, "where the world goes");
     *out = NULL;
+    TOBI_NEED(scene, "scene");
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
     for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
@@ -429,10 +433,13 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     return status;
 }
 
-const char *tobi_scene_name(const tobi_scene *scene) { return scene->name; }
-const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return &scene->world; }
-const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene) { return &scene->output; }
-const char *tobi_scene_import_table(const tobi_scene *scene) { return scene->import_table; }
+const char *tobi_scene_name(const tobi_scene *scene) { return scene ? scene->name : NULL; }
+const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return scene ? &scene->world : NULL; }
+const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene)
+{
+    return scene ? &scene->output : NULL;
+}
+const char *tobi_scene_import_table(const tobi_scene *scene) { return scene ? scene->import_table : NULL; }
 
 /* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
 static json_t *whole(json_t *value, int failed)
@@ -494,6 +501,7 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
 
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
+    if (!scene) return NULL;
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
     json_t *method = tobi_write_def(scene->method, scene->method_def);
     tobi_unused_drop(scene, &tobi_world_table, NULL, root);

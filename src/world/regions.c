@@ -134,9 +134,22 @@ static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def
                      def->name ? def->name : "", first->name, what, value, other, w->method->name);
 }
 
+/* All regions are checked before any of them is read. */
+static tobi_status check_fills(const tobi_fill_def *fills, int count, tobi_error *err)
+{
+    if (count < 0 || count > TOBI_REGION_LIMIT || (count > 0 && !fills))
+        return tobi_fail(err, TOBI_INVALID, "fill_count is %d%s, allowed is 0 to %d", count,
+                         fills ? "" : " and fills is NULL", TOBI_REGION_LIMIT);
+    for (int k = 0; k < count; k++) TOBI_TRY(tobi_param_check(&tobi_fill_table, &fills[k], err));
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
                                  const tobi_fill_def *fills, int fill_count, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(check_fills(fills, fill_count, err));
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
@@ -164,6 +177,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
 tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
                                  int fill_count, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(check_fills(fills, fill_count, err));
     tobi_simulation *s = &w->sim;
     double volume;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");

@@ -128,7 +128,9 @@ static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, t
 tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
                               tobi_error *err)
 {
+    TOBI_NEED(world, "where the world goes");
     *world = NULL;
+    TOBI_NEED(def, "the definition");
     TOBI_TRY(check_world(def, err));
     const tobi_method *method = tobi_method_find(def->method);
     if (!method)
@@ -144,6 +146,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
         free(params);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
     }
+    w->alive = TOBI_ALIVE;
     tobi_param_defaults(table, params);
     if (method_def) memcpy(params, method_def, method->def_size);
     w->method = method;
@@ -161,6 +164,8 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
 void tobi_world_destroy(tobi_world *w)
 {
     if (!w) return;
+    assert(w->alive == TOBI_ALIVE);
+    w->alive = 0;
     if (w->method_state) w->method->free(w->method_state);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
@@ -205,7 +210,7 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 
 const char *tobi_world_note(const tobi_world *w, int note)
 {
-    return note >= 0 && note < w->note_count ? w->notes[note] : NULL;
+    return w && note >= 0 && note < w->note_count ? w->notes[note] : NULL;
 }
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
@@ -224,6 +229,8 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
 
 tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
@@ -276,7 +283,8 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
                                 int64_t *bytes, tobi_error *err)
 {
     int64_t fluid = 0, body = 0;
-    (void)err;
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
     if (!w->started) set_smoothing(w);
     for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
     for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
@@ -332,6 +340,7 @@ double tobi_world_start_speed(const tobi_world *w)
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
     tobi_simulation *s = &w->sim;
     int64_t fluid, body, bytes, room = 0;
     if (w->started) return TOBI_OK;
@@ -456,11 +465,17 @@ tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, t
 
 tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    if (!(max_dt >= 0 && isfinite(max_dt)))
+        return tobi_fail(err, TOBI_INVALID, "max_dt is %g s, allowed are finite numbers from 0, no cap, on",
+                         max_dt);
     return tobi_world_step_towards(w, max_dt, fmax(w->sim.def.end_time - w->sim.time, max_dt), info, err);
 }
 
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
     while (w->sim.time < t) {
         TOBI_TRY(tobi_world_step_towards(w, t - w->sim.time, t - w->sim.time, NULL, err));
         if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
@@ -474,14 +489,16 @@ tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, to
 
 void tobi_world_set_stop(tobi_world *w, tobi_stop_fn stop, void *user)
 {
+    if (!w) return;
     w->sim.stop = stop;
     w->sim.stop_user = user;
 }
 
-double tobi_world_time(const tobi_world *w) { return w->sim.time; }
+double tobi_world_time(const tobi_world *w) { return w ? w->sim.time : 0; }
 
 const tobi_step_info *tobi_world_info(const tobi_world *w)
 {
+    if (!w) return NULL;
     tobi_simulation *s = (tobi_simulation *)&w->sim;   /* fills in sums of the present state */
     s->info.step = s->step;
     s->info.time = s->time;
@@ -490,10 +507,11 @@ const tobi_step_info *tobi_world_info(const tobi_world *w)
     return &s->info;
 }
 
-int tobi_world_body_count(const tobi_world *w) { return w->sim.body_count; }
+int tobi_world_body_count(const tobi_world *w) { return w ? w->sim.body_count : 0; }
 
 tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
 {
+    if (!w || !info) return TOBI_INVALID;
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     *info = w->sim.bodies[body].info;
     return TOBI_OK;
@@ -501,11 +519,12 @@ tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
 
 const char *tobi_world_body_name(const tobi_world *w, int body)
 {
-    return body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
+    return !w || body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
 }
 
 int64_t tobi_world_bytes(const tobi_world *w)
 {
+    if (!w) return 0;
     const tobi_simulation *s = &w->sim;
     return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
@@ -515,8 +534,8 @@ int64_t tobi_world_bytes(const tobi_world *w)
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
 {
+    if (!w || stage < 0 || stage >= w->sim.stages.count) return NULL;
     const tobi_stages *st = &w->sim.stages;
-    if (stage < 0 || stage >= st->count) return NULL;
-    *seconds = st->seconds[stage];
+    if (seconds) *seconds = st->seconds[stage];
     return st->name[stage];
 }

@@ -4,12 +4,16 @@
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"
+#include <assert.h>
 
 enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024 };
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
+enum { TOBI_ALIVE = 0x70b10 };
+
 struct tobi_world {
+    int alive;                     /* TOBI_ALIVE until it is destroyed                       */
     tobi_simulation sim;
     const tobi_method *method;
     void *method_def;              /* copy of the method's parameters                        */
@@ -29,6 +33,13 @@ struct tobi_world {
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
+
+/* For public calls that return a status; the assert finds, in dev builds, worlds destroyed before. */
+#define TOBI_NEED_WORLD(w)                                                                         \
+    do {                                                                                           \
+        TOBI_NEED(w, "world");                                                                     \
+        assert((w)->alive == TOBI_ALIVE);                                                          \
+    } while (0)
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */
