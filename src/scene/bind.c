@@ -394,6 +394,7 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
 {
     char keys[CANDIDATES][48], all[1024] = "";
     const char *list[CANDIDATES];
+    if (tobi_report_pass(p->binder->source->report)) return;
     size_t count = list_keys(p, prefix, keys), used = 0;
     for (size_t i = 0; i < count; i++) list[i] = keys[i];
     const char *near = tobi_suggest(place->key, list, count);

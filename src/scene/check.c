@@ -385,8 +385,10 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
     int count = tobi_world_list_fields(scene->world.method, names);
     char all[512] = "";
     if (strcmp(field, "usual") == 0) return;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++)
         if (strcmp(names[k], field) == 0) return;
+    if (tobi_report_pass(source->report)) return;
+    for (int k = 0; k < count; k++) {
         size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
     }
