@@ -221,9 +221,19 @@ static void flatten_world(tobi_scene *scene)
     tobi_world_def *w = &scene->world;
     if (w->dimension != 2) return;
     w->domain_min[2] = w->domain_max[2] = 0;
-    if (tobi_bind_has(&tobi_world_table, scene->world_bound.given, "gravity")) return;
+    if (tobi_bind_has(&tobi_world_table, scene->world_bound.good, "gravity")) return;
     w->gravity[0] = w->gravity[2] = 0;
     w->gravity[1] = -9.81;
+}
+
+/* Where the key is wrong, the corners tell which other values are right. */
+static int find_dimension(const json_t *scene)
+{
+    const json_t *given = json_object_get(scene, "dimension");
+    const json_t *corner = json_object_get(json_object_get(scene, "domain"), "max");
+    const json_int_t value = json_integer_value(given);
+    if (!given || value == 2 || value == 3) return value == 2 ? 2 : 3;
+    return json_array_size(corner) == 2 ? 2 : 3;
 }
 
 static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
@@ -233,10 +243,11 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     tobi_place root = { 0 }, output = { &root, "output", 0 };
 
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
-    if (json_integer_value(json_object_get(scene->root, "dimension")) == 2) binder.dimension = 2;
+    binder.dimension = find_dimension(scene->root);
     scene->world = tobi_default_world_def();
     scene->world_bound =
         tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
+    scene->world.dimension = binder.dimension;
     flatten_world(scene);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));

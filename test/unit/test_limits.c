@@ -294,6 +294,19 @@ static void answers_of_callbacks(void **state)
     tobi_world_destroy(w);
 }
 
+static const char liquid[] =
+    "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [0.6, 0.6, 0.6] }, \"spacing\": 0.1, \"end_time\": 1,"
+    " \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0, 0],"
+    " \"max\": [0.6, 0.6, 0.3] } } ] } ], \"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ],"
+    " \"bodies\": [ { \"name\": \"box\", \"dynamics\": \"free\", \"box\": { \"min\": [0.2, 0.2, 0.2],"
+    " \"max\": [0.4, 0.4, 0.4] } } ] }";
+static const char solid[] =
+    "{ \"method\": \"mlsmpm\", \"domain\": { \"min\": [0, 0, 0], \"max\": [0.6, 0.6, 0.6] },"
+    " \"spacing\": 0.1, \"end_time\": 1,"
+    " \"planes\": [ { \"point\": [0, 0, 0.01], \"normal\": [0, 0, 1] } ],"
+    " \"solids\": [ { \"name\": \"jelly\", \"fill\": [ { \"sphere\": { \"centre\": [0.3, 0.3, 0.3],"
+    " \"radius\": 0.2 } } ] } ] }";
+
 /* Reads the scene with one value changed, and steps what comes of it. */
 static void try_scene(const char *text, const char *override)
 {
@@ -328,18 +341,6 @@ static void sweep_scene(const char *text, const tobi_param_table *table, const c
 
 static void scenes(void **state)
 {
-    static const char liquid[] =
-        "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [0.6, 0.6, 0.6] }, \"spacing\": 0.1, \"end_time\": 1,"
-        " \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0, 0],"
-        " \"max\": [0.6, 0.6, 0.3] } } ] } ], \"probes\": [ { \"name\": \"p\", \"position\": [0, 0, 0] } ],"
-        " \"bodies\": [ { \"name\": \"box\", \"dynamics\": \"free\", \"box\": { \"min\": [0.2, 0.2, 0.2],"
-        " \"max\": [0.4, 0.4, 0.4] } } ] }";
-    static const char solid[] =
-        "{ \"method\": \"mlsmpm\", \"domain\": { \"min\": [0, 0, 0], \"max\": [0.6, 0.6, 0.6] },"
-        " \"spacing\": 0.1, \"end_time\": 1,"
-        " \"planes\": [ { \"point\": [0, 0, 0.01], \"normal\": [0, 0, 1] } ],"
-        " \"solids\": [ { \"name\": \"jelly\", \"fill\": [ { \"sphere\": { \"centre\": [0.3, 0.3, 0.3],"
-        " \"radius\": 0.2 } } ] } ] }";
     (void)state;
     sweep_scene(liquid, &tobi_world_table, "");
     sweep_scene(liquid, &tobi_dfsph_table, "dfsph.");
@@ -357,6 +358,53 @@ static void scenes(void **state)
         snprintf(prefix, sizeof prefix, "bodies[0].motion.%s.", tobi_motion_table(k)->name);
         sweep_scene(liquid, tobi_motion_table(k), prefix);
     }
+}
+
+/* Returns how many mistakes there are with one value that is wrong. */
+static int count_mistakes(const char *text, const char *override, char line[400])
+{
+    const char *const overrides[] = { override, NULL };
+    tobi_scene *scene = NULL;
+    tobi_report *report = NULL;
+    tobi_scene_parse("scene.json", text, strlen(text), overrides, &scene, &report, NULL);
+    const int count = tobi_report_count(report);
+    snprintf(line, 400, "%s", count ? tobi_report_line(report, count - 1) : "");
+    tobi_report_free(report);
+    tobi_scene_free(scene);
+    return count;
+}
+
+static void mistake_in_each(const char *text, const tobi_param_table *table, const char *prefix)
+{
+    static const char *const wrong[] = { "true", "[[]]", "{}", "1e300", "null" };
+    for (const tobi_param *row = table->rows; row->key; row++)
+        for (size_t k = 0; k < sizeof wrong/sizeof *wrong; k++) {
+            char override[200], line[400];
+            if (row->type == TOBI_PARAM_BOOL && k == 0) continue;
+            if (strcmp(row->key, "method") == 0) continue;      /* every key may be wrong without it */
+            snprintf(override, sizeof override, "%s%.*s=%s", prefix, (int)strcspn(row->key, "["), row->key,
+                     wrong[k]);
+            const int count = count_mistakes(text, override, line);
+            if (count != 1) fail_msg("%s makes %d mistakes, the last: %s", override, count, line);
+        }
+}
+
+static void one_wrong_value_is_one_mistake(void **state)
+{
+    static const char flat[] =
+        "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [0.6, 0.6] }, \"spacing\": 0.1,"
+        " \"end_time\": 1, \"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0],"
+        " \"max\": [0.6, 0.3] } } ] } ] }";
+    (void)state;
+    mistake_in_each(flat, &tobi_world_table, "");
+    mistake_in_each(flat, &tobi_dfsph_table, "dfsph.");
+    mistake_in_each(flat, &tobi_fluid_table, "fluids[0].");
+    mistake_in_each(flat, &tobi_output_table, "output.");
+    mistake_in_each(liquid, &tobi_world_table, "");
+    mistake_in_each(liquid, &tobi_probe_table, "probes[0].");
+    mistake_in_each(solid, &tobi_world_table, "");
+    mistake_in_each(solid, &tobi_mlsmpm_table, "mlsmpm.");
+    mistake_in_each(solid, &tobi_plane_table, "planes[0].");
 }
 
 static void check_ranges(const tobi_param_table *table)
@@ -381,6 +429,7 @@ int main(void)
         cmocka_unit_test(steps_that_lead_nowhere),
         cmocka_unit_test(answers_of_callbacks),
         cmocka_unit_test(scenes),
+        cmocka_unit_test(one_wrong_value_is_one_mistake),
         cmocka_unit_test(dfsph),
         cmocka_unit_test(wcsph),
         cmocka_unit_test(mlsmpm),
