@@ -4,6 +4,7 @@
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
 #include "world/limits.h"
+#include "world/note_pieces.h"
 #include "world/params.h"
 #include <math.h>
 #include <stdio.h>
@@ -381,7 +382,9 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     if (w->dynamics) s->start_speed = fmax(s->start_speed, s->body_speed);
     s->info.fluid_particles = n;
     w->started = 1;
-    return TOBI_OK;
+    const tobi_status status = tobi_world_note_pieces(w, err);
+    w->started = status == TOBI_OK;
+    return status;
 }
 
 /* Which key of the scene makes steps shorter, and its value. */
