@@ -37,6 +37,7 @@ static image take_picture(double length)
     for (int64_t i = 0; i < p->count; i++)
         if (p->rest[i].y > 2 - 2*length)
             p->cuts[i].c[0] = (tobi_float4){ p->rest[i].x - 1.5f, 0, 0, p->rest[i].x > 1.5f ? 1 : -1 };
+    world->fresh = 0;                   /* the cuts were made behind its back */
     assert_non_null(mkdtemp(folder));
     output.frames = 1;
     OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));
