@@ -47,8 +47,10 @@ TOBI_API tobi_status tobi_world_create(const tobi_world_def *def, const void *me
                                        tobi_world **world, tobi_error *err);
 TOBI_API void tobi_world_destroy(tobi_world *world);
 
-/* Adds a fluid with the regions it fills. Particles sit on the lattice (i + 1/2) d from the region's
-   lower corner (from the domain's lower corner for meshes); those inside a body are cut out at start. */
+/* Adds a fluid with the regions it fills. Boxes take whole layers, spread evenly; the spacing of the world
+   gives way by up to 5 % until the particles of all boxes hold their volume, which the notes tell. Other
+   regions take the points (i + 1/2) d from their lower corner that lie inside. Those in a body are cut out
+   at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
 /* Adds a solid of the material point method with the regions it fills. TOBI_UNSUPPORTED for other

@@ -8,9 +8,11 @@
 /* Far more than any machine takes; sums of a scene's regions, in bytes, still fit in 64 bits. */
 #define COUNT_LIMIT 1e12
 
-/* Layers of a side of length a, and their distance: the lattice is stretched to fill the box evenly, so
-   that no gap of part of a spacing is left at a wall. */
-static double layers(double a, double d) { return fmax(1, floor(a/d + 0.5)); }
+/* The lattice is stretched to fill the box evenly, so that no gap of part of a spacing is left at a wall. */
+double tobi_region_layers(const tobi_region *r, int axis, double spacing)
+{
+    return fmax(1, floor((r->upper[axis] - r->lower[axis])/spacing + 0.5));
+}
 
 static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
 {
@@ -18,7 +20,7 @@ static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3]
     for (int a = 0; a < 3; a++) {
         double side = r->upper[a] - r->lower[a];
         int flat = a == 2 && s->box.dimension == 2;
-        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : layers(side, d);
+        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : tobi_region_layers(r, a, d);
         n[a] = count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
         step[a] = r->shape.triangle_count ? d : side/(double)n[a];
     }

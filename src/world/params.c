@@ -45,7 +45,8 @@ static const tobi_param world_rows[] = {
       .doc = "Acceleration of gravity, in any direction; a 2-D scene that gives none gets [0, "
              "-9.81]." },
     { .key = "spacing", REAL, AT(tobi_world_def, spacing), LENGTHS, .unit = "m", .required = true,
-      .doc = "Distance between fluid particles: the resolution." },
+      .doc = "Distance between fluid particles: the resolution. Where layers do not fit into the boxes of "
+             "fluid, it gives way by up to 5 %, so that the particles hold the boxes' volume exactly." },
     { .key = "end_time", REAL, AT(tobi_world_def, end_time), RANGE(0, 1e9), .unit = "s", .required = true,
       .doc = "Simulated time at which the run ends." },
     { .key = "time_step", REAL, AT(tobi_world_def, time_step), DURATION, .unit = "s",

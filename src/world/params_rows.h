@@ -18,7 +18,7 @@
 #define SPEED    RANGE(-TOBI_SPEED_LIMIT, TOBI_SPEED_LIMIT) /* m/s, and turns in rad/s                 */
 #define LENGTHS  RANGE(1e-7, 1e5)                           /* m: of particles and grains              */
 #define DURATION RANGE(1e-12, 1e9)                          /* s: up to 30 years                       */
-#define DENSITY  RANGE(1e-6, 1e6)                           /* kg/m3                                   */
+#define DENSITY  RANGE(1e-6, 1e9)                           /* kg/m3                                   */
 #define STIFFNESS RANGE(1e-6, 1e15)                         /* Pa: a thousand diamonds                 */
 #define MASS     RANGE(1e-30, 1e30), .positive = true       /* kg: a written 0 is no mass               */
 #define FRICTION RANGE(0, 1000)                             /* 1, of Coulomb                           */

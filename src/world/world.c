@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
+#include "world/fit.h"
 #include "world/limits.h"
 #include "world/note_pieces.h"
 #include "world/params.h"
@@ -106,8 +107,9 @@ static void set_smoothing(tobi_world *w)
     int shape, periodic[3];
     double support;
     w->method->smoothing(w->method_def, is_stirred_vessel(w), &shape, &support);
-    if (s->smoothing.h == support*d->spacing) return;
-    tobi_smoothing_init(&s->smoothing, shape, d->dimension, d->spacing, support);
+    const double spacing = tobi_fit_find(w, d->spacing).spacing;
+    if (s->smoothing.h == support*spacing) return;
+    tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
     for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
     tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
 }
@@ -247,9 +249,9 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     s->bodies = more;
     tobi_body *b = &s->bodies[s->body_count];
     /* Only SPH methods integrate over surfaces. */
-    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->smoothing.spacing;
+    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->def.spacing;
     tobi_body_def placed = *def;
-    if (!(def->spacing > 0)) placed.spacing = s->smoothing.spacing;
+    if (!(def->spacing > 0)) placed.spacing = s->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = check_body(w, b, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
@@ -354,6 +356,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));

@@ -179,7 +179,7 @@ check "full disk: no unfinished files" no_parts full
 old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
-check "the particles of the old scene" grep -q "fluid particles  476836" out.txt
+check "the particles of the old scene" grep -q "fluid particles  480102" out.txt
 expect 0 "" run "$old/rigid_blocks.json" --quiet --out old
 check "an old scene's OBJ" test -s old/obj/block_7_000005.obj -a ! -e old/ply
 check "five outputs of two fixed steps" test "$(value old/summary.json steps)" = 10

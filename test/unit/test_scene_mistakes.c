@@ -127,7 +127,7 @@ static void values_out_of_range(void **state)
             ", \"dfsph\": { \"support\": 9, \"kernel\": \"cubic\", \"density_iterations_min\": 5,\n"
             "\"density_iterations_max\": 4 }, \"dimension\": 4, \"cfl\": 1e300"),
         { "s.json:2:12: spacing: ", "is -0.1, allowed is 1e-7 to 1e5 m" },
-        { "s.json:4:12: fluids[0].density: ", "is 0, allowed is 1e-6 to 1e6 kg/m3" },
+        { "s.json:4:12: fluids[0].density: ", "is 0, allowed is 1e-6 to 1e9 kg/m3" },
         { "s.json:4:28: fluids[0].viscosity: ", "is -0.001, allowed is 0 to 1e9 Pa s" },
         { "s.json:7:25: dfsph.support: ", "is 9, allowed is 2 to 4 spacings" },
         { "s.json:7:38: dfsph.kernel: ", "is \"cubic\", allowed is wendland-c2 or cubic-spline" },
