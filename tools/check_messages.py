@@ -32,7 +32,6 @@ UNTESTED = {
     "cannot list": "needs opendir to fail, which root is never refused",
     "swims, but the program of its motion": "needs an installation without its scenes",
     "the program of the knife, scenes/": "needs an installation without its scenes",
-    "a speed reached": "needs a speed that no particle has any more after the step",
 }
 
 

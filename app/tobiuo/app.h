@@ -59,9 +59,7 @@ typedef struct drive_options {
     double end;           /* s                                   */
     int quiet;            /* 1: no progress line                 */
 } drive_options;
-/* Catches Ctrl-C and SIGTERM from here on. */
-void drive_catch_signals(void);
-/* Returns the exit code; the run is finished, not freed. */
+/* Catches Ctrl-C and SIGTERM from here on. Returns the exit code; the run is finished, not freed. */
 int drive(tobi_world *world, tobi_run *run, const drive_options *options);
 
 /* progress.c */

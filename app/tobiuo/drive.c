@@ -1,5 +1,6 @@
-/* Stepping to the end. Ctrl-C (or SIGTERM) asks for a clean end after the step in work; a second
-   one ends the program at once, which costs nothing but the time since the last checkpoint. */
+/* Stepping to the end. Ctrl-C (or SIGTERM) asks for a clean end: the step in work is given up where that is
+   sooner, and the checkpoint has the step before. A second one ends the program at once, which costs nothing
+   but the time since the last checkpoint. So does one before the first step. */
 #include "app.h"
 #include <signal.h>
 #include <stdio.h>
@@ -8,12 +9,18 @@ static volatile sig_atomic_t caught;
 
 static void note_signal(int number) { caught = number; }
 
-void drive_catch_signals(void)
+static void catch_signals(void)
 {
     struct sigaction action = { .sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND };
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+}
+
+static int is_caught(void *user)
+{
+    (void)user;
+    return caught != 0;
 }
 
 /* Mean density error of a liquid that is not one any more; 0.002 is seen where all is well. */
@@ -27,6 +34,7 @@ static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *
     while (!caught && !tobi_run_done(run, o->end)) {
         tobi_step_info info = { 0 };
         tobi_status status = tobi_run_step(run, o->end, &info, err);
+        if (status == TOBI_STOPPED) break;
         if (status != TOBI_OK) return status;
         c->steps++;
         c->unconverged += !info.density_converged || !info.divergence_converged;
@@ -64,12 +72,15 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     progress p;
     counts c = { 0 };
     tobi_error err = { 0 }, more;
+    catch_signals();
+    tobi_world_set_stop(world, is_caught, NULL);
     progress_begin(&p, tobi_world_time(world), o->quiet);
     tobi_status status = step_to_end(run, o, &p, &c, &err);
     progress_end(&p);
     if (status != TOBI_OK) {
         complain("%s", err.text);
-        tobi_run_finish(run, status == TOBI_DIVERGED ? "diverged" : "failed", &more);
+        tobi_run_finish(run, status == TOBI_DIVERGED ? "diverged" : status == TOBI_STALLED ? "stalled" :
+                                                                                             "failed", &more);
         return complain("the results up to t = %.9g s are in %s", tobi_world_time(world), o->dir);
     }
     status = tobi_run_checkpoint(run, &err);

@@ -37,7 +37,6 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     tobi_world *world = NULL;
     tobi_run *run = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
-    drive_catch_signals();
     int code;
     if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
         code = complain("%s", err.text);

@@ -63,7 +63,8 @@ TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
  */
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
 
-/* Writes summary.json. outcome: "complete", "interrupted", "diverged" or another word. */
+/* Writes summary.json. outcome: "complete", "interrupted", "diverged", "stalled" or
+   another word. */
 TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err);
 
 /* Closes the files; NULL is fine. Writes nothing: a run that was not finished stays resumable. */

@@ -11,6 +11,10 @@
 extern "C" {
 #endif
 
+/* The largest speed of anything, m/s: of bodies and sides, and of particles at the start. A particle that
+   becomes faster has diverged. */
+#define TOBI_SPEED_LIMIT 1e6
+
 /* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
    the SPH methods slip along both. Sticky and no-slip are the same. Nothing is at an open side: particles of
    mlsmpm and bodies pass it; the SPH methods refuse it. */

@@ -14,6 +14,12 @@ enum { TOBI_EXCERPT = 16 };      /* bytes */
 typedef struct tobi_short_text { char text[TOBI_EXCERPT + 4]; } tobi_short_text;
 tobi_short_text tobi_excerpt(const char *text);
 
+/* What a public call cannot do without: a NULL there is a mistake of the calling program, told as one. */
+#define TOBI_NEED(pointer, name)                                                                   \
+    do {                                                                                           \
+        if (!(pointer)) return tobi_fail(err, TOBI_INVALID, "%s: %s is NULL", __func__, name);     \
+    } while (0)
+
 #define TOBI_TRY(call)                                  \
     do {                                                \
         tobi_status try_status_ = (call);               \

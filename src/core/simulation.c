@@ -44,6 +44,19 @@ void tobi_simulation_measure(tobi_simulation *s)
     s->info.weight = t[5]*sqrt(g2);
 }
 
+int tobi_simulation_stops(tobi_simulation *s)
+{
+    if (!s->stopped && s->stop) s->stopped = s->stop(s->stop_user) != 0;
+    return s->stopped;
+}
+
+tobi_status tobi_simulation_heed(tobi_simulation *s, tobi_error *err)
+{
+    if (!tobi_simulation_stops(s)) return TOBI_OK;
+    return tobi_fail(err, TOBI_STOPPED, "stopped on request at t = %.9g s, after step %lld", s->time,
+                     (long long)s->step);
+}
+
 double tobi_simulation_fit_dt(double dt, double max_dt)
 {
     int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */

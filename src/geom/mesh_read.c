@@ -14,6 +14,7 @@
 #include "base/limit.h"
 #include "base/plain.h"
 #include "geom/file_checks.h"
+#include "geom/import_io.h"
 #include "geom/mesh.h"
 #include "geom/obj_scan.h"
 #include "geom/texture.h"
@@ -136,9 +137,12 @@ static const struct aiScene *import(const char *path, import_header *header)
     char *text = NULL;
     size_t size = 0;
     int changed = dot && !strcasecmp(dot, ".obj") ? tobi_obj_add_zeros(path, &text, &size) : 0;
+    FILE *file = changed > 0 ? fmemopen(text, size, "rb") : changed == 0 ? fopen(path, "rb") : NULL;
     const struct aiScene *scene = NULL;
-    if (changed > 0) scene = aiImportFileFromMemory(text, (unsigned)size, flags, "obj");
-    else if (changed == 0) scene = aiImportFile(path, flags);
+    tobi_import_io io;
+    tobi_import_io_init(&io, path, file);
+    if (file) scene = aiImportFileEx(path, flags, &io.io);
+    if (file) fclose(file);
     free(text);
     if (scene) return scene;
     snprintf(header->text, sizeof header->text, "%s",

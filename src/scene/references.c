@@ -81,5 +81,5 @@ void tobi_references_check(const tobi_scene *scene, tobi_source *source)
 
 const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene, int index)
 {
-    return index >= 0 && index < scene->reference_count ? &scene->references[index] : NULL;
+    return scene && index >= 0 && index < scene->reference_count ? &scene->references[index] : NULL;
 }

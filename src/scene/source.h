@@ -1,8 +1,8 @@
-/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no
-   positions, so a place is found again by walking the text along its path; that costs a scan per
-   mistake and no memory for scenes that have none. */
+/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no positions,
+   so a place is found again by its path, scene/spots.h. */
 #pragma once
 #include "scene/report.h"
+#include "scene/spots.h"
 #include <jansson.h>
 
 /* A way through a JSON value, from the leaf up to the root: a linked list on the stack. */
@@ -31,6 +31,7 @@ typedef struct tobi_source {
     char *name;                    /* path as given, for messages     */
     char *text;                    /* comments blanked, NUL at end    */
     size_t size;
+    tobi_spots spots;              /* of the text                     */
     int python;                    /* it was a parameter file of Python */
     json_t *root;                  /* an object                       */
     tobi_override *overrides;      /* those that were applied         */

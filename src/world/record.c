@@ -1,6 +1,7 @@
 /* The life of a run: create or resume, step, output, finish. The files are made in record_*.c. */
 #include "world/record.h"
 #include "io/file.h"
+#include "world/params.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -48,8 +49,6 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->lock = -1;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
-    if (!(output->interval > 0.0) || !isfinite(output->interval))
-        return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
     TOBI_TRY(tobi_series_fields(run, err));
     return tobi_record_open_dir(dir, &run->lock, err);
 }
@@ -91,9 +90,21 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
     return begin(run, err);
 }
 
+static tobi_status check_arguments(const tobi_world *world, const tobi_output_def *output, const char *dir,
+                                   tobi_error *err)
+{
+    TOBI_NEED_WORLD(world);
+    TOBI_NEED(output, "the output");
+    TOBI_NEED(dir, "the directory");
+    return tobi_param_check(&tobi_output_table, output, err);
+}
+
 tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
                             int force, const char *resolved_json, tobi_run **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the run goes");
+    *out = NULL;
+    TOBI_TRY(check_arguments(world, output, dir, err));
     tobi_run *run = NULL;
     tobi_status status = open_run(world, output, dir, &run, err);
     if (status == TOBI_OK) status = create(run, force, resolved_json, err);
@@ -125,7 +136,9 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
 tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
                             tobi_run **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the run goes");
     *out = NULL;
+    TOBI_TRY(check_arguments(world, output, dir, err));
     bool found = false;
     TOBI_TRY(tobi_record_find_results(dir, &found, err));
     if (!found)
@@ -141,7 +154,7 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
     return status;
 }
 
-const char *tobi_run_note(const tobi_run *run) { return run->note; }
+const char *tobi_run_note(const tobi_run *run) { return run ? run->note : ""; }
 
 /* The end, moved onto the output time that it means. */
 static double snap_end(const tobi_run *run, double end)
@@ -155,14 +168,17 @@ static bool reached(const tobi_run *run, double t)
     return tobi_world_time(run->world) >= t - SNAP * run->output.interval;
 }
 
-int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
+int tobi_run_done(const tobi_run *run, double end)
+{
+    return !run || (isfinite(end) && reached(run, snap_end(run, end)));
+}
 
 /* Takes the step's own numbers from inside: tobi_world_info would add up energies in every step. */
-static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
+static tobi_status step_towards(tobi_run *run, double target, double end, tobi_error *err)
 {
     tobi_simulation *sim = &run->world->sim;
     double before = tobi_record_clock(), start = sim->time;
-    TOBI_TRY(tobi_world_step(run->world, target - sim->time, NULL, err));
+    TOBI_TRY(tobi_world_step_towards(run->world, target - sim->time, end - sim->time, NULL, err));
     if (reached(run, target)) sim->time = sim->info.time = target;      /* not a rounding beside it */
     run->step_wall += tobi_record_clock() - before;
     run->particle_steps += (double)sim->info.fluid_particles;
@@ -174,11 +190,13 @@ static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
 
 tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
+    if (!isfinite(end)) return tobi_fail(err, TOBI_INVALID, "the end of the run is %g s, not finite", end);
     double next = tobi_record_time(run, run->outputs);
     double target = fmin(next, snap_end(run, end));
     if (reached(run, target) && !reached(run, next)) return TOBI_OK;
 
-    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, err));
+    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, end, err));
     if (info) *info = run->world->sim.info;
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
     if (tobi_world_time(run->world) >= run->next_checkpoint)
@@ -188,6 +206,7 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
 
 tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
     TOBI_TRY(tobi_series_write(run, err));
     TOBI_TRY(tobi_tables_write(run, err));
     run->outputs++;
@@ -198,6 +217,7 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
 
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
     if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
     TOBI_TRY(tobi_state_save(run, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
@@ -206,6 +226,8 @@ tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 
 tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
+    TOBI_NEED(outcome, "the outcome");
     return tobi_summary_write(run, outcome, err);
 }
 

@@ -1,6 +1,8 @@
 /* The picture of an output: water coloured by speed and bodies by number unless they have colours of their
    own, seen so that the box fits unless there is a camera. */
+#include "core/cuts.h"
 #include "io/frame.h"
+#include "world/params.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>
@@ -16,9 +18,10 @@ typedef struct drawing {
     double *positions, *velocities;    /* n x 3        */
     float *values;                     /* n, speeds; with a palette the colour's number */
     int64_t count;                     /* particles that are shown                      */
-    float palette[2*TOBI_SOLID_LIMIT][3];
-    int colors;                        /* one per fluid or solid, or its skin's and its core's */
-    int has_palette;
+    float (*palette)[3];
+    int colors;                        /* in the palette                                */
+    int has_palette;                   /* 0: colours by speed                           */
+    uint8_t *tint;                     /* of each piece, or NULL: nothing can part      */
     uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
     int mesh_count;
     tobi_frame_mesh *meshes;
@@ -29,6 +32,8 @@ static void free_drawing(drawing *d)
     free(d->positions);
     free(d->velocities);
     free(d->values);
+    free(d->palette);
+    free(d->tint);
     free(d->opaque);
     free(d->meshes);
 }
@@ -68,28 +73,106 @@ static void set_color(const double *color, float out[3])
     for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
 }
 
-/* The palette: a colour per material or, if any shows its core, two. */
-static void make_palette(const tobi_simulation *s, int materials, drawing *d)
+/* Where a particle of a material is: at its surface, below it, at the face of a cut. */
+enum { SKIN, CORE, FACE, PARTS };
+
+/* The second piece of a solid and all after it are mixed with one of these, so that halves which lie face to
+   face can be told apart. */
+static const float tints[][3] = {
+    { 0.10f, 0.30f, 0.90f }, { 0.95f, 0.75f, 0.05f }, { 0.10f, 0.65f, 0.30f }, { 0.55f, 0.15f, 0.75f },
+    { 0.95f, 0.45f, 0.05f }, { 0.05f, 0.65f, 0.75f },
+};
+enum { TINTS = 1 + sizeof tints / sizeof *tints };
+
+static void mix(float color[3], const float with[3], float share)
 {
-    int cores = 0;
-    for (int m = 0; m < materials; m++) {
-        const material look = material_at(s, m);
-        cores |= look.core != look.color;
-        d->has_palette |= look.core[0] >= 0;
-    }
-    d->colors = materials * (1 + cores);
+    for (int k = 0; k < 3; k++) color[k] += share * (with[k] - color[k]);
+}
+
+/* Without a core of its own, a cut face is paler than its material, or darker where that is pale. */
+static void find_color(const material *look, int part, int tint, float out[3])
+{
+    static const float white[3] = { 1, 1, 1 }, black[3] = { 0, 0, 0 };
+    set_color(part == SKIN ? look->color : look->core, out);
+    const int pale = out[0] + out[1] + out[2] > 2;
+    if (part == FACE && look->core == look->color) mix(out, pale ? black : white, 0.4f);
+    if (tint > 0) mix(out, tints[tint - 1], 0.3f);
+}
+
+/* Whether a blade or a crack may part a solid of the world. */
+static int can_part(const tobi_simulation *s, int solid)
+{
+    const tobi_solid_def *def = &s->solids[solid].def;
+    return tobi_solid_uses(def->model, "cut_friction") && (s->particles.cuts || def->strength > 0);
+}
+
+/* The palette, if any material has a colour: of each material skin, core and face, each in all tints. */
+static tobi_status make_palette(const tobi_simulation *s, int materials, drawing *d, tobi_error *err)
+{
+    d->colors = materials * PARTS * TINTS;
+    d->palette = malloc(((size_t)d->colors + 1) * sizeof *d->palette);
+    if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int c = 0; c < d->colors; c++) {
-        const material look = material_at(s, c / (1 + cores));
-        set_color(cores && c % 2 ? look.core : look.color, d->palette[c]);
+        const material look = material_at(s, c / (PARTS * TINTS));
+        d->has_palette |= look.core[0] >= 0;
+        find_color(&look, c % PARTS, c / PARTS % TINTS, d->palette[c]);
     }
+    return TOBI_OK;
+}
+
+static int order_pieces(const void *a, const void *b)
+{
+    const tobi_piece *p = *(const tobi_piece *const *)a, *q = *(const tobi_piece *const *)b;
+    if (p->solid != q->solid) return p->solid < q->solid ? -1 : 1;
+    return p->first_id < q->first_id ? -1 : p->first_id > q->first_id;
+}
+
+/* The tint of each piece, by its first particle, so that it keeps it as long as there are few: the first
+   piece of a solid has none, nor has debris. */
+static tobi_status choose_tints(tobi_run *run, drawing *d, tobi_error *err)
+{
+    const tobi_pieces *found;
+    int any = 0, taken[TINTS] = { 0 };
+    for (int k = 0; k < run->world->sim.solid_count; k++) any |= can_part(&run->world->sim, k);
+    if (!any || !d->has_palette) return TOBI_OK;
+    TOBI_TRY(tobi_world_pieces(run->world, &found, err));
+    d->tint = calloc((size_t)(found->count + found->fragments) + 1, sizeof *d->tint);
+    const tobi_piece **order = malloc(((size_t)found->count + 1) * sizeof *order);
+    for (int64_t k = 0; order && k < found->count; k++) order[k] = &found->piece[k];
+    if (order) qsort(order, (size_t)found->count, sizeof *order, order_pieces);
+    for (int64_t k = 0; d->tint && order && k < found->count; k++) {
+        const tobi_piece *p = order[k];
+        const int first = k == 0 || p->solid != order[k - 1]->solid;
+        if (first) memset(taken, 0, sizeof taken);
+        if (first || !can_part(&run->world->sim, p->solid)) continue;
+        int tint = 1 + (int)((uint64_t)p->first_id * 0x9e3779b97f4a7c15u >> 33) % (TINTS - 1);
+        for (int n = 0; n < TINTS && taken[tint]; n++) tint = tint % (TINTS - 1) + 1;
+        taken[tint] = 1;
+        d->tint[p - found->piece] = (uint8_t)tint;
+    }
+    free(order);
+    return d->tint && order ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+}
+
+/* At a cut: within a spacing, so that each of its sides has a layer. */
+static int find_part(const tobi_simulation *s, int64_t row)
+{
+    const tobi_particles *p = &s->particles;
+    for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[row].c[k].w != 0; k++) {
+        const tobi_float4 *way = &p->cuts[row].c[k];
+        const double square = (double)way->x * way->x + (double)way->y * way->y + (double)way->z * way->z;
+        if (square < s->smoothing.spacing * s->smoothing.spacing) return FACE;
+    }
+    return p->rest && p->rest[row].w > 0 ? CORE : SKIN;
 }
 
 /* Materials with colours: the value becomes the colour's number; hidden materials are left out. */
-static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *err)
+static tobi_status color_materials(tobi_run *run, drawing *d, tobi_error *err)
 {
     const tobi_simulation *s = &run->world->sim;
     int hidden = 0, solids = 0, materials = s->solid_count ? s->solid_count : s->fluid_count;
-    make_palette(s, materials, d);
+    TOBI_TRY(make_palette(s, materials, d, err));
+    TOBI_TRY(choose_tints(run, d, err));
     for (int m = 0; m < materials; m++) {
         const material look = material_at(s, m);
         hidden |= !look.visible;
@@ -101,13 +184,13 @@ static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *
     int64_t n = d->count, kept = 0;
     for (int64_t i = 0; i < n; i++) {
         const int32_t row = run->world->row_of[i];              /* rows are fresh: just read */
-        const int m = s->particles.fluid[row], core = s->particles.rest && s->particles.rest[row].w > 0;
+        const int m = s->particles.fluid[row], piece = d->tint ? run->world->pieces.of[row] : -1;
         const material look = material_at(s, m);
         if (!look.visible) continue;
         memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
         if (d->opaque) d->opaque[kept] = !look.liquid;
-        d->values[kept++] = !d->has_palette ? d->values[i]
-                            : d->colors > materials ? (float)(2 * m + core) : (float)m;
+        const int color = (m * TINTS + (piece >= 0 ? d->tint[piece] : 0)) * PARTS + find_part(s, row);
+        d->values[kept++] = d->has_palette ? (float)color : d->values[i];
     }
     d->count = kept;
     return TOBI_OK;

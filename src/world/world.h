@@ -4,12 +4,16 @@
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"
+#include <assert.h>
 
 enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024 };
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
+enum { TOBI_ALIVE = 0x70b10 };
+
 struct tobi_world {
+    int alive;                     /* TOBI_ALIVE until it is destroyed                       */
     tobi_simulation sim;
     const tobi_method *method;
     void *method_def;              /* copy of the method's parameters                        */
@@ -23,11 +27,19 @@ struct tobi_world {
     char **notes;                  /* owned texts                                            */
     int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
+
+/* For public calls that return a status; the assert finds, in dev builds, worlds destroyed before. */
+#define TOBI_NEED_WORLD(w)                                                                         \
+    do {                                                                                           \
+        TOBI_NEED(w, "world");                                                                     \
+        assert((w)->alive == TOBI_ALIVE);                                                          \
+    } while (0)
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */
@@ -42,6 +54,9 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
+/* tobi_world_step for a caller who goes on for `left` s at least. */
+tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, tobi_step_info *info,
+                                    tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 

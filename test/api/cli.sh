@@ -183,7 +183,7 @@ check "full disk: no unfinished files" no_parts full
 old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
-check "the particles of the old scene" grep -q "fluid particles  476836" out.txt
+check "the particles of the old scene" grep -q "fluid particles  480102" out.txt
 expect 0 "" run "$old/rigid_blocks.json" --quiet --out old
 check "an old scene's OBJ" test -s old/obj/block_7_000005.obj -a ! -e old/ply
 check "five outputs of two fixed steps" test "$(value old/summary.json steps)" = 10
@@ -271,6 +271,30 @@ for output in 000001 000005 000012; do
     check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
     check "kill -9 after $output: no unfinished files" no_parts killed_$output
 done
+
+# A signal within a solve that takes minutes: the step is given up, the state is that of the step before.
+cat > solve.json << 'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.01, "end_time": 1,
+  "dfsph": { "divergence_iterations_min": 1000000, "divergence_iterations_max": 1000000 },
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.5, 0.5] } } ] } ] }
+END
+"$program" run solve.json --quiet --out solve > out.txt 2> err.txt &
+pid=$!
+while [ ! -e solve/fluid.pvd ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+sleep 0.5
+kill -TERM $pid
+for _ in $(seq 30); do kill -0 $pid 2> /dev/null && sleep 0.1; done
+kill -KILL $pid 2> /dev/null
+got=0; wait $pid || got=$?
+check "SIGTERM within a solve: exit code 130 within 3 s (was $got)" test $got = 130
+check "SIGTERM within a solve: summary says interrupted" grep -q '"interrupted"' solve/summary.json
+check "SIGTERM within a solve: no step was made" test "$(value solve/summary.json steps)" = 0
+
+# Steps that would take years.
+expect 1 "allowed is 1e-7 to 1e5 m" check long.json --spacing 5e-324
+expect 1 "gets nowhere" run long.json --quiet --out stalled --set 'fluids[0].viscosity=1e9'
+check "a run that gets nowhere: summary says stalled" grep -q '"stalled"' stalled/summary.json
+
 start_run busy 000002
 expect 1 "another run" resume busy --quiet
 kill -INT $pid; wait $pid

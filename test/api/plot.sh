@@ -76,7 +76,7 @@ expect 1 'no column "level" in a point' check tank.json --set 'references[0].col
 expect 1 'no column "pressure" in a level' check tank.json --set 'references[0].probe=H'
 expect 1 "at most one of them" check tank.json --set 'references[3].probe=H'
 expect 1 "cannot find" check tank.json --set 'references[1].file=no_such.csv'
-expect 1 "greater than 0" check tank.json --set 'references[2].x_scale=-1'
+expect 1 "allowed is 1e-30 to 1e30" check tank.json --set 'references[2].x_scale=-1'
 expect 1 "file: is missing" check tank.json --set 'references=[{"column": "dt"}]'
 expect 1 "must be a list" check tank.json --set 'references={}'
 expect 1 "one line" check tank.json --set 'references[0].label="a\nb"'

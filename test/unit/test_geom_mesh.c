@@ -2,6 +2,7 @@
 #include "test_geom_solids.h"
 #include "geom/edges.h"
 #include "geom/file_checks.h"
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -33,6 +34,26 @@ static void reads_obj_with_groups_and_both_kinds_of_vt(void **state)
     OK(tobi_mesh_orient(&mesh, "groups", &err));
     NEAR(mesh_volume(&mesh), 1.0/6, 1e-15);
     tobi_mesh_free(&mesh);
+}
+
+/* A library of materials that is a pipe, for files that are read as they are and for changed ones. */
+static void opens_no_other_file(void **state)
+{
+    (void)state;
+    tobi_mesh mesh;
+    remove("pipe.mtl");
+    assert_int_equal(mkfifo("pipe.mtl", 0600), 0);
+    for (int k = 0; k < 2; k++) {
+        char text[500];
+        snprintf(text, sizeof text, "mtllib pipe.mtl\n%s%susemtl a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
+                 tetra_obj, k ? "v .5 .5 .5\n" : "");
+        const time_t begin = time(NULL);
+        OK(tobi_mesh_read(write_text("piped.obj", text), &mesh, &err));
+        assert_true(time(NULL) - begin < 5);
+        assert_int_equal(mesh.triangle_count, 4);
+        tobi_mesh_free(&mesh);
+    }
+    remove("pipe.mtl");
 }
 
 static void reads_polygons_and_decimal_numbers_as_written(void **state)
@@ -465,6 +486,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_obj_with_groups_and_both_kinds_of_vt),
+        cmocka_unit_test(opens_no_other_file),
         cmocka_unit_test(reads_polygons_and_decimal_numbers_as_written),
         cmocka_unit_test(reads_numbers_without_leading_zero),
         cmocka_unit_test(reads_ascii_stl_and_ply),

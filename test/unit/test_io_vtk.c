@@ -54,14 +54,10 @@ static const tobi_vtk_array arrays[] = {
     { "flag\xc3\xa9", TOBI_U8, 1, flag }
 };
 
-/* The script that reads files with VTK, by its place beside this source. */
+/* The script that reads files with VTK. */
 static int read_with_vtk(const char *checks)
 {
-    char script[512];
-    snprintf(script, sizeof script, "%s", __FILE__);
-    char *tail = strstr(script, "unit/test_io_vtk.c");
-    assert_non_null(tail);
-    strcpy(tail, "api/read_vtk.py");
+    static const char script[] = TOBI_SOURCE_DIR "/test/api/read_vtk.py";
     const char *python[] = { "/usr/bin/python3", "python3" };
     int code = 77;
     for (int i = 0; i < 2 && code == 77; i++) {

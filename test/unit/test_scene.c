@@ -359,7 +359,7 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     assert_non_null(strstr(text, "dfsph"));
     free(text);
     text = tobi_scene_describe("scene");
-    assert_non_null(strstr(text, "| `spacing` | number | m | **required** | greater than 0 m |"));
+    assert_non_null(strstr(text, "| `spacing` | number | m | **required** | 1e-7 to 1e5 m |"));
     free(text);
     text = tobi_scene_describe("schema");
     assert_non_null(strstr(text, "\"additionalProperties\": false"));

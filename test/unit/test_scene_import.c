@@ -398,6 +398,7 @@ static void later_mistakes(void **state)
         "\"RigidBodies\": [ { \"geometryFile\": \"nowhere/at_all.obj\" } ],\n"
         "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 0, 1] } ] }";
     EXPECT(text, "output.interval): is 1e-09 s and makes more than",
+           "(here time_step): is 1e-09 s and makes 5e+09 steps until end_time, 5 s; allowed are up to",
            "old.json:3:18: FluidBlocks[0] (here fluids[0].fill[0].box): reaches from 0 to 2 m in z",
            "old.json:4:2: FluidBlocks[1] (here fluids[1].fill[0].box): min is 0 and max is 0 in y",
            "old.json:5:36: RigidBodies[0].geometryFile (here bodies[0].mesh): cannot find",
