@@ -8,8 +8,9 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Outputs are due when the clock is this part of an interval before them: only rounding. */
-#define SNAP 1e-9
+/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step of any
+   run that ends. */
+#define ROUNDING 1e-12
 
 double tobi_record_clock(void)
 {
@@ -21,7 +22,7 @@ double tobi_record_clock(void)
 static double next_checkpoint_after(const tobi_run *run, double t)
 {
     double every = run->output.checkpoint_interval;
-    return every > 0.0 ? (floor(t / every * (1.0 + SNAP)) + 1.0) * every : INFINITY;
+    return every > 0.0 ? (floor(t / every * (1.0 + ROUNDING)) + 1.0) * every : INFINITY;
 }
 
 /* What create and resume share: a run with its directory locked and the world started. */
@@ -143,16 +144,16 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
 
 const char *tobi_run_note(const tobi_run *run) { return run->note; }
 
-/* The end, moved onto the output time that it means. */
+/* The end, moved onto the output time that it means: 3 x 0.1 is not 0.3. */
 static double snap_end(const tobi_run *run, double end)
 {
-    double nearest = tobi_record_time(run, llround(end / run->output.interval));
-    return fabs(nearest - end) <= SNAP * run->output.interval ? nearest : end;
+    double nearest = round(end / run->output.interval) * run->output.interval;
+    return fabs(nearest - end) <= ROUNDING * end ? nearest : end;
 }
 
 static bool reached(const tobi_run *run, double t)
 {
-    return tobi_world_time(run->world) >= t - SNAP * run->output.interval;
+    return tobi_world_time(run->world) >= t * (1.0 - ROUNDING);
 }
 
 int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
@@ -162,8 +163,7 @@ static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
 {
     tobi_simulation *sim = &run->world->sim;
     double before = tobi_record_clock(), start = sim->time;
-    TOBI_TRY(tobi_world_step(run->world, target - sim->time, NULL, err));
-    if (reached(run, target)) sim->time = sim->info.time = target;      /* not a rounding beside it */
+    TOBI_TRY(tobi_world_step_towards(run->world, target, err));
     run->step_wall += tobi_record_clock() - before;
     run->particle_steps += (double)sim->info.fluid_particles;
     tobi_tally_add(&run->since, &sim->info);

@@ -436,12 +436,17 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     return TOBI_OK;
 }
 
+tobi_status tobi_world_step_towards(tobi_world *w, double t, tobi_error *err)
+{
+    double way = t - w->sim.time;
+    TOBI_TRY(tobi_world_step(w, way, NULL, err));
+    if (w->sim.dt >= way) w->sim.time = w->sim.info.time = t;      /* not a rounding beside it */
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
-    while (w->sim.time < t) {
-        TOBI_TRY(tobi_world_step(w, t - w->sim.time, NULL, err));
-        if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
-    }
+    while (w->sim.time < t) TOBI_TRY(tobi_world_step_towards(w, t, err));
     if (info) {
         measure(w);
         *info = w->sim.info;

@@ -45,6 +45,9 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 
+/* One step, not beyond time t, which is hit exactly by a step that covers all that is left. */
+tobi_status tobi_world_step_towards(tobi_world *w, double t, tobi_error *err);
+
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
 

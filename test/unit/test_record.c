@@ -176,6 +176,25 @@ static void test_outputs_are_multiples_of_the_interval(void **state)
     tobi_world_destroy(world);
 }
 
+/* However long the interval is, the run ends at its end and no earlier. */
+static void test_long_intervals_do_not_end_a_run(void **state)
+{
+    (void)state;
+    static const double intervals[] = { 1e7, 1e18, 1e300 };
+    for (int k = 0; k < 3; k++) {
+        tobi_output_def output = make_output();
+        output.interval = intervals[k];
+        tobi_world *world = make_world(0, NULL);
+        tobi_run *run = create(world, &output, at("long_%d", k), 0);
+        assert_false(tobi_run_done(run, 1e-6));
+        step_until(run, 0.005);
+        assert_true(tobi_world_time(world) == 0.005);
+        assert_int_equal(count_rows(at("long_%d/history.csv", k)), 1);
+        tobi_run_free(run);
+        tobi_world_destroy(world);
+    }
+}
+
 static void test_old_results_are_safe(void **state)
 {
     (void)state;
@@ -415,6 +434,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_outputs_are_multiples_of_the_interval),
+        cmocka_unit_test(test_long_intervals_do_not_end_a_run),
         cmocka_unit_test(test_old_results_are_safe),
         cmocka_unit_test(test_body_names_become_file_names),
         cmocka_unit_test(test_bodies_and_the_list_of_all),
