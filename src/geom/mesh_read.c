@@ -169,11 +169,11 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     for (size_t i = 0; i < sizeof reset/sizeof *reset; i++) signal(reset[i], SIG_DFL);
     limit_child(allowed);
-    int null = open("/dev/null", O_RDWR);      /* the importer must not print either */
-    if (null >= 0) {
-        dup2(null, STDOUT_FILENO);
-        dup2(null, STDERR_FILENO);
-    }
+    /* The importer must not print either. Where a host closed them, the pipe is one of the three. */
+    int out = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1), null = open("/dev/null", O_RDWR);
+    if (out < 0) _exit(1);
+    for (int k = STDIN_FILENO; null >= 0 && k <= STDERR_FILENO; k++) dup2(null, k);
+    fd = out;
     import_header header = {.magic = "tobimesh"};
     struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     collector c = {.scene = import(path, &header)};

@@ -43,6 +43,7 @@ open("swing.lua", "w").write(
     "function place(t) return params.way * math.sin(20 * t), 0, 0, 0, 0, 1, 100 * t end\n")
 END
 $python make_scene.py tank.json 0.1 box.obj
+old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 
 # --- usage ------------------------------------------------------------------------------------------
 expect 2 "usage: tobiuo"
@@ -152,6 +153,23 @@ assert s["outcome"] == "complete" and abs(s["time"] - 0.1) < 1e-12 and s["steps"
 assert s["fluid_particles"] > 100 and s["threads"] >= 1 and s["peak_rss_bytes"] > 1e6
 END
 
+# --- streams that are closed or full ----------------------------------------------------------------
+sed 's/box\.obj/open.obj/' tank.json > noted.json      # a scene with a note
+expect 0 "1 hole" run noted.json --until 0.02 --out streams
+for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
+    eval '"$program" run noted.json --until 0.02 --out closed > out.txt 2> err.txt '"$closed"; got=$?
+    check "closed $closed: exit code 0 (was $got)" test $got = 0
+    check "closed $closed: the same results" same_results streams closed
+    rm -rf closed
+done
+for command in --help --version "run --help" "describe scene" "check tank.json" info "import $old/rigid_blocks.json --out full.json" \
+               "run tank.json --until 0.01 --out full"; do
+    got=0; "$program" $command > /dev/full 2> err.txt || got=$?
+    check "$command to a full device: exit code 1 (was $got)" test $got = 1
+    check "$command to a full device: said so" grep -q "tobiuo: cannot write to standard output" err.txt
+done
+rm -rf full full.json streams
+
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)
 echo mine > $a/notes.txt
@@ -176,7 +194,6 @@ check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
 check "full disk: no unfinished files" no_parts full
 
 # --- scenes of the Taichi program -------------------------------------------------------------------
-old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
 check "the particles of the old scene" grep -q "fluid particles  476836" out.txt
