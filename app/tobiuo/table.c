@@ -2,6 +2,7 @@
 #include "table.h"
 #include "app.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,8 @@ enum { SIZE_LIMIT = 1 << 29, COLUMN_LIMIT = 1000 };      /* bytes of a file; col
 static char *read_whole(const char *path)
 {
     struct stat st;
-    FILE *file = fopen(path, "rb");
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);      /* a FIFO is not waited for */
+    FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
     if (!file) {
         complain("cannot read %s: %s", path, strerror(errno));
         return NULL;

@@ -17,7 +17,10 @@
    Output k happens at the time k interval exactly, the first at 0. Every file but the three tables
    appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
    its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
-   resume equal those of one run, byte for byte (except the wall clock times of summary.json). */
+   resume equal those of one run, byte for byte (except the wall clock times of summary.json).
+
+   DIR may be a link to a directory, but not the root of the file system. Inside DIR no link is followed
+   and nothing but plain files is replaced: TOBI_INVALID. Somebody else must not change DIR meanwhile. */
 #ifndef TOBIUO_RUN_H
 #define TOBIUO_RUN_H
 #include "tobiuo/tobiuo.h"

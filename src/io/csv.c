@@ -177,8 +177,9 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
 static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode,
                                tobi_error *err)
 {
-    int empty = 1;
-    csv->fd = open(csv->path, O_RDWR | O_CREAT | O_CLOEXEC | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
+    int empty = 1, flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+    TOBI_TRY(tobi_file_check_target(csv->path, err));
+    csv->fd = open(csv->path, flags | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
     if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
     add_header(csv, columns);
     append(csv, "\n", 1);
@@ -232,12 +233,10 @@ static int keeps_row(const char *text, double time, locale_t plain)
 
 tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
+    int fd;
     char *text;
     size_t bytes, n;
+    TOBI_TRY(tobi_file_open_read(path, &fd, err));
     tobi_status status = read_all(fd, path, &text, &bytes, err);
     close(fd);
     TOBI_TRY(status);

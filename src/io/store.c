@@ -240,10 +240,8 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
 tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *err)
 {
     *store = NULL;
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
+    int fd;
+    TOBI_TRY(tobi_file_open_read(path, &fd, err));
     tobi_status status = check_seal(path, fd, err);
     close(fd);
     TOBI_TRY(status);

@@ -133,8 +133,12 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
 /* The recorder's part; it must fit the world's, which is loaded already. */
 static tobi_status read_companion(tobi_run *run, const char *path, tobi_error *err)
 {
+    int fd = -1;
     json_error_t where;
-    json_t *json = json_load_file(path, 0, &where);
+    tobi_status status = tobi_file_open_read(path, &fd, err);
+    if (status != TOBI_OK && status != TOBI_NOT_FOUND) return status;
+    json_t *json = fd < 0 ? NULL : json_loadfd(fd, 0, &where);
+    if (fd >= 0) close(fd);
     json_t *since = NULL, *total = NULL, *bodies = NULL;
     json_int_t outputs = 0;
     double time = NAN;

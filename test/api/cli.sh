@@ -184,6 +184,12 @@ touch a_file
 expect 1 "a_file" run tank.json --quiet --out a_file
 expect 1 "a_file" run tank.json --quiet --out a_file/below
 expect 1 "/proc" run tank.json --quiet --out /proc/tobiuo
+expect 1 "is the root of the file system" run tank.json --quiet --out /
+mkdir strange && ln -s "$PWD/$a/fluid" strange/fluid
+expect 1 "strange/fluid is a symbolic link" run tank.json --quiet --out strange --force
+ln -s "$PWD/strange" by_link && rm strange/fluid
+expect 0 "" run tank.json --quiet --out by_link --until 0.01
+check "a link to the directory itself is followed" test -s strange/history.csv
 mkdir locked && chmod a-w locked
 if [ ! -w locked ]; then expect 1 "cannot" run tank.json --quiet --out locked/here; fi
 # A full disk, played by a limit on the size of files.
@@ -206,6 +212,8 @@ expect 0 "" import "$old/rigid_blocks.json" --out new.json
 check "import tells what became of it" grep -q "10000 times water" out.txt
 expect 1 "new.json exists" import "$old/rigid_blocks.json" --out new.json
 expect 0 "" import "$old/rigid_blocks.json" --out new.json --force --quiet
+expect 1 "it is a device" import "$old/rigid_blocks.json" --out /dev/null --force --quiet
+expect 1 "it is a symbolic link" import "$old/rigid_blocks.json" --out /dev/stdout --force --quiet
 expect 1 "native scene already" import new.json --out newer.json
 expect 1 "nowhere.json" import nowhere.json --out newer.json
 expect 0 "" run new.json --quiet --out imported

@@ -58,10 +58,7 @@ static const tobi_vtk_array arrays[] = {
 static int read_with_vtk(const char *checks)
 {
     char script[512];
-    snprintf(script, sizeof script, "%s", __FILE__);
-    char *tail = strstr(script, "unit/test_io_vtk.c");
-    assert_non_null(tail);
-    strcpy(tail, "api/read_vtk.py");
+    snprintf(script, sizeof script, "%s", TOBI_SOURCE_DIR "/test/api/read_vtk.py");
     const char *python[] = { "/usr/bin/python3", "python3" };
     int code = 77;
     for (int i = 0; i < 2 && code == 77; i++) {

@@ -235,6 +235,48 @@ static void test_old_results_are_safe(void **state)
     expect_failure(TOBI_INVALID, "empty", &output, "");
 }
 
+/* In a folder that a stranger has prepared no link leads out of it, and the root is no folder of results. */
+static void test_no_link_is_followed(void **state)
+{
+    (void)state;
+    tobi_output_def output = make_output();
+    tobi_error err = { 0 };
+    tobi_run *run = NULL;
+    assert_int_equal(mkdir(at("mine"), 0777), 0);
+    write_file(at("mine/history.csv"), "dear");
+    write_file(at("mine/fluid_000001.vtu"), "dear");
+    assert_int_equal(mkdir(at("strange"), 0777), 0);
+    assert_int_equal(symlink(at("mine"), at("strange/fluid")), 0);
+    expect_failure(TOBI_INVALID, "strange/fluid is a symbolic link", &output, at("strange"));
+    tobi_world *world = make_world(0, NULL);
+    assert_int_equal(tobi_run_create(world, &output, at("strange"), 1, NULL, &run, &err), TOBI_INVALID);
+    unlink(at("strange/fluid"));
+    symlink(at("mine/history.csv"), at("strange/history.csv"));
+    symlink(at("mine/history.csv"), at("strange/history.csv.part"));
+    run = create(world, &output, at("strange"), 1);       /* force removes the links, not what is behind */
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+
+    world = make_world(0, NULL);
+    symlink(at("mine/history.csv"), at("strange/fluid/fluid_000000.vtu.part"));
+    rename(at("strange/history.csv"), at("strange/history"));
+    symlink(at("mine/history.csv"), at("strange/history.csv"));
+    assert_int_equal(tobi_run_resume(world, &output, at("strange"), &run, &err), TOBI_INVALID);
+    if (!strstr(err.text, "history.csv: it is a symbolic link")) fail_msg("%s", err.text);
+    tobi_world_destroy(world);
+    size_t n;
+    const char *const dear[] = { "mine/history.csv", "mine/fluid_000001.vtu" };
+    for (int k = 0; k < 2; k++) {
+        char *text = read_file(at("%s", dear[k]), &n);
+        assert_string_equal(text, "dear");
+        free(text);
+    }
+    expect_failure(TOBI_INVALID, "is the root of the file", &output, "/");
+    expect_failure(TOBI_INVALID, "root of the file system", &output, at("../.."));
+    symlink(at("strange"), at("by_link"));                      /* the directory itself may be one */
+    expect_failure(TOBI_INVALID, "holds the results", &output, at("by_link"));
+}
+
 static void test_body_names_become_file_names(void **state)
 {
     (void)state;
@@ -436,6 +478,7 @@ int main(void)
         cmocka_unit_test(test_outputs_are_multiples_of_the_interval),
         cmocka_unit_test(test_long_intervals_do_not_end_a_run),
         cmocka_unit_test(test_old_results_are_safe),
+        cmocka_unit_test(test_no_link_is_followed),
         cmocka_unit_test(test_body_names_become_file_names),
         cmocka_unit_test(test_bodies_and_the_list_of_all),
         cmocka_unit_test(test_going_on_equals_not_stopping),
