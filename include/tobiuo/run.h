@@ -17,7 +17,10 @@
    Output k happens at the time k interval exactly, the first at 0. Every file but the three tables
    appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
    its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
-   resume equal those of one run, byte for byte (except the wall clock times of summary.json).
+   resume equal those of one run, byte for byte, checkpoints too (except for the wall clock times in
+   summary.json and beside the checkpoints).
+   After a power cut the last checkpoint is whole, and so is all that was written before it; an output
+   after it may be lost or empty until the run is resumed.
 
    DIR may be a link to a directory, but not the root of the file system. Inside DIR no link is followed
    and nothing but plain files is replaced: TOBI_INVALID. Somebody else must not change DIR meanwhile. */

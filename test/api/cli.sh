@@ -22,6 +22,8 @@ vtk() {
     /usr/bin/python3 "$here/read_vtk.py" "$@" > out.txt || code=$?
     check "$what: $(tail -1 out.txt)" test $code = 0 -o $code = 77
 }
+newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
+same_checkpoint() { cmp "$(newest "$1")" "$(newest "$2")"; }
 no_parts() { [ -z "$(find "$1" -name '*.part')" ]; }
 # A step takes milliseconds here, so tests that stop a run in the middle need a run of about a second.
 cat > make_scene.py <<'END'
@@ -247,6 +249,7 @@ expect 0 "" run tank.json --quiet --out one --threads 1
 expect 0 "" run tank.json --quiet --out two --threads 2
 check "1 thread = 2 threads" same_results one two
 check "1 thread = 2 threads, state" same_hash one two
+check "1 thread = 2 threads, checkpoint" same_checkpoint one two
 expect 0 "" run one/resolved.json --quiet --out again
 check "resolved.json gives the same results" same_results one again
 check "resolved.json gives the same state" same_hash one again
@@ -259,6 +262,7 @@ expect 0 "" run long.json --quiet --out halves --until 0.1
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves
 check "run = run + resume, state" same_hash whole halves
+check "run = run + resume, checkpoint" same_checkpoint whole halves
 check "same number of steps" test "$(value whole/summary.json steps)" = "$(value halves/summary.json steps)"
 
 # start_run DIR OUTPUT: starts a run and waits for an output or for its end; pid in $pid
@@ -277,6 +281,7 @@ for signal in INT TERM; do
     expect 0 "" resume stopped_$signal --quiet --threads 2
     check "SIG$signal + resume = run" same_results whole stopped_$signal
     check "SIG$signal + resume = run, state" same_hash whole stopped_$signal
+    check "SIG$signal + resume = run, checkpoint" same_checkpoint whole stopped_$signal
 done
 for output in 000001 000005 000012; do
     start_run killed_$output $output
@@ -287,6 +292,7 @@ for output in 000001 000005 000012; do
     expect 0 "" resume killed_$output --quiet
     check "kill -9 after $output + resume = run" same_results whole killed_$output
     check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
+    check "kill -9 after $output + resume = run, checkpoint" same_checkpoint whole killed_$output
     check "kill -9 after $output: no unfinished files" no_parts killed_$output
 done
 start_run busy 000002
@@ -294,7 +300,6 @@ expect 1 "another run" resume busy --quiet
 kill -INT $pid; wait $pid
 
 # --- damaged checkpoints ----------------------------------------------------------------------------
-newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
 expect 0 "" run long.json --quiet --out damaged --until 0.1
 truncate -s 1000 "$(newest damaged)"
 expect 0 "is damaged" resume damaged --until 0.2
