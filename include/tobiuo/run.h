@@ -56,23 +56,31 @@ TOBI_API const char *tobi_run_note(const tobi_run *run);
 
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
    NULL; its energies, momentum and weight are those of the last output. When `end` is a multiple of
-   the interval to within rounding, that multiple is the end. */
+   the interval to within rounding, that multiple is the end.
+   A thread of the run writes the output while the next steps are taken, and a step waits only while
+   two outputs are not written; the step that reaches the end waits for all. TOBI_IO: an output could
+   not be written, maybe an earlier one; the next call tries again. */
 TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
                                    tobi_error *err);
 /* 1 when the world has reached `end`. */
 TOBI_API int tobi_run_done(const tobi_run *run, double end);
 
-/* Writes an output now. tobi_run_step does it when it is due; call it only when stepping the world
-   without tobi_run_step, at the times k interval. */
+/* Waits until every output so far is on the disk or one has failed, and tells that. */
+TOBI_API tobi_status tobi_run_wait(tobi_run *run, tobi_error *err);
+
+/* Writes an output of the present state, beside the steps. tobi_run_step does it when it is due; call
+   it only when stepping the world without tobi_run_step, at the times k interval. */
 TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
-/* Writes a checkpoint now; the two newest are kept. Does nothing if the last one is of this step.
- */
+/* Waits for the outputs and writes a checkpoint; the two newest are kept. None is written if the last
+   one is of this step. */
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
 
-/* Writes summary.json. outcome: "complete", "interrupted", "diverged" or another word. */
+/* Waits for the outputs and writes summary.json. outcome: "complete", "interrupted", "diverged" or
+   another word; "failed" if an output could not be written, and then its failure is told. */
 TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err);
 
-/* Closes the files; NULL is fine. Writes nothing: a run that was not finished stays resumable. */
+/* Waits for the outputs and closes the files; NULL is fine. A run that was not finished stays
+   resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
 #ifdef __cplusplus

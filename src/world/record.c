@@ -75,7 +75,9 @@ static tobi_status begin(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, false, err));
     run->next_checkpoint = next_checkpoint_after(run, 0.0);
-    return tobi_run_output(run, err);
+    TOBI_TRY(tobi_writer_start(run, err));
+    TOBI_TRY(tobi_run_output(run, err));
+    return tobi_writer_wait(run->writer, err);
 }
 
 static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_error *err)
@@ -120,7 +122,8 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, true, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
-    return tobi_series_lists(run, err);
+    TOBI_TRY(tobi_series_lists(run, err));
+    return tobi_writer_start(run, err);
 }
 
 tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
@@ -176,48 +179,62 @@ tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_
 {
     double next = tobi_record_time(run, run->outputs);
     double target = fmin(next, snap_end(run, end));
-    if (reached(run, target) && !reached(run, next)) return TOBI_OK;
-
-    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, err));
+    TOBI_TRY(tobi_writer_check(run->writer, err));
+    if (!reached(run, target)) TOBI_TRY(step_towards(run, target, err));
+    else if (!reached(run, next)) return tobi_writer_wait(run->writer, err);
     if (info) *info = run->world->sim.info;
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
     if (tobi_world_time(run->world) >= run->next_checkpoint)
         TOBI_TRY(tobi_run_checkpoint(run, err));
-    return TOBI_OK;
+    return tobi_run_done(run, end) ? tobi_writer_wait(run->writer, err) : TOBI_OK;
 }
 
 tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
 {
-    TOBI_TRY(tobi_series_write(run, err));
-    TOBI_TRY(tobi_tables_write(run, err));
+    tobi_snapshot *snapshot;
+    TOBI_TRY(tobi_snapshot_take(run, &snapshot, err));
+    tobi_status status = tobi_writer_put(run->writer, snapshot, err);
+    if (status != TOBI_OK) {
+        tobi_snapshot_free(snapshot);
+        return status;
+    }
     run->outputs++;
     run->since = (tobi_tally){ 0 };
     memset(run->body_since, 0, (size_t)tobi_world_body_count(run->world)*sizeof *run->body_since);
     return TOBI_OK;
 }
 
+tobi_status tobi_run_wait(tobi_run *run, tobi_error *err) { return tobi_writer_wait(run->writer, err); }
+
+/* A checkpoint counts the outputs: they must be on the disk before it is. */
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
+    TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
     TOBI_TRY(tobi_state_save(run, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     return TOBI_OK;
 }
 
+/* The summary is written after a failure too, but then it says so. */
 tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
-    return tobi_summary_write(run, outcome, err);
+    tobi_status status = tobi_writer_wait(run->writer, err);
+    if (status != TOBI_OK) err = NULL;
+    tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
+    return status != TOBI_OK ? status : written;
 }
 
 void tobi_run_free(tobi_run *run)
 {
     if (!run) return;
+    tobi_writer_free(run->writer);
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);
     tobi_csv_close(run->probes);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
-    free(run->body_file);
+    tobi_snapshot_free_skins(run);
     free(run->body_since);
     free(run->dir);
     free(run);
