@@ -36,7 +36,8 @@ static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *
     return TOBI_OK;
 }
 
-static void print_end(const drive_options *o, const counts *c, int done, double time, double wall)
+static void print_end(const drive_options *o, const counts *c, int done, const char *lost, double time,
+                      double wall)
 {
     char text[32];
     if (c->unconverged)
@@ -47,6 +48,7 @@ static void print_end(const drive_options *o, const counts *c, int done, double 
                  "history.csv): the liquid has cavities or is compressed, or its layers did not "
                  "fit (tobiuo check)",
                  100*c->last.density_error_mean);
+    if (*lost) complain("results in %s: %s", o->dir, lost);
     if (c->last.particles_lost)
         complain("%lld particles left the domain", (long long)c->last.particles_lost);
     if (c->last.put_back)
@@ -76,6 +78,6 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     status = tobi_run_checkpoint(run, &err);
     if (status == TOBI_OK) status = tobi_run_finish(run, done ? "complete" : "interrupted", &err);
     if (status != TOBI_OK) return complain("%s", err.text);
-    print_end(o, &c, done, tobi_world_time(world), wall_clock() - p.begun);
+    print_end(o, &c, done, tobi_run_losses(run), tobi_world_time(world), wall_clock() - p.begun);
     return done ? 0 : EXIT_INTERRUPTED;
 }

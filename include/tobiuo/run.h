@@ -54,6 +54,11 @@ TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *o
 /* What tobi_run_resume found worth telling ("resumed at ..."), "" if nothing. Owned by the run. */
 TOBI_API const char *tobi_run_note(const tobi_run *run);
 
+/* What somebody has deleted of the results, "" if nothing is known: after tobi_run_resume what was
+   missing then, after tobi_run_finish what is missing at the end. A run goes on without it: folders,
+   tables and resolved.json are made again, lists leave out what is not there. Owned by the run. */
+TOBI_API const char *tobi_run_losses(const tobi_run *run);
+
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
    NULL; its energies, momentum and weight are those of the last output. When `end` is a multiple of
    the interval to within rounding, that multiple is the end.
@@ -62,7 +67,7 @@ TOBI_API const char *tobi_run_note(const tobi_run *run);
    not be written, maybe an earlier one; the next call tries again. */
 TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
                                    tobi_error *err);
-/* 1 when the world has reached `end`. */
+/* 1 when the world has reached `end` and no output is due. */
 TOBI_API int tobi_run_done(const tobi_run *run, double end);
 
 /* Waits until every output so far is on the disk or one has failed, and tells that. */

@@ -16,6 +16,8 @@ struct tobi_csv {
     int      fd;
     int      digits, columns;
     int      filled;         /* values in the row so far */
+    int      lost;           /* rows are gone with a file that was deleted */
+    tobi_csv_rows header;
     tobi_csv_rows row;       /* its text */
     int      no_memory;
     locale_t plain;          /* "C", for numbers */
@@ -76,7 +78,7 @@ void tobi_csv_add_text(tobi_csv *csv, const char *value)
 }
 
 /* One write; after a failure the file is cut back to whole rows. */
-tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
+static tobi_status write_text(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
 {
     off_t end = lseek(csv->fd, 0, SEEK_END);
     size_t done = 0;
@@ -91,6 +93,15 @@ tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_e
     if (done > 0 && ftruncate(csv->fd, end) != 0) done = 0;   /* tobi_csv_open drops the torn line */
     return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(code));
 }
+
+int tobi_csv_is_gone(const tobi_csv *csv)
+{
+    struct stat ours, there;
+    return fstat(csv->fd, &ours) != 0 || lstat(csv->path, &there) != 0 || ours.st_dev != there.st_dev ||
+           ours.st_ino != there.st_ino;
+}
+
+int tobi_csv_has_lost(const tobi_csv *csv) { return csv->lost; }
 
 /* Ends the row in csv->row; after a failure it is empty. */
 static tobi_status end_row(tobi_csv *csv, tobi_error *err)
@@ -179,7 +190,7 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
     size_t header = line_length(text, bytes);
     while ((n = line_length(text + end, bytes - end)) > 0) end += n;
     tobi_status status = TOBI_OK;
-    if (header > 0 && (header != csv->row.length || memcmp(text, csv->row.text, header) != 0))
+    if (header > 0 && (header != csv->header.length || memcmp(text, csv->header.text, header) != 0))
         status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes: %.*s", csv->path,
                            header < 400 ? (int)header - 1 : 400, text);
     else if (end < bytes && ftruncate(csv->fd, (off_t)end) != 0)
@@ -189,21 +200,33 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
     return status;
 }
 
-static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode,
-                               tobi_error *err)
+/* Opens the file; a new one, and one that is empty, gets the header. */
+static tobi_status open_table(tobi_csv *csv, tobi_csv_mode mode, tobi_error *err)
 {
     int empty = 1, flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     TOBI_TRY(tobi_file_check_target(csv->path, err));
     csv->fd = open(csv->path, flags | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
     if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
-    add_header(csv, columns);
-    append(csv, "\n", 1);
-    if (csv->no_memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
-    csv->filled = 0;
     if (mode == TOBI_CSV_APPEND) TOBI_TRY(continue_table(csv, &empty, err));
-    tobi_status status = empty ? tobi_csv_write_rows(csv, &csv->row, err) : TOBI_OK;
-    csv->row.length = 0;
-    return status;
+    csv->lost |= empty && mode == TOBI_CSV_APPEND;
+    return empty ? write_text(csv, &csv->header, err) : TOBI_OK;
+}
+
+static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode,
+                               tobi_error *err)
+{
+    add_header(csv, columns);
+    TOBI_TRY(tobi_csv_take_row(csv, &csv->header, err));
+    return open_table(csv, mode, err);
+}
+
+tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
+{
+    if (tobi_csv_is_gone(csv)) {
+        if (csv->fd >= 0) close(csv->fd);
+        TOBI_TRY(open_table(csv, TOBI_CSV_APPEND, err));
+    }
+    return write_text(csv, rows, err);
 }
 
 tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, const tobi_csv_column *columns,
@@ -235,6 +258,7 @@ void tobi_csv_close(tobi_csv *csv)
     if (csv->plain) freelocale(csv->plain);
     free(csv->path);
     free(csv->row.text);
+    free(csv->header.text);
     free(csv);
 }
 

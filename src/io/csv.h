@@ -37,8 +37,13 @@ void tobi_csv_add_text(tobi_csv *csv, const char *value);
 tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err);
 /* The row goes behind `rows` instead of into the file; the failures of tobi_csv_end_row but TOBI_IO. */
 tobi_status tobi_csv_take_row(tobi_csv *csv, tobi_csv_rows *rows, tobi_error *err);
-/* Writes such rows, at once and all or none; TOBI_IO. Another thread may take rows meanwhile. */
+/* Writes such rows, at once and all or none; TOBI_IO. Another thread may take rows meanwhile. A file that was
+   deleted begins anew. */
 tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err);
+/* 1 if somebody has deleted, moved or replaced the file. */
+int tobi_csv_is_gone(const tobi_csv *csv);
+/* 1 if it was not there, or empty, when it was to be continued. */
+int tobi_csv_has_lost(const tobi_csv *csv);
 /* NULL is fine. */
 void tobi_csv_close(tobi_csv *csv);
 

@@ -4,7 +4,9 @@
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
+#include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -47,6 +49,7 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->world = world;
     run->output = *output;
     run->lock = -1;
+    run->dir_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
     if (!(output->interval > 0.0) || !isfinite(output->interval))
@@ -67,6 +70,52 @@ static tobi_status write_text(const char *dir, const char *name, const char *tex
     }
     free(path);
     return status;
+}
+
+/* The text of resolved.json into run->resolved, NULL if it is not there. */
+static tobi_status read_scene(tobi_run *run, tobi_error *err)
+{
+    int fd = -1;
+    struct stat info;
+    char *path = tobi_record_path(run->dir, "resolved.json");
+    tobi_status status = path ? tobi_file_open_read(path, &fd, err)
+                              : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    size_t size = fd >= 0 && fstat(fd, &info) == 0 ? (size_t)info.st_size : 0;
+    if (status == TOBI_OK && !(run->resolved = calloc(size + 1, 1)))
+        status = tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    else if (status == TOBI_OK && read(fd, run->resolved, size) != (ssize_t)size)
+        status = tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+    if (fd >= 0) close(fd);
+    free(path);
+    return status == TOBI_NOT_FOUND ? TOBI_OK : status;
+}
+
+/* resolved.json, if it is not there: without it a run cannot be resumed. */
+static tobi_status keep_scene(const tobi_run *run, tobi_error *err)
+{
+    char *path = run->resolved ? tobi_record_path(run->dir, "resolved.json") : NULL;
+    if (run->resolved && !path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    const bool there = !path || access(path, F_OK) == 0;
+    free(path);
+    return there ? TOBI_OK : write_text(run->dir, "resolved.json", run->resolved, err);
+}
+
+/* Sums up what was deleted. The writer has nothing to do meanwhile. */
+static void tell_losses(tobi_run *run)
+{
+    const struct { const tobi_csv *csv; const char *name; } tables[] = {
+        { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" } };
+    char *at = run->losses, *end = at + sizeof run->losses;
+    *at = '\0';
+    if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
+    for (int k = 0; k < 3; k++)
+        if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
+            at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
+    if (run->missing)
+        at += snprintf(at, (size_t)(end - at),
+                       "missing files of earlier outputs: %lld (the lists, *.pvd, leave them out); ",
+                       (long long)run->missing);
+    if (at > run->losses) at[-2] = '\0';
 }
 
 /* From a started world in a directory without results to output 0. */
@@ -90,7 +139,9 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
     /* A world that cannot start must not cost the old results. */
     TOBI_TRY(tobi_world_start(run->world, err));
     TOBI_TRY(tobi_record_clear(run->dir, false, err));
-    if (resolved) TOBI_TRY(write_text(run->dir, "resolved.json", resolved, err));
+    if (resolved && !(run->resolved = strdup(resolved)))
+        return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    TOBI_TRY(keep_scene(run, err));
     return begin(run, err);
 }
 
@@ -112,6 +163,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
 {
     bool found = false;
     TOBI_TRY(tobi_record_clear(run->dir, true, err));
+    TOBI_TRY(read_scene(run, err));
     TOBI_TRY(tobi_state_load(run, &found, err));
     if (!found) {
         snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0",
@@ -123,6 +175,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_tables_open(run, true, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     TOBI_TRY(tobi_series_lists(run, err));
+    tell_losses(run);
     return tobi_writer_start(run, err);
 }
 
@@ -147,6 +200,8 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
 
 const char *tobi_run_note(const tobi_run *run) { return run->note; }
 
+const char *tobi_run_losses(const tobi_run *run) { return run->losses; }
+
 /* The end, moved onto the output time that it means: 3 x 0.1 is not 0.3. */
 static double snap_end(const tobi_run *run, double end)
 {
@@ -159,7 +214,10 @@ static bool reached(const tobi_run *run, double t)
     return tobi_world_time(run->world) >= t * (1.0 - ROUNDING);
 }
 
-int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
+int tobi_run_done(const tobi_run *run, double end)
+{
+    return reached(run, snap_end(run, end)) && !reached(run, tobi_record_time(run, run->outputs));
+}
 
 /* Takes the step's own numbers from inside: tobi_world_info would add up energies in every step. */
 static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
@@ -211,6 +269,8 @@ tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
     TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
+    TOBI_TRY(tobi_record_keep_dir(run, err));
+    TOBI_TRY(keep_scene(run, err));
     TOBI_TRY(tobi_state_save(run, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     return TOBI_OK;
@@ -220,6 +280,9 @@ tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
     tobi_status status = tobi_writer_wait(run->writer, err);
+    if (status == TOBI_OK) status = tobi_record_keep_dir(run, err);
+    if (status == TOBI_OK) status = tobi_series_lists(run, err);
+    tell_losses(run);
     if (status != TOBI_OK) err = NULL;
     tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
     return status != TOBI_OK ? status : written;
@@ -236,6 +299,7 @@ void tobi_run_free(tobi_run *run)
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);
     free(run->body_since);
+    free(run->resolved);
     free(run->dir);
     free(run);
 }

@@ -11,6 +11,7 @@
 #include "io/pvd.h"
 #include "io/vtk.h"
 #include "tobiuo/run.h"
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -63,7 +64,10 @@ struct tobi_run {
     tobi_output_def output;               /* fields is not used after creation       */
     char *dir;
     int lock;                             /* descriptor of dir, locked               */
-    char note[1024];
+    pthread_mutex_t dir_lock;             /* of the descriptor, and of making folders */
+    char *resolved;                       /* text of resolved.json, NULL = there is none */
+    char note[1024], losses[512];         /* texts for the user                      */
+    bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
     char (*body_file)[80];                /* names of the bodies' surface files      */
@@ -72,7 +76,7 @@ struct tobi_run {
     struct tobi_writer *writer;
     tobi_pvd *list;                       /* of each series, then of all             */
     int series;
-    int64_t listed;                       /* outputs in the lists                    */
+    int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
     tobi_csv *history, *bodies, *probes;  /* NULL without bodies, without probes     */
     int64_t outputs;                      /* taken so far = number of the next       */
@@ -95,6 +99,8 @@ tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *e
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
+/* Makes what was deleted of the run's directory and its folders again. */
+tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err);
 /* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
@@ -126,9 +132,10 @@ void tobi_snapshot_free_skins(tobi_run *run);
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
 /* Names, folders and empty lists. */
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
+tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err);
 /* The files of an output, then the lists including it. */
 tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
-/* The lists of outputs 0 .. run->outputs - 1. */
+/* The lists anew, of what is there of outputs 0 .. run->outputs - 1; the rest is run->missing. */
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
 void tobi_series_free(tobi_run *run);
 

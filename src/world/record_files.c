@@ -186,6 +186,30 @@ tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *
     return status;
 }
 
+/* Whether dir is still the directory that the run has locked. */
+static bool is_ours(const tobi_run *run)
+{
+    struct stat ours, there;
+    return fstat(run->lock, &ours) == 0 && stat(run->dir, &there) == 0 && ours.st_dev == there.st_dev &&
+           ours.st_ino == there.st_ino;
+}
+
+tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err)
+{
+    tobi_status status = TOBI_OK;
+    pthread_mutex_lock(&run->dir_lock);
+    if (!is_ours(run)) {
+        int fd = -1;
+        status = tobi_record_open_dir(run->dir, &fd, err);
+        if (fd >= 0) close(status == TOBI_OK ? run->lock : fd);
+        if (status == TOBI_OK) run->lock = fd;
+        run->lost_dir |= status == TOBI_OK;
+    }
+    if (status == TOBI_OK) status = tobi_series_folders(run, err);
+    pthread_mutex_unlock(&run->dir_lock);
+    return status;
+}
+
 static int compare_descending(const void *a, const void *b)
 {
     int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;

@@ -7,6 +7,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* --- names ----------------------------------------------------------------------------- */
 
@@ -132,7 +133,12 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
     TOBI_TRY(name_bodies(run, err));
     for (series s; series_at(run, run->series, &s);) run->series++;
     run->list = calloc((size_t)run->series + 1, sizeof *run->list);
-    if (!run->list) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    return run->list ? tobi_series_folders(run, err)
+                     : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+}
+
+tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err)
+{
     TOBI_TRY(tobi_record_make_dir(run->dir, "fluid", err));
     TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
     if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
@@ -235,6 +241,11 @@ static tobi_status list_output(tobi_run *run, int64_t number, tobi_error *err)
         char file[128];
         snprintf(file, sizeof file, "%s/%s_%06lld.%s", s.folder, s.name, (long long)number, s.extension);
         tobi_pvd_entry entry = { .time = tobi_record_time(run, number), .file = file, .name = s.name };
+        char *path = tobi_record_path(run->dir, "%s", file);
+        const bool there = path && access(path, F_OK) == 0;
+        free(path);
+        run->missing += !there;
+        if (!there) continue;
         TOBI_TRY(tobi_pvd_add(&run->list[k], &entry, err));
         entry.part = k;
         TOBI_TRY(tobi_pvd_add(&run->list[run->series], &entry, err));
@@ -245,7 +256,7 @@ static tobi_status list_output(tobi_run *run, int64_t number, tobi_error *err)
 static void forget_lists(tobi_run *run)
 {
     for (int k = 0; run->list && k <= run->series; k++) tobi_pvd_free(&run->list[k]);
-    run->listed = 0;
+    run->listed = run->missing = 0;
 }
 
 static tobi_status write_lists(tobi_run *run, int64_t outputs, tobi_error *err)
@@ -267,7 +278,11 @@ static tobi_status write_lists(tobi_run *run, int64_t outputs, tobi_error *err)
     return TOBI_OK;
 }
 
-tobi_status tobi_series_lists(tobi_run *run, tobi_error *err) { return write_lists(run, run->outputs, err); }
+tobi_status tobi_series_lists(tobi_run *run, tobi_error *err)
+{
+    forget_lists(run);
+    return write_lists(run, run->outputs, err);
+}
 
 void tobi_series_free(tobi_run *run)
 {

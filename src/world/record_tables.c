@@ -205,6 +205,7 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
 {
     double every = run->output.probe_interval, now = tobi_world_time(run->world);
     if (!run->probes || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
+    if (tobi_csv_is_gone(run->probes)) TOBI_TRY(tobi_record_keep_dir(run, err));
     tobi_csv_add_real(run->probes, now);
     for (int k = 0; k < tobi_world_probe_count(run->world); k++) {
         tobi_probe_kind kind;

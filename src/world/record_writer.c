@@ -28,6 +28,7 @@ struct tobi_writer {
 /* A row of history.csv comes last: it says that everything of this output is on disk. */
 static tobi_status write_files(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
+    TOBI_TRY(tobi_record_keep_dir(run, err));
     TOBI_TRY(tobi_series_write(run, snapshot, err));
     return tobi_tables_write(run, snapshot, err);
 }

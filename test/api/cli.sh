@@ -299,6 +299,16 @@ start_run busy 000002
 expect 1 "another run" resume busy --quiet
 kill -INT $pid; wait $pid
 
+# --- deleted results --------------------------------------------------------------------------------
+start_run deleted 000003
+rm -r deleted/fluid
+got=0; wait $pid || got=$?
+check "deleted during a run: exit code 0 (was $got)" test $got = 0
+check "deleted during a run: said so" grep -q "results in deleted: missing files of earlier outputs: [1-9]" err.txt
+check "deleted during a run: the state is there" same_hash whole deleted
+rm deleted/history.csv
+expect 0 "results in deleted: history.csv was deleted and begins anew; missing files" resume deleted --until 0.21
+
 # --- damaged checkpoints ----------------------------------------------------------------------------
 expect 0 "" run long.json --quiet --out damaged --until 0.1
 truncate -s 1000 "$(newest damaged)"

@@ -31,7 +31,9 @@ int rename(const char *from, const char *to)
     if (strstr(to, "checkpoint_")) strcat(strcat(calls, end + 1), " ");
     for (int k = 0; shut && k < 1000; k++) {
         usleep(10000);
-        late = late || k == 999;
+        if (k < 999) continue;
+        late = 1;
+        shut = 0;
     }
     if (refused && strstr(to, refused)) {
         errno = ENOSPC;
