@@ -44,7 +44,8 @@ static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *
     return TOBI_OK;
 }
 
-static void print_end(const drive_options *o, const counts *c, double time, double wall)
+static void print_end(const drive_options *o, const counts *c, int done, const char *lost, double time,
+                      double wall)
 {
     char text[32];
     if (c->unconverged)
@@ -55,6 +56,7 @@ static void print_end(const drive_options *o, const counts *c, double time, doub
                  "history.csv): the liquid has cavities or is compressed, or its layers did not "
                  "fit (tobiuo check)",
                  100*c->last.density_error_mean);
+    if (*lost) complain("results in %s: %s", o->dir, lost);
     if (c->last.particles_lost)
         complain("%lld particles left the domain", (long long)c->last.particles_lost);
     if (c->last.put_back)
@@ -62,9 +64,9 @@ static void print_end(const drive_options *o, const counts *c, double time, doub
                  "history.csv); mlsmpm.leaving says what becomes of them",
                  (long long)c->last.put_back);
     if (o->quiet) return;
-    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done",
+    printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", done ? "done" : "stopped",
            time, (long long)c->steps, duration_text(wall, text), o->dir);
-    if (caught) printf("go on with: tobiuo resume %s\n", o->dir);
+    if (!done) printf("go on with: tobiuo resume %s\n", o->dir);
 }
 
 int drive(tobi_world *world, tobi_run *run, const drive_options *o)
@@ -83,9 +85,10 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
                                                                                              "failed", &more);
         return complain("the results up to t = %.9g s are in %s", tobi_world_time(world), o->dir);
     }
+    const int done = tobi_run_done(run, o->end);
     status = tobi_run_checkpoint(run, &err);
-    if (status == TOBI_OK) status = tobi_run_finish(run, caught ? "interrupted" : "complete", &err);
+    if (status == TOBI_OK) status = tobi_run_finish(run, done ? "complete" : "interrupted", &err);
     if (status != TOBI_OK) return complain("%s", err.text);
-    print_end(o, &c, tobi_world_time(world), wall_clock() - p.begun);
-    return caught ? EXIT_INTERRUPTED : 0;
+    print_end(o, &c, done, tobi_run_losses(run), tobi_world_time(world), wall_clock() - p.begun);
+    return done ? 0 : EXIT_INTERRUPTED;
 }

@@ -151,7 +151,8 @@ TOBI_API int64_t tobi_world_bytes(const tobi_world *world);
 TOBI_API const char *tobi_world_stage(const tobi_world *world, int stage, double *seconds);
 
 /* Writes / reads the complete state, so that run = run + restart bit for bit. The world read into
-   must have been created and filled by the same definitions. The file appears whole or not at all. */
+   must have been created and filled by the same definitions. The file appears whole or not at all, and
+   outlasts a power cut; at path there may be a plain file or nothing: TOBI_INVALID. */
 TOBI_API tobi_status tobi_world_save(tobi_world *world, const char *path, tobi_error *err);
 TOBI_API tobi_status tobi_world_load(tobi_world *world, const char *path, tobi_error *err);
 

@@ -158,11 +158,11 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
     rlim_t seconds = (rlim_t)allowed->seconds + 1;
     setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
     tobi_limit_memory(allowed->bytes);
-    int null = open("/dev/null", O_RDWR);      /* the importer must not print either */
-    if (null >= 0) {
-        dup2(null, STDOUT_FILENO);
-        dup2(null, STDERR_FILENO);
-    }
+    /* The importer must not print either. Where a host closed them, the pipe is one of the three. */
+    int out = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1), null = open("/dev/null", O_RDWR);
+    if (out < 0) _exit(1);
+    for (int k = STDIN_FILENO; null >= 0 && k <= STDERR_FILENO; k++) dup2(null, k);
+    fd = out;
     import_header header = {.magic = "tobimesh"};
     struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     collector c = {.scene = import(path, &header)};

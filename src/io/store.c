@@ -117,6 +117,7 @@ static tobi_status create_image(tobi_store *store, tobi_error *err)
 {
     hid_t access = access_list(), create = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(create, SEAL_BYTES);
+    H5Pset_obj_track_times(create, 0);
     H5Pset_fapl_core(access, GROWTH_BYTES, 0);
     /* 1.8's format has checksums on metadata, but no mark that the file is open for writing, which
        would stand in an image taken before closing. */
@@ -198,6 +199,7 @@ static tobi_status write_image(tobi_store *store, tobi_error *err)
     seal s = make_seal(start, bytes);
     tobi_file_write(&store->out, &s, sizeof s);
     tobi_file_write(&store->out, start + sizeof s, bytes - sizeof s);
+    tobi_file_sync(&store->out);
     return tobi_file_commit(&store->out, err);
 }
 
@@ -258,6 +260,23 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     return status;
 }
 
+/* The groups on the way to an array. HDF5 would make them itself, but with the time of day in them. */
+static int make_groups(tobi_store *store, const char *name)
+{
+    int good = 1;
+    char way[512];
+    hid_t create = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_obj_track_times(create, 0);
+    for (const char *p = strchr(name, '/'); p && good; p = strchr(p + 1, '/')) {
+        snprintf(way, sizeof way, "%.*s", (int)(p - name), name);
+        if (H5Lexists(store->file, way, H5P_DEFAULT) > 0) continue;
+        hid_t group = H5Gcreate2(store->file, way, H5P_DEFAULT, create, H5P_DEFAULT);
+        good = group >= 0 && H5Gclose(group) >= 0;
+    }
+    H5Pclose(create);
+    return good;
+}
+
 /* Chunks of a quarter megabyte with a fletcher32 sum each; an empty array has no chunks. */
 static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
                             int components)
@@ -266,15 +285,14 @@ static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type t
     hsize_t size[2] = { (hsize_t)n, (hsize_t)components }, chunk[2] = { CHUNK_BYTES/row + 1, size[1] };
     if (chunk[0] > size[0]) chunk[0] = size[0];
     int rank = components == 1 ? 1 : 2;
+    if (!make_groups(store, name)) return -1;
     hid_t space = H5Screate_simple(rank, size, NULL), create = H5Pcreate(H5P_DATASET_CREATE);
-    hid_t link = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(link, 1);
+    H5Pset_obj_track_times(create, 0);
     if (n > 0) {
         H5Pset_chunk(create, rank, chunk);
         H5Pset_fletcher32(create);
     }
-    hid_t set = H5Dcreate2(store->file, name, file_type(type), space, link, create, H5P_DEFAULT);
-    H5Pclose(link);
+    hid_t set = H5Dcreate2(store->file, name, file_type(type), space, H5P_DEFAULT, create, H5P_DEFAULT);
     H5Pclose(create);
     H5Sclose(space);
     return set;

@@ -442,8 +442,8 @@ static void measure(tobi_world *w)
     if (w->method->measure) w->method->measure(&w->sim, w->method_state);
 }
 
-tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, tobi_step_info *info,
-                                    tobi_error *err)
+/* `left`: s to the end that the caller wants. */
+static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     const double before = s->time;
@@ -475,17 +475,22 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
     if (!(max_dt >= 0 && isfinite(max_dt)))
         return tobi_fail(err, TOBI_INVALID, "max_dt is %g s, allowed are finite numbers from 0, no cap, on",
                          max_dt);
-    return tobi_world_step_towards(w, max_dt, fmax(w->sim.def.end_time - w->sim.time, max_dt), info, err);
+    return take_step(w, max_dt, fmax(w->sim.def.end_time - w->sim.time, max_dt), info, err);
+}
+
+tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_error *err)
+{
+    double way = t - w->sim.time;
+    TOBI_TRY(take_step(w, way, end - w->sim.time, NULL, err));
+    if (w->sim.dt >= way) w->sim.time = w->sim.info.time = t;      /* not a rounding beside it */
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
     if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
-    while (w->sim.time < t) {
-        TOBI_TRY(tobi_world_step_towards(w, t - w->sim.time, t - w->sim.time, NULL, err));
-        if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
-    }
+    while (w->sim.time < t) TOBI_TRY(tobi_world_step_towards(w, t, t, err));
     if (info) {
         measure(w);
         *info = w->sim.info;

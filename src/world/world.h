@@ -54,11 +54,12 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
-/* tobi_world_step for a caller who goes on for `left` s at least. */
-tobi_status tobi_world_step_towards(tobi_world *w, double max_dt, double left, tobi_step_info *info,
-                                    tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
+
+/* One step, not beyond time t, which is hit exactly by a step that covers all that is left; the caller
+   goes on until `end`. */
+tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_error *err);
 
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);

@@ -22,6 +22,8 @@ vtk() {
     /usr/bin/python3 "$here/read_vtk.py" "$@" > out.txt || code=$?
     check "$what: $(tail -1 out.txt)" test $code = 0 -o $code = 77
 }
+newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
+same_checkpoint() { cmp "$(newest "$1")" "$(newest "$2")"; }
 no_parts() { [ -z "$(find "$1" -name '*.part')" ]; }
 # A step takes milliseconds here, so tests that stop a run in the middle need a run of about a second.
 cat > make_scene.py <<'END'
@@ -43,6 +45,7 @@ open("swing.lua", "w").write(
     "function place(t) return params.way * math.sin(20 * t), 0, 0, 0, 0, 1, 100 * t end\n")
 END
 $python make_scene.py tank.json 0.1 box.obj
+old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 
 # --- usage ------------------------------------------------------------------------------------------
 expect 2 "usage: tobiuo"
@@ -156,6 +159,23 @@ assert s["outcome"] == "complete" and abs(s["time"] - 0.1) < 1e-12 and s["steps"
 assert s["fluid_particles"] > 100 and s["threads"] >= 1 and s["peak_rss_bytes"] > 1e6
 END
 
+# --- streams that are closed or full ----------------------------------------------------------------
+sed 's/box\.obj/open.obj/' tank.json > noted.json      # a scene with a note
+expect 0 "1 hole" run noted.json --until 0.02 --out streams
+for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
+    eval '"$program" run noted.json --until 0.02 --out closed > out.txt 2> err.txt '"$closed"; got=$?
+    check "closed $closed: exit code 0 (was $got)" test $got = 0
+    check "closed $closed: the same results" same_results streams closed
+    rm -rf closed
+done
+for command in --help --version "run --help" "describe scene" "check tank.json" info "import $old/rigid_blocks.json --out full.json" \
+               "run tank.json --until 0.01 --out full"; do
+    got=0; "$program" $command > /dev/full 2> err.txt || got=$?
+    check "$command to a full device: exit code 1 (was $got)" test $got = 1
+    check "$command to a full device: said so" grep -q "tobiuo: cannot write to standard output" err.txt
+done
+rm -rf full full.json streams
+
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)
 echo mine > $a/notes.txt
@@ -170,6 +190,11 @@ touch a_file
 expect 1 "a_file" run tank.json --quiet --out a_file
 expect 1 "a_file" run tank.json --quiet --out a_file/below
 expect 1 "/proc" run tank.json --quiet --out /proc/tobiuo
+mkdir strange && ln -s "$PWD/$a/fluid" strange/fluid
+expect 1 "strange/fluid is a symbolic link" run tank.json --quiet --out strange --force
+ln -s "$PWD/strange" by_link && rm strange/fluid
+expect 0 "" run tank.json --quiet --out by_link --until 0.01
+check "a link to the directory itself is followed" test -s strange/history.csv
 mkdir locked && chmod a-w locked
 if [ ! -w locked ]; then expect 1 "cannot" run tank.json --quiet --out locked/here; fi
 # A full disk, played by a limit on the size of files.
@@ -180,7 +205,6 @@ check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
 check "full disk: no unfinished files" no_parts full
 
 # --- scenes of the Taichi program -------------------------------------------------------------------
-old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
 check "the particles of the old scene" grep -q "fluid particles  480102" out.txt
@@ -193,6 +217,9 @@ expect 0 "" import "$old/rigid_blocks.json" --out new.json
 check "import tells what became of it" grep -q "10000 times water" out.txt
 expect 1 "new.json exists" import "$old/rigid_blocks.json" --out new.json
 expect 0 "" import "$old/rigid_blocks.json" --out new.json --force --quiet
+mkfifo fifo && ln -s new.json link      # like a device: what is no plain file is never replaced
+expect 1 "it is a FIFO" import "$old/rigid_blocks.json" --out fifo --force --quiet
+expect 1 "it is a symbolic link" import "$old/rigid_blocks.json" --out link --force --quiet
 expect 1 "native scene already" import new.json --out newer.json
 expect 1 "nowhere.json" import nowhere.json --out newer.json
 expect 0 "" run new.json --quiet --out imported
@@ -226,6 +253,7 @@ expect 0 "" run tank.json --quiet --out one --threads 1
 expect 0 "" run tank.json --quiet --out two --threads 2
 check "1 thread = 2 threads" same_results one two
 check "1 thread = 2 threads, state" same_hash one two
+check "1 thread = 2 threads, checkpoint" same_checkpoint one two
 expect 0 "" run one/resolved.json --quiet --out again
 check "resolved.json gives the same results" same_results one again
 check "resolved.json gives the same state" same_hash one again
@@ -241,6 +269,7 @@ mv good.lua swing.lua
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves
 check "run = run + resume, state" same_hash whole halves
+check "run = run + resume, checkpoint" same_checkpoint whole halves
 check "same number of steps" test "$(value whole/summary.json steps)" = "$(value halves/summary.json steps)"
 
 # start_run DIR OUTPUT: starts a run and waits for an output or for its end; in $pid its number and its group's
@@ -259,6 +288,7 @@ for signal in INT TERM; do
     expect 0 "" resume stopped_$signal --quiet --threads 2
     check "SIG$signal + resume = run" same_results whole stopped_$signal
     check "SIG$signal + resume = run, state" same_hash whole stopped_$signal
+    check "SIG$signal + resume = run, checkpoint" same_checkpoint whole stopped_$signal
 done
 for output in 000001 000005 000012; do
     start_run killed_$output $output
@@ -269,6 +299,7 @@ for output in 000001 000005 000012; do
     expect 0 "" resume killed_$output --quiet
     check "kill -9 after $output + resume = run" same_results whole killed_$output
     check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
+    check "kill -9 after $output + resume = run, checkpoint" same_checkpoint whole killed_$output
     check "kill -9 after $output: no unfinished files" no_parts killed_$output
 done
 
@@ -299,8 +330,17 @@ start_run busy 000002
 expect 1 "another run" resume busy --quiet
 kill -INT $pid; wait $pid
 
+# --- deleted results --------------------------------------------------------------------------------
+start_run deleted 000003
+rm -r deleted/fluid
+got=0; wait $pid || got=$?
+check "deleted during a run: exit code 0 (was $got)" test $got = 0
+check "deleted during a run: said so" grep -q "results in deleted: missing files of earlier outputs: [1-9]" err.txt
+check "deleted during a run: the state is there" same_hash whole deleted
+rm deleted/history.csv
+expect 0 "results in deleted: history.csv was deleted and begins anew; missing files" resume deleted --until 0.21
+
 # --- damaged checkpoints ----------------------------------------------------------------------------
-newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
 expect 0 "" run long.json --quiet --out damaged --until 0.1
 truncate -s 1000 "$(newest damaged)"
 expect 0 "is damaged" resume damaged --until 0.2

@@ -29,6 +29,9 @@ expect 1 'no column "time"' plot made
 echo "time,step,kinetic_energy" > made/history.csv
 expect 1 "no rows yet" plot made
 check "nothing was drawn so far" test ! -e made/plots
+mkdir -p fifo && mkfifo fifo/history.csv
+got=0; timeout 20 "$program" plot fifo 2> err.txt || got=$?
+check "a FIFO is not waited for (exit code $got)" test $got = 1
 printf '0,0,0\n0.1,1,2\n0.2,2,nan\n' >> made/history.csv
 got=0; PATH=/nonexistent "$program" plot made > out.txt 2> err.txt || got=$?
 check "gnuplot missing: exit code 1 (was $got)" test $got = 1
@@ -157,6 +160,16 @@ echo "step,name" > made/bodies.csv
 expect 1 'no column "time"' plot made
 mkdir -p blocked && cp made/history.csv blocked && : > blocked/plots
 expect 1 "plots" plot blocked
+
+# A folder that a stranger has prepared: no link leads out of it.
+mkdir dear linked strange && echo dear > dear/energies.svg && cp dear/energies.svg dear/plots.gnuplot
+printf 'time,step,kinetic_energy\n0,0,1\n1,1,2\n' | tee strange/history.csv > linked/history.csv
+ln -s ../dear strange/plots
+expect 1 "a link is not followed" plot strange
+mkdir linked/plots && ln -s ../../dear/energies.svg ../../dear/plots.gnuplot linked/plots
+expect 0 "no values for the picture" plot linked
+check "a picture in the place of a link" has linked/plots/energies.svg "kinetic energy, J"
+check "nothing written through a link" test "$(cat dear/*)" = "$(printf 'dear\ndear')"
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -234,6 +234,7 @@ ssize_t pwrite64(int fd, const void *data, size_t n, off_t at) { return pwrite(f
 int ftruncate(int fd, off_t n) { return fails_call(WRITE, "ftruncate") ? -1 : NEXT(ftruncate)(fd, n); }
 int ftruncate64(int fd, off_t n) { return ftruncate(fd, n); }
 int fsync(int fd) { return fails_call(WRITE, "fsync") ? -1 : NEXT(fsync)(fd); }
+int syncfs(int fd) { return fails_call(WRITE, "syncfs") ? -1 : NEXT(syncfs)(fd); }
 
 int posix_fallocate(int fd, off_t at, off_t n)
 {

@@ -147,6 +147,27 @@ static void reads_binary_stl(void **state)
     tobi_mesh_free(&box);
 }
 
+/* The pipe of the importer may then be one of the three streams, which it shuts for its own texts. */
+static void reads_where_a_host_has_closed_its_streams(void **state)
+{
+    (void)state;
+    int kept[3];
+    tobi_mesh mesh;
+    tobi_error err = {0};
+    char text[200];
+    snprintf(text, sizeof text, "%sf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", tetra_obj);
+    write_text("streams.obj", text);
+    fflush(NULL);
+    for (int k = 0; k < 3; k++) kept[k] = dup(k);
+    for (int k = 0; k < 3; k++) close(k);
+    tobi_status status = tobi_mesh_read("streams.obj", &mesh, &err);
+    for (int k = 0; k < 3; k++) dup2(kept[k], k);
+    for (int k = 0; k < 3; k++) close(kept[k]);
+    OK(status);
+    assert_int_equal(mesh.triangle_count, 4);
+    tobi_mesh_free(&mesh);
+}
+
 static void refuses_bad_files(void **state)
 {
     (void)state;
@@ -491,6 +512,7 @@ int main(void)
         cmocka_unit_test(reads_numbers_without_leading_zero),
         cmocka_unit_test(reads_ascii_stl_and_ply),
         cmocka_unit_test(reads_binary_stl),
+        cmocka_unit_test(reads_where_a_host_has_closed_its_streams),
         cmocka_unit_test(refuses_bad_files),
         cmocka_unit_test(ply_headers_are_judged_before_the_import),
         cmocka_unit_test(floats_become_the_decimals_that_were_written),

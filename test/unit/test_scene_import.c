@@ -102,6 +102,32 @@ static void a_run_notes_the_shipped_fish(void **state)
     }
 }
 
+/* A list of numbers becomes a property of several objects, wherever they are. */
+static void the_table_tells_what_became_invisible(void **state)
+{
+    (void)state;
+    static const struct { const char *numbers, *says; } cases[] = {
+        { "[3, 1]", "-> fluids[1].visible = false, bodies[0].visible = false\n" },
+        { "[0]", "-> fluids[0].visible = false\n" },
+        { "[9]", "-> nothing\n    no object has one of these numbers\n" },
+        { "[]", "-> nothing\n" },
+    };
+    for (size_t i = 0; i < sizeof cases/sizeof *cases; i++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, -9],"
+                 " \"particleRadius\": 0.1, \"invisibleObjects\": %s }, \"FluidBlocks\": ["
+                 " { \"objectId\": 0, \"start\": [0, 0, 0], \"end\": [0.4, 1, 0.4], \"color\": [0, 0, 9] },"
+                 " { \"objectId\": 1, \"start\": [0.6, 0, 0], \"end\": [1, 1, 0.4], \"color\": [9, 0, 0] } ],"
+                 " \"RigidBlocks\": [ { \"objectId\": 3, \"start\": [0.4, 0, 0.5], \"end\": [0.6, 1, 0.8],"
+                 " \"isDynamic\": false } ] }", cases[i].numbers);
+        tobi_scene *scene = parse(text);
+        if (!strstr(tobi_scene_import_table(scene), cases[i].says))
+            fail_msg("no '%s' in\n%s", cases[i].says, tobi_scene_import_table(scene));
+        tobi_scene_free(scene);
+    }
+}
+
 /* What the table must say, key by key. */
 static void the_table_tells_every_key(void **state)
 {
@@ -509,6 +535,7 @@ int main(void)
         cmocka_unit_test(the_flying_fish_of_the_users),
         cmocka_unit_test(a_run_notes_the_shipped_fish),
         cmocka_unit_test(the_table_tells_every_key),
+        cmocka_unit_test(the_table_tells_what_became_invisible),
         cmocka_unit_test(blocks_with_their_own_values),
         cmocka_unit_test(rigid_blocks_are_boxes),
         cmocka_unit_test(the_water_moves_dynamic_bodies),

@@ -10,7 +10,6 @@
 #include <string.h>
 #include "scene/report.h"
 #include "scene/scene.h"
-#include "scene/suggest.h"
 
 static tobi_report *fail_text(const char *text, size_t size, const char *const *overrides)
 {
@@ -564,18 +563,6 @@ static void files_that_are_none(void **state)
     assert_int_equal(tobi_report_count(NULL), 0);
 }
 
-static void suggestions(void **state)
-{
-    (void)state;
-    static const char *const words[] = { "spacing", "support", "end_time", "velocity" };
-    assert_string_equal(tobi_suggest("Spacing", words, 4), "spacing");
-    assert_string_equal(tobi_suggest("end-time", words, 4), "end_time");
-    assert_string_equal(tobi_suggest("velcoity", words, 4), "velocity");
-    assert_null(tobi_suggest("particleRadius", words, 4));
-    assert_null(tobi_suggest("", words, 4));
-    assert_null(tobi_suggest("x", words, 4));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -599,7 +586,6 @@ int main(void)
         cmocka_unit_test(deep_and_wide),
         cmocka_unit_test(control_characters_stay_out_of_messages),
         cmocka_unit_test(files_that_are_none),
-        cmocka_unit_test(suggestions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
