@@ -16,56 +16,37 @@ void drive_catch_signals(void)
     sigaction(SIGTERM, &action, NULL);
 }
 
-/* Mean density error of a liquid that is not one any more; 0.002 is seen where all is well. */
-static const double WRONG_DENSITY = 0.02;
-
-typedef struct counts { int64_t steps, unconverged; tobi_step_info last; } counts;
-
-static tobi_status step_to_end(tobi_run *run, const drive_options *o, progress *p, counts *c,
-                               tobi_error *err)
+static tobi_status step_to_end(const tobi_world *world, tobi_run *run, const drive_options *o, progress *p,
+                               watch *w, tobi_error *err)
 {
     while (!caught && !tobi_run_done(run, o->end)) {
         tobi_step_info info = { 0 };
         tobi_status status = tobi_run_step(run, o->end, &info, err);
         if (status != TOBI_OK) return status;
-        c->steps++;
-        c->unconverged += !info.density_converged || !info.divergence_converged;
-        c->last = info;
+        watch_step(w, world, &info);
         progress_step(p, &info, o->end);
     }
     return TOBI_OK;
 }
 
-static void print_end(const drive_options *o, const counts *c, double time, double wall)
+static void print_end(const drive_options *o, const watch *w, const tobi_world *world, double wall)
 {
     char text[32];
-    if (c->unconverged)
-        complain("the solver did not converge in %lld of %lld steps", (long long)c->unconverged,
-                 (long long)c->steps);
-    if (c->last.density_error_mean > WRONG_DENSITY)
-        complain("at the end the density of particles is off by %.1f %% on average (density_error_mean in "
-                 "history.csv): the liquid has cavities or is compressed, or its layers did not "
-                 "fit (tobiuo check)",
-                 100*c->last.density_error_mean);
-    if (c->last.particles_lost)
-        complain("%lld particles left the domain", (long long)c->last.particles_lost);
-    if (c->last.put_back)
-        complain("particles got past a side of the domain and were put back to it %lld times (put_back in "
-                 "history.csv); mlsmpm.leaving says what becomes of them",
-                 (long long)c->last.put_back);
+    watch_say(w, world);
     if (o->quiet) return;
     printf("%s at t = %.9g s after %lld steps in %s; results in %s\n", caught ? "stopped" : "done",
-           time, (long long)c->steps, duration_text(wall, text), o->dir);
+           tobi_world_time(world), (long long)w->steps, duration_text(wall, text), o->dir);
     if (caught) printf("go on with: tobiuo resume %s\n", o->dir);
 }
 
 int drive(tobi_world *world, tobi_run *run, const drive_options *o)
 {
     progress p;
-    counts c = { 0 };
+    watch w;
     tobi_error err = { 0 }, more;
+    watch_begin(&w, world);
     progress_begin(&p, tobi_world_time(world), o->quiet);
-    tobi_status status = step_to_end(run, o, &p, &c, &err);
+    tobi_status status = step_to_end(world, run, o, &p, &w, &err);
     progress_end(&p);
     if (status != TOBI_OK) {
         complain("%s", err.text);
@@ -75,6 +56,7 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     status = tobi_run_checkpoint(run, &err);
     if (status == TOBI_OK) status = tobi_run_finish(run, caught ? "interrupted" : "complete", &err);
     if (status != TOBI_OK) return complain("%s", err.text);
-    print_end(o, &c, tobi_world_time(world), wall_clock() - p.begun);
+    print_end(o, &w, world, wall_clock() - p.begun);
+    watch_end(&w);
     return caught ? EXIT_INTERRUPTED : 0;
 }

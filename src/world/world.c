@@ -350,6 +350,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     memory[0] = s->start_speed = tobi_world_start_speed(w);
     s->start_head = start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
+    TOBI_TRY(tobi_world_note_starts(w, err));
     /* How fast the bodies start: their motion around time 0. */
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
