@@ -298,6 +298,7 @@ typedef struct tobi_step_info {
     int     density_iterations, divergence_iterations;
     int     density_converged, divergence_converged;
     double  density_error_mean, density_error_max;   /* 1, |rho/rho0 - 1| compression over all fluid   */
+    double  surface_share;        /* 1, share of the fluid's particles that are at a free surface      */
     double  divergence_mean, divergence_max;         /* 1/s over all fluid                             */
     double  pressure_residual;    /* 1, relative pressure residual of the density solve               */
     double  wall_force[3];        /* N, force of the fluid on the domain's walls                      */

@@ -77,12 +77,19 @@ double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3])
     return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_still_pressure(&s->still, x);
 }
 
+/* Where particles do not fit in, nothing but still water presses: all of it. */
+static double still_pressure(const tobi_still *w, const double *x, int wet)
+{
+    if (wet != TOBI_WET_GAP) return tobi_still_pressure(w, x);
+    return w->push*fmax(tobi_still_drop(w, x) - w->level, 0);
+}
+
 /* Force and torque of still water on a body, where it is wet. */
 static void sum_still(const tobi_simulation *s, const tobi_body *b, double f[6])
 {
     for (int64_t k = 0; k < b->point_count; k++) {
         if (!b->wet[k]) continue;
-        double p = -b->area[k]*tobi_still_pressure(&s->still, b->point[k]), arm[3];
+        double p = -b->area[k]*still_pressure(&s->still, b->point[k], b->wet[k]), arm[3];
         const double *n = b->normal[k];
         for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {

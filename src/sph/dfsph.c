@@ -345,17 +345,58 @@ static tobi_status settle(tobi_simulation *s, dfsph *m, double *clock, tobi_erro
     return TOBI_OK;
 }
 
+/* The level of still water follows the free surface of the last step. */
+static void set_still_water(tobi_simulation *s, dfsph *m)
+{
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
+                   fmax(m->memory.speed, s->body_speed), &m->memory.level);
+}
+
+static void restore_velocities(tobi_simulation *s, const tobi_float4 *kept)
+{
+    memcpy(s->particles.velocity, kept, (size_t)s->particles.count*sizeof *kept);
+}
+
+/* Before the first step: still water and the share of gravity that walls carry, (18) and (6b), follow from
+   the pressure of the step before. Without one the water would set off as if neither were there, and the
+   second step would press it back: a sensor read 1.8 times the pressure of rest. So the first step's pressure
+   is solved for twice with the velocities of the start before it is used. */
+static tobi_status find_first_pressure(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+{
+    if (s->step > 0) return TOBI_OK;
+    size_t bytes = (size_t)s->particles.count*sizeof(tobi_float4);
+    tobi_float4 *kept = malloc(bytes);
+    if (!kept) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the velocities of the start");
+    memcpy(kept, s->particles.velocity, bytes);
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < 2 && status == TOBI_OK; k++) {
+        status = sph_see_walls(s, &m->view, m->kernel, clock, err);
+        if (status != TOBI_OK) break;
+        m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
+        m->memory.low = sph_still_low(s);
+        apply_forces(s, m, clock);
+        tobi_couple_begin(s);
+        remove_divergence(s, m, clock);
+        restore_velocities(s, kept);
+        set_still_water(s, m);
+        bind_view(s, m);
+    }
+    free(kept);
+    return status;
+}
+
 /* May be stopped as long as nothing has moved. */
 static tobi_status try_step(tobi_simulation *s, dfsph *m, double max_dt, tobi_error *err)
 {
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
-    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
+    set_still_water(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(settle(s, m, &clock, err));
+    TOBI_TRY(find_first_pressure(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_still_low(s);

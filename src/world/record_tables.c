@@ -22,6 +22,7 @@
     H("unconverged_steps",          int,  s->unconverged)                           \
     H("density_error_mean",         real, i->density_error_mean)                    \
     H("density_error_max",          real, i->density_error_max)                     \
+    H("surface_share",              real, i->surface_share)                         \
     H("divergence_mean",            real, i->divergence_mean)                       \
     H("divergence_max",             real, i->divergence_max)                        \
     H("pressure_residual",          real, i->pressure_residual)                     \

@@ -377,6 +377,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
     s->start_head = start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
+    TOBI_TRY(tobi_world_note_starts(w, err));
     /* How fast the bodies start: their motion around time 0. */
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)

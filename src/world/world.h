@@ -54,6 +54,9 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
+/* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins
+   beside a wall. */
+tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 

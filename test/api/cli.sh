@@ -42,7 +42,7 @@ open(name, "w").write("""{   # a small tank with a box that swings in it
   "output": {"interval": 0.01, "checkpoint_interval": 0.02}
 }""" % (end, mesh))
 open("swing.lua", "w").write(
-    "function place(t) return params.way * math.sin(20 * t), 0, 0, 0, 0, 1, 100 * t end\n")
+    "function place(t) return params.way * (1 - math.cos(20 * t)), 0, 0, 0, 0, 1, 100 * t end\n")
 END
 $python make_scene.py tank.json 0.1 box.obj
 old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
@@ -109,14 +109,14 @@ check "check says what was repaired" grep -q "^note  .*'box': 1 hole (4 open edg
 expect 1 "Multiply its scale by 0.001" check tank.json --set 'bodies[0].scale=[1000,1000,1000]'
 
 # --- keyframes --------------------------------------------------------------------------------------
-printf 'time,x,yaw\n0,0,0\n0.01,0.001,1\n0.02,0.002,2\n' > rows.csv
+printf 'time,x,yaw\n0,0,0\n0.01,0.0002,1\n0.02,0.0008,2\n' > rows.csv
 sed 's/"motion": {.*}}/"motion": {"keyframes": {"file": "rows.csv", "pivot": [0, 0, 0.05]}}}/' tank.json > rows.json
 expect 0 "" run rows.json --quiet -o rows --until 0.02
 check "the body is where the rows say" $python - rows/bodies.csv <<'END'
 import csv, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
 x = [float(v) for k, v in rows[-1].items() if k.startswith("position_x") or k == "x"]
-assert len(x) == 1 and abs(x[0] - 0.002) < 1e-9, rows[-1]
+assert len(x) == 1 and abs(x[0] - 0.0008) < 1e-9, rows[-1]
 END
 echo "0.02,1,1" >> rows.csv
 expect 1 "rows.csv:5: time 0.02 s does not come after" check rows.json
