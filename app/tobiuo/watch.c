@@ -9,8 +9,9 @@
 static const double WRONG_DENSITY = 0.02;
 /* Share of particles at a free surface: a pool of 10 spacings has 0.1 to 0.2. */
 static const double COME_APART = 0.5;
-/* Of the mean force. */
-static const double ROUGH_FORCE = 0.05;
+/* Scatter of a force as a part of its mean, told after so many steps. */
+static const double ROUGH_FORCE = 0.15;
+enum { ENOUGH_STEPS = 20 };
 
 void watch_begin(watch *w, const tobi_world *world)
 {
@@ -79,7 +80,7 @@ void watch_say(const watch *w, const tobi_world *world)
                  "history.csv); mlsmpm.leaving says what becomes of them",
                  (long long)w->last.put_back);
     for (int k = 0; k < w->body_count && w->last.surface_share > 0; k++)
-        if (w->body[k].noise > ROUGH_FORCE*w->body[k].force)
+        if (w->body[k].steps > ENOUGH_STEPS && w->body[k].noise > ROUGH_FORCE*w->body[k].force)
             complain("the pressure force on '%s' scatters by %.0f %% from step to step; its means over an "
                      "output (mean_pressure_force in bodies.csv) are smoother, and so are forces with a "
                      "cfl of 0.1",

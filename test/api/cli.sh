@@ -124,7 +124,7 @@ rm -rf rows
 
 # --- a vessel full of liquid ------------------------------------------------------------------------
 full=(--quiet --set 'fluids[0].fill[0].box.max=[0.1,0.1,0.2]' --set 'bodies[0].translation=[0,0,0.1]'
-      --set 'bodies[0].motion.params.way=0.05')
+      --set 'bodies[0].motion.params.way=0.1')
 expect 0 "" run tank.json -o full --until 0.06 "${full[@]}"
 expect 0 "the liquid has cavities" run tank.json -o cavity --until 0.06 "${full[@]}" \
        --set dfsph.support=2 --set dfsph.density_tolerance=0.1
