@@ -1,15 +1,15 @@
 #include "core/couple.h"
-#include "core/simulation.h"
+#include "core/system.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
 
 static int moves(const tobi_body *b) { return b->rigid.kind != TOBI_PRESCRIBED; }
 
-static int any_moves(const tobi_simulation *s)
+static int any_moves(const tobi_system *s)
 {
-    for (int k = 0; k < s->body_count; k++)
-        if (moves(&s->bodies[k])) return 1;
+    for (int k = 0; k < s->sim->body_count; k++)
+        if (moves(&s->sim->bodies[k])) return 1;
     return 0;
 }
 
@@ -27,13 +27,13 @@ static int64_t first_entry(const tobi_near_bodies *n, int body)
 
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and
    contact, which the next step knows from the velocities it starts with. */
-static void foresee(const tobi_simulation *s, tobi_body *b, const double f[6])
+static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
 {
     tobi_rigid *r = &b->rigid;
     double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
     tobi_rigid_inverse(r, shift, turn);
     for (int a = 0; a < 3; a++) {
-        double force = r->mass*s->def.gravity[a] + r->force[a] + f[a];
+        double force = r->mass*s->sim->def.gravity[a] + r->force[a] + f[a];
         r->foreseen[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
         momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + f[3 + a]));
         r->mobility[a] = keep*shift[a];
@@ -49,45 +49,45 @@ static double flux(const tobi_near_entry *e, const double u[6])
 }
 
 /* Sum over the moving bodies that a particle sees. */
-static double answer_at(const tobi_simulation *s, int64_t i)
+static double answer_at(const tobi_system *s, int64_t i)
 {
     double sum = 0;
     for (int64_t k = s->particles.near[i]; k >= 0; k = s->near.entry[k].previous) {
         const tobi_near_entry *e = &s->near.entry[k];
-        if (moves(&s->bodies[e->body])) sum += flux(e, s->bodies[e->body].rigid.answer);
+        if (moves(&s->sim->bodies[e->body])) sum += flux(e, s->sim->bodies[e->body].rigid.answer);
     }
     return sum;
 }
 
 static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
 {
-    const tobi_simulation *s = view;
+    const tobi_system *s = view;
     (void)t;
     for (int64_t i = begin; i < end; i++)
         if (s->particles.near[i] >= 0) s->particles.wall[i].w += (float)answer_at(s, i);
 }
 
-void tobi_couple_begin(tobi_simulation *s)
+void tobi_couple_begin(tobi_system *s)
 {
     if (!any_moves(s)) return;
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
         tobi_rigid *r = &b->rigid;
         double f[6];
         if (!moves(b)) continue;
         tobi_near_known_forces(s, k, f);
-        tobi_simulation_body_hydrostatic(s, k, f);
+        tobi_system_body_hydrostatic(s, k, f);
         foresee(s, b, f);
         vec3_sub(r->answer, r->foreseen, r->velocity);
         vec3_sub(r->answer + 3, r->foreseen_spin, r->angular_velocity);
     }
-    tobi_launch(&s->exec, add_flux, s, 0, s->particles.count, NULL);
+    tobi_launch(&s->sim->exec, add_flux, s, 0, s->particles.count, NULL);
 }
 
 /* Force and torque of the records' pressures on a body, without the factor of two volumes. */
 static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
 {
-    const tobi_simulation *s = view;
+    const tobi_system *s = view;
     for (int64_t k = begin; k < end; k++) {
         const tobi_near_entry *e = &s->near.entry[k];
         double q = s->particles.record[e->particle].w;
@@ -101,7 +101,7 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
 /* product = A q gains 2 J M^-1 (2 V J^T q), J the flux of all particles by the six velocities: symmetric. */
 static void add_answer(const void *view, int64_t begin, int64_t end, double *t)
 {
-    const tobi_simulation *s = view;
+    const tobi_system *s = view;
     const tobi_particles *p = &s->particles;
     for (int64_t i = begin; i < end; i++) {
         if (p->near[i] < 0) continue;
@@ -112,21 +112,22 @@ static void add_answer(const void *view, int64_t begin, int64_t end, double *t)
     }
 }
 
-void tobi_couple_product(tobi_simulation *s, double *totals)
+void tobi_couple_product(tobi_system *s, double *totals)
 {
     double t[TOBI_TOTALS];
     if (!any_moves(s)) return;
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_rigid *r = &s->bodies[k].rigid;
-        if (!moves(&s->bodies[k])) continue;
-        tobi_launch(&s->exec, sum_pressure, s, first_entry(&s->near, k), first_entry(&s->near, k + 1), t);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_rigid *r = &s->sim->bodies[k].rigid;
+        if (!moves(&s->sim->bodies[k])) continue;
+        tobi_launch(&s->sim->exec, sum_pressure, s, first_entry(&s->near, k), first_entry(&s->near, k + 1),
+                    t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         for (int a = 0; a < 3; a++) {
             r->answer[a] = r->mobility[a]*t[a];
             r->answer[3 + a] = vec3_dot(r->turn_mobility[a], t + 3);
         }
     }
-    tobi_launch(&s->exec, add_answer, s, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, add_answer, s, 0, s->particles.count, t);
     if (!totals) return;
     totals[0] += t[0];
     totals[1] += t[1];
@@ -138,10 +139,10 @@ static void collect_forces(const tobi_body *b, double f[6])
     vec3_add_scaled(f + 3, b->info.pressure_torque, 1, b->info.viscous_torque);
 }
 
-void tobi_couple_correct(tobi_simulation *s)
+void tobi_couple_correct(tobi_system *s)
 {
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b) || first_entry(&s->near, k) == first_entry(&s->near, k + 1)) continue;
         collect_forces(b, f);
@@ -151,10 +152,10 @@ void tobi_couple_correct(tobi_simulation *s)
     }
 }
 
-void tobi_couple_finish(tobi_simulation *s)
+void tobi_couple_finish(tobi_system *s)
 {
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b)) continue;
         collect_forces(b, f);
@@ -196,11 +197,11 @@ static double largest_eigenvalue(double x[6][6])
 }
 
 /* Locked shifts count as free ones: how much of the surface lies across the others changes with the pose. */
-double tobi_couple_softness(const tobi_simulation *s)
+double tobi_couple_softness(const tobi_system *s)
 {
     double most = 0;
-    for (int k = 0; k < s->body_count; k++) {
-        const tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
         double sum[6][6], x[6][6] = {{0}}, shift[3], turn[3][3];
         if (!moves(b)) continue;
         sum_surface(b, sum);
@@ -217,12 +218,12 @@ double tobi_couple_softness(const tobi_simulation *s)
 
 /* The two layers of particles at a no-slip surface of area S brake a body at some 4 mu S/(d m); its turns
    have a smaller inertia: three times that, as those of a ball. */
-double tobi_couple_dt(const tobi_simulation *s)
+double tobi_couple_dt(const tobi_system *s)
 {
     double viscosity = 0, dt = INFINITY;
     for (int f = 0; f < s->fluid_count; f++) viscosity = fmax(viscosity, s->fluid[f].viscosity);
-    for (int k = 0; k < s->body_count; k++) {
-        const tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
         if (!moves(b) || b->friction != TOBI_NO_SLIP || !(viscosity > 0)) continue;
         dt = fmin(dt, 0.8*b->rigid.mass*s->smoothing.spacing/(12*viscosity*b->rest.area));
     }

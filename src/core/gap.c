@@ -3,9 +3,9 @@
    So points there are pressed by all the water above them, and only what moves is missing. Drawback: a flat
    body that lies close has its full buoyancy too, as if it stood on grains. */
 #include "core/gap.h"
-#include "core/simulation.h"
+#include "core/system.h"
 
-static int faces_side(const tobi_simulation *s, const double x[3], const double n[3])
+static int faces_side(const tobi_system *s, const double x[3], const double n[3])
 {
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
@@ -15,22 +15,22 @@ static int faces_side(const tobi_simulation *s, const double x[3], const double 
     return 0;
 }
 
-static int faces_body(const tobi_simulation *s, int body, const double x[3], const double n[3])
+static int faces_body(const tobi_system *s, int body, const double x[3], const double n[3])
 {
-    for (int k = 0; k < s->body_count; k++) {
+    for (int k = 0; k < s->sim->body_count; k++) {
         tobi_bvh_hit hit;
-        if (k == body || !tobi_bvh_closest(s->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
+        if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
         if (n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return 1;
     }
     return 0;
 }
 
-void tobi_gap_wet(tobi_simulation *s)
+void tobi_gap_wet(tobi_system *s)
 {
     if (!(s->still.push > 0)) return;
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
-        #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 256)
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
+        #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 256)
         for (int64_t q = 0; q < b->point_count; q++) {
             const double *x = b->point[q], *n = b->normal[q];
             if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;

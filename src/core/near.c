@@ -3,7 +3,7 @@
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
 #include "core/gap.h"
-#include "core/simulation.h"
+#include "core/system.h"
 #include "core/wall_law.h"
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
 
-static double plane_value(const tobi_simulation *s, const float *table, double distance)
+static double plane_value(const tobi_system *s, const float *table, double distance)
 {
     double at = fmax(distance, 0)/s->smoothing.h*TOBI_PLANE_SAMPLES;
     if (at >= TOBI_PLANE_SAMPLES) return 0;
@@ -39,7 +39,7 @@ static int bin_along(const tobi_near_bodies *n, int a, double x)
 }
 
 /* Sorts a body's points into cells of width h over its box. */
-static tobi_status fill_bins(tobi_simulation *s, const tobi_body *b, tobi_error *err)
+static tobi_status fill_bins(tobi_system *s, const tobi_body *b, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     double lo[3], hi[3];
@@ -105,7 +105,7 @@ static int visit_points(const tobi_near_bodies *n, const double x[3], visit_fn v
 
 /* A particle's look at one body. */
 typedef struct look {
-    const tobi_simulation *s;
+    const tobi_system *s;
     const tobi_body *b;
     double x[3];
     double gravity[3];          /* m/s2, what the particle feels */
@@ -174,7 +174,7 @@ static int add_point(void *user, int32_t k)
 /* Gravity less what still water holds; fluids have one density then. */
 static void feel_gravity(look *l)
 {
-    const tobi_simulation *s = l->s;
+    const tobi_system *s = l->s;
     double held = tobi_still_share(&s->still, l->x)*s->still.push/s->fluid[0].density;
     for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*s->still.down[a];
 }
@@ -207,13 +207,13 @@ static void place_look(look *l, int64_t i)
 }
 
 /* Marks the particles that see body k in `delta` (free at this time) and counts them per block. */
-static void count_near(tobi_simulation *s, int k, int64_t blocks)
+static void count_near(tobi_system *s, int k, int64_t blocks)
 {
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 4)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
     for (int64_t block = 0; block < blocks; block++) {
         int64_t end = (block + 1)*TOBI_BLOCK, found = 0;
         for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
-            look l = {.s = s, .b = &s->bodies[k]};
+            look l = {.s = s, .b = &s->sim->bodies[k]};
             place_look(&l, i);
             int near = visit_points(&s->near, l.x, sees_any, &l);
             s->particles.delta[i] = (float)near;
@@ -223,14 +223,14 @@ static void count_near(tobi_simulation *s, int k, int64_t blocks)
     }
 }
 
-static void fill_near(tobi_simulation *s, int k, int64_t first, int64_t blocks)
+static void fill_near(tobi_system *s, int k, int64_t first, int64_t blocks)
 {
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 4)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
     for (int64_t block = 0; block < blocks; block++) {
         int64_t end = (block + 1)*TOBI_BLOCK, at = first + s->near.block_count[block];
         for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
             if (s->particles.delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->bodies[k], .entry = &s->near.entry[at]};
+            look l = {.s = s, .b = &s->sim->bodies[k], .entry = &s->near.entry[at]};
             place_look(&l, i);
             if (!look_at(&l, (int32_t)i, k)) l.entry->distance = s->smoothing.h;
             l.entry->previous = s->particles.near[i];
@@ -239,7 +239,7 @@ static void fill_near(tobi_simulation *s, int k, int64_t first, int64_t blocks)
     }
 }
 
-tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
+tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
@@ -249,11 +249,11 @@ tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
     n->block_count = p;
     TOBI_TRY(status);
     memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
-    for (int k = 0; k < s->body_count; k++) {
-        TOBI_TRY(fill_bins(s, &s->bodies[k], err));
-        memset(s->bodies[k].wet, 0, (size_t)s->bodies[k].point_count);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
+        memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
         count_near(s, k, blocks);
-        int64_t found = tobi_scan(&s->exec, blocks, n->block_count);
+        int64_t found = tobi_scan(&s->sim->exec, blocks, n->block_count);
         p = n->entry;
         status = grow(&p, &n->capacity, n->count + found, sizeof *n->entry, err);
         n->entry = p;
@@ -265,14 +265,14 @@ tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
     return TOBI_OK;
 }
 
-static const tobi_near_entry *next_entry(const tobi_simulation *s, const tobi_near_entry *e)
+static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
 /* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
    rounding would let a segment through an edge pass one way only. */
-static int separated(const tobi_simulation *s, int64_t i, int64_t j)
+static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
@@ -291,17 +291,17 @@ static int separated(const tobi_simulation *s, int64_t i, int64_t j)
                 rb[c] = to[c] + d[c] - b->foot[c];
             }
             if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
-            const tobi_bvh *tree = s->bodies[a->body].bvh;
+            const tobi_bvh *tree = s->sim->bodies[a->body].bvh;
             if (tobi_bvh_segment_hits(tree, x, to)) return 1;
         }
     return 0;
 }
 
-void tobi_near_cut_pairs(tobi_simulation *s)
+void tobi_near_cut_pairs(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     int64_t cut = 0;
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
     for (int64_t k = 0; k < s->near.count; k++) {
         int64_t i = s->near.entry[k].particle;
         if (p->near[i] != k) continue;      /* once per particle */
@@ -318,17 +318,17 @@ void tobi_near_cut_pairs(tobi_simulation *s)
 
 /* Runs over the entries of all particles; one particle's entries are handled together. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
-    _Pragma("omp parallel for num_threads((s)->exec.threads) schedule(static)")                            \
+    _Pragma("omp parallel for num_threads((s)->sim->exec.threads) schedule(static)")                       \
     for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
 
-void tobi_near_mark_beside(tobi_simulation *s)
+void tobi_near_mark_beside(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     if (!p->beside) return;
     memset(p->beside, 0, (size_t)p->count);
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
     for (int64_t k = 0; k < s->near.count; k++) {
         int64_t i = s->near.entry[k].particle;
         const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
@@ -341,7 +341,7 @@ void tobi_near_mark_beside(tobi_simulation *s)
     }
 }
 
-void tobi_near_add_gradients(tobi_simulation *s)
+void tobi_near_add_gradients(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &s->particles.wall[i];
@@ -352,7 +352,7 @@ void tobi_near_add_gradients(tobi_simulation *s)
 }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
-static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, const double u[3],
+static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const double u[3],
                         double lift[3], double drag[3])
 {
     const tobi_fluid *f = &s->fluid[s->particles.fluid[e->particle]];
@@ -372,7 +372,7 @@ static void entry_accel(const tobi_simulation *s, const tobi_near_entry *e, cons
     for (int c = 0; c < 3; c++) drag[c] *= law;
 }
 
-void tobi_near_add_forces(tobi_simulation *s)
+void tobi_near_add_forces(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
@@ -388,7 +388,7 @@ void tobi_near_add_forces(tobi_simulation *s)
 }
 
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
-static void keep_away(const tobi_simulation *s, int64_t i, double least, double way[3])
+static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
     int32_t k = s->particles.near[i];
     for (const tobi_near_entry *e = k >= 0 ? &s->near.entry[k] : NULL; e; e = next_entry(s, e)) {
@@ -397,11 +397,11 @@ static void keep_away(const tobi_simulation *s, int64_t i, double least, double 
     }
 }
 
-void tobi_near_settle(tobi_simulation *s)
+void tobi_near_settle(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
     for (int64_t i = 0; i < p->count; i++) {
         if (!p->beside[i]) continue;
         double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
@@ -416,7 +416,7 @@ void tobi_near_settle(tobi_simulation *s)
     }
 }
 
-void tobi_near_contact(tobi_simulation *s)
+void tobi_near_contact(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &s->particles.normal[i];
@@ -426,16 +426,16 @@ void tobi_near_contact(tobi_simulation *s)
             size += u[c]*u[c];
         }
         if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
-        double cosine = s->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
+        double cosine = s->sim->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }
 }
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */
-static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e, double force[3])
+static void turning_traction(const tobi_system *s, const tobi_near_entry *e, double force[3])
 {
-    const tobi_body *b = &s->bodies[e->body];
+    const tobi_body *b = &s->sim->bodies[e->body];
     const double *w = b->info.angular_velocity;
     double share = b->friction == TOBI_NO_SLIP
                        ? 2*s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].viscosity : 0;
@@ -446,16 +446,16 @@ static void turning_traction(const tobi_simulation *s, const tobi_near_entry *e,
 }
 
 /* Sums of the reactions on one body over the entries. */
-typedef struct reaction { const tobi_simulation *s; int body; int viscous, known; } reaction;
+typedef struct reaction { const tobi_system *s; int body; int viscous, known; } reaction;
 
 static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
 {
     const reaction *r = view;
-    const tobi_simulation *s = r->s;
+    const tobi_system *s = r->s;
     for (int64_t k = begin; k < end; k++) {
         const tobi_near_entry *e = &s->near.entry[k];
         if (e->body != r->body) continue;
-        const tobi_body *b = &s->bodies[e->body];
+        const tobi_body *b = &s->sim->bodies[e->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
         const double *accel = r->viscous ? e->friction : e->lift;
@@ -476,28 +476,28 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
     }
 }
 
-void tobi_near_known_forces(tobi_simulation *s, int body, double force[6])
+void tobi_near_known_forces(tobi_system *s, int body, double force[6])
 {
     memset(force, 0, 6*sizeof *force);
     for (int viscous = 0; viscous < 2; viscous++) {
         double t[TOBI_TOTALS];
         reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
         for (int a = 0; a < 6; a++) force[a] += t[a];
     }
 }
 
-void tobi_near_body_forces(tobi_simulation *s)
+void tobi_near_body_forces(tobi_system *s)
 {
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body_info *info = &s->bodies[k].info;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body_info *info = &s->sim->bodies[k].info;
         double t[TOBI_TOTALS];
         reaction r = {s, k, 0, 0};
-        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
         memcpy(info->pressure_force, t, 3*sizeof *t);
         memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
         r.viscous = 1;
-        tobi_launch(&s->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
         memcpy(info->viscous_force, t, 3*sizeof *t);
         memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
     }

@@ -221,7 +221,7 @@ static int64_t number_trees(const search *f, int64_t n, const int32_t *row_of, t
 typedef struct ranked { tobi_piece piece; int32_t was; } ranked;
 
 /* Sums in the order of ids, whatever the rows' order. */
-static void sum_pieces(const tobi_simulation *s, const int32_t *row_of, const double *volume,
+static void sum_pieces(const tobi_system *s, const int32_t *row_of, const double *volume,
                        const int32_t *of, ranked *found)
 {
     const tobi_particles *p = &s->particles;
@@ -249,7 +249,7 @@ static int compare(const void *left, const void *right)
 }
 
 /* Orders the pieces and gives the rows their new numbers; `number` holds one per piece. */
-static void rank_pieces(const tobi_simulation *s, ranked *found, int64_t count, int32_t *number,
+static void rank_pieces(const tobi_system *s, ranked *found, int64_t count, int32_t *number,
                         tobi_piece_list *list)
 {
     for (int64_t k = 0; k < count; k++) {
@@ -273,19 +273,18 @@ static void rank_pieces(const tobi_simulation *s, ranked *found, int64_t count, 
         if (list->of[i] >= 0) list->of[i] = number[list->of[i]];
 }
 
-static void read_volumes(const tobi_simulation *s, const tobi_method *method, const void *state,
-                         double *volume)
+static void read_volumes(const tobi_system *s, double *volume)
 {
-    #pragma omp parallel for num_threads(s->exec.threads)
+    #pragma omp parallel for num_threads(s->sim->exec.threads)
     for (int64_t i = 0; i < s->particles.count; i++) {
         double ratio[9];
-        method->read(s, state, "J", i, ratio);
+        s->method->read(s, "J", i, ratio);
         volume[i] = ratio[0]*s->particles.strain[i].c[0].w;
     }
 }
 
-static tobi_status list_pieces(tobi_simulation *s, const tobi_method *method, const void *state,
-                               const int32_t *row_of, search *f, tobi_piece_list *list, tobi_error *err)
+static tobi_status list_pieces(tobi_system *s, const int32_t *row_of, search *f, tobi_piece_list *list,
+                               tobi_error *err)
 {
     const int64_t n = s->particles.count, count = number_trees(f, n, row_of, list);
     double *volume = malloc((size_t)(n + 1)*sizeof *volume);
@@ -294,7 +293,7 @@ static tobi_status list_pieces(tobi_simulation *s, const tobi_method *method, co
     tobi_status status = volume && found && list->piece
         ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld pieces of solids", (long long)count);
     if (status == TOBI_OK) {
-        read_volumes(s, method, state, volume);
+        read_volumes(s, volume);
         sum_pieces(s, row_of, volume, list->of, found);
         rank_pieces(s, found, count, f->row, list);
     }
@@ -303,8 +302,7 @@ static tobi_status list_pieces(tobi_simulation *s, const tobi_method *method, co
     return status;
 }
 
-tobi_status tobi_pieces_find(tobi_simulation *s, const tobi_method *method, const void *state,
-                             const int32_t *row_of, tobi_piece_list *list, tobi_error *err)
+tobi_status tobi_pieces_find(tobi_system *s, const int32_t *row_of, tobi_piece_list *list, tobi_error *err)
 {
     const int64_t n = s->particles.count;
     search f = {.particles = &s->particles, .solids = s->solids, .dimension = s->box.dimension,
@@ -313,10 +311,10 @@ tobi_status tobi_pieces_find(tobi_simulation *s, const tobi_method *method, cons
     tobi_status status = list->of ? TOBI_OK
                                   : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the pieces of solids");
     choose_strides(&f, n);
-    if (status == TOBI_OK) status = sort_by_cell(&f, &s->exec, n, err);
+    if (status == TOBI_OK) status = sort_by_cell(&f, &s->sim->exec, n, err);
     if (status == TOBI_OK) {
-        tobi_launch(&s->exec, link_range, &f, 0, n, NULL);
-        status = list_pieces(s, method, state, row_of, &f, list, err);
+        tobi_launch(&s->sim->exec, link_range, &f, 0, n, NULL);
+        status = list_pieces(s, row_of, &f, list, err);
     }
     free_search(&f);
     if (status != TOBI_OK) tobi_pieces_free(list);

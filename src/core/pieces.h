@@ -9,7 +9,7 @@
    Drawback: two balls of one solid that started apart and collide are two pieces, though the grid may hold
    them together. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 typedef struct tobi_piece_list {
     tobi_pieces found;
@@ -22,6 +22,5 @@ static inline int64_t tobi_pieces_least(int dimension) { return dimension == 3 ?
 
 /* row_of: rows in the order of ids. `read` of the method gives J. On failure the list is empty. Same result
    for any number of threads; about 60 bytes per particle while it runs. */
-tobi_status tobi_pieces_find(tobi_simulation *s, const tobi_method *method, const void *state,
-                             const int32_t *row_of, tobi_piece_list *list, tobi_error *err);
+tobi_status tobi_pieces_find(tobi_system *s, const int32_t *row_of, tobi_piece_list *list, tobi_error *err);
 void tobi_pieces_free(tobi_piece_list *list);

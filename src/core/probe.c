@@ -10,7 +10,7 @@ enum { BASIS = 4, VALUES = 4 };
 /* Cells of a box around x in box coordinates, not wrapped. */
 typedef struct range { int first[3], last[3]; } range;
 
-static range cells_around(const tobi_simulation *s, const double x[3], double reach)
+static range cells_around(const tobi_system *s, const double x[3], double reach)
 {
     range r;
     for (int a = 0; a < 3; a++) {
@@ -27,14 +27,14 @@ static range cells_around(const tobi_simulation *s, const double x[3], double re
     return r;
 }
 
-static int wrap_cell(const tobi_simulation *s, int axis, int k)
+static int wrap_cell(const tobi_system *s, int axis, int k)
 {
     int n = s->cells.n[axis];
     return s->cells.periodic[axis] ? ((k % n) + n) % n : k;
 }
 
 /* Offset of particle i from x, the nearest image along periodic axes. */
-static void offset_of(const tobi_simulation *s, int64_t i, const double x[3], double d[3])
+static void offset_of(const tobi_system *s, int64_t i, const double x[3], double d[3])
 {
     const double *p = &s->particles.position[i].x;
     for (int a = 0; a < 3; a++) {
@@ -47,7 +47,7 @@ static void offset_of(const tobi_simulation *s, int64_t i, const double x[3], do
 /* Calls see(user, i, offset) for every particle of the cells. */
 typedef void (*visitor)(void *user, int64_t i, const double d[3]);
 
-static void visit(const tobi_simulation *s, const double x[3], const range *r, visitor see, void *user)
+static void visit(const tobi_system *s, const double x[3], const range *r, visitor see, void *user)
 {
     double d[3];
     for (int z = r->first[2]; z <= r->last[2]; z++)
@@ -120,7 +120,7 @@ static void substitute(const fit *f, int n, double value[VALUES])
 
 /* A place on a surface and the traction of the fluid there: equations (6) and (8) per area. */
 typedef struct membrane {
-    const tobi_simulation *s;
+    const tobi_system *s;
     const tobi_bvh *bvh;            /* of the body; NULL on a side of the domain */
     double foot[3], normal[3];      /* box coordinates; out of the wall          */
     double traction;
@@ -146,7 +146,7 @@ static void press(void *user, int64_t i, const double r[3])
 }
 
 /* The nearest side or body within half a spacing of x. */
-static int find_surface(const tobi_simulation *s, const double x[3], membrane *m)
+static int find_surface(const tobi_system *s, const double x[3], membrane *m)
 {
     double nearest = ON_WALL*s->smoothing.spacing;
     int found = 0;
@@ -162,11 +162,11 @@ static int find_surface(const tobi_simulation *s, const double x[3], membrane *m
             m->normal[a] = side ? -1 : 1;
             found = 1;
         }
-    for (int k = 0; k < s->body_count; k++) {
+    for (int k = 0; k < s->sim->body_count; k++) {
         tobi_bvh_hit hit;
-        if (!tobi_bvh_closest(s->bodies[k].bvh, x, nearest, &hit)) continue;
+        if (!tobi_bvh_closest(s->sim->bodies[k].bvh, x, nearest, &hit)) continue;
         nearest = fabs(hit.signed_distance);
-        m->bvh = s->bodies[k].bvh;
+        m->bvh = s->sim->bodies[k].bvh;
         memcpy(m->foot, hit.point, sizeof m->foot);
         memcpy(m->normal, hit.normal, sizeof m->normal);
         found = 1;
@@ -201,7 +201,7 @@ static double open_share(const membrane *m, const double y[3])
 static double measure_wall(membrane *m)
 {
     enum { RINGS = 3, SPOKES = 8 };
-    const tobi_simulation *s = m->s;
+    const tobi_system *s = m->s;
     double sum = 0, d = s->smoothing.spacing, u[3] = {0}, v[3];
     int used = 0, least = fabs(m->normal[0]) < fabs(m->normal[1]) ? 0 : 1;
     if (fabs(m->normal[2]) < fabs(m->normal[least])) least = 2;
@@ -225,7 +225,7 @@ static double measure_wall(membrane *m)
     return used > 0 ? sum/used : 0;
 }
 
-int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressure, double velocity[3])
+int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3])
 {
     fit f = {.particles = &s->particles, .radius = RADIUS*s->smoothing.spacing};
     double local[3], value[VALUES] = {0};
@@ -241,7 +241,7 @@ int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressu
     memcpy(velocity, value + 1, 3*sizeof *velocity);
     membrane wall;
     if (f.count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
-    if (f.count > 0) *pressure += tobi_simulation_hydrostatic(s, local);
+    if (f.count > 0) *pressure += tobi_system_hydrostatic(s, local);
     return f.count;
 }
 
@@ -260,16 +260,16 @@ static void look_for_top(void *user, int64_t i, const double d[3])
     if (!(c->sign*height < c->sign*c->top)) c->top = height;
 }
 
-double tobi_probe_level(const tobi_simulation *s, const double x[3])
+double tobi_probe_level(const tobi_system *s, const double x[3])
 {
     double local[3] = {0}, d = s->smoothing.spacing, size = 0;
     column c = {.particles = &s->particles, .near2 = d*d, .sign = 1, .axis = s->box.dimension - 1};
     for (int a = 0; a < s->box.dimension; a++) {
         local[a] = x[a] - s->box.lower[a];
-        if (fabs(s->def.gravity[a]) <= size) continue;
-        size = fabs(s->def.gravity[a]);
+        if (fabs(s->sim->def.gravity[a]) <= size) continue;
+        size = fabs(s->sim->def.gravity[a]);
         c.axis = a;
-        c.sign = s->def.gravity[a] > 0 ? -1 : 1;
+        c.sign = s->sim->def.gravity[a] > 0 ? -1 : 1;
     }
     range r = cells_around(s, local, 2*d);
     r.first[c.axis] = 0;

@@ -1,7 +1,7 @@
 /* Sensors: what the fluid does at a point or on a wall, and how high it stands. Serial; a sensor looks only
    at the cells around it. Drawback: a point in the fluid near a thin plate mixes both sides. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 /* Pressure (Pa) and velocity (m/s) at x (m, world coordinates). In the fluid: a linear moving least squares
    fit through the particles within 3 spacings (Lancaster & Salkauskas 1981), their weighted mean where
@@ -9,9 +9,9 @@
    spacing): the pressure is what the fluid exerts there per area, mean over a disc of one spacing's
    radius, the same sums that make up the forces on walls and bodies. Positions may have moved since
    the last sort by less than a spacing. Returns how many particles were used. */
-int tobi_probe_point(const tobi_simulation *s, const double x[3], double *pressure, double velocity[3]);
+int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3]);
 
 /* Height of the surface on the plumb line through x: world coordinate along gravity, m (z, in 2-D y, without
    gravity). Topmost particle within one spacing that has more than 0.6 of the rest density, plus half
    a spacing; the domain's lower side where it is dry. */
-double tobi_probe_level(const tobi_simulation *s, const double x[3]);
+double tobi_probe_level(const tobi_system *s, const double x[3]);

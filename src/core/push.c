@@ -3,7 +3,7 @@
    side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
    turns within the step is taken to turn about the point nearest to the particle. */
 #include "core/push.h"
-#include "core/simulation.h"
+#include "core/system.h"
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1
 
 /* share: of its speed into the body, that a particle loses. counting: nothing moves, totals are asked for. */
 typedef struct pusher {
-    tobi_simulation *s;
+    tobi_system *s;
     const tobi_body *b;
     int body;
     double lo[3], hi[3], share;
@@ -77,7 +77,7 @@ static int stop_before(const pusher *p, const double start[3], const double x[3]
 /* A particle that a body has caught: where, and its speed along the normal against the body's. */
 static int find_caught(const pusher *p, int64_t i, touch *t, double *along)
 {
-    const tobi_simulation *s = p->s;
+    const tobi_system *s = p->s;
     tobi_double3 q = s->particles.position[i];
     double x[3] = {q.x, q.y, q.z}, start[3];
     int caught = tobi_bvh_closest(p->b->bvh, x, s->smoothing.h, &t->hit) &&
@@ -101,7 +101,7 @@ static int find_caught(const pusher *p, int64_t i, touch *t, double *along)
    times 1 m/s changes the body's speed at that point. */
 static void count_push(const pusher *p, int64_t i, const double normal[3], const double twist[3], double *t)
 {
-    const tobi_simulation *s = p->s;
+    const tobi_system *s = p->s;
     double shift[3], turn[3][3], answer = 0;
     tobi_rigid_inverse(&p->b->rigid, shift, turn);
     for (int a = 0; a < 3; a++) answer += shift[a]*normal[a]*normal[a] + twist[a]*dot(turn[a], twist);
@@ -114,7 +114,7 @@ static void count_push(const pusher *p, int64_t i, const double normal[3], const
 static int push_particle(const pusher *p, int64_t i, double *t)
 {
     touch c;
-    tobi_simulation *s = p->s;
+    tobi_system *s = p->s;
     double arm[3], twist[3], into;
     if (!find_caught(p, i, &c, &into)) return 0;
     for (int a = 0; a < 3; a++) arm[a] = c.hit.point[a] + p->b->lower[a] - p->b->centre[a];
@@ -151,12 +151,12 @@ static void push_range(const void *view, int64_t begin, int64_t end, double *t)
     }
 }
 
-void tobi_push_out(tobi_simulation *s)
+void tobi_push_out(tobi_system *s)
 {
     s->near.contacts = 0;
-    for (int k = 0; k < s->body_count; k++) {
+    for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
-        pusher p = {.s = s, .b = &s->bodies[k], .body = k, .share = 1};
+        pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
         tobi_bvh_box(p.b->bvh, p.lo, p.hi);
         for (int a = 0; a < 3; a++) {
             p.lo[a] -= s->smoothing.spacing;
@@ -164,12 +164,12 @@ void tobi_push_out(tobi_simulation *s)
         }
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
-            tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
+            tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
             p.counting = 0;
         }
-        tobi_launch(&s->exec, push_range, &p, 0, s->particles.count, t);
-        tobi_body_info *info = &s->bodies[k].info;
+        tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+        tobi_body_info *info = &s->sim->bodies[k].info;
         for (int a = 0; a < 3; a++) {
             info->pressure_force[a] += t[a]/s->dt;
             info->pressure_torque[a] += t[3 + a]/s->dt;

@@ -1,5 +1,6 @@
+/* The clock of the world: the length of steps, the caller who stops them, the timers of their stages. */
 #include "core/simulation.h"
-#include <math.h>
+#include "base/error.h"
 #include <string.h>
 
 void tobi_stage_end(tobi_stages *st, const char *name, double *since)
@@ -15,33 +16,6 @@ void tobi_stage_end(tobi_stages *st, const char *name, double *since)
     }
     st->seconds[k] += now - *since;
     *since = now;
-}
-
-/* totals: kinetic, potential, momentum x y z, mass. Potential against the box's lower corner. */
-static void measure_range(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const tobi_simulation *s = view;
-    for (int64_t i = begin; i < end; i++) {
-        double m = s->particles.strain ? s->particles.strain[i].c[2].w
-                                       : s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
-        tobi_float4 v = s->particles.velocity[i];
-        const double *x = &s->particles.position[i].x;
-        t[0] += 0.5*m*((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
-        for (int a = 0; a < s->box.dimension; a++) t[1] -= m*s->def.gravity[a]*x[a];
-        t[2] += m*v.x; t[3] += m*v.y; t[4] += m*v.z;
-        t[5] += m;
-    }
-}
-
-void tobi_simulation_measure(tobi_simulation *s)
-{
-    double t[TOBI_TOTALS], g2 = 0;
-    tobi_launch(&s->exec, measure_range, s, 0, s->particles.count, t);
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
-    s->info.kinetic_energy = t[0];
-    s->info.potential_energy = t[1];
-    for (int a = 0; a < 3; a++) s->info.momentum[a] = t[2 + a];
-    s->info.weight = t[5]*sqrt(g2);
 }
 
 int tobi_simulation_stops(tobi_simulation *s)
@@ -61,89 +35,4 @@ double tobi_simulation_fit_dt(double dt, double max_dt)
 {
     int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
     return max_dt <= 0 || dt < 0.5*max_dt ? dt : fits ? max_dt : 0.5*max_dt;
-}
-
-void tobi_simulation_fill_up(tobi_simulation *s)
-{
-    for (int a = 0; a < 3; a++)
-        if (!s->box.periodic[a]) s->gravity[a] = 0;
-}
-
-double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3])
-{
-    double sum = 0;
-    for (int a = 0; a < s->box.dimension; a++)
-        sum += (s->def.gravity[a] - s->gravity[a])*(x[a] - 0.5*s->box.size[a]);
-    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_still_pressure(&s->still, x);
-}
-
-/* Where particles do not fit in, nothing but still water presses: all of it. */
-static double still_pressure(const tobi_still *w, const double *x, int wet)
-{
-    if (wet != TOBI_WET_GAP) return tobi_still_pressure(w, x);
-    return w->push*fmax(tobi_still_drop(w, x) - w->level, 0);
-}
-
-/* Force and torque of still water on a body, where it is wet. */
-static void sum_still(const tobi_simulation *s, const tobi_body *b, double f[6])
-{
-    for (int64_t k = 0; k < b->point_count; k++) {
-        if (!b->wet[k]) continue;
-        double p = -b->area[k]*still_pressure(&s->still, b->point[k], b->wet[k]), arm[3];
-        const double *n = b->normal[k];
-        for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
-        for (int a = 0; a < 3; a++) {
-            int q = (a + 1)%3, r = (a + 2)%3;
-            f[a] += p*n[a];
-            f[3 + a] += p*(arm[q]*n[r] - arm[r]*n[q]);
-        }
-    }
-}
-
-/* The walls take what is left of the weight that still water holds. */
-static void add_still(tobi_simulation *s)
-{
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] += s->still.down[a]*s->still.push*s->still_volume;
-    for (int k = 0; k < s->body_count; k++) {
-        double f[6] = {0};
-        sum_still(s, &s->bodies[k], f);
-        for (int a = 0; a < 3; a++) {
-            s->bodies[k].info.pressure_force[a] += f[a];
-            s->bodies[k].info.pressure_torque[a] += f[3 + a];
-            s->info.wall_force[a] -= f[a];
-        }
-    }
-}
-
-void tobi_simulation_add_hydrostatic(tobi_simulation *s)
-{
-    double held = s->smoothing.volume*(double)s->particles.count;
-    if (s->still.push > 0) add_still(s);
-    for (int a = 0; a < s->box.dimension; a++) {
-        double push = s->fluid[0].density*(s->def.gravity[a] - s->gravity[a]);
-        if (push == 0) continue;
-        for (int k = 0; k < s->body_count; k++) {
-            s->bodies[k].info.pressure_force[a] -= push*s->bodies[k].info.volume;
-            s->info.wall_force[a] += push*s->bodies[k].info.volume;
-        }
-        s->info.wall_force[a] += push*held;
-    }
-}
-
-void tobi_simulation_body_hydrostatic(const tobi_simulation *s, int body, double f[6])
-{
-    for (int a = 0; a < s->box.dimension; a++) {
-        double push = s->def.gravity[a] - s->gravity[a];
-        if (push != 0) f[a] -= s->fluid[0].density*push*s->bodies[body].info.volume;
-    }
-    if (s->still.push > 0) sum_still(s, &s->bodies[body], f);
-}
-
-double tobi_simulation_speed_scale(const tobi_simulation *s)
-{
-    double fall = 0, capillary = 0;
-    for (int a = 0; a < s->box.dimension; a++) fall += fabs(s->def.gravity[a])*s->box.size[a];
-    for (int f = 0; f < s->fluid_count; f++)
-        capillary = fmax(capillary, 8*s->fluid[f].tension/(s->fluid[f].density*s->smoothing.spacing));
-    return sqrt(2*fall + capillary) + s->body_speed + 2*s->start_speed;
 }

@@ -1,7 +1,7 @@
 /* Nodes where cuts cross: the tree of cuts that parts them, and the pairs of velocities that may touch.
    docs/theory/cutting.md. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 #include "mpm/grid.h"
 #include "mpm/seam.h"
 

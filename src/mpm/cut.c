@@ -96,7 +96,7 @@ static void remember(tobi_columns *cuts, const double f[3][3], double number, co
 static int can_be_cut(int model) { return model != TOBI_LIQUID && model != TOBI_SAND; }
 
 /* One blade. A blade that meets no material ends its cut; the next one it makes has a new number. */
-static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, double *number)
+static void mark_blade(tobi_system *s, tobi_body *b, const mpm_view *v, double *number)
 {
     const double cell = v->cell, band = find_band(s->box.dimension, cell), least = 1e-3*s->smoothing.spacing;
     const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
@@ -104,7 +104,7 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
     int met = 0, dim = s->box.dimension;
     tobi_blade_bring(b, dim);
     tobi_blade_box(b, band, low, high);
-    #pragma omp parallel for num_threads(s->exec.threads) reduction(|: met)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) reduction(|: met)
     for (int64_t i = 0; i < s->particles.count; i++) {
         const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
         tobi_blade_place at;
@@ -123,10 +123,10 @@ static void mark_blade(tobi_simulation *s, tobi_body *b, const mpm_view *v, doub
     if (met) *number = fmax(*number, mine);
 }
 
-void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number)
+void mpm_cut_mark(tobi_system *s, const mpm_view *v, double *number)
 {
-    for (int k = 0; k < s->body_count; k++)
-        if (s->bodies[k].blade) mark_blade(s, &s->bodies[k], v, number);
+    for (int k = 0; k < s->sim->body_count; k++)
+        if (s->sim->bodies[k].blade) mark_blade(s, &s->sim->bodies[k], v, number);
 }
 
 /* Place of the node in row x, y and column z of a block's tile: -1 .. 6 of its own counting. */
@@ -330,9 +330,9 @@ static void list_seams(mpm_cut *c, const mpm_grid *g)
         }
 }
 
-static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid *g, const mpm_view *v)
+static void look_at_blocks(mpm_cut *c, const tobi_system *s, const mpm_grid *g, const mpm_view *v)
 {
-    #pragma omp parallel for num_threads(s->exec.threads)
+    #pragma omp parallel for num_threads(s->sim->exec.threads)
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_vote_list(c, v, &g->block[k], k, g->dimension);
         if (v->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
@@ -340,37 +340,37 @@ static void look_at_blocks(mpm_cut *c, const tobi_simulation *s, const mpm_grid 
 }
 
 /* Twins of the blocks that need them, once the sides are known. */
-static tobi_status split_blocks(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v,
+static tobi_status split_blocks(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v,
                                 tobi_error *err)
 {
     number_patches(g);
     mpm_cross_place(&c->cross, g);
     list_seams(c, g);
-    TOBI_TRY(find_split(c, g, v, &s->exec, err));
+    TOBI_TRY(find_split(c, g, v, &s->sim->exec, err));
     number_blocks(g);
-    TOBI_TRY(mpm_grid_reserve_twins(g, &s->exec, err));
+    TOBI_TRY(mpm_grid_reserve_twins(g, &s->sim->exec, err));
     make_twins(g);
     memset(c->hidden[0], 0, (size_t)s->particles.count*sizeof *c->hidden[0]);
     return TOBI_OK;
 }
 
-tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+tobi_status mpm_cut_find(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
     const int nodes = nodes_of(g);
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     look_at_blocks(c, s, g, v);
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(dynamic, 8)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 8)
     for (int64_t k = 0; k < g->patch_count; k++) {
         g->patch[k].levels = mpm_vote_count(c, g, v, k);
         if (v->apart)
             g->patch[k].levels |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
                                                 c->seam + k*nodes);
     }
-    TOBI_TRY(mpm_cross_find(c, &s->exec, g, v, err));
+    TOBI_TRY(mpm_cross_find(c, &s->sim->exec, g, v, err));
     return split_blocks(c, s, g, v, err);
 }
 
-tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+tobi_status mpm_cut_recall(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     TOBI_TRY(mpm_cut_read(c, g, err));

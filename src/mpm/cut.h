@@ -1,7 +1,7 @@
 /* Cuts in the material, on the grid: which particles an edge has passed, which nodes have two velocities and
    how far apart the faces of the cut are there. docs/theory/cutting.md. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 #include "mpm/cross.h"
 #include "mpm/grid.h"
 #include "mpm/meet.h"
@@ -33,10 +33,10 @@ typedef struct mpm_cut {
 
 /* Passes the blades' edges over the particles: those they have passed remember it. *number: of the last cut
    made, counted up. */
-void mpm_cut_mark(tobi_simulation *s, const mpm_view *v, double *number);
+void mpm_cut_mark(tobi_system *s, const mpm_view *v, double *number);
 /* Finds the nodes with several velocities and makes their twins. The caller then points
    view.sides and view.hidden at what is here. */
-tobi_status mpm_cut_find(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
+tobi_status mpm_cut_find(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* Faces that meet push and rub: the first sweep of a step; another, while bodies push too; and at the end the
    gaps, and what friction and impact of the faces have taken, J. */
 void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
@@ -45,7 +45,7 @@ double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt);
 /* The nodes with several velocities as they are now, for a checkpoint: rows of TOBI_RECALL_ROW numbers, the
    caller's to free; and back from c->rows, after the blocks are built, instead of finding them. */
 tobi_status mpm_cut_keep(const mpm_cut *c, double **rows, int64_t *count, tobi_error *err);
-tobi_status mpm_cut_recall(mpm_cut *c, tobi_simulation *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
+tobi_status mpm_cut_recall(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err);
 /* The nodes of c->rows as they were, before their twins are made. */
 tobi_status mpm_cut_read(mpm_cut *c, mpm_grid *g, tobi_error *err);
 void mpm_cut_free(mpm_cut *c);

@@ -2,7 +2,7 @@
    docs/theory/mlsmpm.md. */
 #pragma once
 #include "base/error.h"
-#include "core/simulation.h"
+#include "core/system.h"
 #include "mpm/view.h"
 
 /* TOBI_INVALID if strength and fracture energy do not belong together, or if cells of this size (m) are too

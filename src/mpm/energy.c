@@ -18,14 +18,14 @@ static void sum_energy(const void *view, int64_t begin, int64_t end, double *tot
 }
 
 /* The energy of all solids, J; t as in sum_energy. */
-static double find_energy(tobi_simulation *s, const mlsmpm *m, double t[TOBI_TOTALS])
+static double find_energy(tobi_system *s, const mlsmpm *m, double t[TOBI_TOTALS])
 {
     const mpm_view v = mpm_look_back(m);
-    tobi_launch(&s->exec, sum_energy, &v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, sum_energy, &v, 0, s->particles.count, t);
     return t[0] + t[1] + t[2];
 }
 
-void mpm_energy_start(tobi_simulation *s, mlsmpm *m)
+void mpm_energy_start(tobi_system *s, mlsmpm *m)
 {
     double t[TOBI_TOTALS];
     m->memory.start_energy = find_energy(s, m, t);
@@ -41,37 +41,37 @@ void mpm_energy_drop(mlsmpm *m, const mpm_view *v, int64_t i)
     m->memory.node_energy -= t[1];
 }
 
-void mpm_energy_add_transfer(tobi_simulation *s, mlsmpm *m)
+void mpm_energy_add_transfer(tobi_system *s, mlsmpm *m)
 {
     double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
-    tobi_launch_each(&s->exec, m->kernels->energy_calm, &m->view, mpm_count_patches(m), arrived);
+    tobi_launch_each(&s->sim->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
+    tobi_launch_each(&s->sim->exec, m->kernels->energy_calm, &m->view, mpm_count_patches(m), arrived);
     if (s->step > 0) m->memory.transfer += m->memory.node_energy - came[0];
     m->memory.transfer += came[1] - arrived[0];
 }
 
-void mpm_energy_add_nodes(tobi_simulation *s, mlsmpm *m)
+void mpm_energy_add_nodes(tobi_system *s, mlsmpm *m)
 {
     double t[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->exec, m->kernels->energy_nodes, &m->view, mpm_count_patches(m), t);
+    tobi_launch_each(&s->sim->exec, m->kernels->energy_nodes, &m->view, mpm_count_patches(m), t);
     m->memory.node_energy = t[0];
     m->memory.steps += t[1];
 }
 
-void mpm_energy_add_flow(tobi_simulation *s, mlsmpm *m)
+void mpm_energy_add_flow(tobi_system *s, mlsmpm *m)
 {
     const mpm_view v = mpm_look_back(m);
     double t[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch(&s->exec, mpm_sum_flow, &v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, mpm_sum_flow, &v, 0, s->particles.count, t);
     m->memory.flow += t[0];
 }
 
-void mpm_energy_tell(tobi_simulation *s, const void *state)
+void mpm_energy_tell(tobi_system *s)
 {
-    const mlsmpm *m = state;
+    const mlsmpm *m = s->state;
     double t[TOBI_TOTALS], energy = find_energy(s, m, t);
     s->info.elastic_energy = t[0];
     s->info.energy_lost = m->memory.age < 0 ? 0 : m->memory.start_energy + m->memory.body_work - energy;

@@ -4,18 +4,18 @@
 #include "mpm/state.h"
 
 /* Takes the energy that all solids have at the start. */
-void mpm_energy_start(tobi_simulation *s, mlsmpm *m);
+void mpm_energy_start(tobi_system *s, mlsmpm *m);
 /* Particle i leaves the domain and takes its energy with it. v: from mpm_look_back. */
 void mpm_energy_drop(mlsmpm *m, const mpm_view *v, int64_t i);
 
 /* In every step, with measure_transfer only: after the way to the grid, what it takes from kinetic energy,
    stress aside, and what the way back of the last step took: nodes have what they have, particles what
    arrives; */
-void mpm_energy_add_transfer(tobi_simulation *s, mlsmpm *m);
+void mpm_energy_add_transfer(tobi_system *s, mlsmpm *m);
 /* before the way back, the nodes' kinetic energy and the sums of eq. (23); */
-void mpm_energy_add_nodes(tobi_simulation *s, mlsmpm *m);
+void mpm_energy_add_nodes(tobi_system *s, mlsmpm *m);
 /* after it, what flow takes, eq. (22). */
-void mpm_energy_add_flow(tobi_simulation *s, mlsmpm *m);
+void mpm_energy_add_flow(tobi_system *s, mlsmpm *m);
 
 /* Fills the energies of tobi_step_info. state: mlsmpm. */
-void mpm_energy_tell(tobi_simulation *s, const void *state);
+void mpm_energy_tell(tobi_system *s);

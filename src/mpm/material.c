@@ -39,11 +39,11 @@ double mpm_material_viscous_dt(const tobi_solid_def *d, double cell)
 }
 
 /* Eq. (15); a body at rest does not fall further than half a cell in one step either. */
-double mpm_material_dt(const tobi_simulation *s, const tobi_mlsmpm_def *def, double sound, double speed)
+double mpm_material_dt(const tobi_system *s, const tobi_mlsmpm_def *def, double sound, double speed)
 {
     const double cell = def->cell*s->smoothing.spacing;
     double g = 0;
-    for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
+    for (int a = 0; a < s->box.dimension; a++) g += s->sim->def.gravity[a]*s->sim->def.gravity[a];
     return fmin(def->cfl*cell/(sound + speed + 1e-30), 0.5*sqrt(cell/(sqrt(g) + 1e-30)));
 }
 
@@ -72,16 +72,16 @@ static void find_squeezed(const void *view, int64_t begin, int64_t end, double *
     }
 }
 
-double mpm_material_squeezed_sound(tobi_simulation *s, const mpm_view *v)
+double mpm_material_squeezed_sound(tobi_system *s, const mpm_view *v)
 {
     double t[TOBI_TOTALS];
-    tobi_launch(&s->exec, find_squeezed, v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, find_squeezed, v, 0, s->particles.count, t);
     return t[6];
 }
 
 /* Crack bands, eq. (20), are measured with mls. Edges of blades ask nodes that hold next to no mass, where
    only mls leaves no wild velocity. */
-int mpm_takes_spline(const tobi_simulation *s, int gradient)
+int mpm_takes_spline(const tobi_system *s, int gradient)
 {
     int measured = s->particles.cuts != NULL;
     for (int k = 0; k < s->solid_count; k++) measured |= s->solids[k].def.strength > 0;

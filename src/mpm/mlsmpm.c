@@ -26,41 +26,42 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     *support = 2;
 }
 
-static void add_fixed_planes(const tobi_simulation *s, mpm_view *v)
+static void add_fixed_planes(const tobi_system *s, mpm_view *v)
 {
     static const int kinds[] = { [TOBI_PLANE_SEPARATE] = TOBI_WALL_SEPARATE,
                                  [TOBI_PLANE_SLIP] = TOBI_WALL_SLIP,
                                  [TOBI_PLANE_NO_SLIP] = TOBI_WALL_NO_SLIP };
     _Static_assert(6 + TOBI_PLANE_LIMIT <= MPM_PLANES, "six sides and all planes of a scene");
-    for (int k = 0; k < s->plane_count; k++) {
-        const tobi_fixed_plane *f = &s->plane[k];
+    for (int k = 0; k < s->sim->plane_count; k++) {
+        const tobi_fixed_plane *f = &s->sim->plane[k];
         mpm_plane *p = &v->plane[v->plane_count++];
         *p = (mpm_plane){ .offset = f->offset, .kind = kinds[f->kind], .friction = (float)f->friction };
         memcpy(p->normal, f->normal, sizeof p->normal);
     }
 }
 
-static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
+static void add_planes(const tobi_system *s, int keep, mpm_view *v)
 {
+    const tobi_world_def *def = &s->sim->def;
     v->plane_count = v->held = 0;
     for (int a = 0; a < s->box.dimension; a++)
         for (int side = 0; side < 2; side++) {
-            const int kind = side ? s->def.wall_max[a] : s->def.wall_min[a];
+            const int kind = side ? def->wall_max[a] : def->wall_min[a];
             if (kind == TOBI_WALL_OPEN) continue;
             v->held |= keep << (2*a + side);
             mpm_plane *p = &v->plane[v->plane_count++];
-            const double *velocity = side ? s->def.wall_velocity_max[a] : s->def.wall_velocity_min[a];
+            const double *velocity = side ? def->wall_velocity_max[a] : def->wall_velocity_min[a];
             memset(p, 0, sizeof *p);
             p->normal[a] = side ? -1 : 1;
             p->offset = side ? -s->box.size[a] : 0;
             p->kind = kind;
-            p->friction = (float)s->def.friction;
+            p->friction = (float)def->friction;
             for (int k = 0; k < 3; k++) p->velocity[k] = (float)velocity[k];
         }
     add_fixed_planes(s, v);
 }
 
-static void bind_particles(const tobi_simulation *s, mlsmpm *m)
+static void bind_particles(const tobi_system *s, mlsmpm *m)
 {
     const tobi_particles *p = &s->particles;
     mpm_view *v = &m->view;
@@ -80,12 +81,12 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->own = m->def.transfer == TOBI_FLIP;
     for (int a = 0; a < 3; a++) {
         v->size[a] = s->box.size[a];
-        v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
+        v->gravity[a] = a < s->box.dimension ? (float)s->sim->def.gravity[a] : 0;
     }
     add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
-static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
+static tobi_status check_sides(const tobi_system *s, const mlsmpm *m, tobi_error *err)
 {
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a])
@@ -105,22 +106,21 @@ static int count_layers(const tobi_mlsmpm_def *d)
     return d->transfer == TOBI_APIC ? 1 + d->measure_transfer : 1 + d->transfer;
 }
 
-static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+static tobi_status create(tobi_system *s, tobi_error *err)
 {
-    mlsmpm *m = calloc(1, sizeof *m);
+    mlsmpm *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the method");
-    *state = m;
-    m->def = *(const tobi_mlsmpm_def *)def;
+    m->def = *(const tobi_mlsmpm_def *)s->def;
     m->cell = m->def.cell*s->smoothing.spacing;
-    m->kernels = mpm_kernels_for(s->exec.isa, s->box.dimension);
+    m->kernels = mpm_kernels_for(s->sim->exec.isa, s->box.dimension);
     m->memory.age = -1;
     m->viscous_dt = m->liquid_sound = INFINITY;
     tobi_status status = check_sides(s, m, err);
     if (status == TOBI_OK)
-        status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->exec, err);
+        status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->sim->exec, err);
     if (status != TOBI_OK) {
         free(m);
-        *state = NULL;
+        s->state = NULL;
         return status;
     }
     m->touch.cell_mass = INFINITY;
@@ -140,34 +140,35 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     }
     bind_particles(s, m);
     m->touch.cut = m->blades ? &m->cut : NULL;
-    m->touch.kernels = mpm_pack_kernels_for(s->exec.isa);
+    m->touch.kernels = mpm_pack_kernels_for(s->sim->exec.isa);
     return TOBI_OK;
 }
 
-static double choose_dt(const tobi_simulation *s, const mlsmpm *m)
+static double choose_dt(tobi_system *s)
 {
-    const double speed = fmax(m->memory.speed, s->body_speed);
+    const mlsmpm *m = s->state;
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
     double dt = mpm_material_dt(s, &m->def, fmax(m->sound, m->memory.squeezed), speed);
     dt = fmin(fmin(dt, m->viscous_dt), 0.1);
-    if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
-    if (s->def.time_step > 0) dt = s->def.time_step/ceil(s->def.time_step/dt*(1 - 1e-9));
+    if (s->sim->def.time_step_max > 0) dt = fmin(dt, s->sim->def.time_step_max);
+    if (s->sim->def.time_step > 0) dt = s->sim->def.time_step/ceil(s->sim->def.time_step/dt*(1 - 1e-9));
     return dt;
 }
 
-static double limit_dt(const tobi_simulation *s, const void *def, int solid, double speed)
+static double limit_dt(const tobi_system *s, int solid, double speed)
 {
+    const tobi_mlsmpm_def *def = s->def;
     const tobi_solid_def *d = &s->solids[solid].def;
     double sound;
     mpm_material_describe(d, &sound);
     return fmin(mpm_material_dt(s, def, sound, speed),
-                mpm_material_viscous_dt(d, ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing));
+                mpm_material_viscous_dt(d, def->cell*s->smoothing.spacing));
 }
 
-static tobi_status accept_solid(const tobi_simulation *s, const void *def, int solid, char note[200],
-                                tobi_error *err)
+static tobi_status accept_solid(const tobi_system *s, int solid, char note[200], tobi_error *err)
 {
     const tobi_solid *d = &s->solids[solid];
-    const double cell = ((const tobi_mlsmpm_def *)def)->cell*s->smoothing.spacing;
+    const double cell = ((const tobi_mlsmpm_def *)s->def)->cell*s->smoothing.spacing;
     const char *key;
     tobi_error why = { 0 };
     tobi_status status = mpm_damage_check(&d->def, cell, &key, note, &why);
@@ -179,7 +180,7 @@ static int is_stale(const mlsmpm *m)
     return m->memory.age < 0 || m->memory.age >= SORT_AGE || m->memory.drift > 0.95*m->cell;
 }
 
-static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_error *err)
+static tobi_status find_cuts(tobi_system *s, mlsmpm *m, int stale, tobi_error *err)
 {
     if (stale || m->memory.moved > MPM_MEET_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory.cuts);
@@ -197,29 +198,29 @@ static tobi_status find_cuts(tobi_simulation *s, mlsmpm *m, int stale, tobi_erro
 }
 
 /* Whether a node of the patch may lie at a side or behind a plane. */
-static int meets_planes(const tobi_simulation *s, const mlsmpm *m, const mpm_patch *p)
+static int meets_planes(const tobi_system *s, const mlsmpm *m, const mpm_patch *p)
 {
     int meets = 0;
     for (int a = 0; a < s->box.dimension; a++)
         meets |= p->corner[a] <= 0 || (p->corner[a] + 3)*m->cell >= s->box.size[a]*(1 - 1e-12);
-    for (int k = 0; k < s->plane_count; k++) {
+    for (int k = 0; k < s->sim->plane_count; k++) {
         double lowest[3] = { 0, 0, 0 };
         for (int a = 0; a < s->box.dimension; a++)
-            lowest[a] = (p->corner[a] + (s->plane[k].normal[a] < 0 ? 3 : 0))*m->cell;
-        meets |= tobi_plane_height(&s->plane[k], lowest) < 1e-5*m->cell;
+            lowest[a] = (p->corner[a] + (s->sim->plane[k].normal[a] < 0 ? 3 : 0))*m->cell;
+        meets |= tobi_plane_height(&s->sim->plane[k], lowest) < 1e-5*m->cell;
     }
     return meets;
 }
 
 /* Blocks are good as long as no particle can leave its tile, one cell around its block. */
-static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
+static tobi_status sort_particles(tobi_system *s, mlsmpm *m, double *clock, tobi_error *err)
 {
     const int stale = is_stale(m);
     if (stale) {
-        TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->exec, err));
+        TOBI_TRY(mpm_grid_sort(&m->grid, &s->particles, m->view.inverse_cell, &s->sim->exec, err));
         m->memory.age = m->memory.drift = 0;
     } else if (!m->built) {
-        TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->exec, err));
+        TOBI_TRY(mpm_grid_restore(&m->grid, &s->particles, &s->sim->exec, err));
     }
     m->fresh = stale || !m->built;
     if (m->fresh)
@@ -233,23 +234,14 @@ static tobi_status sort_particles(tobi_simulation *s, mlsmpm *m, double *clock, 
     m->built = 1;
     mpm_grid_bind(&m->grid, &m->view);
     if (m->def.transfer == TOBI_APIC) m->view.old = NULL;
-    tobi_stage_end(&s->stages, "sort", clock);
-    return TOBI_OK;
-}
-
-static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
-{
-    s->body_speed = s->wall_speed;
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
-    tobi_stage_end(&s->stages, "bodies", clock);
+    tobi_stage_end(&s->sim->stages, "sort", clock);
     return TOBI_OK;
 }
 
 /* What gravity adds to a velocity is rounded to its last place, in free fall by the same error for all
    particles in every step. A shift of up to half a place, another in each step and without a sum that grows,
    lets it average out, m/s. */
-static double dither(const tobi_simulation *s, double speed)
+static double dither(const tobi_system *s, double speed)
 {
     int exponent;
     const double golden = 0.6180339887498949, turn = golden*(double)s->step;
@@ -257,69 +249,69 @@ static double dither(const tobi_simulation *s, double speed)
     return ldexp(turn - floor(turn) - 0.5, exponent - 24);
 }
 
-static void use_dt(const tobi_simulation *s, mlsmpm *m)
+static void use_dt(const tobi_system *s, mlsmpm *m)
 {
     const double shift = dither(s, m->memory.speed);
     for (int a = 0; a < s->box.dimension; a++)
-        m->view.fall[a] = (float)(s->def.gravity[a] != 0 ? s->def.gravity[a]*s->dt + shift : 0);
+        m->view.fall[a] = (float)(s->sim->def.gravity[a] != 0 ? s->sim->def.gravity[a]*s->dt + shift : 0);
     m->view.dt = (float)s->dt;
     m->view.strain_dt = (float)m->memory.strain_dt;
     for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);
 }
 
-static void particles_to_grid(tobi_simulation *s, mlsmpm *m, double *clock)
+static void particles_to_grid(tobi_system *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
-    tobi_launch_each(&s->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
+    tobi_launch_each(&s->sim->exec, m->kernels->scatter, &m->view, m->grid.block_count, t);
     m->memory.damping += t[0];
-    tobi_stage_end(&s->stages, "to grid", clock);
+    tobi_stage_end(&s->sim->stages, "to grid", clock);
 }
 
 /* XPIC(m) lets the particles keep sum over k of (-1)^(k+1) (m over k) (S S+)^k v, eq. (16). */
-static void filter_velocity(tobi_simulation *s, mlsmpm *m)
+static void filter_velocity(tobi_system *s, mlsmpm *m)
 {
     double share = m->def.xpic_order;
     if (m->def.transfer != TOBI_XPIC) return;
     for (int k = 2; k <= m->def.xpic_order; k++) {
         share *= -(m->def.xpic_order - k + 1.0)/k;
         m->view.order = (float)share;
-        tobi_launch_each(&s->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
-        tobi_launch_each(&s->exec, m->kernels->filter_nodes, &m->view, mpm_count_patches(m), NULL);
+        tobi_launch_each(&s->sim->exec, m->kernels->filter, &m->view, m->grid.block_count, NULL);
+        tobi_launch_each(&s->sim->exec, m->kernels->filter_nodes, &m->view, mpm_count_patches(m), NULL);
     }
     if (m->def.measure_transfer)           /* the filter has used the tiles that mpm_energy_add_nodes reads */
-        tobi_launch_each(&s->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, NULL);
+        tobi_launch_each(&s->sim->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, NULL);
 }
 
-static void solve_grid(tobi_simulation *s, mlsmpm *m, double *clock)
+static void solve_grid(tobi_system *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
     m->view.order = (float)m->def.xpic_order;
-    tobi_launch_each(&s->exec, m->kernels->collect, &m->view, mpm_count_patches(m), t);
+    tobi_launch_each(&s->sim->exec, m->kernels->collect, &m->view, mpm_count_patches(m), t);
     filter_velocity(s, m);
-    if (m->blades) mpm_cut_meet(&m->cut, &s->exec, &m->grid, s->dt);
+    if (m->blades) mpm_cut_meet(&m->cut, &s->sim->exec, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
     m->memory.sides += t[3];
-    tobi_stage_end(&s->stages, "grid", clock);
+    tobi_stage_end(&s->sim->stages, "grid", clock);
 }
 
-static void grid_to_particles(tobi_simulation *s, mlsmpm *m, double *clock)
+static void grid_to_particles(tobi_system *s, mlsmpm *m, double *clock)
 {
     double t[TOBI_TOTALS];
-    tobi_launch_each(&s->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
+    tobi_launch_each(&s->sim->exec, m->kernels->gather, &m->view, m->grid.block_count, t);
     s->info.contacts += (int64_t)t[0];
     s->info.put_back += (int64_t)t[0];
     s->info.speed_max = m->memory.speed = sqrt(t[6]);
     m->memory.drift += t[7];
-    m->memory.moved += t[7] + s->body_speed*s->dt;
+    m->memory.moved += t[7] + s->sim->body_speed*s->dt;
     m->memory.strain_dt = s->dt;
-    tobi_stage_end(&s->stages, "to particles", clock);
+    tobi_stage_end(&s->sim->stages, "to particles", clock);
 }
 
-static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, tobi_error *err)
+static tobi_status touch_bodies(tobi_system *s, mlsmpm *m, double *clock, tobi_error *err)
 {
     double g = 0;
-    for (int a = 0; a < s->box.dimension; a++) g += s->def.gravity[a]*s->def.gravity[a];
-    double way = (m->memory.speed + s->body_speed + sqrt(g)*s->dt)*s->dt;
+    for (int a = 0; a < s->box.dimension; a++) g += s->sim->def.gravity[a]*s->sim->def.gravity[a];
+    double way = (m->memory.speed + s->sim->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
         .dt = s->dt, .before = m->memory.strain_dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
@@ -329,29 +321,21 @@ static tobi_status touch_bodies(tobi_simulation *s, mlsmpm *m, double *clock, to
     m->memory.fracture += m->touch.work.fracture;
     m->memory.friction += m->touch.work.friction;
     m->memory.body_work += m->touch.work.bodies;
-    tobi_stage_end(&s->stages, "contact", clock);
-    return TOBI_OK;
-}
-
-static tobi_status move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
-{
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_advance(&s->bodies[k], s->time + s->dt, s->dt, err));
-    tobi_stage_end(&s->stages, "bodies", clock);
+    tobi_stage_end(&s->sim->stages, "contact", clock);
     return TOBI_OK;
 }
 
 /* How fast sound is where a liquid is squeezed, for the next step. What moves slower than 0.3 of the speed of
    sound does not squeeze it that much, so that calm liquids do not pay for the look. */
-static void measure_squeeze(tobi_simulation *s, mlsmpm *m)
+static void measure_squeeze(tobi_system *s, mlsmpm *m)
 {
-    const double speed = fmax(m->memory.speed, s->body_speed);
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
     if (speed < 0.3*m->liquid_sound && m->memory.squeezed <= m->sound) return;
     const mpm_view v = mpm_look_back(m);
     m->memory.squeezed = mpm_material_squeezed_sound(s, &v);
 }
 
-static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
+static int is_beyond(const tobi_system *s, const tobi_double3 *x)
 {
     int beyond = 0;
     for (int a = 0; a < s->box.dimension; a++)
@@ -361,7 +345,7 @@ static int is_beyond(const tobi_simulation *s, const tobi_double3 *x)
 
 /* Takes out the particles beyond the domain, before a sort; the others stay in their order. They take their
    energy with them. */
-static void remove_leavers(tobi_simulation *s, mlsmpm *m)
+static void remove_leavers(tobi_system *s, mlsmpm *m)
 {
     tobi_particles *p = &s->particles;
     const mpm_view v = mpm_look_back(m);
@@ -378,40 +362,46 @@ static void remove_leavers(tobi_simulation *s, mlsmpm *m)
     s->info.fluid_particles = p->count = kept;
 }
 
-static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+static tobi_status begin(tobi_system *s, tobi_error *err)
 {
-    mlsmpm *m = state;
+    mlsmpm *m = s->state;
     double clock = tobi_clock();
-    s->dt = tobi_simulation_fit_dt(choose_dt(s, m), max_dt);
     use_dt(s, m);
-    TOBI_TRY(predict_bodies(s, &clock, err));
-    if (s->particles.count > 0 && m->memory.age < 0)
-        mpm_energy_start(s, m);
+    if (s->particles.count > 0 && m->memory.age < 0) mpm_energy_start(s, m);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
-    if (s->particles.count > 0) {
-        TOBI_TRY(sort_particles(s, m, &clock, err));
-        particles_to_grid(s, m, &clock);
-        mpm_energy_add_transfer(s, m);
-        solve_grid(s, m, &clock);
-        TOBI_TRY(touch_bodies(s, m, &clock, err));
-        if (m->blades) m->memory.friction += mpm_cut_settle(&m->cut, &s->exec, &m->grid, s->dt);
-        mpm_energy_add_nodes(s, m);
-        grid_to_particles(s, m, &clock);
-        mpm_energy_add_flow(s, m);
-        measure_squeeze(s, m);
-        tobi_contact_shift(&s->contacts, &s->particles);
-        m->memory.age++;
-    }
-    TOBI_TRY(move_bodies(s, &clock, err));
-    s->time += s->dt;
-    s->step++;
+    return s->particles.count > 0 ? sort_particles(s, m, &clock, err) : TOBI_OK;
+}
+
+static tobi_status solve(tobi_system *s, tobi_error *err)
+{
+    mlsmpm *m = s->state;
+    double clock = tobi_clock();
     s->info.density_converged = s->info.divergence_converged = 1;
+    if (s->particles.count == 0) return TOBI_OK;
+    particles_to_grid(s, m, &clock);
+    mpm_energy_add_transfer(s, m);
+    solve_grid(s, m, &clock);
+    TOBI_TRY(touch_bodies(s, m, &clock, err));
+    if (m->blades) m->memory.friction += mpm_cut_settle(&m->cut, &s->sim->exec, &m->grid, s->dt);
+    mpm_energy_add_nodes(s, m);
     return TOBI_OK;
 }
 
-static void read_field(const tobi_simulation *s, const void *state, const char *field, int64_t i, double *out)
+static void move(tobi_system *s)
 {
-    const mpm_view v = mpm_look_back(state);
+    mlsmpm *m = s->state;
+    double clock = tobi_clock();
+    if (s->particles.count == 0) return;
+    grid_to_particles(s, m, &clock);
+    mpm_energy_add_flow(s, m);
+    measure_squeeze(s, m);
+    tobi_contact_shift(&s->contacts, &s->particles);
+    m->memory.age++;
+}
+
+static void read_field(const tobi_system *s, const char *field, int64_t i, double *out)
+{
+    const mpm_view v = mpm_look_back(s->state);
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "material")) {
         out[0] = p->fluid[i];
@@ -425,38 +415,36 @@ static void read_field(const tobi_simulation *s, const void *state, const char *
     mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
 }
 
-static tobi_status find_nodes(const tobi_simulation *s, const void *state, tobi_grid *grid, tobi_error *err)
+static tobi_status find_nodes(const tobi_system *s, tobi_grid *grid, tobi_error *err)
 {
-    const mpm_view v = mpm_look_back(state);
+    const mpm_view v = mpm_look_back(s->state);
     return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
 }
 
-static int list_memory(void *state, double **values)
+static int list_memory(tobi_system *s, double **values)
 {
-    mpm_memory *memory = &((mlsmpm *)state)->memory;
+    mpm_memory *memory = &((mlsmpm *)s->state)->memory;
     *values = &memory->speed;
     return (int)(sizeof *memory/sizeof memory->speed);
 }
 
-static tobi_status keep_rows(const tobi_simulation *s, const void *state, double **rows, int64_t *count,
-                             tobi_error *err)
+static tobi_status keep_rows(const tobi_system *s, double **rows, int64_t *count, tobi_error *err)
 {
-    const mlsmpm *m = state;
-    (void)s;
+    const mlsmpm *m = s->state;
     return mpm_cut_keep(&m->cut, rows, count, err);
 }
 
 /* After a load the blocks are built anew. */
-static void recall_rows(void *state, double *rows, int64_t count)
+static void recall_rows(tobi_system *s, double *rows, int64_t count)
 {
-    mlsmpm *m = state;
+    mlsmpm *m = s->state;
     free(m->cut.rows);
     m->cut.rows = rows;
     m->cut.row_count = count;
     m->built = 0;
 }
 
-static int64_t count_bytes(const void *state) { return mpm_grid_bytes(&((const mlsmpm *)state)->grid); }
+static int64_t count_bytes(const tobi_system *s) { return mpm_grid_bytes(&((const mlsmpm *)s->state)->grid); }
 
 static void free_state(void *state)
 {
@@ -476,7 +464,10 @@ const tobi_method tobi_mlsmpm = {
     .planes = 1,
     .smoothing = choose_smoothing,
     .create = create,
-    .step = step,
+    .max_dt = choose_dt,
+    .begin = begin,
+    .solve = solve,
+    .move = move,
     .read = read_field,
     .accept = accept_solid,
     .stable_dt = limit_dt,

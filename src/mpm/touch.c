@@ -357,45 +357,45 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
     mpm_packs_visit(&t->packs, t->kernels->push, &v, team_of(t, x));
 }
 
-static tobi_status touch_body(mpm_touch *t, tobi_simulation *s, tobi_body *b, const mpm_grid *g,
+static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
     tobi_contacts *c = &s->contacts;
-    TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->exec, err));
+    TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
     t->edge_first = c->count;
     t->ways = g->levels > 1 ? 1 << g->levels : 2;
     if (b->blade && b->edge_resistance > 0 && b->rigid.cut > 0)
         TOBI_TRY(list_edges(t, c, b, g, v, step, err));
     if (c->count == 0) return TOBI_OK;
     TOBI_TRY(reserve(t, g, c->count, err));
-    find_nodes(t, c, g, v, &s->exec);
+    find_nodes(t, c, g, v, &s->sim->exec);
     find_edge_nodes(t, c, g);
     TOBI_TRY(pack_contacts(t, c, g, err));
-    find_mobility(t, c, g, &s->exec);
-    read_velocities(t, c, g, &s->exec);
-    tobi_contact_aim(c, b, step, &s->exec);
+    find_mobility(t, c, g, &s->sim->exec);
+    read_velocities(t, c, g, &s->sim->exec);
+    tobi_contact_aim(c, b, step, &s->sim->exec);
     for (int sweep = 0; sweep <= SWEEPS; sweep++) {
-        double moved = tobi_contact_sweep(c, b, step, sweep == 0, &s->exec);
-        add_impulses(t, c, g, &s->exec);
-        if (t->cut) mpm_cut_sweep(t->cut, &s->exec, g, step->dt);
-        read_velocities(t, c, g, &s->exec);
+        double moved = tobi_contact_sweep(c, b, step, sweep == 0, &s->sim->exec);
+        add_impulses(t, c, g, &s->sim->exec);
+        if (t->cut) mpm_cut_sweep(t->cut, &s->sim->exec, g, step->dt);
+        read_velocities(t, c, g, &s->sim->exec);
         if (sweep > 0 && moved < ENOUGH) break;
     }
     return TOBI_OK;
 }
 
-tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
+tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, const mpm_view *v,
                              const tobi_contact_step *step, double drift, tobi_error *err)
 {
     t->far = 0;
     t->work = (tobi_contact_work){ 0 };
     s->info.contacts = 0;
-    if (s->body_count == 0) return TOBI_OK;
-    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, drift, &s->exec, err));
-    for (int k = 0; k < s->body_count; k++) {
-        TOBI_TRY(touch_body(t, s, &s->bodies[k], g, v, step, err));
-        s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->bodies[k], step, &t->far,
-                                                &t->work, &s->exec);
+    if (s->sim->body_count == 0) return TOBI_OK;
+    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, drift, &s->sim->exec, err));
+    for (int k = 0; k < s->sim->body_count; k++) {
+        TOBI_TRY(touch_body(t, s, &s->sim->bodies[k], g, v, step, err));
+        s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->sim->bodies[k], step,
+                                                &t->far, &t->work, &s->sim->exec);
     }
     return TOBI_OK;
 }

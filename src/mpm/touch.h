@@ -1,7 +1,7 @@
 /* Contact of the material with bodies, on the grid: core/contact.h says what a contact asks for, this puts
    the impulses on the nodes that each particle feels, so that stress and motion know of them. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 #include "mpm/cut.h"
 #include "mpm/pack.h"
 
@@ -29,6 +29,6 @@ typedef struct mpm_touch {
 
 /* Changes the nodes' velocities, and particles' positions where they overlap a body. s->info.contacts: those
    that push; t->far: the largest shift, m. drift: as tobi_contact_begin wants it. */
-tobi_status mpm_touch_bodies(mpm_touch *t, tobi_simulation *s, const mpm_grid *g, const mpm_view *v,
+tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, const mpm_view *v,
                              const tobi_contact_step *step, double drift, tobi_error *err);
 void mpm_touch_free(mpm_touch *t);

@@ -46,7 +46,7 @@ typedef struct dfsph {
 } dfsph;
 
 /* A run of conjugate gradients on A p = s. */
-typedef struct solve {
+typedef struct linear_solve {
     double tolerance;             /* on the mean of |r| dt^2                                     */
     double relative_tolerance;    /* on |r|/|s|                                                  */
     double source;                /* |s|^2 in the norm of the diagonal                           */
@@ -60,11 +60,11 @@ typedef struct solve {
     double error, relative;       /* mean |r| dt^2; |r|/|s|                                      */
     double worst;                 /* max |r|, 1/s2                                               */
     double head;                  /* twice the mean |p|/rho, m2/s2: the bottom of a pool           */
-} solve;
+} linear_solve;
 
-static void launch(tobi_simulation *s, dfsph *m, tobi_kernel k, double *totals)
+static void launch(tobi_system *s, dfsph *m, tobi_kernel k, double *totals)
 {
-    tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
+    tobi_launch(&s->sim->exec, k, &m->view, 0, s->particles.count, totals);
 }
 
 /* Shifting, without which cavities open, wants more neighbours than the shortest support reaches. */
@@ -75,12 +75,12 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     *support = d->support > 0 ? d->support : stirred ? SHIFTING_SUPPORT : 2;
 }
 
-static int reaches_far(const tobi_simulation *s)
+static int reaches_far(const tobi_system *s)
 {
     return s->smoothing.h > (SHIFTING_SUPPORT - 1e-6)*s->smoothing.spacing;
 }
 
-static void bind_view(tobi_simulation *s, dfsph *m)
+static void bind_view(tobi_system *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
@@ -97,19 +97,18 @@ static void bind_view(tobi_simulation *s, dfsph *m)
     v->still = s->still;
 }
 
-static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+static tobi_status create(tobi_system *s, tobi_error *err)
 {
-    dfsph *m = calloc(1, sizeof *m);
+    dfsph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
-    m->def = *(const tobi_dfsph_def *)def;
-    m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
-    *state = m;
+    m->def = *(const tobi_dfsph_def *)s->def;
+    m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     return TOBI_OK;
 }
 
-static int list_memory(void *state, double **values)
+static int list_memory(tobi_system *s, double **values)
 {
-    dfsph *m = state;
+    dfsph *m = s->state;
     *values = &m->memory.speed;
     return 6;
 }
@@ -118,19 +117,20 @@ static int list_memory(void *state, double **values)
    viscous sum of a particle at a no-slip wall. The pressure keeps
    particles apart like a spring of frequency sqrt(p/rho)/d, which an explicit step must resolve.
    Not above a tenth more than the last. */
-static double choose_dt(const tobi_simulation *s, dfsph *m)
+static double choose_dt(tobi_system *s)
 {
-    double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->body_speed);
+    dfsph *m = s->state;
+    double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->sim->body_speed);
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    double head = fmin(m->memory.head, 1.5*s->start_head + s->body_speed*s->body_speed +
+    double head = fmin(m->memory.head, 1.5*s->start_head + s->sim->body_speed*s->sim->body_speed +
                                            4*s->fluid[0].tension/(s->fluid[0].density*d));
     m->motion_dt = fmin(sph_gravity_dt(s),
-                        s->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
-    if (s->def.time_step > 0) {
-        dt = s->def.time_step;
+                        s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
+    if (s->sim->def.time_step > 0) {
+        dt = s->sim->def.time_step;
     } else {
         dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
-        if (s->def.time_step_max > 0) dt = fmin(dt, s->def.time_step_max);
+        if (s->sim->def.time_step_max > 0) dt = fmin(dt, s->sim->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
         m->memory.dt = dt;
     }
@@ -138,7 +138,7 @@ static double choose_dt(const tobi_simulation *s, dfsph *m)
 }
 
 /* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
-static void center(tobi_simulation *s, dfsph *m, const solve *q, tobi_kernel kernel, double sum, double *t)
+static void center(tobi_system *s, dfsph *m, const linear_solve *q, tobi_kernel kernel, double sum, double *t)
 {
     if (!q->constant_free) return;
     m->view.mean = (float)(sum/(double)s->particles.count);
@@ -147,7 +147,7 @@ static void center(tobi_simulation *s, dfsph *m, const solve *q, tobi_kernel ker
 
 /* |r|/|s| in the norm of the diagonal; a source of round-off size counts as a hundredth of what the
    tolerance lets pass. */
-static double relative_residual(const tobi_simulation *s, const dfsph *m, const solve *q, double rz)
+static double relative_residual(const tobi_system *s, const dfsph *m, const linear_solve *q, double rz)
 {
     double small = 1e-2*q->tolerance/(s->dt*s->dt);
     double floor = (double)s->particles.count*small*small/fmax(m->diagonal, 1e-300);
@@ -155,13 +155,13 @@ static double relative_residual(const tobi_simulation *s, const dfsph *m, const 
 }
 
 /* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
-static double precondition(tobi_simulation *s, dfsph *m, const solve *q, double jacobi)
+static double precondition(tobi_system *s, dfsph *m, const linear_solve *q, double jacobi)
 {
     return q->grid ? jacobi + sph_multigrid_apply(&m->grid, s) : jacobi;
 }
 
 /* Conjugate gradients until the residual at hand is small enough. t: |r|^2/diagonal, |r|; largest |r|. */
-static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
+static void iterate(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
     const sph_kernels *k = m->kernel;
     double rz = 0, scale = s->dt*s->dt/(double)s->particles.count;
@@ -172,7 +172,7 @@ static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
         q->relative = relative_residual(s, m, q, t[0]);
         q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
         if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
-        if ((q->converged && q->iterations >= q->min) || tobi_simulation_stops(s)) break;
+        if ((q->converged && q->iterations >= q->min) || tobi_simulation_stops(s->sim)) break;
         double last = rz;
         rz = precondition(s, m, q, t[0]);
         m->view.beta = last > 0 ? (float)(rz/last) : 0;
@@ -190,11 +190,11 @@ static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
 
 /* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
    without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
-static int hold_pulling(tobi_simulation *s, dfsph *m, solve *q, double *t)
+static int hold_pulling(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
     const sph_kernels *k = m->kernel;
     double pull[TOBI_TOTALS];
-    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->stopped) return 0;
+    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->sim->stopped) return 0;
     launch(s, m, k->sph_hold, pull);
     if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
     launch(s, m, k->sph_pressure_accel, NULL);
@@ -207,7 +207,7 @@ static int hold_pulling(tobi_simulation *s, dfsph *m, solve *q, double *t)
 }
 
 /* Solves from the state that a residual kernel left: r and the totals |r|^2/diagonal, |r|, sum r. */
-static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, solve *q)
+static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear_solve *q)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS];
@@ -220,7 +220,7 @@ static void solve_pressure(tobi_simulation *s, dfsph *m, const double *start, so
     q->head = 2*t[0]/(double)s->particles.count;
 }
 
-static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status find_neighbors(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (!m->grid.memory) TOBI_TRY(sph_multigrid_create(&m->grid, s, err));
     TOBI_TRY(sph_find_neighbors(s, clock, err));
@@ -228,24 +228,24 @@ static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, t
     return TOBI_OK;
 }
 
-static tobi_status look_into_vessel(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status look_into_vessel(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     if (m->memory.vessel == SPH_VESSEL_OPEN) return TOBI_OK;
-    tobi_simulation_fill_up(s);
+    tobi_system_fill_up(s);
     bind_view(s, m);
     return TOBI_OK;
 }
 
 /* Share of the shortest wave that the least viscous fluid damps away in dt. */
-static double viscous_share(const tobi_simulation *s, const dfsph *m, double dt)
+static double viscous_share(const tobi_system *s, const dfsph *m, double dt)
 {
     double least = m->view.kinematic[0];
     for (int f = 1; f < s->fluid_count; f++) least = fmin(least, m->view.kinematic[f]);
     return 4*least*s->smoothing.rate*dt;
 }
 
-static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
+static void apply_forces(tobi_system *s, dfsph *m, double *clock)
 {
     /* per motion step: a step made short by viscosity or by the user filters less */
     double scale = 2*s->smoothing.rate, dt = fmax(s->dt, m->motion_dt), share = m->def.filter;
@@ -255,7 +255,7 @@ static void apply_forces(tobi_simulation *s, dfsph *m, double *clock)
 }
 
 /* Pressure of the step: v becomes divergence-free. */
-static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
+static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS];
@@ -263,7 +263,7 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_source, t);
-    solve q = {.tolerance = m->def.divergence_tolerance,
+    linear_solve q = {.tolerance = m->def.divergence_tolerance,
                .relative_tolerance = m->def.pressure_tolerance,
                .source = t[0],
                .min = m->def.divergence_iterations_min,
@@ -283,11 +283,11 @@ static void remove_divergence(tobi_simulation *s, dfsph *m, double *clock)
     s->info.divergence_mean = q.error/s->dt;
     s->info.divergence_max = q.worst*s->dt;
     s->info.pressure_residual = q.relative;
-    tobi_stage_end(&s->stages, "divergence solve", clock);
+    tobi_stage_end(&s->sim->stages, "divergence solve", clock);
 }
 
 /* The shift of the position solve, with particle shifting where the vessel is full. */
-static void shift_positions(tobi_simulation *s, dfsph *m)
+static void shift_positions(tobi_system *s, dfsph *m)
 {
     double d = s->smoothing.spacing;
     double strength = m->memory.vessel == SPH_VESSEL_FULL && reaches_far(s) ? m->def.shifting : 0;
@@ -297,7 +297,7 @@ static void shift_positions(tobi_simulation *s, dfsph *m)
 
 /* Whether a cavity two or three spacings wide has opened in a full vessel. Disorder makes one such particle
    in 1e5 as well. */
-static int has_void(const tobi_simulation *s)
+static int has_void(const tobi_system *s)
 {
     return s->open > (s->box.dimension == 3 ? 20 : 6) + 1e-5*(double)s->particles.count;
 }
@@ -306,14 +306,14 @@ static int has_void(const tobi_simulation *s)
    compression of the rest, whose mean is then solved for, so that the rest expands into it. No test of
    |r|/|s|: where the error starts below its tolerance, |r| rises for tens of iterations before it falls,
    with nothing to gain. */
-static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
+static void correct_density(tobi_system *s, dfsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
     m->view.pressure = s->particles.correction;
     launch(s, m, m->kernel->sph_density_residual, t);
     double mean = t[2]*s->dt*s->dt/(double)s->particles.count;
     int full = m->memory.vessel == SPH_VESSEL_FULL, closes = has_void(s) && mean > m->def.density_tolerance;
-    solve q = {.tolerance = m->def.density_tolerance,
+    linear_solve q = {.tolerance = m->def.density_tolerance,
                .relative_tolerance = HUGE_VAL,
                .nothing = 1e-3 * m->def.density_tolerance,
                .source = t[0],
@@ -324,21 +324,22 @@ static void correct_density(tobi_simulation *s, dfsph *m, double *clock)
     shift_positions(s, m);
     s->info.density_iterations = q.iterations;
     s->info.density_converged = q.converged;
-    tobi_stage_end(&s->stages, "density solve", clock);
+    tobi_stage_end(&s->sim->stages, "density solve", clock);
 }
 
 /* Before the first step: a lattice cut by a body has gaps along it that water would leak through, and pairs
    that crowd. Near bodies the shift of (12) takes place without time passing. Bodies that move by forces
    set off slowly and gain nothing, decision 31. */
-static tobi_status settle(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status settle(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
-    if (s->step > 0 || s->body_count == 0 || tobi_body_any_free(s->bodies, s->body_count)) return TOBI_OK;
+    const tobi_simulation *w = s->sim;
+    if (s->step > 0 || w->body_count == 0 || tobi_body_any_free(w->bodies, w->body_count)) return TOBI_OK;
     for (int k = 0; k < SETTLING_ROUNDS; k++) {
         TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
         m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
         if (s->info.density_error_max < SETTLED) return TOBI_OK;
         correct_density(s, m, clock);
-        TOBI_TRY(tobi_simulation_heed(s, err));
+        TOBI_TRY(tobi_simulation_heed(s->sim, err));
         tobi_near_settle(s);
         TOBI_TRY(find_neighbors(s, m, clock, err));
     }
@@ -346,13 +347,13 @@ static tobi_status settle(tobi_simulation *s, dfsph *m, double *clock, tobi_erro
 }
 
 /* The level of still water follows the free surface of the last step. */
-static void set_still_water(tobi_simulation *s, dfsph *m)
+static void set_still_water(tobi_system *s, dfsph *m)
 {
     sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
-                   fmax(m->memory.speed, s->body_speed), &m->memory.level);
+                   fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
 }
 
-static void restore_velocities(tobi_simulation *s, const tobi_float4 *kept)
+static void restore_velocities(tobi_system *s, const tobi_float4 *kept)
 {
     memcpy(s->particles.velocity, kept, (size_t)s->particles.count*sizeof *kept);
 }
@@ -361,7 +362,7 @@ static void restore_velocities(tobi_simulation *s, const tobi_float4 *kept)
    the pressure of the step before. Without one the water would set off as if neither were there, and the
    second step would press it back: a sensor read 1.8 times the pressure of rest. So the first step's pressure
    is solved for twice with the velocities of the start before it is used. */
-static tobi_status find_first_pressure(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (s->step > 0) return TOBI_OK;
     size_t bytes = (size_t)s->particles.count*sizeof(tobi_float4);
@@ -386,11 +387,28 @@ static tobi_status find_first_pressure(tobi_simulation *s, dfsph *m, double *clo
 }
 
 /* May be stopped as long as nothing has moved. */
-static tobi_status try_step(tobi_simulation *s, dfsph *m, double max_dt, tobi_error *err)
+static tobi_status remember(tobi_system *s, tobi_error *err)
 {
+    dfsph *m = s->state;
+    double *memory;
+    const int n = list_memory(s, &memory);
+    return sph_undo_begin(&m->undo, s, memory, n, err);
+}
+
+static void take_back(tobi_system *s)
+{
+    dfsph *m = s->state;
+    double *memory;
+    const int n = list_memory(s, &memory);
+    sph_undo_restore(&m->undo, s, memory, n);
+}
+
+static tobi_status begin(tobi_system *s, tobi_error *err)
+{
+    dfsph *m = s->state;
     double clock = tobi_clock();
-    sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
-    TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    sph_use_dt(s, &m->view);
+    sph_drive_bodies(s, &clock);
     set_still_water(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
@@ -400,37 +418,40 @@ static tobi_status try_step(tobi_simulation *s, dfsph *m, double max_dt, tobi_er
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_still_low(s);
-    apply_forces(s, m, &clock);
-    TOBI_TRY(tobi_simulation_heed(s, err));
-    tobi_couple_begin(s);
-    remove_divergence(s, m, &clock);
-    TOBI_TRY(tobi_simulation_heed(s, err));
-    correct_density(s, m, &clock);
-    TOBI_TRY(tobi_simulation_heed(s, err));
-    sph_measure_forces(s, &m->view, m->kernel, &clock);
-    tobi_simulation_add_hydrostatic(s);
-    tobi_couple_correct(s);
-    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
-    TOBI_TRY(sph_move_bodies(s, &clock, err));
-    s->time += s->dt;
-    s->step++;
     return TOBI_OK;
 }
 
-static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+static void forces(tobi_system *s)
 {
-    dfsph *m = state;
-    double *memory;
-    const int n = list_memory(m, &memory);
-    TOBI_TRY(sph_undo_begin(&m->undo, s, memory, n, err));
-    const tobi_status status = try_step(s, m, max_dt, err);
-    if (status == TOBI_STOPPED) sph_undo_restore(&m->undo, s, memory, n);
-    return status;
+    double clock = tobi_clock();
+    apply_forces(s, s->state, &clock);
 }
 
-static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
+static tobi_status solve(tobi_system *s, tobi_error *err)
 {
-    dfsph *m = state;
+    dfsph *m = s->state;
+    double clock = tobi_clock();
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    tobi_couple_begin(s);
+    remove_divergence(s, m, &clock);
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    correct_density(s, m, &clock);
+    return tobi_simulation_heed(s->sim, err);
+}
+
+static void move(tobi_system *s)
+{
+    dfsph *m = s->state;
+    double clock = tobi_clock();
+    sph_measure_forces(s, &m->view, m->kernel, &clock);
+    tobi_system_add_hydrostatic(s);
+    tobi_couple_correct(s);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+}
+
+static tobi_status refresh(tobi_system *s, tobi_error *err)
+{
+    dfsph *m = s->state;
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
@@ -439,9 +460,9 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     return TOBI_OK;
 }
 
-static void derive(tobi_simulation *s, void *state, const char *field)
+static void derive(tobi_system *s, const char *field)
 {
-    dfsph *m = state;
+    dfsph *m = s->state;
     sph_derive(s, &m->view, m->kernel, field);
 }
 
@@ -461,7 +482,14 @@ const tobi_method tobi_dfsph = {
     .body_fields = TOBI_WETTED,
     .smoothing = choose_smoothing,
     .create = create,
-    .step = step,
+    .max_dt = choose_dt,
+    .remember = remember,
+    .take_back = take_back,
+    .begin = begin,
+    .forces = forces,
+    .solve = solve,
+    .move = move,
+    .finish = sph_finish,
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,

@@ -1,5 +1,5 @@
 /* Divergence-free SPH: velocity and density constraint, both by one matrix-free operator. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 extern const tobi_method tobi_dfsph;

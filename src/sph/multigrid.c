@@ -9,7 +9,7 @@ static int64_t nodes_of(const sph_grid *g) { return (int64_t)g->n[0]*g->n[1]*g->
 static int64_t cells_of(const sph_multigrid *m) { return (int64_t)m->cells[0]*m->cells[1]*m->cells[2]; }
 
 /* Sizes of all levels; returns the number of nodes. */
-static int64_t plan(sph_multigrid *m, const tobi_simulation *s)
+static int64_t plan(sph_multigrid *m, const tobi_system *s)
 {
     int64_t total = 0;
     memcpy(m->periodic, s->cells.periodic, sizeof m->periodic);
@@ -27,7 +27,7 @@ static int64_t plan(sph_multigrid *m, const tobi_simulation *s)
     }
 }
 
-tobi_status sph_multigrid_create(sph_multigrid *m, const tobi_simulation *s, tobi_error *err)
+tobi_status sph_multigrid_create(sph_multigrid *m, const tobi_system *s, tobi_error *err)
 {
     memset(m, 0, sizeof *m);
     int64_t total = plan(m, s);
@@ -153,7 +153,7 @@ static float share_active(const tobi_particles *p, int64_t i) { return p->precon
 static float share_surface(const tobi_particles *p, int64_t i) { return p->surface[i]; }
 static float share_one(const tobi_particles *p, int64_t i) { (void)p; (void)i; return 1; }
 
-static void add_cell(const sph_multigrid *m, const tobi_simulation *s, int x, int y, int z, share_fn share)
+static void add_cell(const sph_multigrid *m, const tobi_system *s, int x, int y, int z, share_fn share)
 {
     float sum[8] = {0};
     const int at[3] = {x, y, z};
@@ -185,10 +185,10 @@ static int cell_beside(const sph_multigrid *m, int axis, int k, int side)
 }
 
 /* out = P^T share: the corner sums of the cells around each node. */
-static void gather(const sph_multigrid *m, const tobi_simulation *s, share_fn share, float *out)
+static void gather(const sph_multigrid *m, const tobi_system *s, share_fn share, float *out)
 {
     const sph_grid *g = &m->grid[0];
-    int threads = s->exec.threads;
+    int threads = s->sim->exec.threads;
     const int64_t size = nodes_of(g);
     FOR_ROWS(m->cells[1], m->cells[2], y, z)
         for (int x = 0; x < m->cells[0]; x++) add_cell(m, s, x, y, z, share);
@@ -271,10 +271,10 @@ static void coarsen(const sph_multigrid *m, int level, int threads)
         }
 }
 
-void sph_multigrid_set(sph_multigrid *m, const tobi_simulation *s, double conductance)
+void sph_multigrid_set(sph_multigrid *m, const tobi_system *s, double conductance)
 {
     const sph_grid *g = &m->grid[0];
-    int threads = s->exec.threads;
+    int threads = s->sim->exec.threads;
     double d = s->smoothing.spacing;
     gather(m, s, share_one, g->value);
     set_faces(m, g->value, s->smoothing.volume, conductance, threads);
@@ -289,12 +289,12 @@ void sph_multigrid_set(sph_multigrid *m, const tobi_simulation *s, double conduc
     }
 }
 
-double sph_multigrid_apply(sph_multigrid *m, const tobi_simulation *s)
+double sph_multigrid_apply(sph_multigrid *m, const tobi_system *s)
 {
     const sph_grid *g = &m->grid[0];
     double dot = 0;
     gather(m, s, share_residual, g->source);
-    cycle(m, 0, s->exec.threads);
+    cycle(m, 0, s->sim->exec.threads);
     for (int64_t c = 0; c < nodes_of(g); c++) dot += (double)g->source[c]*g->value[c];
     return dot;
 }

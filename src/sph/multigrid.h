@@ -7,7 +7,7 @@
    so that it adds nothing at the scale of particles, where the operator is weak. B is symmetric and
    fixed, so conjugate gradients stay what they are. Any error here costs iterations, never the result. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 enum { SPH_GRID_LEVELS = 16 };
 
@@ -29,10 +29,10 @@ typedef struct sph_multigrid {
 } sph_multigrid;
 
 /* Memory for the cells of a simulation; TOBI_NO_MEMORY. */
-tobi_status sph_multigrid_create(sph_multigrid *m, const tobi_simulation *s, tobi_error *err);
+tobi_status sph_multigrid_create(sph_multigrid *m, const tobi_system *s, tobi_error *err);
 void sph_multigrid_free(sph_multigrid *m);
 /* Weights for the particles of this step. A particle is solved for where precondition > 0; surface marks
    where pressure is near 0. conductance: 1/(rho V). */
-void sph_multigrid_set(sph_multigrid *m, const tobi_simulation *s, double conductance);
+void sph_multigrid_set(sph_multigrid *m, const tobi_system *s, double conductance);
 /* u = B P^T residual, left in grid[0].value; returns residual . P u. */
-double sph_multigrid_apply(sph_multigrid *m, const tobi_simulation *s);
+double sph_multigrid_apply(sph_multigrid *m, const tobi_system *s);

@@ -11,21 +11,21 @@ static const float PUSH = 0.25f;
 /* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
 static const double ISOLATED = 0.01;
 
-static void launch(tobi_simulation *s, sph_view *v, tobi_kernel k, double *totals)
+static void launch(tobi_system *s, sph_view *v, tobi_kernel k, double *totals)
 {
-    tobi_launch(&s->exec, k, v, 0, s->particles.count, totals);
+    tobi_launch(&s->sim->exec, k, v, 0, s->particles.count, totals);
 }
 
-static void bind_planes(const tobi_simulation *s, sph_view *v)
+static void bind_planes(const tobi_system *s, sph_view *v)
 {
     v->plane_count = 0;
     for (int a = 0; a < s->box.dimension; a++) {
         if (s->box.periodic[a]) continue;
-        const double *lower = s->def.wall_velocity_min[a], *upper = s->def.wall_velocity_max[a];
-        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->def.wall_min[a] == TOBI_WALL_NO_SLIP,
+        const double *lower = s->sim->def.wall_velocity_min[a], *upper = s->sim->def.wall_velocity_max[a];
+        v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, s->sim->def.wall_min[a] == TOBI_WALL_NO_SLIP,
                                                   {(float)lower[0], (float)lower[1], (float)lower[2]}};
         v->plane[v->plane_count++] =
-            (tobi_plane){a, -1, s->box.size[a], s->def.wall_max[a] == TOBI_WALL_NO_SLIP,
+            (tobi_plane){a, -1, s->box.size[a], s->sim->def.wall_max[a] == TOBI_WALL_NO_SLIP,
                          {(float)upper[0], (float)upper[1], (float)upper[2]}};
     }
 }
@@ -43,7 +43,7 @@ static double band_depth(const tobi_smoothing_constants *c)
     return sum/weight;
 }
 
-void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
+void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
     const tobi_smoothing_constants *c = &s->smoothing;
@@ -57,8 +57,8 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
     v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
     v->full = vessel == SPH_VESSEL_FULL;
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
-    v->exact = v->full && v->stretch && !tobi_body_any_free(s->bodies, s->body_count);
-    v->near = s->body_count > 0 ? p->near : NULL;
+    v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
+    v->near = s->sim->body_count > 0 ? p->near : NULL;
     v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
     v->list = s->cells.list;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
@@ -81,21 +81,21 @@ void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel)
         v->tension[f] = (float)s->fluid[f].tension;
     }
     v->band_depth = (float)band_depth(c);
-    v->contact_cosine = (float)cos(s->def.contact_angle*acos(-1)/180);
+    v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);
     for (int a = 0; a < 3; a++) {
         v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
-        v->taken[a] = a < c->dimension ? (float)(s->def.gravity[a] - s->gravity[a]) : 0;
+        v->taken[a] = a < c->dimension ? (float)(s->sim->def.gravity[a] - s->gravity[a]) : 0;
     }
 }
 
-double sph_gravity_dt(const tobi_simulation *s)
+double sph_gravity_dt(const tobi_system *s)
 {
     double g2 = 0;
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->def.gravity[a]*s->def.gravity[a];
+    for (int a = 0; a < s->box.dimension; a++) g2 += s->sim->def.gravity[a]*s->sim->def.gravity[a];
     return 0.25*sqrt(s->smoothing.spacing/fmax(sqrt(g2), 1e-12));
 }
 
-double sph_viscous_dt(const tobi_simulation *s)
+double sph_viscous_dt(const tobi_system *s)
 {
     double rate = 2*s->smoothing.rate + 2*s->smoothing.plane.sigma[0]/(0.25*s->smoothing.spacing);
     double dt = INFINITY;
@@ -105,7 +105,7 @@ double sph_viscous_dt(const tobi_simulation *s)
     return dt;
 }
 
-double sph_tension_dt(const tobi_simulation *s)
+double sph_tension_dt(const tobi_system *s)
 {
     double d = s->smoothing.spacing, dt = INFINITY;
     for (int f = 0; f < s->fluid_count; f++)
@@ -114,37 +114,36 @@ double sph_tension_dt(const tobi_simulation *s)
     return dt;
 }
 
-void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt)
+void sph_use_dt(const tobi_system *s, sph_view *v)
 {
-    s->dt = tobi_simulation_fit_dt(dt, max_dt);
     v->dt = (float)s->dt;
     v->inverse_dt = (float)(1/s->dt);
 }
 
-tobi_status sph_find_neighbors(tobi_simulation *s, double *clock, tobi_error *err)
+tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 {
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
-    tobi_stage_end(&s->stages, "sort", clock);
-    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->exec, err));
-    tobi_stage_end(&s->stages, "neighbours", clock);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->sim->exec);
+    tobi_stage_end(&s->sim->stages, "sort", clock);
+    TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->sim->exec, err));
+    tobi_stage_end(&s->sim->stages, "neighbours", clock);
     return TOBI_OK;
 }
 
-tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
+tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err)
 {
     launch(s, v, k->sph_walls, NULL);
-    if (s->body_count > 0) {
+    if (s->sim->body_count > 0) {
         TOBI_TRY(tobi_near_find(s, err));
         tobi_near_cut_pairs(s);
         tobi_near_mark_beside(s);
         tobi_near_add_gradients(s);
     }
-    tobi_stage_end(&s->stages, "walls and bodies", clock);
+    tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     return TOBI_OK;
 }
 
-tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *vessel,
+tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err)
 {
     double t[TOBI_TOTALS], count = (double)s->particles.count;
@@ -159,7 +158,7 @@ tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kern
     return TOBI_OK;
 }
 
-double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k, double smooth,
+double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, double smooth,
                            double *clock)
 {
     double t[TOBI_TOTALS], count = (double)s->particles.count;
@@ -173,41 +172,35 @@ double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k
     s->open = t[3];
     double diagonal = t[2]/count;
     v->isolated = (float)(ISOLATED*diagonal);
-    tobi_stage_end(&s->stages, "density", clock);
+    tobi_stage_end(&s->sim->stages, "density", clock);
     return diagonal;
 }
 
-static tobi_status predict_body(tobi_simulation *s, tobi_body *b, tobi_error *err)
+void sph_drive_bodies(tobi_system *s, double *clock)
 {
-    TOBI_TRY(tobi_body_predict(b, s->time, s->dt, &s->body_speed, err));
-    if (b->rigid.kind != TOBI_PRESCRIBED) tobi_body_drive(b, b->rigid.velocity, b->rigid.angular_velocity);
-    else if (b->motion) tobi_body_drive_points(b);
-    return TOBI_OK;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
+        if (b->rigid.kind != TOBI_PRESCRIBED)
+            tobi_body_drive(b, b->rigid.velocity, b->rigid.angular_velocity);
+        else if (b->motion) tobi_body_drive_points(b);
+    }
+    tobi_stage_end(&s->sim->stages, "motion", clock);
 }
 
-tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err)
-{
-    s->body_speed = s->wall_speed;
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(predict_body(s, &s->bodies[k], err));
-    tobi_stage_end(&s->stages, "motion", clock);
-    return TOBI_OK;
-}
-
-static void apply_tension(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+static void apply_tension(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     double most = 0;
     for (int f = 0; f < s->fluid_count; f++) most = fmax(most, s->fluid[f].tension);
     if (!(most > 0)) return;
     launch(s, v, k->sph_normal, NULL);
     launch(s, v, k->sph_smooth_normal, NULL);
-    if (s->body_count > 0) tobi_near_contact(s);
+    if (s->sim->body_count > 0) tobi_near_contact(s);
     launch(s, v, k->sph_curvature, NULL);
     launch(s, v, k->sph_tension, NULL);
 }
 
 /* Eq. (13b); nothing is left for that of (13). */
-static void apply_filter(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!(v->filter > 0)) return;
     launch(s, v, k->sph_ripple, NULL);
@@ -215,58 +208,57 @@ static void apply_filter(tobi_simulation *s, sph_view *v, const sph_kernels *k)
     v->filter = 0;
 }
 
-void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     if (v->midway) launch(s, v, k->sph_midway, NULL);
     if (v->lean[0]) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
-    if (s->body_count > 0) tobi_near_add_forces(s);
+    if (s->sim->body_count > 0) tobi_near_add_forces(s);
     apply_tension(s, v, k);
-    tobi_stage_end(&s->stages, "forces", clock);
+    tobi_stage_end(&s->sim->stages, "forces", clock);
 }
 
-void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     double t[TOBI_TOTALS];
     v->pressure = s->particles.pressure;
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
     s->still_volume = t[3]*s->smoothing.volume;
-    if (s->body_count > 0) tobi_near_body_forces(s);
-    tobi_stage_end(&s->stages, "walls and bodies", clock);
+    if (s->sim->body_count > 0) tobi_near_body_forces(s);
+    tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 
-double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock)
+double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     double t[TOBI_TOTALS];
-    v->speed_cap = (float)(1.5*tobi_simulation_speed_scale(s));
+    v->speed_cap = (float)(1.5*tobi_system_speed_scale(s));
     launch(s, v, k->sph_advance, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];
     s->info.speed_max = sqrt(t[7]);
     s->info.capped = (int64_t)t[4];
-    tobi_stage_end(&s->stages, "advance", clock);
+    tobi_stage_end(&s->sim->stages, "advance", clock);
     return sqrt(t[6]);
 }
 
-tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err)
+void sph_finish(tobi_system *s)
 {
-    for (int k = 0; k < s->body_count; k++) {
-        tobi_body *b = &s->bodies[k];
-        TOBI_TRY(tobi_body_advance(b, s->time + s->dt, s->dt, err));
+    double clock = tobi_clock();
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
         if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_bring_surface(b);
     }
-    if (s->body_count > 0) tobi_push_out(s);
+    if (s->sim->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
     s->info.contacts += s->near.contacts;
-    tobi_stage_end(&s->stages, "motion", clock);
-    return TOBI_OK;
+    tobi_stage_end(&s->sim->stages, "motion", &clock);
 }
 
 /* The kick over one second, then taken back, and the pressure. Scratch of the solves keeps the velocity
    meanwhile. */
-static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kernels *k)
+static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     tobi_particles *p = &s->particles;
     float *kept[3] = {p->residual, p->delta, p->correction}, dt = v->dt;
@@ -277,7 +269,7 @@ static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kerne
     v->filter = 0;
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
-    if (s->body_count > 0) tobi_near_add_forces(s);
+    if (s->sim->body_count > 0) tobi_near_add_forces(s);
     apply_tension(s, v, k);
     s->dt = step;
     v->dt = dt;
@@ -293,7 +285,7 @@ static void derive_acceleration(tobi_simulation *s, sph_view *v, const sph_kerne
         for (int a = 0; a < 3; a++) (&p->accel[i].x)[a] += kept[a][i];
 }
 
-void sph_derive(tobi_simulation *s, sph_view *v, const sph_kernels *k, const char *field)
+void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field)
 {
     if (strcmp(field, "vorticity") == 0) launch(s, v, k->sph_vorticity, NULL);
     else derive_acceleration(s, v, k);

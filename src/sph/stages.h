@@ -1,46 +1,46 @@
 /* Stages that the steps of all SPH methods share. v is the method's view, k its kernels. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 #include "sph/kernels.h"
 
 /* A vessel that is full at the start stays full: voids that disorder opens are then no free surface. */
 enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL };
 
 /* Everything of a view that does not belong to one method; after each sort. vessel: SPH_VESSEL_*. */
-void sph_bind_view(const tobi_simulation *s, sph_view *v, double vessel);
+void sph_bind_view(const tobi_system *s, sph_view *v, double vessel);
 /* 0.25 sqrt(d/g): the longest step that gravity allows, s. */
-double sph_gravity_dt(const tobi_simulation *s);
+double sph_gravity_dt(const tobi_system *s);
 /* 0.8/(nu rate): the longest step of explicit viscosity at a no-slip wall, s; without it INFINITY. */
-double sph_viscous_dt(const tobi_simulation *s);
+double sph_viscous_dt(const tobi_system *s);
 /* 0.4 sqrt(rho d^3/(2 pi sigma)): the longest step of explicit surface tension, s; without it INFINITY. */
-double sph_tension_dt(const tobi_simulation *s);
-/* dt, or less, so that what is left up to max_dt (0 = no end) is no sliver of a step; into s and v. */
-void sph_set_dt(tobi_simulation *s, sph_view *v, double dt, double max_dt);
+double sph_tension_dt(const tobi_system *s);
+/* The step at hand, s->dt, into v. */
+void sph_use_dt(const tobi_system *s, sph_view *v);
 
 /* Sorts the particles and lists their neighbours; the view is to be bound again. */
-tobi_status sph_find_neighbors(tobi_simulation *s, double *clock, tobi_error *err);
+tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err);
 /* Planes and bodies: wall gradients, shares, pairs that a body separates. */
-tobi_status sph_see_walls(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock,
+tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err);
 /* Unless *vessel is known: full if fewer particles see a free surface than a tenth of a cube's face has.
    The view is to be bound again. */
-tobi_status sph_look_into_vessel(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *vessel,
+tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err);
 /* Density, its error, and the share `smooth` of the kernel average in the pressure; returns the mean
    diagonal of the pressure operator, m/kg. */
-double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k, double smooth,
+double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, double smooth,
                            double *clock);
-/* The bodies' velocities over the coming step. */
-tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *err);
+/* Gives the points of bodies the velocities that were predicted for this step. */
+void sph_drive_bodies(tobi_system *s, double *clock);
 /* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
-void sph_apply_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
+void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */
-void sph_measure_forces(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
+void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
 /* New positions, accel holding the shift; returns the largest speed, m/s, that of lone drops times 0.4. */
-double sph_move_particles(tobi_simulation *s, sph_view *v, const sph_kernels *k, double *clock);
-/* The bodies' new pose; particles that it caught are put outside. */
-tobi_status sph_move_bodies(tobi_simulation *s, double *clock, tobi_error *err);
+double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
+/* After the bodies have moved: their surface, particles that they caught, their impulses. */
+void sph_finish(tobi_system *s);
 
 /* A derived field into accel after a refresh: "vorticity", or "acceleration" by all forces but the
    filter. */
-void sph_derive(tobi_simulation *s, sph_view *v, const sph_kernels *k, const char *field);
+void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field);

@@ -6,7 +6,7 @@
 static const double COVER = 1, RAMP = 3, REST = 0.5;
 enum { DROPS = 1024 };
 
-void sph_still_set(tobi_simulation *s, double low)
+void sph_still_set(tobi_system *s, double low)
 {
     tobi_still *w = &s->still;
     double g2 = 0, h = s->smoothing.h;
@@ -25,13 +25,13 @@ void sph_still_set(tobi_simulation *s, double low)
     w->push = low > 0 ? s->fluid[0].density*sqrt(g2) : 0;
 }
 
-double sph_still_low(const tobi_simulation *s)
+double sph_still_low(const tobi_system *s)
 {
     const float *drop = s->particles.delta;
     int64_t n[DROPS] = {0}, count = s->particles.count;
     double scale = DROPS/(1.0001*s->lowest);
     if (!(s->lowest > 0)) return 0;
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(static) reduction(+ : n[:DROPS])
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static) reduction(+ : n[:DROPS])
     for (int64_t i = 0; i < count; i++)
         if (drop[i] > 0) n[(int)(drop[i]*scale)]++;
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
@@ -42,7 +42,7 @@ double sph_still_low(const tobi_simulation *s)
 
 /* Down with the surface, but not faster than anything moves: a void that opens in the depth, as behind a
    body that sets off, is no part of it. Up slowly. */
-static double follow(const tobi_simulation *s, double before, double low, double speed)
+static double follow(const tobi_system *s, double before, double low, double speed)
 {
     double g = 0;
     if (!(low > 0) || !(before > 0)) return low;
@@ -51,7 +51,7 @@ static double follow(const tobi_simulation *s, double before, double low, double
     return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
 
-void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double speed, double *level)
+void sph_still_move(tobi_system *s, tobi_still *before, double low, double speed, double *level)
 {
     sph_still_set(s, *level);
     *before = s->still;

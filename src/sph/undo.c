@@ -8,21 +8,21 @@
 
 typedef struct sph_undo_body { tobi_rigid rigid; tobi_body_info info; } sph_undo_body;
 
-tobi_status sph_undo_begin(sph_undo *u, const tobi_simulation *s, const double *memory, int n,
+tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memory, int n,
                            tobi_error *err)
 {
-    if (!s->stop) return TOBI_OK;
-    if (!u->body) u->body = calloc((size_t)s->body_count + 1, sizeof *u->body);
+    if (!s->sim->stop) return TOBI_OK;
+    if (!u->body) u->body = calloc((size_t)s->sim->body_count + 1, sizeof *u->body);
     if (!u->body) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
     memcpy(u->memory, memory, (size_t)n*sizeof *memory);
     memcpy(u->gravity, s->gravity, sizeof u->gravity);
     u->dt = s->dt;
-    u->body_speed = s->body_speed;
+    u->body_speed = s->sim->body_speed;
     u->still = s->still;
     u->info = s->info;
     u->kept = 0;
-    for (int k = 0; k < s->body_count; k++)
-        u->body[k] = (sph_undo_body){ s->bodies[k].rigid, s->bodies[k].info };
+    for (int k = 0; k < s->sim->body_count; k++)
+        u->body[k] = (sph_undo_body){ s->sim->bodies[k].rigid, s->sim->bodies[k].info };
     return TOBI_OK;
 }
 
@@ -35,14 +35,14 @@ static void copy_range(const void *view, int64_t begin, int64_t end, double *tot
     memcpy(c->to + (size_t)begin*c->row, c->from + (size_t)begin*c->row, (size_t)(end - begin)*c->row);
 }
 
-static int changes(const tobi_simulation *s, const char *field)
+static int changes(const tobi_system *s, const char *field)
 {
     return s->step == 0 || strcmp(field, "velocity") == 0 || strcmp(field, "pressure") == 0;
 }
 
-tobi_status sph_undo_keep(sph_undo *u, tobi_simulation *s, tobi_error *err)
+tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
 {
-    for (int k = 0; s->stop && k < SPH_UNDO_FIELDS; k++) {
+    for (int k = 0; s->sim->stop && k < SPH_UNDO_FIELDS; k++) {
         const tobi_field_ref f = tobi_particles_state(&s->particles, k);
         if (!f.name || !changes(s, f.name)) {
             free(u->field[k]);
@@ -52,23 +52,23 @@ tobi_status sph_undo_keep(sph_undo *u, tobi_simulation *s, tobi_error *err)
         if (!u->field[k]) u->field[k] = malloc((size_t)(s->particles.capacity + 1)*f.bytes);
         if (!u->field[k]) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
         copying c = { u->field[k], f.data, f.bytes };
-        tobi_launch(&s->exec, copy_range, &c, 0, s->particles.count, NULL);
+        tobi_launch(&s->sim->exec, copy_range, &c, 0, s->particles.count, NULL);
     }
     u->kept = 1;
     return TOBI_OK;
 }
 
-void sph_undo_restore(const sph_undo *u, tobi_simulation *s, double *memory, int n)
+void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
 {
     memcpy(memory, u->memory, (size_t)n*sizeof *memory);
     memcpy(s->gravity, u->gravity, sizeof u->gravity);
     s->dt = u->dt;
-    s->body_speed = u->body_speed;
+    s->sim->body_speed = u->body_speed;
     s->still = u->still;
     s->info = u->info;
-    for (int k = 0; k < s->body_count; k++) {
-        s->bodies[k].rigid = u->body[k].rigid;
-        s->bodies[k].info = u->body[k].info;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        s->sim->bodies[k].rigid = u->body[k].rigid;
+        s->sim->bodies[k].info = u->body[k].info;
     }
     for (int k = 0; k < SPH_UNDO_FIELDS; k++) {
         const tobi_field_ref f = tobi_particles_state(&s->particles, k);

@@ -1,6 +1,6 @@
 /* Taking back a step that the caller stops within: what it may have changed by then, as it was before. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 enum { SPH_UNDO_MEMORY = 8, SPH_UNDO_FIELDS = 8 };
 
@@ -15,10 +15,10 @@ typedef struct sph_undo {
 } sph_undo;
 
 /* Before anything changes. memory: n doubles of the method. Without a tobi_stop_fn nothing is kept. */
-tobi_status sph_undo_begin(sph_undo *u, const tobi_simulation *s, const double *memory, int n,
+tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memory, int n,
                            tobi_error *err);
 /* After the first sort of the step, which changes the order of particles and nothing else. */
-tobi_status sph_undo_keep(sph_undo *u, tobi_simulation *s, tobi_error *err);
+tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err);
 /* Takes the step back; not after positions have advanced. */
-void sph_undo_restore(const sph_undo *u, tobi_simulation *s, double *memory, int n);
+void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n);
 void sph_undo_free(sph_undo *u);

@@ -26,9 +26,9 @@ typedef struct wcsph {
     double softness;                              /* m2/kg, of the bodies: tobi_couple_softness       */
 } wcsph;
 
-static void launch(tobi_simulation *s, wcsph *m, tobi_kernel k, double *totals)
+static void launch(tobi_system *s, wcsph *m, tobi_kernel k, double *totals)
 {
-    tobi_launch(&s->exec, k, &m->view, 0, s->particles.count, totals);
+    tobi_launch(&s->sim->exec, k, &m->view, 0, s->particles.count, totals);
 }
 
 static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
@@ -39,37 +39,36 @@ static void choose_smoothing(const void *def, int stirred, int *shape, double *s
     *support = d->support > 0 ? d->support : 2;
 }
 
-static double find_sound(const tobi_simulation *s, const tobi_wcsph_def *d)
+static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)
 {
     return sqrt(d->exponent*d->stiffness/s->fluid[0].density);
 }
 
-static double limit_dt(const tobi_simulation *s, const void *def, int solid, double speed)
+static double limit_dt(const tobi_system *s, int solid, double speed)
 {
     (void)solid;
-    return fmin(s->def.cfl*s->smoothing.spacing/(find_sound(s, def) + speed), sph_gravity_dt(s));
+    return fmin(s->sim->def.cfl*s->smoothing.spacing/(find_sound(s, s->def) + speed), sph_gravity_dt(s));
 }
 
-static tobi_status create(tobi_simulation *s, const void *def, void **state, tobi_error *err)
+static tobi_status create(tobi_system *s, tobi_error *err)
 {
-    wcsph *m = calloc(1, sizeof *m);
+    wcsph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the wcsph state");
-    m->def = *(const tobi_wcsph_def *)def;
-    m->kernel = sph_kernels_for(s->exec.isa, m->def.kernel);
+    m->def = *(const tobi_wcsph_def *)s->def;
+    m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     m->sound = find_sound(s, &m->def);
     m->softness = tobi_couple_softness(s);
-    *state = m;
     return TOBI_OK;
 }
 
-static int list_memory(void *state, double **values)
+static int list_memory(tobi_system *s, double **values)
 {
-    wcsph *m = state;
+    wcsph *m = s->state;
     *values = &m->memory.speed;
     return 4;
 }
 
-static void bind_view(tobi_simulation *s, wcsph *m)
+static void bind_view(tobi_system *s, wcsph *m)
 {
     sph_view *v = &m->view;
     double d = s->smoothing.spacing;
@@ -82,7 +81,7 @@ static void bind_view(tobi_simulation *s, wcsph *m)
 }
 
 /* The layer of water at a body is a spring between the two, explicit in time, eq. (25). INFINITY without. */
-static double body_dt(const tobi_simulation *s, const wcsph *m)
+static double body_dt(const tobi_system *s, const wcsph *m)
 {
     double d = s->smoothing.spacing, limit = 2/(1 + s->fluid[0].density*d*m->softness);
     if (!(m->softness > 0)) return INFINITY;
@@ -90,25 +89,26 @@ static double body_dt(const tobi_simulation *s, const wcsph *m)
 }
 
 /* dt <= min(cfl d/(c + |v|), 0.25 sqrt(d/g), viscous limit, bodies' limit), eq. (24). */
-static double choose_dt(const tobi_simulation *s, const wcsph *m)
+static double choose_dt(tobi_system *s)
 {
-    double speed = fmax(m->memory.speed, s->body_speed);
-    if (s->def.time_step > 0) return s->def.time_step;
-    double dt = fmin(limit_dt(s, &m->def, TOBI_LIQUIDS, speed), fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    const wcsph *m = s->state;
+    double speed = fmax(m->memory.speed, s->sim->body_speed);
+    if (s->sim->def.time_step > 0) return s->sim->def.time_step;
+    double dt = fmin(limit_dt(s, TOBI_LIQUIDS, speed), fmin(sph_viscous_dt(s), sph_tension_dt(s)));
     dt = fmin(dt, fmin(body_dt(s, m), tobi_couple_dt(s)));
-    return s->def.time_step_max > 0 ? fmin(dt, s->def.time_step_max) : dt;
+    return s->sim->def.time_step_max > 0 ? fmin(dt, s->sim->def.time_step_max) : dt;
 }
 
 /* Drop of the free surface. Gaps between a lattice and a body in it look like one: what sees a body does not
    count. */
-static double find_surface(tobi_simulation *s)
+static double find_surface(tobi_system *s)
 {
     for (int64_t k = 0; k < s->near.count; k++) s->particles.delta[s->near.entry[k].particle] = 0;
     return sph_still_low(s);
 }
 
 /* Once, in a vessel just looked into. */
-static void start_at_rest(tobi_simulation *s, wcsph *m)
+static void start_at_rest(tobi_system *s, wcsph *m)
 {
     if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
@@ -116,33 +116,33 @@ static void start_at_rest(tobi_simulation *s, wcsph *m)
     launch(s, m, m->kernel->sph_rest, NULL);
 }
 
-static tobi_status find_neighbors(tobi_simulation *s, wcsph *m, double *clock, tobi_error *err)
+static tobi_status find_neighbors(tobi_system *s, wcsph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
     int new = m->memory.vessel == SPH_VESSEL_UNKNOWN;
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
-    if (m->memory.vessel == SPH_VESSEL_FULL) tobi_simulation_fill_up(s);
+    if (m->memory.vessel == SPH_VESSEL_FULL) tobi_system_fill_up(s);
     if (new) start_at_rest(s, m);
     bind_view(s, m);
     return TOBI_OK;
 }
 
 /* A share of a time step: `share` of each spacing that sound travels in it. */
-static double share_of_step(const tobi_simulation *s, const wcsph *m, double share)
+static double share_of_step(const tobi_system *s, const wcsph *m, double share)
 {
     return fmin(share*m->sound*s->dt/s->smoothing.spacing, 0.5);
 }
 
-static void apply_forces(tobi_simulation *s, wcsph *m, double *clock)
+static void apply_forces(tobi_system *s, wcsph *m, double *clock)
 {
-    double scale = 2*s->smoothing.rate, motion = 10*s->def.cfl*s->smoothing.spacing/m->sound;
+    double scale = 2*s->smoothing.rate, motion = 10*s->sim->def.cfl*s->smoothing.spacing/m->sound;
     m->view.filter = (float)(m->def.filter/(fmax(s->dt, motion)*scale*scale));
     sph_apply_forces(s, &m->view, m->kernel, clock);
 }
 
 /* The equation of state, and its force. */
-static void apply_pressure(tobi_simulation *s, wcsph *m, double *clock)
+static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
     launch(s, m, m->kernel->sph_carry, NULL);
@@ -152,11 +152,11 @@ static void apply_pressure(tobi_simulation *s, wcsph *m, double *clock)
     s->info.density_converged = s->info.divergence_converged = 1;      /* there is no solver */
     launch(s, m, m->kernel->sph_pressure_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
-    tobi_stage_end(&s->stages, "pressure", clock);
+    tobi_stage_end(&s->sim->stages, "pressure", clock);
 }
 
 /* Walls feel the pressure with its damping, which stands in delta. */
-static void measure_forces(tobi_simulation *s, wcsph *m, double *clock)
+static void measure_forces(tobi_system *s, wcsph *m, double *clock)
 {
     float *state = s->particles.pressure;
     s->particles.pressure = s->particles.delta;
@@ -164,44 +164,59 @@ static void measure_forces(tobi_simulation *s, wcsph *m, double *clock)
     m->view.pressure = s->particles.pressure = state;
 }
 
-static void shift_positions(tobi_simulation *s, wcsph *m, double *clock)
+static void shift_positions(tobi_system *s, wcsph *m, double *clock)
 {
     m->view.background = 0;
     m->view.relaxation = (float)share_of_step(s, m, RELAXATION);
     launch(s, m, m->kernel->sph_relax, NULL);
     launch(s, m, m->kernel->sph_shift, NULL);
-    tobi_stage_end(&s->stages, "position shift", clock);
+    tobi_stage_end(&s->sim->stages, "position shift", clock);
 }
 
-static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+static tobi_status begin(tobi_system *s, tobi_error *err)
 {
-    wcsph *m = state;
+    wcsph *m = s->state;
     double clock = tobi_clock();
-    sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
-    TOBI_TRY(sph_predict_bodies(s, &clock, err));
+    sph_use_dt(s, &m->view);
+    sph_drive_bodies(s, &clock);
     sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
-                   fmax(m->memory.speed, s->body_speed), &m->memory.level);
+                   fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);
-    apply_forces(s, m, &clock);
-    tobi_couple_begin(s);
-    apply_pressure(s, m, &clock);
-    measure_forces(s, m, &clock);
-    tobi_simulation_add_hydrostatic(s);
-    tobi_couple_correct(s);
-    shift_positions(s, m, &clock);
-    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
-    TOBI_TRY(sph_move_bodies(s, &clock, err));
-    s->time += s->dt;
-    s->step++;
     return TOBI_OK;
 }
 
-static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
+static void forces(tobi_system *s)
 {
-    wcsph *m = state;
+    double clock = tobi_clock();
+    apply_forces(s, s->state, &clock);
+}
+
+static tobi_status solve(tobi_system *s, tobi_error *err)
+{
+    double clock = tobi_clock();
+    (void)err;
+    tobi_couple_begin(s);
+    apply_pressure(s, s->state, &clock);
+    return TOBI_OK;
+}
+
+static void move(tobi_system *s)
+{
+    wcsph *m = s->state;
+    double clock = tobi_clock();
+    measure_forces(s, m, &clock);
+    tobi_system_add_hydrostatic(s);
+    tobi_couple_correct(s);
+    shift_positions(s, m, &clock);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+}
+
+static tobi_status refresh(tobi_system *s, tobi_error *err)
+{
+    wcsph *m = s->state;
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
@@ -209,9 +224,9 @@ static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
     return TOBI_OK;
 }
 
-static void derive(tobi_simulation *s, void *state, const char *field)
+static void derive(tobi_system *s, const char *field)
 {
-    wcsph *m = state;
+    wcsph *m = s->state;
     sph_derive(s, &m->view, m->kernel, field);
 }
 
@@ -225,7 +240,12 @@ const tobi_method tobi_wcsph = {
     .body_fields = TOBI_WETTED,
     .smoothing = choose_smoothing,
     .create = create,
-    .step = step,
+    .max_dt = choose_dt,
+    .begin = begin,
+    .forces = forces,
+    .solve = solve,
+    .move = move,
+    .finish = sph_finish,
     .stable_dt = limit_dt,
     .refresh = refresh,
     .derive = derive,

@@ -5,31 +5,31 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void describe_world(const tobi_simulation *s, tobi_rigid_world *r)
+static void describe_world(const tobi_system *s, tobi_rigid_world *r)
 {
-    *r = (tobi_rigid_world){ .dimension = s->box.dimension, .threads = s->exec.threads,
-                             .planes = s->plane, .plane_count = s->plane_count };
+    *r = (tobi_rigid_world){ .dimension = s->box.dimension, .threads = s->sim->exec.threads,
+                             .planes = s->sim->plane, .plane_count = s->sim->plane_count };
     for (int a = 0; a < s->box.dimension; a++) {
-        r->gravity[a] = s->def.gravity[a];
+        r->gravity[a] = s->sim->def.gravity[a];
         r->size[a] = s->box.size[a];
-        r->wall[a] = s->box.periodic[a] ? 0 : (s->def.wall_min[a] != TOBI_WALL_OPEN) +
-                                              2*(s->def.wall_max[a] != TOBI_WALL_OPEN);
+        r->wall[a] = s->box.periodic[a] ? 0 : (s->sim->def.wall_min[a] != TOBI_WALL_OPEN) +
+                                              2*(s->sim->def.wall_max[a] != TOBI_WALL_OPEN);
     }
 }
 
 tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
 {
     enum { NOTES = 8000 };
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     tobi_rigid_world world;
-    if (!tobi_body_any_free(s->bodies, s->body_count) || w->dynamics) return TOBI_OK;
+    if (!tobi_body_any_free(s->sim->bodies, s->sim->body_count) || w->dynamics) return TOBI_OK;
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);
-    tobi_status status = tobi_rigid_start(s->bodies, s->body_count, &world, notes, NOTES, &w->dynamics, err);
+    tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES, &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);
     free(notes);
-    w->step_cap = s->def.time_step_max;
+    w->step_cap = s->sim->def.time_step_max;
     return status;
 }
 

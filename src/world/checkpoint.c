@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "io/store.h"
 #include "world/bodies.h"
+#include "world/step.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +27,8 @@ static tobi_status put_rows(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     double *rows = NULL;
     int64_t count = 0;
-    if (!w->method->keep) return TOBI_OK;
-    TOBI_TRY(w->method->keep(&w->sim, w->method_state, &rows, &count, err));
+    if (!w->system[0].method->keep) return TOBI_OK;
+    TOBI_TRY(w->system[0].method->keep(&w->system[0], &rows, &count, err));
     tobi_status status = tobi_store_put(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
     free(rows);
     return status;
@@ -36,12 +37,12 @@ static tobi_status put_rows(tobi_world *w, tobi_store *f, tobi_error *err)
 static tobi_status get_rows(tobi_world *w, tobi_store *f, tobi_error *err)
 {
     int64_t count;
-    if (!w->method->recall) return TOBI_OK;
+    if (!w->system[0].method->recall) return TOBI_OK;
     TOBI_TRY(tobi_store_rows(f, "rows", &count, err));
     double *rows = malloc((size_t)(count + 1)*TOBI_RECALL_ROW*sizeof *rows);
     if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)count);
     tobi_status status = tobi_store_get(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
-    if (status == TOBI_OK) w->method->recall(w->method_state, rows, count);
+    if (status == TOBI_OK) w->system[0].method->recall(&w->system[0], rows, count);
     else free(rows);
     return status;
 }
@@ -61,15 +62,15 @@ static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *componen
 
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     double *memory;
-    int n = w->method->memory(w->method_state, &memory);
+    int n = w->system[0].method->memory(&w->system[0], &memory);
     TOBI_TRY(tobi_store_put_int(f, "format", FORMAT, err));
-    TOBI_TRY(tobi_store_put_text(f, "method", w->method->name, err));
-    TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
-    TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
+    TOBI_TRY(tobi_store_put_text(f, "method", w->system[0].method->name, err));
+    TOBI_TRY(tobi_store_put_int(f, "step", s->sim->step, err));
+    TOBI_TRY(tobi_store_put_int(f, "bodies", s->sim->body_count, err));
     TOBI_TRY(tobi_store_put_real(f, "spacing", s->smoothing.spacing, err));
-    double clock[4] = {s->time, s->dt, s->body_speed, s->start_speed};
+    double clock[4] = {s->sim->time, s->sim->dt, s->sim->body_speed, s->start_speed};
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     TOBI_TRY(tobi_world_put_bodies(w, f, err));
@@ -86,12 +87,12 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
     TOBI_TRY(tobi_store_create(path, &f, err));
     tobi_status status = put_clock(w, f, err);
     for (int k = 0; status == TOBI_OK; k++) {
-        tobi_field_ref r = tobi_particles_state(&w->sim.particles, k);
+        tobi_field_ref r = tobi_particles_state(&w->system[0].particles, k);
         tobi_vtk_type type;
         int components;
         if (!r.name) break;
         shape_of(&r, &type, &components);
-        status = tobi_store_put(f, r.name, type, w->sim.particles.count, components, r.data, err);
+        status = tobi_store_put(f, r.name, type, w->system[0].particles.count, components, r.data, err);
     }
     if (status == TOBI_OK) return tobi_store_commit(f, err);
     tobi_store_close(f);
@@ -100,26 +101,27 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 
 static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     double *memory, clock[4], spacing;
     int64_t step, bodies;
-    int n = w->method->memory(w->method_state, &memory);
+    int n = w->system[0].method->memory(&w->system[0], &memory);
     TOBI_TRY(tobi_store_get_int(f, "step", &step, err));
     TOBI_TRY(tobi_store_get_int(f, "bodies", &bodies, err));
     TOBI_TRY(tobi_store_get_real(f, "spacing", &spacing, err));
-    if (bodies != s->body_count || spacing != s->smoothing.spacing)
+    if (bodies != s->sim->body_count || spacing != s->smoothing.spacing)
         return tobi_fail(err, TOBI_INVALID,
                          "the checkpoint is of another scene: it has %lld bodies at spacing %g m, "
                          "the scene %d at %g m",
-                         (long long)bodies, spacing, s->body_count, s->smoothing.spacing);
+                         (long long)bodies, spacing, s->sim->body_count, s->smoothing.spacing);
     TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_get(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
     TOBI_TRY(tobi_store_get(f, "memory", TOBI_F64, n, 1, memory, err));
-    s->step = step;
-    s->time = clock[0];
-    s->dt = clock[1];
-    s->body_speed = clock[2];
+    s->sim->step = s->step = step;
+    s->sim->time = clock[0];
+    s->sim->dt = s->dt = clock[1];
+    s->sim->body_speed = clock[2];
     s->start_speed = clock[3];
+    tobi_step_sum_up(w);
     return TOBI_OK;
 }
 
@@ -135,12 +137,12 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     if (status == TOBI_OK) status = tobi_store_rows(f, "id", &n, err);
     if (status == TOBI_OK)
         status =
-            n <= w->sim.particles.capacity
+            n <= w->system[0].particles.capacity
                 ? get_clock(w, f, err)
                 : tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld",
-                            path, (long long)n, (long long)w->sim.particles.capacity);
+                            path, (long long)n, (long long)w->system[0].particles.capacity);
     for (int k = 0; status == TOBI_OK; k++) {
-        tobi_field_ref r = tobi_particles_state(&w->sim.particles, k);
+        tobi_field_ref r = tobi_particles_state(&w->system[0].particles, k);
         tobi_vtk_type type;
         int components;
         if (!r.name) break;
@@ -148,7 +150,7 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
         status = tobi_store_get(f, r.name, type, n, components, r.data, err);
     }
     if (status == TOBI_OK) {
-        w->sim.particles.count = n;
+        w->system[0].particles.count = n;
         status = tobi_world_get_bodies(w, f, err);
         if (status == TOBI_OK) status = get_rows(w, f, err);
     }

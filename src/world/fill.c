@@ -14,7 +14,7 @@ double tobi_region_layers(const tobi_region *r, int axis, double spacing)
     return fmax(1, floor((r->upper[axis] - r->lower[axis])/spacing + 0.5));
 }
 
-static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
+static void lattice(const tobi_system *s, const tobi_region *r, int64_t n[3], double step[3])
 {
     double d = s->smoothing.spacing;
     for (int a = 0; a < 3; a++) {
@@ -26,7 +26,7 @@ static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3]
     }
 }
 
-int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
+int64_t tobi_region_count(const tobi_system *s, const tobi_region *r)
 {
     int64_t n[3];
     double step[3];
@@ -36,7 +36,7 @@ int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r)
 }
 
 /* 1 if x is in the body, or nearer to it than `reach` (m). */
-static int meets(const tobi_simulation *s, const tobi_body *b, const double x[3], double reach)
+static int meets(const tobi_system *s, const tobi_body *b, const double x[3], double reach)
 {
     double lo[3], hi[3];
     tobi_bvh_hit hit;
@@ -47,11 +47,11 @@ static int meets(const tobi_simulation *s, const tobi_body *b, const double x[3]
 }
 
 /* Counts the points that a blade would start in: it may be thinner than their distance. */
-static int inside_body(const tobi_simulation *s, tobi_region *r, const double x[3])
+static int inside_body(const tobi_system *s, tobi_region *r, const double x[3])
 {
     int inside = 0;
-    for (int k = 0; k < s->body_count; k++) {
-        const tobi_body *b = &s->bodies[k];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
         if (!meets(s, b, x, b->blade ? 0.25*s->smoothing.spacing : 0)) continue;
         inside = 1;
         if (b->blade && !r->blade) r->blade = k + 1;
@@ -60,14 +60,14 @@ static int inside_body(const tobi_simulation *s, tobi_region *r, const double x[
     return inside;
 }
 
-static int behind_plane(const tobi_simulation *s, const double x[3])
+static int behind_plane(const tobi_system *s, const double x[3])
 {
-    for (int k = 0; k < s->plane_count; k++)
-        if (tobi_plane_height(&s->plane[k], x) < 0) return 1;
+    for (int k = 0; k < s->sim->plane_count; k++)
+        if (tobi_plane_height(&s->sim->plane[k], x) < 0) return 1;
     return 0;
 }
 
-static void add_particle(tobi_simulation *s, const tobi_region *r, const double x[3])
+static void add_particle(tobi_system *s, const tobi_region *r, const double x[3])
 {
     tobi_particles *p = &s->particles;
     int64_t i = tobi_particles_add(p);
@@ -86,7 +86,7 @@ static void add_particle(tobi_simulation *s, const tobi_region *r, const double 
 }
 
 /* What the region's flow adds to the velocities of its particles. */
-static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, tobi_error *err)
+static tobi_status add_flow(tobi_system *s, tobi_region *r, int64_t first, tobi_error *err)
 {
     tobi_particles *p = &s->particles;
     int64_t n = p->count - first;
@@ -115,7 +115,7 @@ static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, t
 }
 
 /* Solids: the particles of a region share its exact volume, those that were cut off included. */
-static void set_volumes(tobi_simulation *s, const tobi_region *r, int64_t first, int64_t whole)
+static void set_volumes(tobi_system *s, const tobi_region *r, int64_t first, int64_t whole)
 {
     tobi_particles *p = &s->particles;
     if (!p->strain) return;
@@ -150,12 +150,12 @@ static double find_depth(const tobi_region *r, const tobi_bvh *tree, const doubl
 }
 
 /* Marks the particles below the skin, of solids that show them in pictures. */
-static void mark_core(tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree, int64_t first)
+static void mark_core(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, int64_t first)
 {
     tobi_particles *p = &s->particles;
     const double skin = SKIN*s->smoothing.spacing;
     if (!p->rest || s->solids[r->owner].def.core_color[0] < 0) return;
-    #pragma omp parallel for num_threads(s->exec.threads) schedule(static)
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
     for (int64_t i = first; i < p->count; i++) {
         double x[3];
         for (int a = 0; a < 3; a++) x[a] = (&p->position[i].x)[a] + s->box.lower[a];
@@ -175,7 +175,7 @@ static int inside_region(const tobi_region *r, const tobi_bvh *tree, const doubl
 }
 
 /* The lattice points inside a region, in the order of z, y, x; those outside the domain included. */
-static int64_t place_lattice(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+static int64_t place_lattice(const tobi_system *s, const tobi_region *r, const tobi_bvh *tree,
                              double (*points)[3])
 {
     int64_t n[3], count = 0;
@@ -193,23 +193,23 @@ static int64_t place_lattice(const tobi_simulation *s, const tobi_region *r, con
     return count;
 }
 
-static int scattered(const tobi_simulation *s, const tobi_region *r)
+static int scattered(const tobi_system *s, const tobi_region *r)
 {
     return s->solid_count && s->solids[r->owner].def.seeding == TOBI_SEED_BLUE_NOISE;
 }
 
-static tobi_status scatter(const tobi_simulation *s, const tobi_region *r, const tobi_bvh *tree,
+static tobi_status scatter(const tobi_system *s, const tobi_region *r, const tobi_bvh *tree,
                            int64_t count, double (*points)[3], tobi_error *err)
 {
     tobi_seed_shape shape = { .radius = r->radius, .tree = tree, .dimension = s->box.dimension };
     memcpy(shape.lower, r->lower, sizeof shape.lower);
     memcpy(shape.upper, r->upper, sizeof shape.upper);
     return tobi_seed_scatter(&shape, s->smoothing.spacing, (uint64_t)r->owner << 32 | (uint64_t)r->number,
-                             count, points, s->exec.threads, err);
+                             count, points, s->sim->exec.threads, err);
 }
 
 /* Places the points of a region and keeps those in the domain, outside of bodies and before planes. */
-static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
+static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
                         tobi_error *err)
 {
     const int64_t first = s->particles.count, count = place_lattice(s, r, tree, points);
@@ -234,7 +234,7 @@ static tobi_status fill(tobi_simulation *s, tobi_region *r, const tobi_bvh *tree
     return TOBI_OK;
 }
 
-tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err)
+tobi_status tobi_region_fill(tobi_system *s, tobi_region *r, tobi_error *err)
 {
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;

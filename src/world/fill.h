@@ -1,7 +1,7 @@
 /* Where fluids and solids start: lattice points of boxes, spheres and meshes, or as many scattered ones,
    minus those inside bodies and behind planes. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 /* One region of one fluid or solid; its mesh is owned. */
 typedef struct tobi_region {
@@ -24,6 +24,6 @@ typedef struct tobi_region {
 /* Layers of a box along an axis. */
 double tobi_region_layers(const tobi_region *r, int axis, double spacing);
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
-int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r);
+int64_t tobi_region_count(const tobi_system *s, const tobi_region *r);
 /* Appends the region's particles to s->particles (capacity must suffice); counts what it left out. */
-tobi_status tobi_region_fill(tobi_simulation *s, tobi_region *r, tobi_error *err);
+tobi_status tobi_region_fill(tobi_system *s, tobi_region *r, tobi_error *err);

@@ -21,7 +21,7 @@ static int is_box(const tobi_region *r) { return !r->shape.triangle_count && !(r
    stretched then. 0 without boxes, or if that spacing asks for other layers. */
 static int try_spacing(const tobi_world *w, double trial, tobi_fit *fit)
 {
-    const int dimension = w->sim.box.dimension;
+    const int dimension = w->system[0].box.dimension;
     double volume = 0, particles = 0;
     for (int k = 0; k < w->region_count; k++) {
         double count = 1;
@@ -46,7 +46,7 @@ tobi_fit tobi_fit_find(const tobi_world *w, double wish)
 {
     tobi_fit best = { wish, 0 }, found;
     double least = INFINITY;
-    if (w->sim.solid_count > 0) return best;
+    if (w->system[0].solid_count > 0) return best;
     for (int k = 0; k <= 2*TRIALS; k++) {          /* the wish, and then farther and farther from it */
         const double way = MOST*(k + 1)/2/TRIALS*(k % 2 ? 1 : -1);
         if (!try_spacing(w, wish*(k ? 1 + way : 1), &found)) continue;
@@ -85,7 +85,7 @@ static double find_amount(const tobi_world *w, int fluid)
     for (int k = 0; k < w->region_count; k++) {
         if (!is_box(&w->regions[k]) || (fluid >= 0 && w->regions[k].owner != fluid)) continue;
         volume += w->regions[k].volume;
-        held += (double)tobi_region_count(&w->sim, &w->regions[k])*w->sim.smoothing.volume;
+        held += (double)tobi_region_count(&w->system[0], &w->regions[k])*w->system[0].smoothing.volume;
     }
     return volume > 0 ? held/volume : 1;
 }
@@ -94,22 +94,22 @@ static double find_amount(const tobi_world *w, int fluid)
 static tobi_status note_fluids(tobi_world *w, tobi_error *err)
 {
     char text[100];
-    for (int f = 0; f < w->sim.fluid_count; f++) {
+    for (int f = 0; f < w->system[0].fluid_count; f++) {
         const double amount = find_amount(w, f) - 1;
         if (fabs(amount) < TOLD) continue;
         snprintf(text, sizeof text, "its particles hold %.1f %% %s than its boxes\n", 100*fabs(amount),
                  amount > 0 ? "more" : "less");
-        TOBI_TRY(tobi_world_add_notes(w, "fluid", w->sim.fluid[f].name, text, err));
+        TOBI_TRY(tobi_world_add_notes(w, "fluid", w->system[0].fluid[f].name, text, err));
     }
     return TOBI_OK;
 }
 
 tobi_status tobi_fit_note(tobi_world *w, tobi_error *err)
 {
-    const double wish = w->sim.def.spacing, taken = w->sim.smoothing.spacing, amount = find_amount(w, -1) - 1;
+    const double wish = w->sim.def.spacing, taken = w->system[0].smoothing.spacing, amount = find_amount(w, -1) - 1;
     tobi_fit fit = { wish, 0 };
     char text[300], neat[80];
-    if (w->sim.solid_count > 0) return TOBI_OK;
+    if (w->system[0].solid_count > 0) return TOBI_OK;
     tell_neat(w, wish, neat);
     if (fabs(amount) > LITTLE) {
         snprintf(text, sizeof text, "%.5g m: whole layers do not fit, so that the particles hold %.1f %% %s "

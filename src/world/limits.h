@@ -1,7 +1,7 @@
 /* What a world can compute at all: combinations of values, each of which is in its own range, and steps that
    lead somewhere. */
 #pragma once
-#include "core/simulation.h"
+#include "core/system.h"
 
 /* Refuses, in words, numbers that do not fit each other. *key is that of the scene to blame. sph: the method
    keeps positions in fixed point. */

@@ -18,13 +18,13 @@ tobi_status tobi_world_add_plane(tobi_world *w, const tobi_plane_def *def, tobi_
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     double size = 0;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more planes");
     TOBI_TRY(tobi_param_check(&tobi_plane_table, def, err));
-    if (!w->method->planes)
+    if (!w->system[0].method->planes)
         return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "%s knows no planes; allowed are sides of the domain and bodies", w->method->name);
+                         "%s knows no planes; allowed are sides of the domain and bodies", w->system[0].method->name);
     TOBI_TRY(check_place(&s->box, def, err));
     for (int a = 0; a < s->box.dimension; a++) size = hypot(size, def->normal[a]);
     if (s->box.dimension == 2 && def->normal[2] != 0)
@@ -33,9 +33,9 @@ tobi_status tobi_world_add_plane(tobi_world *w, const tobi_plane_def *def, tobi_
     if (!(size > 0 && isfinite(size)))
         return tobi_fail(err, TOBI_INVALID, "the normal of a plane (%g, %g, %g) has no direction",
                          def->normal[0], def->normal[1], def->normal[2]);
-    if (s->plane_count == TOBI_PLANE_LIMIT)
+    if (s->sim->plane_count == TOBI_PLANE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d planes", TOBI_PLANE_LIMIT);
-    tobi_fixed_plane *p = &s->plane[s->plane_count++];
+    tobi_fixed_plane *p = &s->sim->plane[s->sim->plane_count++];
     *p = (tobi_fixed_plane){ .kind = def->kind, .friction = def->friction };
     for (int a = 0; a < s->box.dimension; a++) {
         p->normal[a] = def->normal[a]/size;

@@ -12,7 +12,7 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_NEED(def->name, "the name of the probe");
-    const tobi_box *box = &w->sim.box;
+    const tobi_box *box = &w->system[0].box;
     TOBI_TRY(tobi_param_check(&tobi_probe_table, def, err));
     for (int a = 0; a < box->dimension; a++)
         if (!(def->position[a] >= box->lower[a] && def->position[a] <= box->lower[a] + box->size[a]))
@@ -45,8 +45,8 @@ void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *i
 {
     const tobi_probe *p = &w->probes[probe];
     memset(info, 0, sizeof *info);
-    if (p->kind == TOBI_PROBE_LEVEL) info->level = tobi_probe_level(&w->sim, p->position);
-    else tobi_probe_point(&w->sim, p->position, &info->pressure, info->velocity);
+    if (p->kind == TOBI_PROBE_LEVEL) info->level = tobi_probe_level(&w->system[0], p->position);
+    else tobi_probe_point(&w->system[0], p->position, &info->pressure, info->velocity);
 }
 
 tobi_status tobi_world_probe(tobi_world *w, int probe, tobi_probe_info *info, tobi_error *err)

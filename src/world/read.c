@@ -1,6 +1,7 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
 #include "core/cuts.h"
+#include "world/step.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ int tobi_world_bodies_have(int field) { return fields[field].bodies; }
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
     if (!w) return 0;
-    if (set == TOBI_FLUID) return w->sim.particles.count;
+    if (set == TOBI_FLUID) return w->system[0].particles.count;
     int64_t n = 0;
     for (int k = 0; k < w->sim.body_count; k++) n += w->sim.bodies[k].particle_count;
     return n;
@@ -53,7 +54,7 @@ int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 /* Ids go up to the capacity; those of particles that have left are passed over. */
 static void order_rows(tobi_world *w)
 {
-    const tobi_particles *p = &w->sim.particles;
+    const tobi_particles *p = &w->system[0].particles;
     int64_t n = 0;
     if (p->count < p->capacity) memset(w->row_of, -1, (size_t)p->capacity*sizeof *w->row_of);
     for (int64_t i = 0; i < p->count; i++) w->row_of[p->id[i]] = (int32_t)i;
@@ -64,16 +65,17 @@ static void order_rows(tobi_world *w)
 
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
 {
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     TOBI_TRY(tobi_world_start(w, err));
     if (w->fresh) return TOBI_OK;
     tobi_pieces_free(&w->pieces);
     tobi_step_info kept = s->info;
-    if (!w->diverged && w->method->refresh) TOBI_TRY(w->method->refresh(s, w->method_state, err));
+    if (!w->diverged && w->system[0].method->refresh) TOBI_TRY(w->system[0].method->refresh(s, err));
     double mean = s->info.density_error_mean, max = s->info.density_error_max;
     s->info = kept;
     s->info.density_error_mean = mean;
     s->info.density_error_max = max;
+    tobi_step_sum_up(w);
     order_rows(w);
     w->fresh = 1;
     return TOBI_OK;
@@ -88,7 +90,7 @@ static double latest_cut(const tobi_particles *p, int64_t i)
 }
 
 /* A field that every method has, or that no method knows more of; 0 if it is none of them. */
-static int read_plain(const tobi_simulation *s, const char *field, int64_t i, double *out)
+static int read_plain(const tobi_system *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "position")) {
@@ -111,10 +113,10 @@ static int read_plain(const tobi_simulation *s, const char *field, int64_t i, do
 /* 0 where no mesh has any. */
 static void read_texture(const tobi_world *w, int64_t i, double *out)
 {
-    for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[w->sim.particles.id[i]][c] : 0;
+    for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[w->system[0].particles.id[i]][c] : 0;
 }
 
-static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, double *out)
+static void read_fluid(const tobi_system *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")) {
@@ -122,7 +124,7 @@ static void read_fluid(const tobi_simulation *s, const char *field, int64_t i, d
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(field, "pressure")) {
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-        out[0] = p->product[i] + tobi_simulation_hydrostatic(s, x);
+        out[0] = p->product[i] + tobi_system_hydrostatic(s, x);
     } else if (!strcmp(field, "density")) {
         out[0] = p->density[i]*s->fluid[p->fluid[i]].density;
     } else {
@@ -150,7 +152,7 @@ static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], 
 static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer,
                                tobi_error *err)
 {
-    int64_t row = 0, id = w->sim.particles.capacity;
+    int64_t row = 0, id = w->system[0].particles.capacity;
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
         double *out = buffer + row*components;
@@ -181,8 +183,8 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
                          "TOBI_BODIES", (int)set);
     while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
-    if (!(fields[k].owner & (TOBI_ALL | w->method->fields)))
-        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
+    if (!(fields[k].owner & (TOBI_ALL | w->system[0].method->fields)))
+        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
     if (set == TOBI_BODIES && !fields[k].bodies)
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
     components = fields[k].components;
@@ -196,19 +198,19 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     const int piece = !strcmp(field, "piece");
     if (piece) TOBI_TRY(tobi_world_pieces(w, &unused, err));
     int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
-    if (!w->diverged && derived && w->method->derive)
-        w->method->derive(&w->sim, w->method_state, field);
+    if (!w->diverged && derived && w->system[0].method->derive)
+        w->system[0].method->derive(&w->system[0], field);
     int textures = !strcmp(field, "texture_coordinates");
     if (textures) TOBI_TRY(tobi_world_find_texture(w, err));
     #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t r = 0; r < w->sim.particles.count; r++) {
+    for (int64_t r = 0; r < w->system[0].particles.count; r++) {
         double *out = buffer + r*components;
         if (piece) out[0] = w->pieces.of[w->row_of[r]];
         else if (textures) read_texture(w, w->row_of[r], out);
         if (piece || textures) continue;
-        if (read_plain(&w->sim, field, w->row_of[r], out)) continue;
-        if (w->method->read) w->method->read(&w->sim, w->method_state, field, w->row_of[r], out);
-        else read_fluid(&w->sim, field, w->row_of[r], out);
+        if (read_plain(&w->system[0], field, w->row_of[r], out)) continue;
+        if (w->system[0].method->read) w->system[0].method->read(&w->system[0], field, w->row_of[r], out);
+        else read_fluid(&w->system[0], field, w->row_of[r], out);
     }
     return TOBI_OK;
 }
@@ -236,9 +238,9 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
         return tobi_fail(err, TOBI_INVALID,
                          "field '%s' cannot be set; allowed are velocity and pressure", field);
     TOBI_TRY(tobi_world_refresh(w, err));
-    tobi_particles *p = &w->sim.particles;
+    tobi_particles *p = &w->system[0].particles;
     if (!velocity && !p->pressure)
-        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
+        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
     if (count != p->count)
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field,
                          (long long)p->count, (long long)count);
@@ -255,8 +257,8 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
         fastest = fmax(fastest, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
     }
     double *memory;
-    w->method->memory(w->method_state, &memory);
-    if (velocity) memory[0] = w->sim.start_speed = sqrt(fastest);
+    w->system[0].method->memory(&w->system[0], &memory);
+    if (velocity) memory[0] = w->system[0].start_speed = sqrt(fastest);
     w->fresh = 0;
     return TOBI_OK;
 }
@@ -291,12 +293,12 @@ tobi_status tobi_world_grid(tobi_world *w, const tobi_grid **grid, tobi_error *e
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(grid, "where the grid goes");
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     *grid = &w->grid;
-    if (!w->method->nodes) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->method->name);
+    if (!w->system[0].method->nodes) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->system[0].method->name);
     TOBI_TRY(tobi_world_start(w, err));
     tobi_world_free_grid(w);
-    TOBI_TRY(w->method->nodes(s, w->method_state, &w->grid, err));
+    TOBI_TRY(w->system[0].method->nodes(s, &w->grid, err));
     for (int64_t k = 0; k < w->grid.count; k++)
         for (int a = 0; a < 3; a++) w->grid.position[k][a] += s->box.lower[a];
     return TOBI_OK;
@@ -313,7 +315,7 @@ uint64_t tobi_world_hash(tobi_world *w)
 {
     uint64_t h = 14695981039346656037u;
     if (!w || tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
-    const tobi_particles *p = &w->sim.particles;
+    const tobi_particles *p = &w->system[0].particles;
     h = mix(h, &w->sim.time, sizeof w->sim.time);
     for (int64_t r = 0; r < p->count; r++) {
         int64_t i = w->row_of[r];

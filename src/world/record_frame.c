@@ -62,7 +62,7 @@ static tobi_status read_fluid(tobi_run *run, const tobi_point_set *fluid, tobi_d
 /* A fluid or solid as pictures see it. */
 typedef struct material { const double *color, *core; int visible, liquid; } material;
 
-static material material_at(const tobi_simulation *s, int k)
+static material material_at(const tobi_system *s, int k)
 {
     if (!s->solid_count)
         return (material){ s->fluid[k].color, s->fluid[k].color, s->fluid[k].visible, 1 };
@@ -104,14 +104,14 @@ static void find_color(const material *look, int part, int tint, float out[3])
 }
 
 /* Whether a blade or a crack may part a solid of the world. */
-static int can_part(const tobi_simulation *s, int solid)
+static int can_part(const tobi_system *s, int solid)
 {
     const tobi_solid_def *def = &s->solids[solid].def;
     return tobi_solid_uses(def->model, "cut_friction") && (s->particles.cuts || def->strength > 0);
 }
 
 /* The palette, if any material has a colour: of each material skin, core and face, each in all tints. */
-static tobi_status make_palette(const tobi_simulation *s, int materials, tobi_drawing *d, tobi_error *err)
+static tobi_status make_palette(const tobi_system *s, int materials, tobi_drawing *d, tobi_error *err)
 {
     d->colors = materials * PARTS * TINTS;
     d->palette = malloc(((size_t)d->colors + 1) * sizeof *d->palette);
@@ -137,7 +137,7 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
 {
     const tobi_pieces *found;
     int any = 0, taken[TINTS] = { 0 };
-    for (int k = 0; k < run->world->sim.solid_count; k++) any |= can_part(&run->world->sim, k);
+    for (int k = 0; k < run->world->system[0].solid_count; k++) any |= can_part(&run->world->system[0], k);
     if (!any || !d->has_palette) return TOBI_OK;
     TOBI_TRY(tobi_world_pieces(run->world, &found, err));
     d->tint = calloc((size_t)(found->count + found->fragments) + 1, sizeof *d->tint);
@@ -148,7 +148,7 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
         const tobi_piece *p = order[k];
         const int first = k == 0 || p->solid != order[k - 1]->solid;
         if (first) memset(taken, 0, sizeof taken);
-        if (first || !can_part(&run->world->sim, p->solid)) continue;
+        if (first || !can_part(&run->world->system[0], p->solid)) continue;
         int tint = 1 + (int)((uint64_t)p->first_id * 0x9e3779b97f4a7c15u >> 33) % (TINTS - 1);
         for (int n = 0; n < TINTS && taken[tint]; n++) tint = tint % (TINTS - 1) + 1;
         taken[tint] = 1;
@@ -159,7 +159,7 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
 }
 
 /* At a cut: within a spacing, so that each of its sides has a layer. */
-static int find_part(const tobi_simulation *s, int64_t row)
+static int find_part(const tobi_system *s, int64_t row)
 {
     const tobi_particles *p = &s->particles;
     for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[row].c[k].w != 0; k++) {
@@ -173,7 +173,7 @@ static int find_part(const tobi_simulation *s, int64_t row)
 /* Materials with colours: the value becomes the colour's number; hidden materials are left out. */
 static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *err)
 {
-    const tobi_simulation *s = &run->world->sim;
+    const tobi_system *s = &run->world->system[0];
     int hidden = 0, solids = 0, materials = s->solid_count ? s->solid_count : s->fluid_count;
     TOBI_TRY(make_palette(s, materials, d, err));
     TOBI_TRY(choose_tints(run, d, err));

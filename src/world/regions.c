@@ -10,7 +10,7 @@
 /* Curvature needs more neighbours than the shortest support reaches, docs/theory/surface_tension.md. */
 static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
-    double support = w->sim.smoothing.h/w->sim.smoothing.spacing;
+    double support = w->system[0].smoothing.h/w->system[0].smoothing.spacing;
     char text[100];
     if (!(def->surface_tension > 0) || support > 2.5 - 1e-6) return TOBI_OK;
     snprintf(text, sizeof text, "surface tension needs a support of 2.5 or more (3 is better); it is %g\n",
@@ -37,7 +37,7 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
 static tobi_status measure_region(const tobi_world *w, const char *name, const tobi_fill_def *f,
                                   tobi_region *r, tobi_error *err)
 {
-    const tobi_simulation *s = &w->sim;
+    const tobi_system *s = &w->system[0];
     int flat = s->box.dimension == 2;
     memcpy(r->lower, f->box_min, sizeof r->lower);
     memcpy(r->upper, f->box_max, sizeof r->upper);
@@ -103,7 +103,7 @@ static tobi_status add_regions(tobi_world *w, const char *kind, const char *name
 /* All fluids must be of one material. */
 static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
 {
-    const tobi_fluid *first = &w->sim.fluid[0];
+    const tobi_fluid *first = &w->system[0].fluid[0];
     const char *what = NULL;
     double value = 0, other = 0;
 #define COMPARE(name_, a_, b_) if (!what && (a_) != (b_)) what = name_, value = (a_), other = (b_)
@@ -114,7 +114,7 @@ static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def
     if (!what) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED, "fluid '%s' differs from '%s': %s of %.10g, there %.10g; %s "
                      "carries one material, allowed are several fluids with the same values",
-                     def->name ? def->name : "", first->name, what, value, other, w->method->name);
+                     def->name ? def->name : "", first->name, what, value, other, w->system[0].method->name);
 }
 
 /* All regions are checked before any of them is read. */
@@ -133,12 +133,12 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(check_fills(fills, fill_count, err));
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
-    if (!(w->method->fields & TOBI_SPH))
+    if (!(w->system[0].method->fields & TOBI_SPH))
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes solids, not fluids; a solid of model liquid is one",
-                         w->method->name);
+                         w->system[0].method->name);
     if (s->fluid_count > 0) TOBI_TRY(check_material(w, def, err));
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
@@ -161,13 +161,13 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(check_fills(fills, fill_count, err));
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     double volume;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
     TOBI_TRY(tobi_param_check(&tobi_solid_table, def, err));
-    if (!(w->method->fields & TOBI_MPM))
+    if (!(w->system[0].method->fields & TOBI_MPM))
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes fluids, not solids; the method of solids is mlsmpm",
-                         w->method->name);
+                         w->system[0].method->name);
     if (s->solid_count == TOBI_SOLID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d solids", TOBI_SOLID_LIMIT);
     tobi_solid *more = realloc(s->solids, (size_t)(s->solid_count + 1)*sizeof *more);
@@ -179,7 +179,7 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
     char note[200] = "";
-    if (w->method->accept) TOBI_TRY(w->method->accept(s, w->method_def, s->solid_count - 1, note, err));
+    if (w->system[0].method->accept) TOBI_TRY(w->system[0].method->accept(s, s->solid_count - 1, note, err));
     return note[0] ? tobi_world_add_notes(w, "solid", solid->name, note, err) : TOBI_OK;
 }
 
@@ -191,7 +191,7 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
         return tobi_fail(err, TOBI_INVALID,
                          "body '%s' is a blade and starts inside solid '%s': %lld particles lie in it or "
                          "within a quarter of a spacing; a blade starts outside of all solids",
-                         w->sim.bodies[r->blade - 1].name, w->sim.solids[r->owner].name, (long long)r->cut);
+                         w->sim.bodies[r->blade - 1].name, w->system[0].solids[r->owner].name, (long long)r->cut);
     }
     return TOBI_OK;
 }
@@ -232,7 +232,7 @@ static tobi_status note_losses(tobi_world *w, const char *kind, const char *name
 
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
 {
-    const tobi_simulation *s = &w->sim;
+    const tobi_system *s = &w->system[0];
     TOBI_TRY(check_blades(w, err));
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
     for (int k = 0; k < owners; k++) {

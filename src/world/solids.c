@@ -5,17 +5,17 @@
 #include <math.h>
 #include <stdio.h>
 
-int tobi_world_solid_count(const tobi_world *w) { return w ? w->sim.solid_count : 0; }
+int tobi_world_solid_count(const tobi_world *w) { return w ? w->system[0].solid_count : 0; }
 
 static double cell_of(const tobi_world *w)
 {
-    double d = w->sim.smoothing.spacing;
-    return w->sim.box.dimension == 3 ? d*d*d : d*d;
+    double d = w->system[0].smoothing.spacing;
+    return w->system[0].box.dimension == 3 ? d*d*d : d*d;
 }
 
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
 {
-    int64_t most = tobi_region_count(&w->sim, r);
+    int64_t most = tobi_region_count(&w->system[0], r);
     double about = floor(r->volume/cell_of(w) + 0.5);
     if (r->radius > 0) about = fmax(about, 1);           /* the middle of the lattice is in it */
     return (r->shape.triangle_count || r->radius > 0) && about < (double)most ? (int64_t)about : most;
@@ -24,7 +24,7 @@ int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
 tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *info)
 {
     if (!w || !info) return TOBI_INVALID;
-    const tobi_simulation *s = &w->sim;
+    const tobi_system *s = &w->system[0];
     if (solid < 0 || solid >= s->solid_count) return TOBI_NOT_FOUND;
     *info = (tobi_solid_info){ .name = s->solids[solid].name, .density = s->solids[solid].def.density };
     for (int k = 0; k < w->region_count; k++) {
@@ -33,7 +33,7 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
         if (!w->started) info->particles += tobi_world_guess_particles(w, &w->regions[k]);
     }
     info->mass = info->density*info->volume;
-    if (w->method->stable_dt) info->time_step = w->method->stable_dt(s, w->method_def, solid, 0);
+    if (w->system[0].method->stable_dt) info->time_step = w->system[0].method->stable_dt(s, solid, 0);
     if (!w->started) return TOBI_OK;
     info->mass = 0;
     for (int64_t i = 0; i < s->particles.count; i++) {
@@ -47,9 +47,9 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
 static double find_step(const tobi_world *w, double speed)
 {
     double least = INFINITY;
-    const int first = w->sim.fluid_count ? TOBI_LIQUIDS : 0;
-    for (int k = first; k < w->sim.solid_count && w->method->stable_dt; k++)
-        least = fmin(least, w->method->stable_dt(&w->sim, w->method_def, k, speed));
+    const int first = w->system[0].fluid_count ? TOBI_LIQUIDS : 0;
+    for (int k = first; k < w->system[0].solid_count && w->system[0].method->stable_dt; k++)
+        least = fmin(least, w->system[0].method->stable_dt(&w->system[0], k, speed));
     return isfinite(least) ? least : 0;
 }
 
@@ -64,7 +64,7 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
                  parts = ceil(wish/stable*(1 - 1e-9));
     char text[240], speed[80] = "";
     if (!(stable > 0) || wish <= stable) return TOBI_OK;
-    if (w->sim.solid_count == 0) {
+    if (w->system[0].solid_count == 0) {
         snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that sound in the liquid allows: the "
                  "run may run away\n", wish, stable);
         return tobi_world_add_notes(w, "world", "time_step", text, err);
@@ -90,20 +90,20 @@ static double find_reach(const tobi_box *box, const tobi_body *b, int axis, int 
 
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err)
 {
-    const tobi_simulation *s = &w->sim;
-    if (!(w->method->fields & TOBI_MPM) || s->solid_count == 0) return TOBI_OK;
-    const double cell = ((const tobi_mlsmpm_def *)w->method_def)->cell*s->smoothing.spacing;
-    for (int k = 0; k < s->body_count; k++)
+    const tobi_system *s = &w->system[0];
+    if (!(w->system[0].method->fields & TOBI_MPM) || s->solid_count == 0) return TOBI_OK;
+    const double cell = ((const tobi_mlsmpm_def *)w->system[0].def)->cell*s->smoothing.spacing;
+    for (int k = 0; k < s->sim->body_count; k++)
         for (int side = 0; side < 2*s->box.dimension; side++) {
             const int axis = side/2, upper = side%2;
-            const double reach = find_reach(&s->box, &s->bodies[k], axis, upper);
+            const double reach = find_reach(&s->box, &s->sim->bodies[k], axis, upper);
             char text[300];
-            if ((upper ? s->def.wall_max : s->def.wall_min)[axis] == TOBI_WALL_OPEN) continue;
+            if ((upper ? s->sim->def.wall_max : s->sim->def.wall_min)[axis] == TOBI_WALL_OPEN) continue;
             if (reach <= 0 || reach >= 1.5*cell) continue;
             snprintf(text, sizeof text, "lies within %.2g cells of the side at the %s %c, which carries a "
                      "part or all of what solids press on it there; from 1.5 cells on the body carries all\n",
                      reach/cell, upper ? "upper" : "lower", "xyz"[axis]);
-            TOBI_TRY(tobi_world_add_notes(w, "body", s->bodies[k].name, text, err));
+            TOBI_TRY(tobi_world_add_notes(w, "body", s->sim->bodies[k].name, text, err));
         }
     return TOBI_OK;
 }
@@ -113,9 +113,9 @@ tobi_status tobi_world_pieces(tobi_world *w, const tobi_pieces **pieces, tobi_er
     TOBI_NEED_WORLD(w);
     TOBI_NEED(pieces, "where the pieces go");
     *pieces = &w->pieces.found;
-    if (!(w->method->fields & TOBI_MPM))
-        return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no solids, so no pieces", w->method->name);
+    if (!(w->system[0].method->fields & TOBI_MPM))
+        return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no solids, so no pieces", w->system[0].method->name);
     TOBI_TRY(tobi_world_refresh(w, err));
     return w->pieces.of ? TOBI_OK
-                        : tobi_pieces_find(&w->sim, w->method, w->method_state, w->row_of, &w->pieces, err);
+                        : tobi_pieces_find(&w->system[0], w->row_of, &w->pieces, err);
 }

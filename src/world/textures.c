@@ -9,14 +9,14 @@ int tobi_world_has_textures(const tobi_world *w)
 {
     int found = 0;
     for (int k = 0; k < w->region_count; k++) found |= w->regions[k].shape.texture != NULL;
-    return found && w->method->fields & TOBI_MPM;
+    return found && w->system[0].method->fields & TOBI_MPM;
 }
 
 /* The nearest surface of all meshes that fill the particle's solid. */
 static void look(const tobi_world *w, int64_t i, float uv[2])
 {
-    const tobi_particles *p = &w->sim.particles;
-    const double *lower = w->sim.box.lower;
+    const tobi_particles *p = &w->system[0].particles;
+    const double *lower = w->system[0].box.lower;
     const double x[3] = {p->rest[i].x + lower[0], p->rest[i].y + lower[1], p->rest[i].z + lower[2]};
     double nearest = INFINITY;
     uv[0] = uv[1] = 0;
@@ -34,7 +34,7 @@ static void look(const tobi_world *w, int64_t i, float uv[2])
 
 tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
 {
-    const tobi_particles *p = &w->sim.particles;
+    const tobi_particles *p = &w->system[0].particles;
     if (w->texture || !tobi_world_has_textures(w)) return TOBI_OK;
     for (int k = 0; k < w->region_count; k++)
         if (w->regions[k].shape.texture) TOBI_TRY(tobi_texture_prepare(w->regions[k].shape.texture, err));

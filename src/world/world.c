@@ -7,6 +7,7 @@
 #include "world/limits.h"
 #include "world/note_pieces.h"
 #include "world/params.h"
+#include "world/step.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,11 +103,11 @@ static int is_stirred_vessel(const tobi_world *w)
 /* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
 static void set_smoothing(tobi_world *w)
 {
-    tobi_simulation *s = &w->sim;
-    const tobi_world_def *d = &s->def;
+    tobi_system *s = &w->system[0];
+    const tobi_world_def *d = &s->sim->def;
     int shape, periodic[3];
     double support;
-    w->method->smoothing(w->method_def, is_stirred_vessel(w), &shape, &support);
+    w->system[0].method->smoothing(w->system[0].def, is_stirred_vessel(w), &shape, &support);
     const double spacing = tobi_fit_find(w, d->spacing).spacing;
     if (s->smoothing.h == support*spacing) return;
     tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
@@ -116,13 +117,13 @@ static void set_smoothing(tobi_world *w)
 
 static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, tobi_error *err)
 {
-    tobi_simulation *s = &w->sim;
-    s->def = *def;
-    if (def->dimension == 2) s->def.gravity[2] = 0;
-    memcpy(s->gravity, s->def.gravity, sizeof s->gravity);
-    TOBI_TRY(tobi_exec_init(&s->exec, def->threads, err));
+    tobi_system *s = &w->system[0];
+    s->sim->def = *def;
+    if (def->dimension == 2) s->sim->def.gravity[2] = 0;
+    memcpy(s->gravity, s->sim->def.gravity, sizeof s->gravity);
+    TOBI_TRY(tobi_exec_init(&s->sim->exec, def->threads, err));
     for (int a = 0; a < def->dimension; a++)
-        s->wall_speed = fmax(s->wall_speed, fmax(length(def->wall_velocity_min[a]),
+        s->sim->wall_speed = fmax(s->sim->wall_speed, fmax(length(def->wall_velocity_min[a]),
                                                  length(def->wall_velocity_max[a])));
     set_smoothing(w);
     return TOBI_OK;
@@ -152,8 +153,10 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     w->alive = TOBI_ALIVE;
     tobi_param_defaults(table, params);
     if (method_def) memcpy(params, method_def, method->def_size);
-    w->method = method;
-    w->method_def = params;
+    w->system_count = 1;
+    w->system[0].sim = &w->sim;
+    w->system[0].method = method;
+    w->system[0].def = params;
     tobi_status status = tobi_param_check(table, params, err);
     if (status == TOBI_OK) status = create_simulation(w, def, err);
     if (status != TOBI_OK) {
@@ -169,12 +172,12 @@ void tobi_world_destroy(tobi_world *w)
     if (!w) return;
     assert(w->alive == TOBI_ALIVE);
     w->alive = 0;
-    if (w->method_state) w->method->free(w->method_state);
+    if (w->system[0].state) w->system[0].method->free(w->system[0].state);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
     free(w->sim.bodies);
-    free(w->sim.solids);
+    free(w->system[0].solids);
     free(w->regions);
     free(w->probes);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
@@ -183,11 +186,11 @@ void tobi_world_destroy(tobi_world *w)
     free(w->row_of);
     tobi_world_free_grid(w);
     tobi_pieces_free(&w->pieces);
-    free(w->method_def);
-    tobi_near_free(&w->sim.near);
-    tobi_contact_free(&w->sim.contacts);
-    tobi_cells_free(&w->sim.cells);
-    tobi_particles_free(&w->sim.particles);
+    free(w->system[0].def);
+    tobi_near_free(&w->system[0].near);
+    tobi_contact_free(&w->system[0].contacts);
+    tobi_cells_free(&w->system[0].cells);
+    tobi_particles_free(&w->system[0].particles);
     tobi_exec_free(&w->sim.exec);
     free(w);
 }
@@ -218,7 +221,7 @@ const char *tobi_world_note(const tobi_world *w, int note)
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
-    const tobi_box *box = &w->sim.box;
+    const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)
             if (!box->periodic[a] && (b->vertex[i][a] < 0 || b->vertex[i][a] > box->size[a]))
@@ -234,41 +237,41 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
-    if (def->blade && !(w->method->fields & TOBI_MPM))
+    if (def->blade && !(w->system[0].method->fields & TOBI_MPM))
         return tobi_fail(err, TOBI_UNSUPPORTED,
                          "body '%s' is a blade, which the method %s does not know; "
                          "blades cut solids of mlsmpm",
-                         def->name ? def->name : "", w->method->name);
-    if (s->body_count == TOBI_BODY_LIMIT)
+                         def->name ? def->name : "", w->system[0].method->name);
+    if (s->sim->body_count == TOBI_BODY_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
-    tobi_body *more = realloc(s->bodies, (size_t)(s->body_count + 1)*sizeof *more);
+    tobi_body *more = realloc(s->sim->bodies, (size_t)(s->sim->body_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a body");
-    s->bodies = more;
-    tobi_body *b = &s->bodies[s->body_count];
+    s->sim->bodies = more;
+    tobi_body *b = &s->sim->bodies[s->sim->body_count];
     /* Only SPH methods integrate over surfaces. */
-    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->def.spacing;
+    double pieces = (w->system[0].method->fields & TOBI_SPH ? 0.5 : 1e3)*s->sim->def.spacing;
     tobi_body_def placed = *def;
-    if (!(def->spacing > 0)) placed.spacing = s->def.spacing;
+    if (!(def->spacing > 0)) placed.spacing = s->sim->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = check_body(w, b, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
-    else s->body_count++;
+    else s->sim->body_count++;
     return status;
 }
 
 /* The owners of the particle fields that this world needs. */
 static int needed_fields(const tobi_world *w)
 {
-    int owners = TOBI_ALL | w->method->fields;
-    for (int f = 0; f < w->sim.fluid_count; f++)
-        if (w->sim.fluid[f].tension > 0) owners |= TOBI_TENSION;
+    int owners = TOBI_ALL | w->system[0].method->fields;
+    for (int f = 0; f < w->system[0].fluid_count; f++)
+        if (w->system[0].fluid[f].tension > 0) owners |= TOBI_TENSION;
     for (int k = 0; k < w->sim.body_count; k++)
         if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (w->sim.body_count > 0 || is_full_vessel(w)) owners |= w->method->body_fields;
+    if (w->sim.body_count > 0 || is_full_vessel(w)) owners |= w->system[0].method->body_fields;
     return owners;
 }
 
@@ -276,8 +279,8 @@ static int needed_fields(const tobi_world *w)
    of the grid (seen: 60 to 90). */
 static int64_t list_bytes(const tobi_world *w)
 {
-    const tobi_simulation *s = &w->sim;
-    if (w->method->fields & TOBI_MPM) return 80;
+    const tobi_system *s = &w->system[0];
+    if (w->system[0].method->fields & TOBI_MPM) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
     return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
@@ -291,7 +294,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
     if (!w->started) set_smoothing(w);
     for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
     for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
-    if (w->started) fluid = w->sim.particles.count;
+    if (w->started) fluid = w->system[0].particles.count;
     *fluid_particles = fluid;
     *body_particles = body;
     *bytes = fluid*(tobi_particles_row_bytes(needed_fields(w)) + list_bytes(w)) + body*48;
@@ -316,7 +319,7 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
 static double start_head(const tobi_world *w)
 {
     double head = 0;
-    for (int a = 0; a < w->sim.box.dimension; a++) {
+    for (int a = 0; a < w->system[0].box.dimension; a++) {
         double lower = INFINITY, upper = -INFINITY;
         for (int k = 0; k < w->region_count; k++) {
             lower = fmin(lower, w->regions[k].lower[a]);
@@ -344,7 +347,7 @@ double tobi_world_start_speed(const tobi_world *w)
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
-    tobi_simulation *s = &w->sim;
+    tobi_system *s = &w->system[0];
     int64_t fluid, body, bytes, room = 0;
     if (w->started) return TOBI_OK;
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
@@ -361,16 +364,16 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
-    TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));
+    TOBI_TRY(tobi_exec_reserve(&s->sim->exec, n > 4096 ? n : 4096, err));
     tobi_cells_free(&s->cells);
-    if (w->method->fields & TOBI_SPH)
-        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->exec, err));
+    if (w->system[0].method->fields & TOBI_SPH)
+        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->sim->exec, err));
     free(w->row_of);
     w->row_of = malloc((size_t)(n + 1)*sizeof *w->row_of);
     if (!w->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
-    if (!w->method_state) TOBI_TRY(w->method->create(s, w->method_def, &w->method_state, err));
+    if (!w->system[0].state) TOBI_TRY(s->method->create(s, err));
     double *memory;
-    w->method->memory(w->method_state, &memory);
+    w->system[0].method->memory(&w->system[0], &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w);
     if (s->start_speed > TOBI_SPEED_LIMIT)
         return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
@@ -379,12 +382,13 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_start_bodies(w, err));
     TOBI_TRY(tobi_world_note_starts(w, err));
     /* How fast the bodies start: their motion around time 0. */
-    s->body_speed = s->wall_speed;
-    for (int k = 0; k < s->body_count; k++)
-        TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
+    s->sim->body_speed = s->sim->wall_speed;
+    for (int k = 0; k < s->sim->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->sim->bodies[k], 0, 1e-4, &s->sim->body_speed, err));
     /* What free bodies bring the material may have when they are slow already. */
-    if (w->dynamics) s->start_speed = fmax(s->start_speed, s->body_speed);
+    if (w->dynamics) s->start_speed = fmax(s->start_speed, s->sim->body_speed);
     s->info.fluid_particles = n;
+    tobi_step_sum_up(w);
     w->started = 1;
     const tobi_status status = tobi_world_note_pieces(w, err);
     w->started = status == TOBI_OK;
@@ -395,23 +399,23 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 static const char *name_cfl(const tobi_world *w, double *value)
 {
     const tobi_world_def *d = &w->sim.def;
-    const int mpm = (w->method->fields & TOBI_MPM) != 0;
-    *value = mpm ? ((const tobi_mlsmpm_def *)w->method_def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
+    const int mpm = (w->system[0].method->fields & TOBI_MPM) != 0;
+    *value = mpm ? ((const tobi_mlsmpm_def *)w->system[0].def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
     return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
 }
 
 static tobi_status check_runaway(tobi_world *w, tobi_error *err)
 {
-    tobi_simulation *s = &w->sim;
-    double limit = s->def.speed_limit, cfl;
+    tobi_system *s = &w->system[0];
+    double limit = s->sim->def.speed_limit, cfl;
     const char *key = name_cfl(w, &cfl);
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;
-        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
-        limit = fmin(1.4*tobi_simulation_speed_scale(s), TOBI_SPEED_LIMIT);
+        if (s->sim->info.speed_max < TOBI_SPEED_LIMIT && s->sim->info.capped <= few) return TOBI_OK;
+        limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
     }
-    if (s->info.speed_max < limit) return TOBI_OK;
+    if (s->sim->info.speed_max < limit) return TOBI_OK;
     w->diverged = 1;
     for (int64_t i = 0; i < s->particles.count; i++) {
         tobi_float4 v = s->particles.velocity[i];
@@ -422,25 +426,28 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
             return tobi_fail(err, TOBI_DIVERGED,
                              "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
                              "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help",
-                             s->time, (long long)s->step, (long long)s->particles.id[i],
+                             s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
                              x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl);
         return tobi_fail(err, TOBI_DIVERGED,
                          "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
                          "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
                          "help",
-                         s->time, (long long)s->step, (long long)s->particles.id[i],
+                         s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
                          x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
                          limit, key, cfl);
     }
     return tobi_fail(err, TOBI_DIVERGED,
                      "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help", s->time, s->info.speed_max, key, cfl);
+                     "may help", s->sim->time, s->sim->info.speed_max, key, cfl);
 }
 
 static void measure(tobi_world *w)
 {
-    tobi_simulation_measure(&w->sim);
-    if (w->method->measure) w->method->measure(&w->sim, w->method_state);
+    for (int k = 0; k < w->system_count; k++) {
+        tobi_system_measure(&w->system[k]);
+        if (w->system[k].method->measure) w->system[k].method->measure(&w->system[k]);
+    }
+    tobi_step_sum_up(w);
 }
 
 /* `left`: s to the end that the caller wants. */
@@ -451,17 +458,12 @@ static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_ste
     TOBI_TRY(tobi_world_start(w, err));
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
     w->fresh = s->stopped = 0;
-    TOBI_TRY(tobi_simulation_heed(s, err));
-    tobi_world_cap_step(w);
-    tobi_status status = w->method->step(s, w->method_state, max_dt, err);
-    if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
+    const tobi_status status = tobi_step_take(w, max_dt, err);
     if (status != TOBI_OK) {
         w->diverged = status != TOBI_STOPPED;
         return status;
     }
-    s->info.step = s->step;
-    s->info.time = s->time;
-    s->info.dt = s->dt;
+    tobi_step_sum_up(w);
     TOBI_TRY(check_runaway(w, err));
     if (info) {
         measure(w);
@@ -511,12 +513,8 @@ double tobi_world_time(const tobi_world *w) { return w ? w->sim.time : 0; }
 const tobi_step_info *tobi_world_info(const tobi_world *w)
 {
     if (!w) return NULL;
-    tobi_simulation *s = (tobi_simulation *)&w->sim;   /* fills in sums of the present state */
-    s->info.step = s->step;
-    s->info.time = s->time;
-    s->info.dt = s->dt;
-    if (w->started) measure((tobi_world *)w);
-    return &s->info;
+    if (w->started) measure((tobi_world *)w);          /* fills in sums of the present state */
+    return &w->sim.info;
 }
 
 int tobi_world_body_count(const tobi_world *w) { return w ? w->sim.body_count : 0; }
@@ -537,11 +535,11 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 int64_t tobi_world_bytes(const tobi_world *w)
 {
     if (!w) return 0;
-    const tobi_simulation *s = &w->sim;
+    const tobi_system *s = &w->system[0];
     return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
            s->near.capacity * (int64_t)sizeof(tobi_near_entry) +
-           (w->method->bytes && w->method_state ? w->method->bytes(w->method_state) : 0);
+           (w->system[0].method->bytes && w->system[0].state ? w->system[0].method->bytes(&w->system[0]) : 0);
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)

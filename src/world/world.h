@@ -10,14 +10,14 @@ enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
+enum { TOBI_SYSTEM_LIMIT = 2 };
 enum { TOBI_ALIVE = 0x70b10 };
 
 struct tobi_world {
     int alive;                     /* TOBI_ALIVE until it is destroyed                       */
-    tobi_simulation sim;
-    const tobi_method *method;
-    void *method_def;              /* copy of the method's parameters                        */
-    void *method_state;
+    tobi_simulation sim;          /* what the systems share                                  */
+    tobi_system system[TOBI_SYSTEM_LIMIT];
+    int system_count;
     struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
     double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
     tobi_region *regions;

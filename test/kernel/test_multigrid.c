@@ -1,5 +1,5 @@
 /* The preconditioner is a symmetric positive operator, the same on any number of threads. */
-#include "core/simulation.h"
+#include "core/system.h"
 #include "core/smoothing.k.h"
 #include "sph/kernels.h"
 #include "sph/multigrid.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-typedef struct pool { tobi_simulation s; sph_multigrid m; double d; } pool;
+typedef struct pool { tobi_simulation sim; tobi_system s; sph_multigrid m; double d; } pool;
 
 static uint64_t seed;
 static double random_unit(void)
@@ -23,20 +23,22 @@ static double random_unit(void)
 static void fill(pool *p, int dimension, int n, int threads)
 {
     static tobi_error err;
-    tobi_simulation *s = &p->s;
+    tobi_system *s = &p->s;
     const double lower[3] = {-1, 2, 0};
     const int periodic[3] = {0, 1, 0};
     double upper[3];
     memset(p, 0, sizeof *p);
+    s->sim = &p->sim;
     p->d = 0.01;
     for (int a = 0; a < 3; a++) upper[a] = lower[a] + p->d*(a + 1 == dimension ? n*4/3 : n);
-    assert_int_equal(tobi_exec_init(&s->exec, threads, &err), TOBI_OK);
+    assert_int_equal(tobi_exec_init(&s->sim->exec, threads, &err), TOBI_OK);
     tobi_smoothing_init(&s->smoothing, TOBI_SHAPE_WENDLAND, dimension, p->d, 2);
     tobi_box_init(&s->box, dimension, lower, upper, periodic, s->smoothing.h);
     int64_t count = dimension == 3 ? (int64_t)n*n*n : (int64_t)n*n;
     assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
-    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &s->exec, &err), TOBI_OK);
-    assert_int_equal(tobi_exec_reserve(&s->exec, count, &err), TOBI_OK);
+    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err),
+                     TOBI_OK);
+    assert_int_equal(tobi_exec_reserve(&s->sim->exec, count, &err), TOBI_OK);
     seed = 11;
     for (int64_t i = 0; i < count; i++) {
         int64_t at[3] = {i%n, i/n%n, i/n/n};
@@ -44,7 +46,7 @@ static void fill(pool *p, int dimension, int n, int threads)
             (&s->particles.position[i].x)[a] = p->d*((double)at[a] + 0.5 + 0.3*(random_unit() - 0.5));
     }
     s->particles.count = count;
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->exec);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->sim->exec);
     for (int64_t i = 0; i < count; i++) {
         const double *x = &s->particles.position[i].x;
         s->particles.surface[i] = x[dimension - 1] > p->d*(n - 1);
@@ -59,7 +61,7 @@ static void drop(pool *p)
     sph_multigrid_free(&p->m);
     tobi_cells_free(&p->s.cells);
     tobi_particles_free(&p->s.particles);
-    tobi_exec_free(&p->s.exec);
+    tobi_exec_free(&p->sim.exec);
 }
 
 /* q = z alone: r/diagonal + P u for the residual at hand. */
@@ -77,7 +79,7 @@ static void direction(pool *p)
         v.cells_per_metre[a] = p->m.per_metre[a];
         v.nodes[a] = p->m.grid[0].n[a];
     }
-    tobi_launch(&p->s.exec, sph_kernels_for(p->s.exec.isa, TOBI_SHAPE_WENDLAND)->sph_cg_direction, &v, 0,
+    tobi_launch(&p->sim.exec, sph_kernels_for(p->sim.exec.isa, TOBI_SHAPE_WENDLAND)->sph_cg_direction, &v, 0,
                 p->s.particles.count, NULL);
 }
 

@@ -57,8 +57,8 @@ static double draw(uint32_t *seed)
 /* Moves the particles by at most `way` along each axis, and the body by about as much; it turns, too. */
 static void move_all(tobi_world *world, double way, uint32_t *seed)
 {
-    tobi_simulation *s = &world->sim;
-    tobi_rigid *r = &s->bodies[0].rigid;
+    tobi_system *s = &world->system[0];
+    tobi_rigid *r = &s->sim->bodies[0].rigid;
     double q[4] = {1, 0, 0, way/0.05*draw(seed)}, length = 0;
     for (int64_t i = 0; i < s->particles.count; i++)
         for (int a = 0; a < s->box.dimension; a++) (&s->particles.position[i].x)[a] += way*draw(seed);
@@ -70,9 +70,9 @@ static void move_all(tobi_world *world, double way, uint32_t *seed)
 }
 
 /* Two particles in three remember the blade's cut: either side of it, up to 1.5 spacings from it. */
-static void mark_some(tobi_simulation *s, uint32_t *seed)
+static void mark_some(tobi_system *s, uint32_t *seed)
 {
-    s->bodies[0].rigid.cut = 1;
+    s->sim->bodies[0].rigid.cut = 1;
     for (int64_t i = 0; i < s->particles.count; i++) {
         const float side = draw(seed) < 0 ? -1 : 1, away = (float)(0.75*SPACING*(1 + draw(seed)));
         s->particles.cuts[i].c[0] = (tobi_float4){away, 0, 0, draw(seed) < 0.33 ? side : 0};
@@ -95,26 +95,27 @@ static int64_t compare(const tobi_contacts *a, const tobi_contacts *b)
 static int64_t walk(int dimension, int blade, double way)
 {
     tobi_world *world = make_world(dimension, blade);
-    tobi_simulation *s = &world->sim;
+    tobi_system *s = &world->system[0];
+    tobi_exec *x = &s->sim->exec;
     tobi_contacts fast = { 0 }, fresh = { 0 };
     const tobi_contact_step step = { .dt = 1e-4, .radius = 0.5*SPACING, .reach = 2*SPACING,
                                      .margin = way*SPACING, .rest_speed = 0.01, .dimension = dimension };
     uint32_t seed = 1;
     int64_t found = 0;
-    s->bodies[0].rigid.position[0] -= 0.18;            /* into the middle of the block */
-    if (blade) s->bodies[0].rigid.velocity[1] = -1;
-    if (blade == 2) s->bodies[0].edge->ahead[1] = -1;
+    s->sim->bodies[0].rigid.position[0] -= 0.18;            /* into the middle of the block */
+    if (blade) s->sim->bodies[0].rigid.velocity[1] = -1;
+    if (blade == 2) s->sim->bodies[0].edge->ahead[1] = -1;
     for (int n = 0; n < 60; n++) {
         if (n > 0) move_all(world, way*SPACING, &seed);
         if (blade && n%25 == 5) {                      /* five steps with nothing cut */
             mark_some(s, &seed);
             fast.marked = 1;
         }
-        assert_int_equal(tobi_contact_begin(&fast, &s->particles, n*way*SPACING, &s->exec, NULL), TOBI_OK);
-        assert_int_equal(tobi_contact_begin(&fresh, &s->particles, 0, &s->exec, NULL), TOBI_OK);
-        assert_int_equal(tobi_contact_find(&fast, &s->particles, &s->bodies[0], &step, &s->exec, NULL),
+        assert_int_equal(tobi_contact_begin(&fast, &s->particles, n*way*SPACING, x, NULL), TOBI_OK);
+        assert_int_equal(tobi_contact_begin(&fresh, &s->particles, 0, x, NULL), TOBI_OK);
+        assert_int_equal(tobi_contact_find(&fast, &s->particles, &s->sim->bodies[0], &step, x, NULL),
                          TOBI_OK);
-        assert_int_equal(tobi_contact_find(&fresh, &s->particles, &s->bodies[0], &step, &s->exec, NULL),
+        assert_int_equal(tobi_contact_find(&fresh, &s->particles, &s->sim->bodies[0], &step, x, NULL),
                          TOBI_OK);
         found += compare(&fast, &fresh);
     }

@@ -28,7 +28,7 @@ static double softness(const double size[3], const tobi_body_def *more, int dime
     OK(tobi_world_create(&def, NULL, &w, &err));
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
     OK(tobi_world_add_body(w, &b, &err));
-    double value = tobi_couple_softness(&w->sim);
+    double value = tobi_couple_softness(&w->system[0]);
     tobi_world_destroy(w);
     return value;
 }

@@ -103,7 +103,7 @@ static int find_piece(const tobi_particles *p, int64_t i, const cuts *c)
 /* What blades would have left: particles as near as they remember know the cuts. */
 static void cut(tobi_world *world, const cuts *c)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     const double band = (1.5*sqrt(c->dimension) + 0.25)*CELL;
     for (int64_t i = 0; i < p->count; i++) {
         double d[3];
@@ -123,7 +123,7 @@ static void cut(tobi_world *world, const cuts *c)
 /* Leaves one piece alone. */
 static void keep_piece(tobi_world *world, const cuts *c, int piece)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     int64_t kept = 0;
     for (int64_t i = 0; i < p->count; i++)
         if (find_piece(p, i, c) == piece) tobi_particles_copy(p, i, kept++);
@@ -134,7 +134,7 @@ static void keep_piece(tobi_world *world, const cuts *c, int piece)
    shear. */
 static void set_off(tobi_world *world, const cuts *c, double speed, double turn)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) {
         double d[3], u[3] = {0, 0, 0};
         const int piece = find_piece(p, i, c);
@@ -160,15 +160,15 @@ static double compare_alone(const cuts *c, int transfer, double *notched)
     static double together[MOST][3];
     tobi_world *block = make_block(c->dimension, transfer, 2, 0.3);
     double worst = 0;
-    int64_t seen = 0, count = block->sim.particles.count;
+    int64_t seen = 0, count = block->system[0].particles.count;
     cut(block, c);
     set_off(block, c, 0.5, 3);
     advance(block, 4e-3);
-    for (int64_t i = 0; i < count; i++)
-        memcpy(together[block->sim.particles.id[i]], &block->sim.particles.position[i].x, sizeof together[0]);
+    const tobi_particles *p = &block->system[0].particles;
+    for (int64_t i = 0; i < count; i++) memcpy(together[p->id[i]], &p->position[i].x, sizeof together[0]);
     for (int piece = 0; piece < 1 << c->count; piece++) {
         tobi_world *alone = make_block(c->dimension, transfer, 2, 0.3);
-        const tobi_particles *p = &alone->sim.particles;
+        const tobi_particles *p = &alone->system[0].particles;
         cut(alone, c);
         keep_piece(alone, c, piece);
         set_off(alone, c, 0.5, 3);
@@ -244,7 +244,7 @@ static void a_half_that_is_being_cut_is_one_piece(void **state)
 /* Sum of the velocities, and of their sizes, m/s. */
 static double find_momentum(const tobi_world *world, double sum[3])
 {
-    const tobi_particles *p = &world->sim.particles;
+    const tobi_particles *p = &world->system[0].particles;
     double size = 0;
     memset(sum, 0, 3*sizeof *sum);
     for (int64_t i = 0; i < p->count; i++) {
@@ -258,7 +258,7 @@ static double find_momentum(const tobi_world *world, double sum[3])
 /* m, by how much particles of different pieces are nearer than a spacing. */
 static double find_overlap(const tobi_world *world, const cuts *c)
 {
-    const tobi_particles *p = &world->sim.particles;
+    const tobi_particles *p = &world->system[0].particles;
     static int piece[MOST];
     double least = 1;
     for (int64_t i = 0; i < p->count; i++) piece[i] = find_piece(p, i, c);
@@ -275,7 +275,7 @@ static double find_overlap(const tobi_world *world, const cuts *c)
 /* Mean speed of the pieces away from each other, m/s. */
 static double find_parting(const tobi_world *world, const cuts *c)
 {
-    const tobi_particles *p = &world->sim.particles;
+    const tobi_particles *p = &world->system[0].particles;
     double sum = 0;
     for (int64_t i = 0; i < p->count; i++) {
         const double u[3] = {p->velocity[i].x, p->velocity[i].y, p->velocity[i].z};
@@ -324,7 +324,7 @@ static void pieces_press_each_other(void **state)
 static double slide(const cuts *c, double friction)
 {
     tobi_world *world = make_block(c->dimension, TOBI_APIC, 2, friction);
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     const double *n = c->normal[0], t[3] = {-n[1], n[0], 0};
     double sum = 0;
     cut(world, c);
@@ -404,7 +404,7 @@ static void a_damaged_row_is_refused(void **state)
     assert_non_null(row);
     row[TOBI_RECALL_ROW - 1] = 4;
     OK(tobi_world_step(world, 0, NULL, &err));
-    world->method->recall(world->method_state, row, 1);
+    world->system[0].method->recall(&world->system[0], row, 1);
     REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_DAMAGED, "the checkpoint remembers a cut at node 0");
     tobi_world_destroy(world);
 }

@@ -342,22 +342,22 @@ static tobi_world *make_halves(int dimension, int transfer, int which)
 static void set_off(tobi_world *world)
 {
     static double u[HALF_MOST][3];
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) {
         const double x = p->rest[i].x - 0.4, y = p->rest[i].y - 0.4, z = p->rest[i].z - 0.4;
         const double s = x > 0 ? 1 : -1;
         p->cuts[i].c[0] = (tobi_float4){ (float)x, 0, 0, (float)s };
-        double *to = u[world->sim.particles.id[i]];
+        double *to = u[world->system[0].particles.id[i]];
         to[0] = s*(0.5 + 8*fabs(x)) + 3*y;
         to[1] = s*4*x - 6*y + 0.2*s;
-        to[2] = world->sim.box.dimension == 3 ? 5*z - 4*y : 0;
+        to[2] = world->system[0].box.dimension == 3 ? 5*z - 4*y : 0;
     }
     OK(tobi_world_write(world, "velocity", u[0], p->count, &err));
 }
 
 static void read_positions(tobi_world *world, double (*out)[3])
 {
-    OK(tobi_world_read(world, TOBI_FLUID, "position", out[0], world->sim.particles.count, &err));
+    OK(tobi_world_read(world, TOBI_FLUID, "position", out[0], world->system[0].particles.count, &err));
 }
 
 /* Largest difference of positions, m, after the halves have moved by about 2 mm. */
@@ -375,11 +375,11 @@ static double compare_halves(int dimension, int transfer)
         set_off(half);
         OK(tobi_world_advance(half, 4e-3, NULL, &err));
         read_positions(half, alone);
-        for (int64_t i = 0; i < half->sim.particles.count; i++, at++)
+        for (int64_t i = 0; i < half->system[0].particles.count; i++, at++)
             for (int a = 0; a < 3; a++) worst = fmax(worst, fabs(both[at][a] - alone[i][a]));
         tobi_world_destroy(half);
     }
-    assert_int_equal(at, block->sim.particles.count);
+    assert_int_equal(at, block->system[0].particles.count);
     tobi_world_destroy(block);
     return worst;
 }
@@ -432,14 +432,14 @@ static void same_bits(void **state)
     OK(tobi_world_advance(later, 0.03, NULL, &err));
     assert_true(tobi_world_hash(one) == tobi_world_hash(four));
     assert_true(tobi_world_hash(one) == tobi_world_hash(later));
-    assert_memory_equal(one->sim.particles.cuts, later->sim.particles.cuts,
+    assert_memory_equal(one->system[0].particles.cuts, later->system[0].particles.cuts,
                         (size_t)count*sizeof(tobi_columns));
     tobi_error why = { 0 };
     double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);
     assert_non_null(nowhere);
     nowhere[0] = 1e9;
     OK(tobi_world_load(later, path, &err));
-    later->method->recall(later->method_state, nowhere, 1);
+    later->system[0].method->recall(&later->system[0], nowhere, 1);
     assert_int_equal(tobi_world_step(later, 0, NULL, &why), TOBI_DAMAGED);
     assert_non_null(strstr(why.text, "the checkpoint remembers a cut at node 1e+09"));
     assert_int_equal(one->sim.bodies[0].piece_count, 1);

@@ -60,7 +60,7 @@ static void what_fits_stays(void **state)
     const box pool = { { 0, 0, 0 }, { 0.1, 0.2, 0.07 } };
     tobi_world *world = make_world(3, (double[3]){ 0.1, 0.2, 0.2 }, &pool, 1);
     OK(tobi_world_start(world, &err));
-    assert_true(world->sim.smoothing.spacing == D);      /* to the bit */
+    assert_true(world->system[0].smoothing.spacing == D);      /* to the bit */
     assert_int_equal(tobi_world_count(world, TOBI_FLUID), 1400);
     assert_null(tobi_world_note(world, 0));
     tobi_world_destroy(world);
@@ -80,7 +80,7 @@ static void all_of_the_liquid_is_there(void **state)
     for (size_t k = 0; k < sizeof at/sizeof *at; k++) {
         tobi_world *world = make_world(at[k].dimension, (double[3]){ 0.6, 0.31, 0.2 }, &at[k].b, 1);
         assert_true(fabs(weigh(world, volume_of(at[k].dimension, &at[k].b)) - 1) < 1e-9);
-        const double d = world->sim.smoothing.spacing;
+        const double d = world->system[0].smoothing.spacing;
         assert_true(fabs(d/D - 1) < 0.05 && d != D);
         for (int a = 0; a < at[k].dimension; a++) {
             const double side = at[k].b.max[a] - at[k].b.min[a], layers = floor(side/d + 0.5);

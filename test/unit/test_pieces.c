@@ -36,7 +36,7 @@ static tobi_world *make_world(int dimension, int model, const int n[3], int thre
 /* Room for cuts, as scenes with blades have it; the world frees it. */
 static void remember_cuts(tobi_world *world)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     p->cuts = calloc((size_t)p->capacity + 16, sizeof *p->cuts);
     assert_non_null(p->cuts);
 }
@@ -54,12 +54,12 @@ static const tobi_pieces *find(tobi_world *world)
         volume += a->volume;
         particles += a->particles;
         assert_int_equal(a->fragment, k >= pieces->count);
-        assert_int_equal(a->fragment, a->particles < (world->sim.box.dimension == 3 ? 8 : 4));
+        assert_int_equal(a->fragment, a->particles < (world->system[0].box.dimension == 3 ? 8 : 4));
         if (k > 0 && a->fragment == a[-1].fragment)
             assert_true(a->mass < a[-1].mass || (a->mass == a[-1].mass && a->first_id > a[-1].first_id));
     }
     assert_true(mass == pieces->mass && volume == pieces->volume);      /* exactly */
-    assert_true(particles <= world->sim.particles.count);
+    assert_true(particles <= world->system[0].particles.count);
     return pieces;
 }
 
@@ -76,8 +76,8 @@ static void a_block_is_one_piece(void **state)
     free(cut);
     /* Squeezed by half: the volume is that of now. */
     for (int i = 0; i < 120; i++) {
-        world->sim.particles.strain[i].c[1].y = -0.5f;
-        world->sim.particles.position[i].y *= 0.5;
+        world->system[0].particles.strain[i].c[1].y = -0.5f;
+        world->system[0].particles.position[i].y *= 0.5;
     }
     p = find(world);
     assert_true(p->count == 1 && fabs(p->volume - 0.06) < 1e-7 && fabs(p->piece[0].centre[1] - 0.625) < 1e-6);
@@ -87,7 +87,7 @@ static void a_block_is_one_piece(void **state)
 /* A plane at x = `at` parts what lies within three spacings of it; the pieces still touch. */
 static void cut_at(tobi_world *world, double at, int number)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) {
         int k = 0;
         double x = p->position[i].x - at;
@@ -116,7 +116,7 @@ static void cuts_part(void **state)
         for (int k = 0; k < 4; k++) assert_true(fabs(p->piece[k].centre[0] - (1.25 + 0.5*k)) < 1e-6);
         double *piece = solid_read(world, "piece", 1), *side = solid_read(world, "cut_side", 1);
         double *x = solid_read(world, "position", 3);
-        for (int64_t i = 0; i < world->sim.particles.count; i++) {
+        for (int64_t i = 0; i < world->system[0].particles.count; i++) {
             assert_true(piece[i] == floor((x[3*i] - 1)/0.5));
             double latest = x[3*i] > 2.5 - 3*D ? (x[3*i] > 2.5 ? 3 : -3) : 0;
             if (latest != 0 && x[3*i] < 2.5 + 3*D) assert_true(side[i] == latest);
@@ -133,7 +133,7 @@ static void crumbs_are_told_apart(void **state)
 {
     (void)state;
     tobi_world *world = make_world(3, TOBI_NEO_HOOKEAN, (int[]){ 8, 8, 8 }, 1);
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     remember_cuts(world);
     double whole = find(world)->mass;
     for (int64_t i = 0; i < p->count; i++)
@@ -150,7 +150,7 @@ static void crumbs_are_told_apart(void **state)
 /* The right half goes 3 spacings away, or on top of the left one. */
 static void shift(tobi_world *world, double dx, double dy)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++)
         if (p->rest[i].x > 1.4f) {
             p->position[i].x += dx;
@@ -174,7 +174,7 @@ static void tearing_and_touching(void **state)
     }
     /* Stretched to twice its length it is whole, if its deformation says so. */
     tobi_world *world = make_world(3, TOBI_COROTATED, (int[]){ 8, 4, 4 }, 2);
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) p->position[i].x = 2*p->position[i].x;
     assert_int_equal(find(world)->count, 8);
     for (int64_t i = 0; i < p->count; i++) p->strain[i].c[0].x = 1;
@@ -239,7 +239,7 @@ static void flood(const tobi_particles *p, int64_t i, int number, int *of, int64
 static void check_cloud(int dimension, double size, double far, int threads)
 {
     tobi_world *world = make_world(dimension, TOBI_SAND, (int[]){ 15, 15, dimension == 3 ? 10 : 1 }, threads);
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     uint64_t seed = 7;
     remember_cuts(world);
     for (int64_t i = 0; i < p->count; i++) {
@@ -306,7 +306,7 @@ static void threads_do_not_matter(void **state)
 /* Slices of nine particles; the last is in crumbs of three and six. */
 static void slice_up(tobi_world *world)
 {
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     for (int64_t i = 0; i < p->count; i++) {
         int slice = (int)((p->position[i].x - 1)/D);
         p->cuts[i].c[0].w = (float)(slice + 1);
@@ -406,7 +406,8 @@ static const double cream[3] = { 250, 240, 200 }, red[3] = { 200, 30, 30 }, none
 static int count_core(tobi_world *world)
 {
     int count = 0;
-    for (int64_t i = 0; i < world->sim.particles.count; i++) count += world->sim.particles.rest[i].w == 1;
+    const tobi_particles *p = &world->system[0].particles;
+    for (int64_t i = 0; i < p->count; i++) count += p->rest[i].w == 1;
     return count;
 }
 
@@ -416,9 +417,10 @@ static void the_core_is_below_the_skin(void **state)
     tobi_fill_def fill = tobi_default_fill_def();
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, cream, 2), *plain = color_world(&fill, none, 2);
-    assert_true(world->sim.particles.count == 1000 && count_core(world) == 216 && count_core(plain) == 0);
+    assert_true(world->system[0].particles.count == 1000);
+    assert_true(count_core(world) == 216 && count_core(plain) == 0);
     for (int64_t i = 0; i < 1000; i++) {
-        const tobi_float4 *x = &world->sim.particles.rest[i];
+        const tobi_float4 *x = &world->system[0].particles.rest[i];
         int core = 1;
         for (int a = 0; a < 3; a++) core &= (&x->x)[a] > 1.175f && (&x->x)[a] < 1.825f;
         assert_int_equal(x->w == 1, core);
@@ -452,7 +454,7 @@ static void the_core_is_below_the_skin(void **state)
     fill.radius = 0;
     fill.mesh = cube;
     world = color_world(&fill, cream, 1);
-    assert_true(world->sim.particles.count == 1000 && count_core(world) == 216);
+    assert_true(world->system[0].particles.count == 1000 && count_core(world) == 216);
     tobi_world_destroy(world);
     unlink(cube);
 }
@@ -467,7 +469,7 @@ static char *picture(const double core[3], double gap, size_t *size)
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, core, 1);
     for (int64_t i = 0; i < 1000; i++)
-        if (world->sim.particles.rest[i].x > 1.5f) world->sim.particles.position[i].x += gap;
+        if (world->system[0].particles.rest[i].x > 1.5f) world->system[0].particles.position[i].x += gap;
     assert_non_null(mkdtemp(folder));
     output.frames = 1;
     OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));

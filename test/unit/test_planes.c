@@ -121,12 +121,12 @@ static void test_fill(void **state)
     assert_int_equal(memcmp(again->planes, scene->planes, 2*sizeof *scene->planes), 0);
     assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
     assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
-    assert_int_equal(w->sim.particles.count, 8*10*7);
+    assert_int_equal(w->system[0].particles.count, 8*10*7);
     assert_non_null(tobi_world_note(w, 0));
     print_message("%s\n", tobi_world_note(w, 0));
     assert_non_null(strstr(tobi_world_note(w, 0), "440 particles that would start behind planes were cut"));
-    for (int64_t i = 0; i < w->sim.particles.count; i++) {
-        tobi_double3 x = w->sim.particles.position[i];      /* from the domain's lower corner */
+    for (int64_t i = 0; i < w->system[0].particles.count; i++) {
+        tobi_double3 x = w->system[0].particles.position[i];      /* from the domain's lower corner */
         assert_true(x.z - 1 > -0.2 && x.x - 1 < 0.3);
     }
     tobi_world_destroy(w);

@@ -61,12 +61,12 @@ static tobi_world *make_world(int dimension, double x, course *course)
 }
 
 /* One step of dt = 1 s of particle and plate, without the fluid's own forces; x: where the particle is. */
-static void step(tobi_simulation *s, const double way[3], double x[3])
+static void step(tobi_system *s, const double way[3], double x[3])
 {
     tobi_error err;
     double speed = 0;
     s->dt = 1;
-    assert_int_equal(tobi_body_predict(&s->bodies[0], 0, s->dt, &speed, &err), TOBI_OK);
+    assert_int_equal(tobi_body_predict(&s->sim->bodies[0], 0, s->dt, &speed, &err), TOBI_OK);
     assert_int_equal(tobi_near_find(s, &err), TOBI_OK);
     double *p = &s->particles.position[0].x;
     float *v = &s->particles.velocity[0].x;
@@ -74,7 +74,7 @@ static void step(tobi_simulation *s, const double way[3], double x[3])
         p[a] += way[a];
         v[a] = (float)way[a];
     }
-    assert_int_equal(tobi_body_advance(&s->bodies[0], s->dt, s->dt, &err), TOBI_OK);
+    assert_int_equal(tobi_body_advance(&s->sim->bodies[0], s->dt, s->dt, &err), TOBI_OK);
     tobi_push_out(s);
     for (int a = 0; a < 3; a++) x[a] = p[a] - 0.2;
 }
@@ -88,7 +88,7 @@ static void stays_on_its_side(void **state)
             double way[3] = {-side*0.006, 0.001, 0}, x[3];
             course c = {.velocity = {side*0.003, 0, 0}};
             tobi_world *world = make_world(dimension, side*SPACING/2, &c);
-            tobi_simulation *s = &world->sim;
+            tobi_system *s = &world->system[0];
             step(s, way, x);
             double gap = side*(x[0] - side*0.003) - THICKNESS/2;
             assert_true(fabs(gap - 0.2*SPACING) < 1e-9);
@@ -96,7 +96,7 @@ static void stays_on_its_side(void **state)
             assert_true(fabs(s->particles.velocity[0].x - side*0.003) < 1e-8);   /* the plate's */
             assert_true(fabs(s->particles.velocity[0].y - 0.001) < 1e-8);
             double mass = s->smoothing.volume*1000;
-            assert_true(fabs(s->bodies[0].info.pressure_force[0] + side*mass*0.009) < 1e-6*mass);
+            assert_true(fabs(s->sim->bodies[0].info.pressure_force[0] + side*mass*0.009) < 1e-6*mass);
             tobi_world_destroy(world);
         }
 }
@@ -108,7 +108,7 @@ static void stays_ahead_of_a_turn(void **state)
     double way[3] = {0, 0, 0}, x[3];
     course c = {.spin = 0.5};
     tobi_world *world = make_world(3, 0.002, &c);
-    tobi_simulation *s = &world->sim;
+    tobi_system *s = &world->system[0];
     s->particles.position[0].z = 0.2 + 0.04;      /* the plate there moves 19 mm */
     step(s, way, x);
     assert_true(cos(0.5)*x[0] - sin(0.5)*x[2] > THICKNESS/2 + 0.19*SPACING);
@@ -123,7 +123,7 @@ static void goes_where_nothing_is(void **state)
     course c = {.spin = 0};
     for (int k = 0; k < 2; k++) {
         tobi_world *world = make_world(3, SPACING/2, &c);
-        tobi_simulation *s = &world->sim;
+        tobi_system *s = &world->system[0];
         double start = SPACING/2;
         if (k == 0) s->particles.position[0].y = 0.2 + (start = 0.0525);
         step(s, k ? away : past, x);

@@ -31,7 +31,7 @@ static image take_picture(double length)
     for (int a = 0; a < 3; a++) s.solid.color[a] = a == 0 ? 200 : 30;
     tobi_world *world = solid_world(&s);
     OK(tobi_world_start(world, &err));
-    tobi_particles *p = &world->sim.particles;
+    tobi_particles *p = &world->system[0].particles;
     p->cuts = calloc((size_t)p->capacity + 16, sizeof *p->cuts);       /* as scenes with blades have it */
     assert_true(p->cuts && p->count == 400);
     for (int64_t i = 0; i < p->count; i++)

@@ -59,11 +59,11 @@ static void the_level_falls_no_faster_than_the_liquid(void **state)
     tobi_still before;
     tobi_world *world = make_pool(0.1, 0);
     OK(tobi_world_step(world, 0, NULL, &err));
-    level = world->sim.still.level + 0.5*D;
+    level = world->system[0].still.level + 0.5*D;
     const double start = level;
-    for (int k = 1; k <= 3; k++) sph_still_move(&world->sim, &before, void_below, speed, &level);
+    for (int k = 1; k <= 3; k++) sph_still_move(&world->system[0], &before, void_below, speed, &level);
     assert_true(fabs(level - start - 3*speed*world->sim.dt) < 1e-9);
-    sph_still_move(&world->sim, &before, start, speed, &level);
+    sph_still_move(&world->system[0], &before, start, speed, &level);
     assert_true(level > start);                                                    /* up slowly */
     tobi_world_destroy(world);
 }

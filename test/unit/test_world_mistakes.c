@@ -115,9 +115,9 @@ static void fluids(void **state)
     REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_UNSUPPORTED,
             "fluid 'oil' differs from 'fluid': a density in kg/m3 of 800, there 1000; ");
     fluid.density = 1000;
-    REFUSED((world->sim.fluid_count = TOBI_FLUID_LIMIT,
+    REFUSED((world->system[0].fluid_count = TOBI_FLUID_LIMIT,
              tobi_world_add_fluid(world, &fluid, NULL, 0, &err)), TOBI_UNSUPPORTED, "more than 8 fluids");
-    world->sim.fluid_count = 1;
+    world->system[0].fluid_count = 1;
     tobi_body_def body = tobi_default_body_def();
     assert_int_equal(tobi_world_start(world, NULL), TOBI_OK);
     REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_INVALID,
