@@ -46,6 +46,7 @@ typedef struct tobi_system {
     double start_speed;             /* m/s, fastest particle or free body at the start       */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
+    int32_t *row_of;                /* owned: rows in id order, for reading; see world/read.c */
 } tobi_system;
 
 enum { TOBI_LIQUIDS = -1 };            /* in place of the number of a solid                      */

@@ -5,7 +5,8 @@
 
 /* One region of one fluid or solid; its mesh is owned. */
 typedef struct tobi_region {
-    int owner;                     /* number of the fluid or solid */
+    int system;                    /* number of the system that computes it */
+    int owner;                     /* number of the fluid or solid there */
     int number;                    /* of the region among those of its owner */
     double lower[3], upper[3];     /* m, world; the box, or the mesh's box */
     tobi_mesh shape;               /* placed and oriented; without triangles: the box */

@@ -15,7 +15,11 @@ static const double TOLD = 0.01;    /* of the volume of one fluid */
 enum { TRIALS = 100,                /* spacings above and below the wish */
        THICK = 10 };                /* layers: fewer are stretched as they must and have no say */
 
-static int is_box(const tobi_region *r) { return !r->shape.triangle_count && !(r->radius > 0); }
+/* A box of liquid, which the first system has. */
+static int is_box(const tobi_region *r)
+{
+    return r->system == 0 && !r->shape.triangle_count && !(r->radius > 0);
+}
 
 /* The spacing at which the layers that are counted at `trial` hold the boxes' volume, and how they are
    stretched then. 0 without boxes, or if that spacing asks for other layers. */

@@ -167,32 +167,33 @@ static void count_pieces(const tobi_world *w, int64_t first, int64_t end, uint8_
 static tobi_status note_region(tobi_world *w, const tobi_region *r, const tally *sum, int parts,
                                tobi_error *err)
 {
-    const char *unit = w->system[0].box.dimension == 3 ? "kg" : "kg/m";
+    const char *unit = w->system[r->system].box.dimension == 3 ? "kg" : "kg/m";
     char text[500], debris[80] = "", why[200];
     double fits = 0, finest = 0;
-    if (r->shape.triangle_count) TOBI_TRY(find_spacing(&w->system[0], r, parts, &fits, &finest, err));
+    if (r->shape.triangle_count) TOBI_TRY(find_spacing(&w->system[r->system], r, parts, &fits, &finest, err));
     if (sum->fragments)
         snprintf(debris, sizeof debris, " and %d of debris (%.3g %s)", sum->fragments, sum->debris, unit);
     if (fits > 0)
         snprintf(why, sizeof why, "parts of its mesh are thinner than the spacing, %.4g m; at %.4g m it is "
-                 "whole", w->system[0].smoothing.spacing, fits);
+                 "whole", w->system[r->system].smoothing.spacing, fits);
     else if (finest > 0)
         snprintf(why, sizeof why, "parts of its mesh are far thinner than the spacing, %.4g m, or do not "
-                 "touch; at %.4g m it is not whole either", w->system[0].smoothing.spacing, finest);
+                 "touch; at %.4g m it is not whole either", w->system[r->system].smoothing.spacing, finest);
     else
         snprintf(why, sizeof why, "parts of it are thinner than the spacing, %.4g m, or bodies, planes and "
-                 "sides part it", w->system[0].smoothing.spacing);
+                 "sides part it", w->system[r->system].smoothing.spacing);
     snprintf(text, sizeof text, "fill[%d] starts in %d pieces (%s %s)%s: %s\n", r->number, sum->pieces,
              sum->masses, unit, debris, why);
-    return tobi_world_add_notes(w, "solid", w->system[0].solids[r->owner].name, text, err);
+    return tobi_world_add_notes(w, "solid", w->system[r->system].solids[r->owner].name, text, err);
 }
 
 tobi_status tobi_world_note_pieces(tobi_world *w, tobi_error *err)
 {
+    const tobi_system *s = tobi_world_solids(w);
     const tobi_pieces *found;
     int any = 0;
-    for (int k = 0; k < w->system[0].solid_count; k++)
-        any |= tobi_solid_uses(w->system[0].solids[k].def.model, "cut_friction");
+    for (int k = 0; s && k < s->solid_count; k++)
+        any |= tobi_solid_uses(s->solids[k].def.model, "cut_friction");
     if (!any) return TOBI_OK;
     TOBI_TRY(tobi_world_pieces(w, &found, err));
     uint8_t *seen = malloc((size_t)(found->count + found->fragments) + 1);
@@ -201,9 +202,10 @@ tobi_status tobi_world_note_pieces(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->region_count && status == TOBI_OK; k++) {
         const tobi_region *r = &w->regions[k];
         tally sum;
+        if (&w->system[r->system] != s) continue;
         count_pieces(w, first, first + r->placed, seen, &sum);
         first += r->placed;
-        if (!tobi_solid_uses(w->system[0].solids[r->owner].def.model, "cut_friction") ||
+        if (!tobi_solid_uses(s->solids[r->owner].def.model, "cut_friction") ||
             sum.pieces + sum.fragments < 2) continue;
         const int parts = r->shape.triangle_count ? count_parts(&r->shape) : 1;
         if (sum.pieces + sum.fragments > parts) status = note_region(w, r, &sum, parts, err);

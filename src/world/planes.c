@@ -24,7 +24,8 @@ tobi_status tobi_world_add_plane(tobi_world *w, const tobi_plane_def *def, tobi_
     TOBI_TRY(tobi_param_check(&tobi_plane_table, def, err));
     if (!w->system[0].method->planes)
         return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "%s knows no planes; allowed are sides of the domain and bodies", w->system[0].method->name);
+                         "%s knows no planes; allowed are sides of the domain and bodies",
+                         w->system[0].method->name);
     TOBI_TRY(check_place(&s->box, def, err));
     for (int a = 0; a < s->box.dimension; a++) size = hypot(size, def->normal[a]);
     if (s->box.dimension == 2 && def->normal[2] != 0)

@@ -9,7 +9,8 @@
 
 /* owner: which methods have it; bodies: whether their particles have it too. Of 6: xx, yy, zz, xy, yz, zx, as
    ParaView names them; of 9: by rows. */
-static const struct { const char *name; int components; const char *unit; int owner, bodies; } fields[] = {
+typedef struct known_field { const char *name; int components; const char *unit; int owner, bodies; } known_field;
+static const known_field fields[] = {
     {"position", 3, "m", TOBI_ALL, 1},        {"velocity", 3, "m/s", TOBI_ALL, 1},
     {"pressure", 1, "Pa", TOBI_ALL, 0},       {"density", 1, "kg/m3", TOBI_ALL, 1},
     {"object_id", 1, "1", TOBI_ALL, 1},       {"particle_id", 1, "1", TOBI_ALL, 1},
@@ -45,38 +46,44 @@ int tobi_world_bodies_have(int field) { return fields[field].bodies; }
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
     if (!w) return 0;
-    if (set == TOBI_FLUID) return w->system[0].particles.count;
     int64_t n = 0;
+    for (int k = 0; set == TOBI_FLUID && k < w->system_count; k++) n += w->system[k].particles.count;
+    if (set == TOBI_FLUID) return n;
     for (int k = 0; k < w->sim.body_count; k++) n += w->sim.bodies[k].particle_count;
     return n;
 }
 
 /* Ids go up to the capacity; those of particles that have left are passed over. */
-static void order_rows(tobi_world *w)
+static void order_rows(tobi_system *s)
 {
-    const tobi_particles *p = &w->system[0].particles;
+    const tobi_particles *p = &s->particles;
     int64_t n = 0;
-    if (p->count < p->capacity) memset(w->row_of, -1, (size_t)p->capacity*sizeof *w->row_of);
-    for (int64_t i = 0; i < p->count; i++) w->row_of[p->id[i]] = (int32_t)i;
+    if (p->count < p->capacity) memset(s->row_of, -1, (size_t)p->capacity*sizeof *s->row_of);
+    for (int64_t i = 0; i < p->count; i++) s->row_of[p->id[i]] = (int32_t)i;
     if (p->count == p->capacity) return;
     for (int64_t id = 0; id < p->capacity; id++)
-        if (w->row_of[id] >= 0) w->row_of[n++] = w->row_of[id];
+        if (s->row_of[id] >= 0) s->row_of[n++] = s->row_of[id];
+}
+
+static tobi_status refresh_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    const tobi_step_info kept = s->info;
+    if (!w->diverged && s->method->refresh) TOBI_TRY(s->method->refresh(s, err));
+    const double mean = s->info.density_error_mean, max = s->info.density_error_max;
+    s->info = kept;
+    s->info.density_error_mean = mean;
+    s->info.density_error_max = max;
+    order_rows(s);
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
 {
-    tobi_system *s = &w->system[0];
     TOBI_TRY(tobi_world_start(w, err));
     if (w->fresh) return TOBI_OK;
     tobi_pieces_free(&w->pieces);
-    tobi_step_info kept = s->info;
-    if (!w->diverged && w->system[0].method->refresh) TOBI_TRY(w->system[0].method->refresh(s, err));
-    double mean = s->info.density_error_mean, max = s->info.density_error_max;
-    s->info = kept;
-    s->info.density_error_mean = mean;
-    s->info.density_error_max = max;
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(refresh_system(w, &w->system[k], err));
     tobi_step_sum_up(w);
-    order_rows(w);
     w->fresh = 1;
     return TOBI_OK;
 }
@@ -100,8 +107,6 @@ static int read_plain(const tobi_system *s, const char *field, int64_t i, double
     } else if (!strcmp(field, "velocity")) {
         const tobi_float4 *v = &p->velocity[i];
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
-    } else if (!strcmp(field, "particle_id")) {
-        out[0] = (double)p->id[i];
     } else if (!strcmp(field, "object_id")) {
         out[0] = 0;      /* of every fluid and solid; bodies count from 1 */
     } else if (!strcmp(field, "cut_side")) {
@@ -111,9 +116,9 @@ static int read_plain(const tobi_system *s, const char *field, int64_t i, double
 }
 
 /* 0 where no mesh has any. */
-static void read_texture(const tobi_world *w, int64_t i, double *out)
+static void read_texture(const tobi_world *w, const tobi_system *s, int64_t i, double *out)
 {
-    for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[w->system[0].particles.id[i]][c] : 0;
+    for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[s->particles.id[i]][c] : 0;
 }
 
 static void read_fluid(const tobi_system *s, const char *field, int64_t i, double *out)
@@ -152,7 +157,7 @@ static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], 
 static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer,
                                tobi_error *err)
 {
-    int64_t row = 0, id = w->system[0].particles.capacity;
+    int64_t row = 0, id = tobi_world_first_id(w, &w->system[w->system_count]);
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
         double *out = buffer + row*components;
@@ -171,6 +176,35 @@ static tobi_status read_bodies(tobi_world *w, const char *field, int components,
     return TOBI_OK;
 }
 
+static int has_field(const tobi_world *w, int owner)
+{
+    int has = 0;
+    for (int k = 0; k < w->system_count; k++) has |= owner & (TOBI_ALL | w->system[k].method->fields);
+    return has;
+}
+
+/* One particle; a field that its system does not have is 0. */
+static void read_particle(const tobi_world *w, const tobi_system *s, const known_field *f, int64_t i, double *out)
+{
+    if (!strcmp(f->name, "particle_id")) out[0] = (double)(tobi_world_first_id(w, s) + s->particles.id[i]);
+    else if (!strcmp(f->name, "material")) out[0] = tobi_world_first_material(w, s) + s->particles.fluid[i];
+    else if (!(f->owner & (TOBI_ALL | s->method->fields))) memset(out, 0, (size_t)f->components*sizeof *out);
+    else if (!strcmp(f->name, "piece")) out[0] = w->pieces.of[i];
+    else if (!strcmp(f->name, "texture_coordinates")) read_texture(w, s, i, out);
+    else if (read_plain(s, f->name, i, out)) return;
+    else if (s->method->read) s->method->read(s, f->name, i, out);
+    else read_fluid(s, f->name, i, out);
+}
+
+static void read_system(const tobi_world *w, tobi_system *s, const known_field *f, double *buffer)
+{
+    const int derived = !strcmp(f->name, "acceleration") || !strcmp(f->name, "vorticity");
+    if (!w->diverged && derived && s->method->derive) s->method->derive(s, f->name);
+    #pragma omp parallel for num_threads(w->sim.exec.threads)
+    for (int64_t r = 0; r < s->particles.count; r++)
+        read_particle(w, s, f, s->row_of[r], buffer + r*f->components);
+}
+
 tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer,
                             int64_t count, tobi_error *err)
 {
@@ -183,7 +217,7 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
                          "TOBI_BODIES", (int)set);
     while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
-    if (!(fields[k].owner & (TOBI_ALL | w->system[0].method->fields)))
+    if (!has_field(w, fields[k].owner))
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
     if (set == TOBI_BODIES && !fields[k].bodies)
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
@@ -195,22 +229,11 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);
     TOBI_TRY(tobi_world_refresh(w, err));
     const tobi_pieces *unused;
-    const int piece = !strcmp(field, "piece");
-    if (piece) TOBI_TRY(tobi_world_pieces(w, &unused, err));
-    int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
-    if (!w->diverged && derived && w->system[0].method->derive)
-        w->system[0].method->derive(&w->system[0], field);
-    int textures = !strcmp(field, "texture_coordinates");
-    if (textures) TOBI_TRY(tobi_world_find_texture(w, err));
-    #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t r = 0; r < w->system[0].particles.count; r++) {
-        double *out = buffer + r*components;
-        if (piece) out[0] = w->pieces.of[w->row_of[r]];
-        else if (textures) read_texture(w, w->row_of[r], out);
-        if (piece || textures) continue;
-        if (read_plain(&w->system[0], field, w->row_of[r], out)) continue;
-        if (w->system[0].method->read) w->system[0].method->read(&w->system[0], field, w->row_of[r], out);
-        else read_fluid(&w->system[0], field, w->row_of[r], out);
+    if (!strcmp(field, "piece")) TOBI_TRY(tobi_world_pieces(w, &unused, err));
+    if (!strcmp(field, "texture_coordinates")) TOBI_TRY(tobi_world_find_texture(w, err));
+    for (int n = 0; n < w->system_count; n++) {
+        read_system(w, &w->system[n], &fields[k], buffer);
+        buffer += w->system[n].particles.count*components;
     }
     return TOBI_OK;
 }
@@ -227,6 +250,22 @@ static tobi_status check_values(const char *field, const double *v, int64_t coun
     return TOBI_OK;
 }
 
+static void write_velocity(tobi_system *s, const double *v)
+{
+    double fastest = 0, *memory;
+    for (int64_t r = 0; r < s->particles.count; r++, v += 3) {
+        s->particles.velocity[s->row_of[r]] = (tobi_float4){(float)v[0], (float)v[1], (float)v[2], 0};
+        fastest = fmax(fastest, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    }
+    s->method->memory(s, &memory);
+    memory[0] = s->start_speed = sqrt(fastest);
+}
+
+static void write_pressure(tobi_system *s, const double *pressure)
+{
+    for (int64_t r = 0; r < s->particles.count; r++) s->particles.pressure[s->row_of[r]] = (float)pressure[r];
+}
+
 tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count,
                              tobi_error *err)
 {
@@ -238,27 +277,17 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
         return tobi_fail(err, TOBI_INVALID,
                          "field '%s' cannot be set; allowed are velocity and pressure", field);
     TOBI_TRY(tobi_world_refresh(w, err));
-    tobi_particles *p = &w->system[0].particles;
-    if (!velocity && !p->pressure)
+    if (!velocity && !tobi_world_fluids(w))
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
-    if (count != p->count)
+    if (count != tobi_world_count(w, TOBI_FLUID))
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field,
-                         (long long)p->count, (long long)count);
-    double fastest = 0;
+                         (long long)tobi_world_count(w, TOBI_FLUID), (long long)count);
     TOBI_TRY(check_values(field, buffer, count, velocity ? 3 : 1, err));
-    for (int64_t r = 0; r < count; r++) {
-        const double *v = buffer + r*(velocity ? 3 : 1);
-        int64_t i = w->row_of[r];
-        if (!velocity) {
-            p->pressure[i] = (float)v[0];
-            continue;
-        }
-        p->velocity[i] = (tobi_float4){(float)v[0], (float)v[1], (float)v[2], 0};
-        fastest = fmax(fastest, v[0]*v[0] + v[1]*v[1] + v[2]*v[2]);
+    for (int k = 0; k < w->system_count; k++) {
+        if (velocity) write_velocity(&w->system[k], buffer);
+        else if (w->system[k].particles.pressure) write_pressure(&w->system[k], buffer);
+        buffer += w->system[k].particles.count*(velocity ? 3 : 1);
     }
-    double *memory;
-    w->system[0].method->memory(&w->system[0], &memory);
-    if (velocity) memory[0] = w->system[0].start_speed = sqrt(fastest);
     w->fresh = 0;
     return TOBI_OK;
 }
@@ -293,12 +322,12 @@ tobi_status tobi_world_grid(tobi_world *w, const tobi_grid **grid, tobi_error *e
 {
     TOBI_NEED_WORLD(w);
     TOBI_NEED(grid, "where the grid goes");
-    tobi_system *s = &w->system[0];
+    tobi_system *s = tobi_world_solids(w);
     *grid = &w->grid;
-    if (!w->system[0].method->nodes) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->system[0].method->name);
+    if (!s) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->system[0].method->name);
     TOBI_TRY(tobi_world_start(w, err));
     tobi_world_free_grid(w);
-    TOBI_TRY(w->system[0].method->nodes(s, &w->grid, err));
+    TOBI_TRY(s->method->nodes(s, &w->grid, err));
     for (int64_t k = 0; k < w->grid.count; k++)
         for (int a = 0; a < 3; a++) w->grid.position[k][a] += s->box.lower[a];
     return TOBI_OK;
@@ -311,19 +340,25 @@ static uint64_t mix(uint64_t h, const void *data, size_t bytes)
     return h;
 }
 
-uint64_t tobi_world_hash(tobi_world *w)
+static uint64_t mix_system(uint64_t h, const tobi_system *s)
 {
-    uint64_t h = 14695981039346656037u;
-    if (!w || tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
-    const tobi_particles *p = &w->system[0].particles;
-    h = mix(h, &w->sim.time, sizeof w->sim.time);
+    const tobi_particles *p = &s->particles;
     for (int64_t r = 0; r < p->count; r++) {
-        int64_t i = w->row_of[r];
+        int64_t i = s->row_of[r];
         h = mix(h, &p->position[i], sizeof p->position[i]);
         h = mix(h, &p->velocity[i], 3*sizeof(float));
         if (p->pressure) h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
         if (p->strain) h = mix(h, &p->strain[i], sizeof p->strain[i]);
     }
+    return h;
+}
+
+uint64_t tobi_world_hash(tobi_world *w)
+{
+    uint64_t h = 14695981039346656037u;
+    if (!w || tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
+    h = mix(h, &w->sim.time, sizeof w->sim.time);
+    for (int k = 0; k < w->system_count; k++) h = mix_system(h, &w->system[k]);
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_rigid *r = &w->sim.bodies[k].rigid;
         if (r->kind != TOBI_PRESCRIBED) h = mix(h, TOBI_RIGID_STATE(r), TOBI_RIGID_DOUBLES*sizeof(double));

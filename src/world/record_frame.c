@@ -62,11 +62,15 @@ static tobi_status read_fluid(tobi_run *run, const tobi_point_set *fluid, tobi_d
 /* A fluid or solid as pictures see it. */
 typedef struct material { const double *color, *core; int visible, liquid; } material;
 
-static material material_at(const tobi_system *s, int k)
+/* By its number among those of all systems. */
+static material material_at(const tobi_world *w, int m)
 {
+    const tobi_system *s = w->system;
+    while (m >= tobi_world_first_material(w, s + 1)) s++;
+    m -= tobi_world_first_material(w, s);
     if (!s->solid_count)
-        return (material){ s->fluid[k].color, s->fluid[k].color, s->fluid[k].visible, 1 };
-    const tobi_solid_def *def = &s->solids[k].def;
+        return (material){ s->fluid[m].color, s->fluid[m].color, s->fluid[m].visible, 1 };
+    const tobi_solid_def *def = &s->solids[m].def;
     const double *core = def->core_color[0] < 0 ? def->color : def->core_color;
     return (material){ def->color, core, def->visible, def->model == TOBI_LIQUID };
 }
@@ -111,13 +115,13 @@ static int can_part(const tobi_system *s, int solid)
 }
 
 /* The palette, if any material has a colour: of each material skin, core and face, each in all tints. */
-static tobi_status make_palette(const tobi_system *s, int materials, tobi_drawing *d, tobi_error *err)
+static tobi_status make_palette(const tobi_world *w, int materials, tobi_drawing *d, tobi_error *err)
 {
     d->colors = materials * PARTS * TINTS;
     d->palette = malloc(((size_t)d->colors + 1) * sizeof *d->palette);
     if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int c = 0; c < d->colors; c++) {
-        const material look = material_at(s, c / (PARTS * TINTS));
+        const material look = material_at(w, c / (PARTS * TINTS));
         d->has_palette |= look.core[0] >= 0;
         find_color(&look, c % PARTS, c / PARTS % TINTS, d->palette[c]);
     }
@@ -137,7 +141,8 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
 {
     const tobi_pieces *found;
     int any = 0, taken[TINTS] = { 0 };
-    for (int k = 0; k < run->world->system[0].solid_count; k++) any |= can_part(&run->world->system[0], k);
+    const tobi_system *s = tobi_world_solids(run->world);
+    for (int k = 0; s && k < s->solid_count; k++) any |= can_part(s, k);
     if (!any || !d->has_palette) return TOBI_OK;
     TOBI_TRY(tobi_world_pieces(run->world, &found, err));
     d->tint = calloc((size_t)(found->count + found->fragments) + 1, sizeof *d->tint);
@@ -148,7 +153,7 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
         const tobi_piece *p = order[k];
         const int first = k == 0 || p->solid != order[k - 1]->solid;
         if (first) memset(taken, 0, sizeof taken);
-        if (first || !can_part(&run->world->system[0], p->solid)) continue;
+        if (first || !can_part(s, p->solid)) continue;
         int tint = 1 + (int)((uint64_t)p->first_id * 0x9e3779b97f4a7c15u >> 33) % (TINTS - 1);
         for (int n = 0; n < TINTS && taken[tint]; n++) tint = tint % (TINTS - 1) + 1;
         taken[tint] = 1;
@@ -170,33 +175,43 @@ static int find_part(const tobi_system *s, int64_t row)
     return p->rest && p->rest[row].w > 0 ? CORE : SKIN;
 }
 
+/* The particles of a system, which begin at *from, to those that are shown, of which there are d->count. */
+static void color_system(const tobi_world *w, const tobi_system *s, int64_t *from, tobi_drawing *d)
+{
+    const int pieces = d->tint && s->solid_count > 0;
+    for (int64_t n = 0; n < s->particles.count; n++) {
+        const int64_t i = (*from)++, to = d->count, row = s->row_of[n];      /* rows are fresh: just read */
+        const int m = tobi_world_first_material(w, s) + s->particles.fluid[row];
+        const int piece = pieces ? w->pieces.of[row] : -1;
+        const material look = material_at(w, m);
+        if (!look.visible) continue;
+        memmove(d->positions + 3 * to, d->positions + 3 * i, 3 * sizeof *d->positions);
+        if (d->opaque) d->opaque[to] = !look.liquid;
+        const int color = (m * TINTS + (piece >= 0 ? d->tint[piece] : 0)) * PARTS + find_part(s, row);
+        d->values[to] = d->has_palette ? (float)color : d->values[i];
+        d->count++;
+    }
+}
+
 /* Materials with colours: the value becomes the colour's number; hidden materials are left out. */
 static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *err)
 {
-    const tobi_system *s = &run->world->system[0];
-    int hidden = 0, solids = 0, materials = s->solid_count ? s->solid_count : s->fluid_count;
-    TOBI_TRY(make_palette(s, materials, d, err));
+    const tobi_world *w = run->world;
+    const int materials = tobi_world_first_material(w, w->system + w->system_count);
+    int hidden = 0, solids = 0;
+    TOBI_TRY(make_palette(w, materials, d, err));
     TOBI_TRY(choose_tints(run, d, err));
     for (int m = 0; m < materials; m++) {
-        const material look = material_at(s, m);
+        const material look = material_at(w, m);
         hidden |= !look.visible;
         solids |= !look.liquid;
     }
     if (!hidden && !d->has_palette && !solids) return TOBI_OK;
     if (solids) d->opaque = malloc((size_t)d->count + 1);
     if (solids && !d->opaque) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    int64_t n = d->count, kept = 0;
-    for (int64_t i = 0; i < n; i++) {
-        const int32_t row = run->world->row_of[i];              /* rows are fresh: just read */
-        const int m = s->particles.fluid[row], piece = d->tint ? run->world->pieces.of[row] : -1;
-        const material look = material_at(s, m);
-        if (!look.visible) continue;
-        memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
-        if (d->opaque) d->opaque[kept] = !look.liquid;
-        const int color = (m * TINTS + (piece >= 0 ? d->tint[piece] : 0)) * PARTS + find_part(s, row);
-        d->values[kept++] = d->has_palette ? (float)color : d->values[i];
-    }
-    d->count = kept;
+    int64_t from = 0;
+    d->count = 0;
+    for (int k = 0; k < w->system_count; k++) color_system(w, &w->system[k], &from, d);
     return TOBI_OK;
 }
 

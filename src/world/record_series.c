@@ -38,12 +38,14 @@ static tobi_status add_field(tobi_run *run, const char *name, size_t length, tob
 {
     const char *known[TOBI_WORLD_FIELDS];
     tobi_record_field field = { 0 };
-    int has = 0, count = tobi_world_list_fields(run->world->system[0].method->name, known);
-    if (find_field(name, length, &field) == TOBI_OK)
-        for (int k = 0; k < count; k++) has |= known[k] == field.name;
+    const tobi_world *w = run->world;
+    int has = 0;
+    for (int n = 0; n < w->system_count && find_field(name, length, &field) == TOBI_OK; n++)
+        for (int k = tobi_world_list_fields(w->system[n].method->name, known) - 1; k >= 0; k--)
+            has |= known[k] == field.name;
     if (!has)
         return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s' of %s",
-                         (int)length, name, run->world->system[0].method->name);
+                         (int)length, name, w->system[0].method->name);
     bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
     for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
     if (again) return TOBI_OK;
@@ -58,7 +60,7 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
     static const char *const usual[] = { "velocity", "pressure", "density", "object_id", "particle_id",
                                          "von_mises", "material", "piece", "cut_side" };
     const tobi_simulation *s = &run->world->sim;
-    int count = run->world->system[0].method->fields & TOBI_MPM ? 7 : 5;
+    int count = tobi_world_solids(run->world) ? 7 : 5;
     for (int k = 0; k < s->body_count && count == 7; k++)
         if (s->bodies[k].blade) count = 9;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
@@ -69,8 +71,9 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
 {
     run->field_count = 0;
-    if (run->output.grid && !run->world->system[0].method->nodes)
-        return tobi_fail(err, TOBI_INVALID, "output.grid: %s has no grid", run->world->system[0].method->name);
+    if (run->output.grid && !tobi_world_solids(run->world))
+        return tobi_fail(err, TOBI_INVALID, "output.grid: %s has no grid",
+                         run->world->system[0].method->name);
     for (const char *p = run->output.fields ? run->output.fields : ""; *p;) {
         p += strspn(p, ", ");
         size_t length = strcspn(p, ", ");

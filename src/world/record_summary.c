@@ -53,14 +53,15 @@ static json_t *sum_up(const tobi_pieces *p, int64_t begin, int64_t end)
 static tobi_status add_pieces(const tobi_run *run, json_t *json, tobi_error *err)
 {
     const tobi_pieces *p;
-    if (run->world->system[0].solid_count == 0) return TOBI_OK;
+    const tobi_system *s = tobi_world_solids(run->world);
+    if (!s || s->solid_count == 0) return TOBI_OK;
     TOBI_TRY(tobi_world_pieces(run->world, &p, err));
     int64_t listed = p->count < PIECES_LISTED ? p->count : PIECES_LISTED;
     json_t *list = json_array();
     for (int64_t k = 0; k < listed; k++) {
         const tobi_piece *a = &p->piece[k];
         json_array_append_new(list, json_pack("{s:s, s:I, s:o, s:o, s:[o,o,o]}",
-            "solid", run->world->system[0].solids[a->solid].name, "particles", (json_int_t)a->particles,
+            "solid", s->solids[a->solid].name, "particles", (json_int_t)a->particles,
             "mass", number(a->mass), "volume", number(a->volume),
             "centre", number(a->centre[0]), number(a->centre[1]), number(a->centre[2])));
     }

@@ -244,7 +244,7 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     const tobi_step_info *i = tobi_world_info(run->world);
     const tobi_tally *s = &run->since;
     const tobi_pieces none = { 0 }, *pieces = &none;
-    if (run->world->system[0].solid_count > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
+    if (tobi_world_solid_count(run->world) > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
     TOBI_TRY(take_bodies(run, &snapshot->bodies, err));
 #define H(column, kind, value) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)

@@ -34,10 +34,9 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
 }
 
 /* `name`: fluid or solid, in messages. */
-static tobi_status measure_region(const tobi_world *w, const char *name, const tobi_fill_def *f,
+static tobi_status measure_region(const tobi_system *s, const char *name, const tobi_fill_def *f,
                                   tobi_region *r, tobi_error *err)
 {
-    const tobi_system *s = &w->system[0];
     int flat = s->box.dimension == 2;
     memcpy(r->lower, f->box_min, sizeof r->lower);
     memcpy(r->upper, f->box_max, sizeof r->upper);
@@ -73,8 +72,8 @@ static tobi_status measure_region(const tobi_world *w, const char *name, const t
     return TOBI_OK;
 }
 
-/* Appends the regions of fluid or solid number `owner`; *volume is their sum, m3 (2-D: m2). */
-static tobi_status add_regions(tobi_world *w, const char *kind, const char *name, int owner,
+/* Appends the regions of the next fluid or solid of a system; *volume is their sum, m3 (2-D: m2). */
+static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *kind, const char *name,
                                const tobi_fill_def *fills, int count, double *volume, tobi_error *err)
 {
     tobi_region *more = realloc(w->regions, (size_t)(w->region_count + count + 1)*sizeof *more);
@@ -87,9 +86,10 @@ static tobi_status add_regions(tobi_world *w, const char *kind, const char *name
     for (int k = 0; k < count; k++) {
         tobi_region *r = &w->regions[w->region_count];
         memset(r, 0, sizeof *r);
-        r->owner = owner;
+        r->system = (int)(s - w->system);
+        r->owner = s->fluid_count + s->solid_count;
         r->number = k;
-        tobi_status status = measure_region(w, whose, &fills[k], r, err);
+        tobi_status status = measure_region(s, whose, &fills[k], r, err);
         w->region_count++;
         *volume += r->volume;
         if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
@@ -144,7 +144,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     TOBI_TRY(note_support(w, def, err));
     double volume;
-    TOBI_TRY(add_regions(w, "fluid", def->name, s->fluid_count, fills, fill_count, &volume, err));
+    TOBI_TRY(add_regions(w, s, "fluid", def->name, fills, fill_count, &volume, err));
     tobi_fluid *f = &s->fluid[s->fluid_count++];
     snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
     f->density = def->density;
@@ -161,25 +161,23 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(check_fills(fills, fill_count, err));
-    tobi_system *s = &w->system[0];
     double volume;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
     TOBI_TRY(tobi_param_check(&tobi_solid_table, def, err));
-    if (!(w->system[0].method->fields & TOBI_MPM))
-        return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes fluids, not solids; the method of solids is mlsmpm",
-                         w->system[0].method->name);
+    if (!tobi_world_solids(w)) TOBI_TRY(tobi_world_add_system(w, tobi_method_find("mlsmpm"), NULL, err));
+    tobi_system *s = tobi_world_solids(w);
     if (s->solid_count == TOBI_SOLID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d solids", TOBI_SOLID_LIMIT);
     tobi_solid *more = realloc(s->solids, (size_t)(s->solid_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
     s->solids = more;
-    TOBI_TRY(add_regions(w, "solid", def->name, s->solid_count, fills, fill_count, &volume, err));
+    TOBI_TRY(add_regions(w, s, "solid", def->name, fills, fill_count, &volume, err));
     tobi_solid *solid = &s->solids[s->solid_count++];
     solid->def = *def;
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");
     if (def->mass > 0 && volume > 0) solid->def.density = def->mass/volume;
     char note[200] = "";
-    if (w->system[0].method->accept) TOBI_TRY(w->system[0].method->accept(s, s->solid_count - 1, note, err));
+    if (s->method->accept) TOBI_TRY(s->method->accept(s, s->solid_count - 1, note, err));
     return note[0] ? tobi_world_add_notes(w, "solid", solid->name, note, err) : TOBI_OK;
 }
 
@@ -191,7 +189,8 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
         return tobi_fail(err, TOBI_INVALID,
                          "body '%s' is a blade and starts inside solid '%s': %lld particles lie in it or "
                          "within a quarter of a spacing; a blade starts outside of all solids",
-                         w->sim.bodies[r->blade - 1].name, w->system[0].solids[r->owner].name, (long long)r->cut);
+                         w->sim.bodies[r->blade - 1].name, w->system[r->system].solids[r->owner].name,
+                         (long long)r->cut);
     }
     return TOBI_OK;
 }
@@ -230,25 +229,31 @@ static tobi_status note_losses(tobi_world *w, const char *kind, const char *name
     return TOBI_OK;
 }
 
-tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
+static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *err)
 {
-    const tobi_system *s = &w->system[0];
-    TOBI_TRY(check_blades(w, err));
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
     for (int k = 0; k < owners; k++) {
         const char *kind = solids ? "solid" : "fluid", *name = solids ? s->solids[k].name : s->fluid[k].name;
         int64_t lost[LOSSES] = { 0 }, placed = 0;
         int regions = 0;
-        for (int r = 0; r < w->region_count; r++) {
-            if (w->regions[r].owner != k) continue;
-            lost[COVERED] += w->regions[r].covered;
-            lost[BEHIND] += w->regions[r].behind;
-            lost[OUTSIDE] += w->regions[r].outside;
-            placed += w->regions[r].placed;
+        for (int n = 0; n < w->region_count; n++) {
+            const tobi_region *r = &w->regions[n];
+            if (&w->system[r->system] != s || r->owner != k) continue;
+            lost[COVERED] += r->covered;
+            lost[BEHIND] += r->behind;
+            lost[OUTSIDE] += r->outside;
+            placed += r->placed;
             regions++;
         }
         if (regions > 0) TOBI_TRY(check_placed(kind, name, placed, lost, err));
         TOBI_TRY(note_losses(w, kind, name, lost, err));
     }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err)
+{
+    TOBI_TRY(check_blades(w, err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(note_owners(w, &w->system[k], err));
     return TOBI_OK;
 }

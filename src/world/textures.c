@@ -9,21 +9,21 @@ int tobi_world_has_textures(const tobi_world *w)
 {
     int found = 0;
     for (int k = 0; k < w->region_count; k++) found |= w->regions[k].shape.texture != NULL;
-    return found && w->system[0].method->fields & TOBI_MPM;
+    return found && tobi_world_solids(w) != NULL;
 }
 
 /* The nearest surface of all meshes that fill the particle's solid. */
-static void look(const tobi_world *w, int64_t i, float uv[2])
+static void look(const tobi_world *w, const tobi_system *s, int64_t i, float uv[2])
 {
-    const tobi_particles *p = &w->system[0].particles;
-    const double *lower = w->system[0].box.lower;
+    const tobi_particles *p = &s->particles;
+    const double *lower = s->box.lower;
     const double x[3] = {p->rest[i].x + lower[0], p->rest[i].y + lower[1], p->rest[i].z + lower[2]};
     double nearest = INFINITY;
     uv[0] = uv[1] = 0;
     for (int k = 0; k < w->region_count; k++) {
         const tobi_region *r = &w->regions[k];
         float found[2];
-        if (r->owner != p->fluid[i] || !r->shape.texture) continue;
+        if (&w->system[r->system] != s || r->owner != p->fluid[i] || !r->shape.texture) continue;
         double distance = tobi_texture_look(r->shape.texture, x, found);
         if (!(distance < nearest)) continue;
         nearest = distance;
@@ -34,14 +34,15 @@ static void look(const tobi_world *w, int64_t i, float uv[2])
 
 tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
 {
-    const tobi_particles *p = &w->system[0].particles;
     if (w->texture || !tobi_world_has_textures(w)) return TOBI_OK;
+    const tobi_system *s = tobi_world_solids(w);
+    const tobi_particles *p = &s->particles;
     for (int k = 0; k < w->region_count; k++)
         if (w->regions[k].shape.texture) TOBI_TRY(tobi_texture_prepare(w->regions[k].shape.texture, err));
     w->texture = calloc((size_t)p->capacity + 1, sizeof *w->texture);
     if (!w->texture)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)p->count);
     #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t i = 0; i < p->count; i++) look(w, i, w->texture[p->id[i]]);
+    for (int64_t i = 0; i < p->count; i++) look(w, s, i, w->texture[p->id[i]]);
     return TOBI_OK;
 }

@@ -78,8 +78,8 @@ static tobi_status check_open(const tobi_world_def *d, const tobi_method *method
     return TOBI_OK;
 }
 
-/* Whether the regions fill the domain: not half a layer of particles is missing over its smallest side. */
-static int is_full_vessel(const tobi_world *w)
+/* Whether a system fills the domain: not half a layer of particles is missing over its smallest side. */
+static int is_full_vessel(const tobi_world *w, const tobi_system *s)
 {
     const tobi_world_def *d = &w->sim.def;
     double domain = 1, longest = 0, filled = 0;
@@ -88,26 +88,26 @@ static int is_full_vessel(const tobi_world *w)
         domain *= side;
         longest = fmax(longest, side);
     }
-    for (int k = 0; k < w->region_count; k++) filled += w->regions[k].volume;
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) filled += w->regions[k].volume;
     return filled > domain*(1 - 0.5*d->spacing/longest);
 }
 
 /* Whether a body or a side moves in a full vessel. */
-static int is_stirred_vessel(const tobi_world *w)
+static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 {
     int stirred = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
     for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
-    return stirred && is_full_vessel(w);
+    return stirred && is_full_vessel(w, s);
 }
 
 /* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
-static void set_smoothing(tobi_world *w)
+static void set_smoothing(tobi_world *w, tobi_system *s)
 {
-    tobi_system *s = &w->system[0];
-    const tobi_world_def *d = &s->sim->def;
+    const tobi_world_def *d = &w->sim.def;
     int shape, periodic[3];
     double support;
-    w->system[0].method->smoothing(w->system[0].def, is_stirred_vessel(w), &shape, &support);
+    s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
     const double spacing = tobi_fit_find(w, d->spacing).spacing;
     if (s->smoothing.h == support*spacing) return;
     tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
@@ -115,18 +115,58 @@ static void set_smoothing(tobi_world *w)
     tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
 }
 
-static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, tobi_error *err)
+static tobi_status create_simulation(tobi_simulation *s, const tobi_world_def *def, tobi_error *err)
 {
-    tobi_system *s = &w->system[0];
-    s->sim->def = *def;
-    if (def->dimension == 2) s->sim->def.gravity[2] = 0;
-    memcpy(s->gravity, s->sim->def.gravity, sizeof s->gravity);
-    TOBI_TRY(tobi_exec_init(&s->sim->exec, def->threads, err));
+    s->def = *def;
+    if (def->dimension == 2) s->def.gravity[2] = 0;
     for (int a = 0; a < def->dimension; a++)
-        s->sim->wall_speed = fmax(s->sim->wall_speed, fmax(length(def->wall_velocity_min[a]),
+        s->wall_speed = fmax(s->wall_speed, fmax(length(def->wall_velocity_min[a]),
                                                  length(def->wall_velocity_max[a])));
-    set_smoothing(w);
+    return tobi_exec_init(&s->exec, def->threads, err);
+}
+
+tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, const void *method_def,
+                                  tobi_error *err)
+{
+    const tobi_param_table *table = tobi_method_table(method->name);
+    TOBI_TRY(check_open(&w->sim.def, method, err));
+    TOBI_TRY(check_limits(&w->sim.def, method, err));
+    if (method_def) TOBI_TRY(tobi_param_check(table, method_def, err));
+    void *params = calloc(1, method->def_size);
+    if (!params) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a system");
+    tobi_param_defaults(table, params);
+    if (method_def) memcpy(params, method_def, method->def_size);
+    tobi_system *s = &w->system[w->system_count++];
+    *s = (tobi_system){ .sim = &w->sim, .method = method, .def = params };
+    memcpy(s->gravity, w->sim.def.gravity, sizeof s->gravity);
+    set_smoothing(w, s);
     return TOBI_OK;
+}
+
+tobi_system *tobi_world_solids(const tobi_world *w)
+{
+    for (int k = 0; k < w->system_count; k++)
+        if (w->system[k].method->fields & TOBI_MPM) return (tobi_system *)&w->system[k];
+    return NULL;
+}
+
+tobi_system *tobi_world_fluids(const tobi_world *w)
+{
+    return w->system[0].method->fields & TOBI_SPH ? (tobi_system *)&w->system[0] : NULL;
+}
+
+int tobi_world_first_material(const tobi_world *w, const tobi_system *s)
+{
+    int first = 0;
+    for (const tobi_system *k = w->system; k < s; k++) first += k->fluid_count + k->solid_count;
+    return first;
+}
+
+int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s)
+{
+    int64_t first = 0;
+    for (const tobi_system *k = w->system; k < s; k++) first += k->particles.capacity;
+    return first;
 }
 
 tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
@@ -140,25 +180,11 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     if (!method)
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
                          def->method ? def->method : "", tobi_method_at(0)->name);
-    TOBI_TRY(check_open(def, method, err));
-    TOBI_TRY(check_limits(def, method, err));
-    const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
-    void *params = calloc(1, method->def_size);
-    if (!w || !params) {
-        free(w);
-        free(params);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
-    }
+    if (!w) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
     w->alive = TOBI_ALIVE;
-    tobi_param_defaults(table, params);
-    if (method_def) memcpy(params, method_def, method->def_size);
-    w->system_count = 1;
-    w->system[0].sim = &w->sim;
-    w->system[0].method = method;
-    w->system[0].def = params;
-    tobi_status status = tobi_param_check(table, params, err);
-    if (status == TOBI_OK) status = create_simulation(w, def, err);
+    tobi_status status = create_simulation(&w->sim, def, err);
+    if (status == TOBI_OK) status = tobi_world_add_system(w, method, method_def, err);
     if (status != TOBI_OK) {
         tobi_world_destroy(w);
         return status;
@@ -167,30 +193,35 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     return TOBI_OK;
 }
 
+static void free_system(tobi_system *s)
+{
+    if (s->state) s->method->free(s->state);
+    free(s->def);
+    free(s->solids);
+    free(s->row_of);
+    tobi_near_free(&s->near);
+    tobi_contact_free(&s->contacts);
+    tobi_cells_free(&s->cells);
+    tobi_particles_free(&s->particles);
+}
+
 void tobi_world_destroy(tobi_world *w)
 {
     if (!w) return;
     assert(w->alive == TOBI_ALIVE);
     w->alive = 0;
-    if (w->system[0].state) w->system[0].method->free(w->system[0].state);
+    for (int k = 0; k < w->system_count; k++) free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
     free(w->sim.bodies);
-    free(w->system[0].solids);
     free(w->regions);
     free(w->probes);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
     free(w->texture);
-    free(w->row_of);
     tobi_world_free_grid(w);
     tobi_pieces_free(&w->pieces);
-    free(w->system[0].def);
-    tobi_near_free(&w->system[0].near);
-    tobi_contact_free(&w->system[0].contacts);
-    tobi_cells_free(&w->system[0].cells);
-    tobi_particles_free(&w->system[0].particles);
     tobi_exec_free(&w->sim.exec);
     free(w);
 }
@@ -263,24 +294,23 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     return status;
 }
 
-/* The owners of the particle fields that this world needs. */
-static int needed_fields(const tobi_world *w)
+/* The owners of the particle fields that a system needs. */
+static int needed_fields(const tobi_world *w, const tobi_system *s)
 {
-    int owners = TOBI_ALL | w->system[0].method->fields;
-    for (int f = 0; f < w->system[0].fluid_count; f++)
-        if (w->system[0].fluid[f].tension > 0) owners |= TOBI_TENSION;
+    int owners = TOBI_ALL | s->method->fields;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0) owners |= TOBI_TENSION;
     for (int k = 0; k < w->sim.body_count; k++)
         if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (w->sim.body_count > 0 || is_full_vessel(w)) owners |= w->system[0].method->body_fields;
+    if (w->sim.body_count > 0 || is_full_vessel(w, s)) owners |= s->method->body_fields;
     return owners;
 }
 
 /* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
    of the grid (seen: 60 to 90). */
-static int64_t list_bytes(const tobi_world *w)
+static int64_t list_bytes(const tobi_system *s)
 {
-    const tobi_system *s = &w->system[0];
-    if (w->system[0].method->fields & TOBI_MPM) return 80;
+    if (s->method->fields & TOBI_MPM) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
     return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
@@ -288,16 +318,21 @@ static int64_t list_bytes(const tobi_world *w)
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
                                 int64_t *bytes, tobi_error *err)
 {
-    int64_t fluid = 0, body = 0;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
-    if (!w->started) set_smoothing(w);
-    for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
-    for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
-    if (w->started) fluid = w->system[0].particles.count;
-    *fluid_particles = fluid;
-    *body_particles = body;
-    *bytes = fluid*(tobi_particles_row_bytes(needed_fields(w)) + list_bytes(w)) + body*48;
+    *fluid_particles = *body_particles = *bytes = 0;
+    for (int k = 0; k < w->system_count; k++) {
+        tobi_system *s = &w->system[k];
+        int64_t count = 0;
+        if (!w->started) set_smoothing(w, s);
+        for (int r = 0; r < w->region_count; r++)
+            if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
+        if (w->started) count = s->particles.count;
+        *fluid_particles += count;
+        *bytes += count*(tobi_particles_row_bytes(needed_fields(w, s)) + list_bytes(s));
+    }
+    for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
+    *bytes += *body_particles*48;
     return TOBI_OK;
 }
 
@@ -315,13 +350,14 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
     return TOBI_OK;
 }
 
-/* The hydrostatic head of the regions' common box. */
-static double start_head(const tobi_world *w)
+/* The hydrostatic head of the common box of a system's regions. */
+static double start_head(const tobi_world *w, const tobi_system *s)
 {
     double head = 0;
-    for (int a = 0; a < w->system[0].box.dimension; a++) {
+    for (int a = 0; a < s->box.dimension; a++) {
         double lower = INFINITY, upper = -INFINITY;
         for (int k = 0; k < w->region_count; k++) {
+            if (&w->system[w->regions[k].system] != s) continue;
             lower = fmin(lower, w->regions[k].lower[a]);
             upper = fmax(upper, w->regions[k].upper[a]);
         }
@@ -331,7 +367,7 @@ static double start_head(const tobi_world *w)
 }
 
 /* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
-double tobi_world_start_speed(const tobi_world *w)
+double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
 {
     double fastest = 0;
     for (int k = 0; k < w->region_count; k++) {
@@ -339,55 +375,96 @@ double tobi_world_start_speed(const tobi_world *w)
         double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
                           0.5*(r->upper[2] - r->lower[2])};
         double reach = r->radius > 0 ? r->radius : length(half);
+        if (&w->system[r->system] != s) continue;
         fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
     }
     return fastest;
 }
 
+/* Room for the particles of a system, and the particles. */
+static tobi_status fill_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    int64_t room = 0;
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
+    tobi_particles_free(&s->particles);
+    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w, s), err));
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    return TOBI_OK;
+}
+
+static tobi_status start_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    double *memory;
+    const int64_t n = s->particles.count;
+    TOBI_TRY(tobi_exec_reserve(&w->sim.exec, n > 4096 ? n : 4096, err));
+    tobi_cells_free(&s->cells);
+    if (s->method->fields & TOBI_SPH)
+        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &w->sim.exec, err));
+    free(s->row_of);
+    s->row_of = malloc((size_t)(n + 1)*sizeof *s->row_of);
+    if (!s->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
+    if (!s->state) TOBI_TRY(s->method->create(s, err));
+    s->method->memory(s, &memory);
+    memory[0] = s->start_speed = tobi_world_start_speed(w, s);
+    if (s->start_speed > TOBI_SPEED_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
+                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
+    s->start_head = start_head(w, s);
+    s->info.fluid_particles = n;
+    return TOBI_OK;
+}
+
+/* Their speed from their motion around time 0. What free bodies bring the material may have when they are slow
+   already. */
+static tobi_status start_bodies(tobi_world *w, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    TOBI_TRY(tobi_world_start_bodies(w, err));
+    TOBI_TRY(tobi_world_note_starts(w, err));
+    s->body_speed = s->wall_speed;
+    for (int k = 0; k < s->body_count; k++)
+        TOBI_TRY(tobi_body_predict(&s->bodies[k], 0, 1e-4, &s->body_speed, err));
+    for (int k = 0; k < w->system_count && w->dynamics; k++)
+        w->system[k].start_speed = fmax(w->system[k].start_speed, s->body_speed);
+    return TOBI_OK;
+}
+
+static tobi_status check_systems(tobi_world *w, tobi_error *err)
+{
+    if (w->system_count < 2) return TOBI_OK;
+    if (w->system[0].fluid_count == 0)
+        return tobi_fail(err, TOBI_INVALID, "%s has no fluid; the method of solids alone is %s",
+                         w->system[0].method->name, w->system[1].method->name);
+    if (w->sim.body_count > 0)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "bodies beside fluids of %s and solids of %s: allowed are bodies "
+                         "with the one or the other", w->system[0].method->name, w->system[1].method->name);
+    return tobi_world_add_notes(w, "world", NULL, "fluids and solids do not touch each other yet: each moves as "
+                                "if it were alone\n", err);
+}
+
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);
-    tobi_system *s = &w->system[0];
     int64_t fluid, body, bytes, room = 0;
     if (w->started) return TOBI_OK;
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
-    for (int k = 0; k < w->region_count; k++) room += tobi_region_count(s, &w->regions[k]);
+    for (int k = 0; k < w->region_count; k++)
+        room += tobi_region_count(&w->system[w->regions[k].system], &w->regions[k]);
     if (room + body == 0)
         return tobi_fail(err, TOBI_INVALID,
                          "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
-    tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w), err));
-    for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(check_systems(w, err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(fill_system(w, &w->system[k], err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
-    TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
-    int64_t n = s->particles.count;
-    TOBI_TRY(tobi_exec_reserve(&s->sim->exec, n > 4096 ? n : 4096, err));
-    tobi_cells_free(&s->cells);
-    if (w->system[0].method->fields & TOBI_SPH)
-        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &s->sim->exec, err));
-    free(w->row_of);
-    w->row_of = malloc((size_t)(n + 1)*sizeof *w->row_of);
-    if (!w->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
-    if (!w->system[0].state) TOBI_TRY(s->method->create(s, err));
-    double *memory;
-    w->system[0].method->memory(&w->system[0], &memory);
-    memory[0] = s->start_speed = tobi_world_start_speed(w);
-    if (s->start_speed > TOBI_SPEED_LIMIT)
-        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
-                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
-    s->start_head = start_head(w);
-    TOBI_TRY(tobi_world_start_bodies(w, err));
-    TOBI_TRY(tobi_world_note_starts(w, err));
-    /* How fast the bodies start: their motion around time 0. */
-    s->sim->body_speed = s->sim->wall_speed;
-    for (int k = 0; k < s->sim->body_count; k++)
-        TOBI_TRY(tobi_body_predict(&s->sim->bodies[k], 0, 1e-4, &s->sim->body_speed, err));
-    /* What free bodies bring the material may have when they are slow already. */
-    if (w->dynamics) s->start_speed = fmax(s->start_speed, s->sim->body_speed);
-    s->info.fluid_particles = n;
+    for (int k = 0; k < w->system_count; k++)
+        TOBI_TRY(tobi_particles_fit(&w->system[k].particles, needed_fields(w, &w->system[k]), err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(start_system(w, &w->system[k], err));
+    TOBI_TRY(start_bodies(w, err));
     tobi_step_sum_up(w);
     w->started = 1;
     const tobi_status status = tobi_world_note_pieces(w, err);
@@ -396,27 +473,25 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 }
 
 /* Which key of the scene makes steps shorter, and its value. */
-static const char *name_cfl(const tobi_world *w, double *value)
+static const char *name_cfl(const tobi_system *s, double *value)
 {
-    const tobi_world_def *d = &w->sim.def;
-    const int mpm = (w->system[0].method->fields & TOBI_MPM) != 0;
-    *value = mpm ? ((const tobi_mlsmpm_def *)w->system[0].def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
+    const tobi_world_def *d = &s->sim->def;
+    const int mpm = (s->method->fields & TOBI_MPM) != 0;
+    *value = mpm ? ((const tobi_mlsmpm_def *)s->def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
     return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
 }
 
-static tobi_status check_runaway(tobi_world *w, tobi_error *err)
+static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
 {
-    tobi_system *s = &w->system[0];
     double limit = s->sim->def.speed_limit, cfl;
-    const char *key = name_cfl(w, &cfl);
+    const char *key = name_cfl(s, &cfl);
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
         const int64_t few = 20 + s->particles.count/200;
-        if (s->sim->info.speed_max < TOBI_SPEED_LIMIT && s->sim->info.capped <= few) return TOBI_OK;
+        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
         limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
     }
-    if (s->sim->info.speed_max < limit) return TOBI_OK;
-    w->diverged = 1;
+    if (s->info.speed_max < limit) return TOBI_OK;
     for (int64_t i = 0; i < s->particles.count; i++) {
         tobi_float4 v = s->particles.velocity[i];
         tobi_double3 x = s->particles.position[i];
@@ -438,7 +513,7 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
     }
     return tobi_fail(err, TOBI_DIVERGED,
                      "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help", s->sim->time, s->sim->info.speed_max, key, cfl);
+                     "may help", s->sim->time, s->info.speed_max, key, cfl);
 }
 
 static void measure(tobi_world *w)
@@ -464,7 +539,10 @@ static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_ste
         return status;
     }
     tobi_step_sum_up(w);
-    TOBI_TRY(check_runaway(w, err));
+    for (int k = 0; k < w->system_count; k++) {
+        w->diverged |= check_runaway(&w->system[k], err) != TOBI_OK;
+        if (w->diverged) return TOBI_DIVERGED;
+    }
     if (info) {
         measure(w);
         *info = s->info;
@@ -534,12 +612,15 @@ const char *tobi_world_body_name(const tobi_world *w, int body)
 
 int64_t tobi_world_bytes(const tobi_world *w)
 {
-    if (!w) return 0;
-    const tobi_system *s = &w->system[0];
-    return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
-           s->cells.list_capacity * 4 + s->cells.total * 4 +
-           s->near.capacity * (int64_t)sizeof(tobi_near_entry) +
-           (w->system[0].method->bytes && w->system[0].state ? w->system[0].method->bytes(&w->system[0]) : 0);
+    int64_t bytes = 0;
+    for (int k = 0; w && k < w->system_count; k++) {
+        const tobi_system *s = &w->system[k];
+        bytes += s->particles.capacity*(tobi_particles_row_bytes(needed_fields(w, s)) + 4) +
+                 s->cells.list_capacity*4 + s->cells.total*4 +
+                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) +
+                 (s->method->bytes && s->state ? s->method->bytes(s) : 0);
+    }
+    return bytes;
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)

@@ -16,7 +16,7 @@ enum { TOBI_ALIVE = 0x70b10 };
 struct tobi_world {
     int alive;                     /* TOBI_ALIVE until it is destroyed                       */
     tobi_simulation sim;          /* what the systems share                                  */
-    tobi_system system[TOBI_SYSTEM_LIMIT];
+    tobi_system system[TOBI_SYSTEM_LIMIT];    /* [0]: the one of the definition's method      */
     int system_count;
     struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
     double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
@@ -31,7 +31,6 @@ struct tobi_world {
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
-    int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
 
 /* For public calls that return a status; the assert finds, in dev builds, worlds destroyed before. */
@@ -40,6 +39,17 @@ struct tobi_world {
         TOBI_NEED(w, "world");                                                                     \
         assert((w)->alive == TOBI_ALIVE);                                                          \
     } while (0)
+
+/* A system that computes by a method; method_def: its parameters, or NULL = defaults. Fails as
+   tobi_world_create does. */
+tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, const void *method_def,
+                                  tobi_error *err);
+/* The system of the solids, or of the fluids; NULL if there is none. */
+tobi_system *tobi_world_solids(const tobi_world *w);
+tobi_system *tobi_world_fluids(const tobi_world *w);
+/* Materials come in the order of systems, particles too: the number of the first of a system. */
+int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
+int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s);
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */
@@ -50,8 +60,8 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r);
 /* Notes what the filling of the regions left out; refuses a fluid or solid of which nothing is left. */
 tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
-/* The fastest point of a region at the start, m/s. */
-double tobi_world_start_speed(const tobi_world *w);
+/* The fastest point of a system's regions at the start, m/s. */
+double tobi_world_start_speed(const tobi_world *w, const tobi_system *s);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins

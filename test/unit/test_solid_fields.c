@@ -397,8 +397,6 @@ static void calls_are_refused_in_words(void **state)
     for (int a = 0; a < 3; a++) def.domain_max[a] = fill.box_max[a] = 1;
     def.spacing = 0.2;
     assert_int_equal(tobi_world_create(&def, NULL, &water, NULL), TOBI_OK);
-    REFUSED(tobi_world_add_solid(water, &solid, &fill, 1, &err), TOBI_UNSUPPORTED,
-            "dfsph takes fluids, not solids; the method of solids is mlsmpm");
     REFUSED(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_UNSUPPORTED,
             "mlsmpm takes solids, not fluids; a solid of model liquid is one");
     REFUSED(tobi_world_grid(water, &grid, &err), TOBI_UNSUPPORTED, "dfsph has no grid");

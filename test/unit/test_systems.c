@@ -1,0 +1,170 @@
+/* Several systems in one world: a pool of dfsph or wcsph and a block of mlsmpm step together, each with the
+   bits that it has alone. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "calls.h"
+#include "world/world.h"
+
+enum { POOL = 1, BLOCK = 2 };
+
+static tobi_world *make_world(const char *method, int what, int threads)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def pool = tobi_default_fill_def(), block = tobi_default_fill_def();
+    tobi_world *world;
+    w.method = what == BLOCK ? "mlsmpm" : method;
+    w.threads = threads;
+    w.spacing = 0.01;
+    w.time_step = strcmp(method, "dfsph") ? 2e-4 : 1e-3;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = a == 0 ? 0.4 : 0.2;
+        pool.box_max[a] = 0.1;
+        block.box_min[a] = a == 0 ? 0.25 : 0.05;
+        block.box_max[a] = a == 0 ? 0.35 : 0.15;
+    }
+    block.velocity[2] = -0.5;
+    solid.youngs_modulus = 1e5;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    if (what & POOL) OK(tobi_world_add_fluid(world, &fluid, &pool, 1, &err));
+    if (what & BLOCK) OK(tobi_world_add_solid(world, &solid, &block, 1, &err));
+    return world;
+}
+
+/* Fields of n particles from row `first` on, owned by the caller. */
+static double *read_rows(tobi_world *w, const char *field, int components, int64_t first, int64_t n)
+{
+    const int64_t all = tobi_world_count(w, TOBI_FLUID);
+    double *rows = malloc((size_t)(all*components + 1)*sizeof *rows);
+    OK(tobi_world_read(w, TOBI_FLUID, field, rows, all, &err));
+    memmove(rows, rows + first*components, (size_t)(n*components)*sizeof *rows);
+    return rows;
+}
+
+/* Those of `one` are the rows of `both` from `first` on, to the bit. */
+static void compare(tobi_world *both, tobi_world *one, int64_t first, const char *field, int components)
+{
+    const int64_t n = tobi_world_count(one, TOBI_FLUID);
+    double *a = read_rows(both, field, components, first, n), *b = read_rows(one, field, components, 0, n);
+    if (memcmp(a, b, (size_t)(n*components)*sizeof *a) != 0) fail_msg("%s differs", field);
+    free(a);
+    free(b);
+}
+
+static void each_as_if_alone(void **state)
+{
+    (void)state;
+    const char *const methods[] = { "dfsph", "wcsph" };
+    for (int k = 0; k < 2; k++)
+        for (int threads = 1; threads <= 2; threads++) {
+            tobi_world *both = make_world(methods[k], POOL | BLOCK, threads);
+            tobi_world *pool = make_world(methods[k], POOL, 1), *block = make_world(methods[k], BLOCK, 1);
+            OK(tobi_world_start(both, &err));
+            OK(tobi_world_advance(both, 0.02, NULL, &err));
+            OK(tobi_world_advance(pool, 0.02, NULL, &err));
+            OK(tobi_world_advance(block, 0.02, NULL, &err));
+            const int64_t n = tobi_world_count(pool, TOBI_FLUID);
+            assert_int_equal(tobi_world_count(both, TOBI_FLUID), n + tobi_world_count(block, TOBI_FLUID));
+            compare(both, pool, 0, "position", 3);
+            compare(both, pool, 0, "velocity", 3);
+            compare(both, pool, 0, "pressure", 1);
+            compare(both, block, n, "position", 3);
+            compare(both, block, n, "velocity", 3);
+            compare(both, block, n, "deformation_gradient", 9);
+            tobi_world_destroy(both);
+            tobi_world_destroy(pool);
+            tobi_world_destroy(block);
+        }
+}
+
+static void energies_are_sums(void **state)
+{
+    (void)state;
+    tobi_step_info both, pool, block;
+    tobi_world *w[3] = { make_world("dfsph", POOL | BLOCK, 1), make_world("dfsph", POOL, 1),
+                         make_world("dfsph", BLOCK, 1) };
+    OK(tobi_world_advance(w[0], 0.01, &both, &err));
+    OK(tobi_world_advance(w[1], 0.01, &pool, &err));
+    OK(tobi_world_advance(w[2], 0.01, &block, &err));
+    assert_true(both.kinetic_energy == pool.kinetic_energy + block.kinetic_energy);
+    assert_true(both.weight == pool.weight + block.weight);
+    assert_true(both.elastic_energy == block.elastic_energy && block.elastic_energy > 0);
+    assert_int_equal(both.divergence_iterations, pool.divergence_iterations);
+    assert_int_equal(both.fluid_particles, pool.fluid_particles + block.fluid_particles);
+    for (int k = 0; k < 3; k++) tobi_world_destroy(w[k]);
+}
+
+static void rows_ids_and_materials(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph", POOL | BLOCK, 1);
+    OK(tobi_world_start(w, &err));
+    const int64_t n = tobi_world_count(w, TOBI_FLUID);
+    double *id = read_rows(w, "particle_id", 1, 0, n), *material = read_rows(w, "material", 1, 0, n);
+    for (int64_t r = 0; r < n; r++) {
+        assert_true(id[r] == (double)r);
+        assert_true(material[r] == (r < 1000 ? 0 : 1));
+    }
+    assert_int_equal(n, 2000);
+    free(id);
+    free(material);
+    tobi_world_destroy(w);
+}
+
+static void a_restart_changes_nothing(void **state)
+{
+    (void)state;
+    const char *path = "systems.h5";
+    tobi_world *whole = make_world("dfsph", POOL | BLOCK, 1), *later = make_world("dfsph", POOL | BLOCK, 2);
+    OK(tobi_world_advance(whole, 0.01, NULL, &err));
+    OK(tobi_world_save(whole, path, &err));
+    OK(tobi_world_load(later, path, &err));
+    assert_true(tobi_world_hash(later) == tobi_world_hash(whole));
+    OK(tobi_world_advance(whole, 0.03, NULL, &err));
+    OK(tobi_world_advance(later, 0.03, NULL, &err));
+    assert_true(tobi_world_hash(later) == tobi_world_hash(whole));
+    tobi_world_destroy(whole);
+    tobi_world_destroy(later);
+    remove(path);
+}
+
+static void what_is_not_known_yet(void **state)
+{
+    (void)state;
+    tobi_body_def box = tobi_default_body_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *w = make_world("dfsph", POOL | BLOCK, 1), *dry = make_world("dfsph", 0, 1);
+    for (int a = 0; a < 3; a++) box.box_min[a] = 0.16, box.box_max[a] = 0.18;
+    box.name = "box";
+    OK(tobi_world_add_body(w, &box, &err));
+    REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED, "bodies beside fluids of dfsph and solids of mlsmpm");
+    tobi_world_destroy(w);
+    for (int a = 0; a < 3; a++) fill.box_max[a] = 0.05;
+    OK(tobi_world_add_solid(dry, &solid, &fill, 1, &err));
+    REFUSED(tobi_world_start(dry, &err), TOBI_INVALID, "dfsph has no fluid; the method of solids alone is mlsmpm");
+    tobi_world_destroy(dry);
+    w = make_world("dfsph", POOL | BLOCK, 1);
+    OK(tobi_world_start(w, &err));
+    assert_non_null(strstr(tobi_world_note(w, 0), "fluids and solids do not touch each other yet"));
+    tobi_world_destroy(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_as_if_alone),
+        cmocka_unit_test(energies_are_sums),
+        cmocka_unit_test(rows_ids_and_materials),
+        cmocka_unit_test(a_restart_changes_nothing),
+        cmocka_unit_test(what_is_not_known_yet),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
