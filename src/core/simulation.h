@@ -64,6 +64,7 @@ typedef struct tobi_simulation {
     tobi_stop_fn stop;              /* of the caller, NULL = none                             */
     void *stop_user;
     int stopped;                    /* it asked to stop, in this call                         */
+    int changed;                    /* 1: particles or bodies are not any more as the step found them */
 } tobi_simulation;
 
 enum { TOBI_LIQUIDS = -1 };            /* in place of the number of a solid                      */
@@ -109,6 +110,9 @@ typedef struct tobi_method {
                         tobi_error *err);
     /* Optional, after a load: takes such rows over. */
     void (*recall)(void *state, double *rows, int64_t count);
+    /* def.gravity has changed between two steps, after a refresh if there were steps: what was derived from
+       it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is kept. */
+    void (*follow_gravity)(tobi_simulation *s, void *state, int loaded);
     /* Bytes that the state has allocated; NULL = few. */
     int64_t (*bytes)(const void *state);
     void (*free)(void *state);

@@ -60,6 +60,11 @@ static void add_planes(const tobi_simulation *s, int keep, mpm_view *v)
     add_fixed_planes(s, v);
 }
 
+static void bind_gravity(const tobi_simulation *s, mpm_view *v)
+{
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
+}
+
 static void bind_particles(const tobi_simulation *s, mlsmpm *m)
 {
     const tobi_particles *p = &s->particles;
@@ -78,10 +83,8 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     v->bent = mpm_takes_spline(s, m->def.gradient);
     v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 1;
     v->own = m->def.transfer == TOBI_FLIP;
-    for (int a = 0; a < 3; a++) {
-        v->size[a] = s->box.size[a];
-        v->gravity[a] = a < s->box.dimension ? (float)s->def.gravity[a] : 0;
-    }
+    memcpy(v->size, s->box.size, sizeof v->size);
+    bind_gravity(s, v);
     add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
@@ -242,6 +245,7 @@ static tobi_status predict_bodies(tobi_simulation *s, double *clock, tobi_error 
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+    s->changed = 1;
     tobi_stage_end(&s->stages, "bodies", clock);
     return TOBI_OK;
 }
@@ -456,6 +460,16 @@ static void recall_rows(void *state, double *rows, int64_t count)
     m->built = 0;
 }
 
+/* The work of the change is no loss of the solids' energy. */
+static void follow_gravity(tobi_simulation *s, void *state, int loaded)
+{
+    mlsmpm *m = state;
+    const int begun = !loaded && m->memory.age >= 0;
+    const double before = begun ? mpm_energy_find(s, m) : 0;
+    bind_gravity(s, &m->view);
+    if (begun) m->memory.start_energy += mpm_energy_find(s, m) - before;
+}
+
 static int64_t count_bytes(const void *state) { return mpm_grid_bytes(&((const mlsmpm *)state)->grid); }
 
 static void free_state(void *state)
@@ -485,6 +499,7 @@ const tobi_method tobi_mlsmpm = {
     .memory = list_memory,
     .keep = keep_rows,
     .recall = recall_rows,
+    .follow_gravity = follow_gravity,
     .bytes = count_bytes,
     .free = free_state,
 };

@@ -445,6 +445,14 @@ static void derive(tobi_simulation *s, void *state, const char *field)
     sph_derive(s, &m->view, m->kernel, field);
 }
 
+static void follow_gravity(tobi_simulation *s, void *state, int loaded)
+{
+    dfsph *m = state;
+    const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, sph_still_low,
+                                  m->def.still_water };
+    if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
+}
+
 static void free_state(void *state)
 {
     dfsph *m = state;
@@ -465,5 +473,6 @@ const tobi_method tobi_dfsph = {
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,
+    .follow_gravity = follow_gravity,
     .free = free_state,
 };

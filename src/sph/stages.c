@@ -190,6 +190,7 @@ tobi_status sph_predict_bodies(tobi_simulation *s, double *clock, tobi_error *er
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
         TOBI_TRY(predict_body(s, &s->bodies[k], err));
+    s->changed = 1;
     tobi_stage_end(&s->stages, "motion", clock);
     return TOBI_OK;
 }

@@ -69,7 +69,8 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     if (w->fresh) return TOBI_OK;
     tobi_pieces_free(&w->pieces);
     tobi_step_info kept = s->info;
-    if (!w->diverged && w->method->refresh) TOBI_TRY(w->method->refresh(s, w->method_state, err));
+    if (w->failure.status != TOBI_DIVERGED && w->method->refresh)
+        TOBI_TRY(w->method->refresh(s, w->method_state, err));
     double mean = s->info.density_error_mean, max = s->info.density_error_max;
     s->info = kept;
     s->info.density_error_mean = mean;
@@ -169,34 +170,55 @@ static tobi_status read_bodies(tobi_world *w, const char *field, int components,
     return TOBI_OK;
 }
 
-tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer,
-                            int64_t count, tobi_error *err)
+/* Finds a field by its name and checks that there is room for it. Then the rows are in order. */
+static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, const void *buffer,
+                              int64_t count, int *number, tobi_error *err)
 {
-    int k = 0, components = 0;
+    int k = 0;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(field, "the field");
     TOBI_NEED(buffer || count == 0, "the buffer");
     if (set != TOBI_FLUID && set != TOBI_BODIES)
         return tobi_fail(err, TOBI_INVALID, "there is no set of particles %d; allowed are TOBI_FLUID and "
                          "TOBI_BODIES", (int)set);
-    while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
+    const char *name = strcmp(field, "id") == 0 ? "particle_id" : field;
+    while (k < FIELD_COUNT && strcmp(fields[k].name, name) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     if (!(fields[k].owner & (TOBI_ALL | w->method->fields)))
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
     if (set == TOBI_BODIES && !fields[k].bodies)
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
-    components = fields[k].components;
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, room for %lld given", field,
                          (long long)tobi_world_count(w, set), (long long)count);
+    *number = k;
+    return set == TOBI_FLUID ? tobi_world_refresh(w, err) : TOBI_OK;
+}
+
+tobi_status tobi_world_read_ids(tobi_world *w, tobi_set set, int64_t *buffer, int64_t count, tobi_error *err)
+{
+    int unused;
+    TOBI_TRY(find_field(w, set, "id", buffer, count, &unused, err));
+    const tobi_particles *p = &w->sim.particles;
+    for (int64_t r = 0, n = tobi_world_count(w, set); r < n; r++)
+        buffer[r] = set == TOBI_FLUID ? p->id[w->row_of[r]] : p->capacity + r;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *name, double *buffer, int64_t count,
+                            tobi_error *err)
+{
+    int number;
+    TOBI_TRY(find_field(w, set, name, buffer, count, &number, err));
+    const char *field = fields[number].name;
+    const int components = fields[number].components;
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);
-    TOBI_TRY(tobi_world_refresh(w, err));
     const tobi_pieces *unused;
     const int piece = !strcmp(field, "piece");
     if (piece) TOBI_TRY(tobi_world_pieces(w, &unused, err));
     int derived = !strcmp(field, "acceleration") || !strcmp(field, "vorticity");
-    if (!w->diverged && derived && w->method->derive)
+    if (w->failure.status != TOBI_DIVERGED && derived && w->method->derive)
         w->method->derive(&w->sim, w->method_state, field);
     int textures = !strcmp(field, "texture_coordinates");
     if (textures) TOBI_TRY(tobi_world_find_texture(w, err));

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
+#include "world/change.h"
 #include "world/fit.h"
 #include "world/limits.h"
 #include "world/note_pieces.h"
@@ -312,8 +313,7 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
     return TOBI_OK;
 }
 
-/* The hydrostatic head of the regions' common box. */
-static double start_head(const tobi_world *w)
+double tobi_world_start_head(const tobi_world *w)
 {
     double head = 0;
     for (int a = 0; a < w->sim.box.dimension; a++) {
@@ -375,7 +375,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     if (s->start_speed > TOBI_SPEED_LIMIT)
         return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
                          "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
-    s->start_head = start_head(w);
+    s->start_head = tobi_world_start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
     TOBI_TRY(tobi_world_note_starts(w, err));
     /* How fast the bodies start: their motion around time 0. */
@@ -412,7 +412,6 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
         limit = fmin(1.4*tobi_simulation_speed_scale(s), TOBI_SPEED_LIMIT);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
-    w->diverged = 1;
     for (int64_t i = 0; i < s->particles.count; i++) {
         tobi_float4 v = s->particles.velocity[i];
         tobi_double3 x = s->particles.position[i];
@@ -443,26 +442,58 @@ static void measure(tobi_world *w)
     if (w->method->measure) w->method->measure(&w->sim, w->method_state);
 }
 
+tobi_status tobi_world_check_whole(const tobi_world *w, tobi_error *err)
+{
+    if (w->failure.status == TOBI_OK) return TOBI_OK;
+    return tobi_fail(err, w->failure.status, "the simulation cannot go on: %s", w->failure.text);
+}
+
+static tobi_status try_step(tobi_world *w, double max_dt, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    tobi_world_cap_step(w);
+    TOBI_TRY(w->method->step(s, w->method_state, max_dt, err));
+    TOBI_TRY(tobi_world_kick_bodies(w, err));
+    s->info.step = s->step;
+    s->info.time = s->time;
+    s->info.dt = s->dt;
+    return check_runaway(w, err);
+}
+
+/* A step that fails before it changes particles or bodies, as where a motion has no answer, is taken back;
+   after that it stays in w->failure. A method takes back itself what the caller stops. */
+static tobi_status step_or_restore(tobi_world *w, double max_dt, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
+    enum { MEMORY_LIMIT = 64 };
+    double *memory, kept[MEMORY_LIMIT];
+    const int n = w->method->memory(w->method_state, &memory);
+    const double dt = s->dt, body_speed = s->body_speed;
+    assert(n <= MEMORY_LIMIT);
+    memcpy(kept, memory, (size_t)n*sizeof *kept);
+    s->changed = 0;
+    const tobi_status status = try_step(w, max_dt, &w->failure);
+    if (status == TOBI_OK) return TOBI_OK;
+    tobi_fail(err, status, "%s", w->failure.text);
+    if (status == TOBI_STOPPED || !s->changed) w->failure.status = TOBI_OK;
+    if (status == TOBI_STOPPED || s->changed) return status;
+    memcpy(memory, kept, (size_t)n*sizeof *kept);
+    s->dt = dt;
+    s->body_speed = body_speed;
+    return status;
+}
+
 /* `left`: s to the end that the caller wants. */
 static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     const double before = s->time;
     TOBI_TRY(tobi_world_start(w, err));
-    if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
+    TOBI_TRY(tobi_world_check_whole(w, err));
+    TOBI_TRY(tobi_world_check_motions(w, err));
     w->fresh = s->stopped = 0;
     TOBI_TRY(tobi_simulation_heed(s, err));
-    tobi_world_cap_step(w);
-    tobi_status status = w->method->step(s, w->method_state, max_dt, err);
-    if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
-    if (status != TOBI_OK) {
-        w->diverged = status != TOBI_STOPPED;
-        return status;
-    }
-    s->info.step = s->step;
-    s->info.time = s->time;
-    s->info.dt = s->dt;
-    TOBI_TRY(check_runaway(w, err));
+    TOBI_TRY(step_or_restore(w, max_dt, err));
     if (info) {
         measure(w);
         *info = s->info;

@@ -26,7 +26,8 @@ struct tobi_world {
     int probe_count;
     char **notes;                  /* owned texts                                            */
     int note_count;
-    int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int started, fresh;            /* fresh: derived fields match the present positions       */
+    tobi_error failure;            /* of a step that could not be taken back; TOBI_OK: none   */
     int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
@@ -59,6 +60,11 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
+
+/* The hydrostatic head of the regions' common box, m2/s2. */
+double tobi_world_start_head(const tobi_world *w);
+/* Refuses, with its words, a world that failed in the middle of a step. */
+tobi_status tobi_world_check_whole(const tobi_world *w, tobi_error *err);
 
 /* One step, not beyond time t, which is hit exactly by a step that covers all that is left; the caller
    goes on until `end`. */
