@@ -157,7 +157,8 @@ static tobi_status read_clock(tobi_world *w, tobi_store *f, loaded *l, tobi_erro
     for (int k = 0; k < l->memory_count; k++) good &= !isnan(l->memory[k]);
     for (int k = 0; k < 4; k++) good &= isfinite(l->clock[k]) != 0;
     for (int k = 0; k < 3; k++) good &= isfinite(l->gravity[k]) != 0;
-    return good ? TOBI_OK : tobi_fail(err, TOBI_DAMAGED, "%s: its clock, gravity or memory is no number", l->path);
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "%s: its clock, gravity or memory is no number", l->path);
 }
 
 static tobi_status read_rows(const tobi_world *w, tobi_store *f, loaded *l, tobi_error *err)
@@ -224,8 +225,8 @@ static tobi_status check_fields(tobi_world *w, const loaded *l, tobi_error *err)
         const tobi_field_ref field = tobi_particles_state(&w->sim.particles, k);
         for (int64_t i = 0; i < l->count && status == TOBI_OK; i++)
             if (is_bad_row(&w->sim, &field, l->field[k], i, seen))
-                status = tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can have",
-                                   l->path, (long long)i, field.name);
+                status = tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can "
+                                   "have", l->path, (long long)i, field.name);
     }
     free(seen);
     return status;
