@@ -88,17 +88,12 @@ static void bind_particles(const tobi_simulation *s, mlsmpm *m)
     add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
-static tobi_status check_sides(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
+static tobi_status check_size(const tobi_simulation *s, const mlsmpm *m, tobi_error *err)
 {
-    for (int a = 0; a < s->box.dimension; a++) {
-        if (s->box.periodic[a])
-            return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip, separate, "
-                             "open");
+    for (int a = 0; a < s->box.dimension; a++)
         if (s->box.size[a] > 1e8*m->cell)
             return tobi_fail(err, TOBI_UNSUPPORTED, "the domain has %g cells along %c, allowed are 1e8",
                              s->box.size[a]/m->cell, "xyz"[a]);
-    }
     return TOBI_OK;
 }
 
@@ -118,7 +113,7 @@ static tobi_status create(tobi_simulation *s, const void *def, void **state, tob
     m->kernels = mpm_kernels_for(s->exec.isa, s->box.dimension);
     m->memory.age = -1;
     m->viscous_dt = m->liquid_sound = INFINITY;
-    tobi_status status = check_sides(s, m, err);
+    tobi_status status = check_size(s, m, err);
     if (status == TOBI_OK)
         status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->exec, err);
     if (status != TOBI_OK) {

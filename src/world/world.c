@@ -8,6 +8,7 @@
 #include "world/limits.h"
 #include "world/note_pieces.h"
 #include "world/params.h"
+#include "world/rules.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,54 +29,19 @@ const char *tobi_status_text(tobi_status status)
 
 static double length(const double v[3]) { return sqrt(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]); }
 
-/* A side moves along itself, and only where the fluid sticks to it. */
-static tobi_status check_side(const double v[3], int axis, int wall, int dimension, tobi_error *err)
+/* Keeps the first breach of a rule. */
+static void keep_first(void *user, const char *path, const tobi_error *why)
 {
-    if (!(length(v) > 0)) return TOBI_OK;
-    if (wall != TOBI_WALL_NO_SLIP)
-        return tobi_fail(err, TOBI_INVALID, "domain: a side along %c has a velocity but is not no-slip",
-                         "xyz"[axis]);
-    if (v[axis] != 0 || (dimension == 2 && v[2] != 0))
-        return tobi_fail(err, TOBI_INVALID,
-                         "domain: a side along %c moves by (%g, %g, %g) m/s, allowed is along itself",
-                         "xyz"[axis], v[0], v[1], v[2]);
-    return TOBI_OK;
+    tobi_error *first = user;
+    if (first->status == TOBI_OK) tobi_fail(first, why->status, "%s: %s", path, why->text);
 }
 
-static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
+static tobi_status check_rules(const tobi_world_def *d, const void *method_def, tobi_error *err)
 {
-    TOBI_TRY(tobi_param_check(&tobi_world_table, d, err));
-    for (int a = 0; a < d->dimension; a++) {
-        if (!(d->domain_max[a] > d->domain_min[a]))
-            return tobi_fail(err, TOBI_INVALID, "domain: max %g is not above min %g along %c",
-                             d->domain_max[a], d->domain_min[a], "xyz"[a]);
-        if ((d->wall_min[a] == TOBI_WALL_PERIODIC) != (d->wall_max[a] == TOBI_WALL_PERIODIC))
-            return tobi_fail(err, TOBI_INVALID,
-                             "domain: only one side along %c is periodic; both or none are allowed",
-                             "xyz"[a]);
-        TOBI_TRY(check_side(d->wall_velocity_min[a], a, d->wall_min[a], d->dimension, err));
-        TOBI_TRY(check_side(d->wall_velocity_max[a], a, d->wall_max[a], d->dimension, err));
-    }
-    return TOBI_OK;
-}
-
-static tobi_status check_limits(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
-{
-    tobi_error why = { 0 };
-    const char *key;
-    tobi_status status = tobi_limits_check(d, (method->fields & TOBI_SPH) != 0, &key, &why);
-    return status ? tobi_fail(err, status, "world: %s %s", key, why.text) : TOBI_OK;
-}
-
-static tobi_status check_open(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
-{
-    for (int a = 0; a < d->dimension; a++)
-        if ((d->wall_min[a] == TOBI_WALL_OPEN || d->wall_max[a] == TOBI_WALL_OPEN) &&
-            !(method->fields & TOBI_MPM))
-            return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "domain: a side along %c is open, which %s does not know; mlsmpm does", "xyz"[a],
-                             method->name);
-    return TOBI_OK;
+    tobi_error first = { 0 };
+    const tobi_rules rules = { .tell = keep_first, .user = &first, .corners = 1, .numbers = 1 };
+    tobi_rules_world(&rules, d, method_def);
+    return first.status ? tobi_fail(err, first.status, "%s", first.text) : TOBI_OK;
 }
 
 /* Whether the regions fill the domain: not half a layer of particles is missing over its smallest side. */
@@ -135,13 +101,11 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     TOBI_NEED(world, "where the world goes");
     *world = NULL;
     TOBI_NEED(def, "the definition");
-    TOBI_TRY(check_world(def, err));
+    TOBI_TRY(tobi_param_check(&tobi_world_table, def, err));
     const tobi_method *method = tobi_method_find(def->method);
     if (!method)
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
                          def->method ? def->method : "", tobi_method_at(0)->name);
-    TOBI_TRY(check_open(def, method, err));
-    TOBI_TRY(check_limits(def, method, err));
     const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
     void *params = calloc(1, method->def_size);
@@ -156,6 +120,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     w->method = method;
     w->method_def = params;
     tobi_status status = tobi_param_check(table, params, err);
+    if (status == TOBI_OK) status = check_rules(def, params, err);
     if (status == TOBI_OK) status = create_simulation(w, def, err);
     if (status != TOBI_OK) {
         tobi_world_destroy(w);
