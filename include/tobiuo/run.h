@@ -81,7 +81,8 @@ TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
 
 /* Waits for the outputs and writes summary.json. outcome: "complete", "interrupted", "diverged",
-   "stalled" or another word; "failed" if an output could not be written, and then its failure is told. */
+   "stalled", "failed" (a script, memory) or another word; "failed" in any case if an output could not be
+   written, and then its failure is told. */
 TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err);
 
 /* Waits for the outputs and closes the files; NULL is fine. A run that was not finished stays

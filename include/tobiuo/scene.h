@@ -1,5 +1,5 @@
-/* Scenes: a whole simulation in one JSON file; docs/scene.md has every key. A scene can do no more
-   than a C program can: building one calls only tobiuo.h.
+/* Scenes: a whole simulation in one JSON text, in a file or in memory; docs/scene.md has every key. A scene
+   can do no more than a C program can: building one calls only tobiuo.h.
 
    The format: JSON in UTF-8 with comments (# or // to the end of the line), SI units, angles in
    degrees. Relative paths are looked up beside the scene file. */
@@ -33,6 +33,13 @@ TOBI_API void        tobi_report_free(tobi_report *report);                 /* N
    step its world; which of its threads do so does not matter. */
 TOBI_API tobi_status tobi_scene_load(const char *path, const char *const *overrides,
                                      tobi_scene **scene, tobi_report **report, tobi_error *err);
+/* The same from `size` bytes of text in memory, which the call does not keep; no 0 need end them. name is the
+   path that the text would have: it stands in messages, names the scene, and relative paths are looked up
+   beside it. No such file need exist; if it ends in .py, the text is Python's, of the Taichi program.
+   TOBI_INVALID for texts above 16 MiB. */
+TOBI_API tobi_status tobi_scene_parse(const char *name, const char *text, size_t size,
+                                      const char *const *overrides, tobi_scene **scene, tobi_report **report,
+                                      tobi_error *err);
 /* NULL is fine. Frees the motions too, so a world built from the scene must be destroyed before. */
 TOBI_API void tobi_scene_free(tobi_scene *scene);
 

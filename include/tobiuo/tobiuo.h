@@ -2,9 +2,14 @@
 
    Ownership: a tobi_world is opaque and owned by the caller from create to destroy. Arrays returned
    by pointer stay owned by the world and are valid until the next call that changes it. A failing
-   call leaves the world as it was, except TOBI_DIVERGED (the world stays readable, steps no more) and
-   TOBI_STALLED (the step was made; who wants to go on steps again). All units are SI. No call prints, exits
-   or keeps global state.
+   call leaves the world as it was, except these:
+   - A step that fails after it has moved something: TOBI_DIVERGED, and a control program or memory that fails
+     there. The world stays readable. It steps no more and answers with the same status and text until
+     tobi_world_load gives it a whole state. A motion that fails is asked before anything moves: the world
+     can go on.
+   - TOBI_STALLED: the step was made; who wants to go on steps again.
+   - tobi_world_load, save, read and others that need particles start the world, see tobi_world_start.
+   All units are SI. No call prints, exits or keeps global state.
 
    Mistakes of the calling program: a NULL where something must stand, a number out of range and an index of
    nothing are answered with TOBI_INVALID or TOBI_NOT_FOUND by calls that return a status, with 0 or NULL by
@@ -94,6 +99,22 @@ typedef int (*tobi_stop_fn)(void *user);
 /* NULL takes it away. user is owned by the caller. */
 TOBI_API void tobi_world_set_stop(tobi_world *world, tobi_stop_fn stop, void *user);
 
+/* What may be changed before the start and between two steps, from the next step on. Checkpoints hold it.
+   Gravity, m/s2, in 2-D without z. Still water, the sums of energies and the bounds of the time step follow.
+   TOBI_INVALID beyond the range of the definition's gravity. */
+TOBI_API tobi_status tobi_world_set_gravity(tobi_world *world, const double gravity[3], tobi_error *err);
+/* Constant force (N, on the centre of mass) and torque (N m) on a free or controlled body, in place of those
+   of its definition. TOBI_NOT_FOUND for a number that is no body, TOBI_INVALID for a prescribed one and for
+   numbers that are not finite. */
+TOBI_API tobi_status tobi_world_set_body_force(tobi_world *world, int body, const double force[3],
+                                               const double torque[3], tobi_error *err);
+/* Another motion for a body that was defined with one, rigid or not as that one. user must outlive the world.
+   At the present time it must have the body where it is, to a tenth of the spacing: TOBI_INVALID. Functions
+   are not stored: after tobi_world_load of a state that had its motion set, steps are TOBI_INVALID until it
+   is set again. */
+TOBI_API tobi_status tobi_world_set_body_motion(tobi_world *world, int body, tobi_motion_fn motion,
+                                                void *user, tobi_error *err);
+
 TOBI_API double  tobi_world_time(const tobi_world *world);
 TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
 TOBI_API int     tobi_world_body_count(const tobi_world *world);
@@ -109,15 +130,21 @@ TOBI_API tobi_status tobi_world_probe(tobi_world *world, int probe, tobi_probe_i
 /* NULL for a number that is no probe; kind may be NULL. */
 TOBI_API const char *tobi_world_probe_name(const tobi_world *world, int probe, tobi_probe_kind *kind);
 
-/* Particle sets: the fluid, or the particles of the bodies. In both, rows are in id order. */
+/* Particle sets: the fluid, or the particles of the bodies. In both, rows are in the order of rising ids. An
+   id names a particle from the start to the end, over restarts too. Those of the fluid count from 0; a
+   particle that has left takes its id with it. Those of bodies follow, body after body. */
 typedef enum tobi_set { TOBI_FLUID, TOBI_BODIES } tobi_set;
 TOBI_API int64_t tobi_world_count(const tobi_world *world, tobi_set set);
 /* Names of all fields by index, NULL past the end; components is 1, 3, 6 (xx, yy, zz, xy, yz, zx) or 9 (by
    rows). Which of them a method and bodies have says docs/scene.md; tobi_world_read refuses the others. */
 TOBI_API const char *tobi_world_field_name(int field, int *components, const char **unit);
-/* Copies a field into buffer (count x components doubles, row-major, id order). */
+/* Copies a field into buffer (count x components doubles, row-major, id order). "id" is another name of
+   "particle_id". */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
                                      double *buffer, int64_t count, tobi_error *err);
+/* Copies the ids as integers; the same errors. */
+TOBI_API tobi_status tobi_world_read_ids(tobi_world *world, tobi_set set, int64_t *buffer, int64_t count,
+                                         tobi_error *err);
 /* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. TOBI_INVALID,
    and nothing is set, for numbers that are not finite or speeds above TOBI_SPEED_LIMIT. */
 TOBI_API tobi_status tobi_world_write(tobi_world *world, const char *field, const double *buffer,
@@ -152,7 +179,9 @@ TOBI_API const char *tobi_world_stage(const tobi_world *world, int stage, double
 
 /* Writes / reads the complete state, so that run = run + restart bit for bit. The world read into
    must have been created and filled by the same definitions. The file appears whole or not at all, and
-   outlasts a power cut; at path there may be a plain file or nothing: TOBI_INVALID. */
+   outlasts a power cut; at path there may be a plain file or nothing: TOBI_INVALID. A file that cannot be
+   loaded, TOBI_DAMAGED, TOBI_INVALID for that of another scene, TOBI_UNSUPPORTED for that of another version,
+   leaves the world as it was. A world that failed in a step has no state to be saved. */
 TOBI_API tobi_status tobi_world_save(tobi_world *world, const char *path, tobi_error *err);
 TOBI_API tobi_status tobi_world_load(tobi_world *world, const char *path, tobi_error *err);
 

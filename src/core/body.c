@@ -260,6 +260,14 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
     return TOBI_OK;
 }
 
+void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_at *place)
+{
+    memcpy(b->vertex, vertex, (size_t)b->mesh.vertex_count*sizeof *b->vertex);
+    update_surface(b);
+    memcpy(b->centre, place->centre, sizeof b->centre);
+    memcpy(b->frame, place->frame, sizeof b->frame);
+}
+
 tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err)
 {
     if (b->rest_bvh) return TOBI_OK;

@@ -50,6 +50,8 @@ typedef struct tobi_body {
     int visible;
     tobi_motion_fn motion;           /* NULL = fixed                                           */
     void *motion_user;
+    int motion_set;                  /* 1: not that of its definition any more                 */
+    int motion_due;                  /* 1: so it was before a load, and must be set again      */
     double lower[3];                 /* the box's lower corner: origin of what follows         */
 
     double (*vertex)[3];             /* now                                                    */
@@ -95,6 +97,9 @@ tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err);
 tobi_status tobi_body_find_edge(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
 /* Puts the body where its motion has it at time t; a free one where its state has it. */
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
+/* Puts a body with a motion where a checkpoint has it: vertices, and the centre and frame of tobi_body. */
+typedef struct tobi_body_at { double centre[3], frame[3][3]; } tobi_body_at;
+void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_at *place);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in

@@ -30,6 +30,7 @@ typedef struct tobi_simulation {
     tobi_stop_fn stop;              /* of the caller, NULL = none                            */
     void *stop_user;
     int stopped;                    /* it asked to stop, in this call                        */
+    int changed;                    /* 1: particles or bodies are not any more as the step found them */
 } tobi_simulation;
 
 /* The step to take where `dt` is stable and `max_dt` (0 = any) is left: not longer than both, and no crumb

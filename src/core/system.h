@@ -7,7 +7,7 @@
 #include "core/smoothing.h"
 #include "core/still.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RECALL_ROW = 9 };
+enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RECALL_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
 typedef struct tobi_fluid {
     char name[64];
@@ -103,12 +103,16 @@ typedef struct tobi_method {
     /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". NULL: the
        method has neither. */
     void (*derive)(tobi_system *s, const char *field);
-    /* Doubles that must survive a restart besides the particles; the first is the largest speed, m/s. */
+    /* Doubles that must survive a restart besides the particles, TOBI_MEMORY_LIMIT at most; the first is the
+       largest speed, m/s. */
     int (*memory)(tobi_system *s, double **values);
     /* Optional, the same of a size that changes: rows of TOBI_RECALL_ROW numbers, which the caller frees. */
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
     /* Optional, after a load: takes such rows over. */
     void (*recall)(tobi_system *s, double *rows, int64_t count);
+    /* The world's gravity has changed between two steps, after a refresh if there were steps: what was derived
+       from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is kept. */
+    void (*follow_gravity)(tobi_system *s, int loaded);
     /* Bytes that the state has allocated; NULL = few. */
     int64_t (*bytes)(const tobi_system *s);
     void (*free)(void *state);

@@ -232,7 +232,8 @@ static tobi_status check_seal(const char *path, int fd, int64_t bytes, tobi_erro
                          (uint64_t)bytes, s.file_bytes);
     int code = sum_file(fd, s.file_bytes, &crc);
     if (code)
-        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(code));
+        return tobi_fail(err, code == ENOMEM ? TOBI_NO_MEMORY : TOBI_IO, "%s cannot be read to its end: %s",
+                         path, strerror(code));
     if (crc != s.crc)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its content does not match its checksum", path);
     return TOBI_OK;

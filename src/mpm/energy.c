@@ -25,11 +25,13 @@ static double find_energy(tobi_system *s, const mlsmpm *m, double t[TOBI_TOTALS]
     return t[0] + t[1] + t[2];
 }
 
-void mpm_energy_start(tobi_system *s, mlsmpm *m)
+double mpm_energy_find(tobi_system *s, const mlsmpm *m)
 {
     double t[TOBI_TOTALS];
-    m->memory.start_energy = find_energy(s, m, t);
+    return find_energy(s, m, t);
 }
+
+void mpm_energy_start(tobi_system *s, mlsmpm *m) { m->memory.start_energy = mpm_energy_find(s, m); }
 
 void mpm_energy_drop(mlsmpm *m, const mpm_view *v, int64_t i)
 {

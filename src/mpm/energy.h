@@ -3,6 +3,8 @@
 #pragma once
 #include "mpm/state.h"
 
+/* Of all solids now, elastic, kinetic and potential, J. */
+double mpm_energy_find(tobi_system *s, const mlsmpm *m);
 /* Takes the energy that all solids have at the start. */
 void mpm_energy_start(tobi_system *s, mlsmpm *m);
 /* Particle i leaves the domain and takes its energy with it. v: from mpm_look_back. */

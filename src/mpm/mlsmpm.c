@@ -61,6 +61,11 @@ static void add_planes(const tobi_system *s, int keep, mpm_view *v)
     add_fixed_planes(s, v);
 }
 
+static void bind_gravity(const tobi_system *s, mpm_view *v)
+{
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < s->box.dimension ? (float)s->sim->def.gravity[a] : 0;
+}
+
 static void bind_particles(const tobi_system *s, mlsmpm *m)
 {
     const tobi_particles *p = &s->particles;
@@ -79,24 +84,17 @@ static void bind_particles(const tobi_system *s, mlsmpm *m)
     v->bent = mpm_takes_spline(s, m->def.gradient);
     v->flip = m->def.transfer == TOBI_FLIP ? (float)m->def.flip : 1;
     v->own = m->def.transfer == TOBI_FLIP;
-    for (int a = 0; a < 3; a++) {
-        v->size[a] = s->box.size[a];
-        v->gravity[a] = a < s->box.dimension ? (float)s->sim->def.gravity[a] : 0;
-    }
+    memcpy(v->size, s->box.size, sizeof v->size);
+    bind_gravity(s, v);
     add_planes(s, m->def.leaving == TOBI_KEEP, v);
 }
 
-static tobi_status check_sides(const tobi_system *s, const mlsmpm *m, tobi_error *err)
+static tobi_status check_size(const tobi_system *s, const mlsmpm *m, tobi_error *err)
 {
-    for (int a = 0; a < s->box.dimension; a++) {
-        if (s->box.periodic[a])
-            return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "mlsmpm knows no periodic sides yet; allowed are slip, no-slip, separate, "
-                             "open");
+    for (int a = 0; a < s->box.dimension; a++)
         if (s->box.size[a] > 1e8*m->cell)
             return tobi_fail(err, TOBI_UNSUPPORTED, "the domain has %g cells along %c, allowed are 1e8",
                              s->box.size[a]/m->cell, "xyz"[a]);
-    }
     return TOBI_OK;
 }
 
@@ -115,7 +113,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->kernels = mpm_kernels_for(s->sim->exec.isa, s->box.dimension);
     m->memory.age = -1;
     m->viscous_dt = m->liquid_sound = INFINITY;
-    tobi_status status = check_sides(s, m, err);
+    tobi_status status = check_size(s, m, err);
     if (status == TOBI_OK)
         status = mpm_grid_create(&m->grid, s->box.dimension, count_layers(&m->def), &s->sim->exec, err);
     if (status != TOBI_OK) {
@@ -444,6 +442,16 @@ static void recall_rows(tobi_system *s, double *rows, int64_t count)
     m->built = 0;
 }
 
+/* The work of the change is no loss of the solids' energy. */
+static void follow_gravity(tobi_system *s, int loaded)
+{
+    mlsmpm *m = s->state;
+    const int begun = !loaded && m->memory.age >= 0;
+    const double before = begun ? mpm_energy_find(s, m) : 0;
+    bind_gravity(s, &m->view);
+    if (begun) m->memory.start_energy += mpm_energy_find(s, m) - before;
+}
+
 static int64_t count_bytes(const tobi_system *s) { return mpm_grid_bytes(&((const mlsmpm *)s->state)->grid); }
 
 static void free_state(void *state)
@@ -476,6 +484,7 @@ const tobi_method tobi_mlsmpm = {
     .memory = list_memory,
     .keep = keep_rows,
     .recall = recall_rows,
+    .follow_gravity = follow_gravity,
     .bytes = count_bytes,
     .free = free_state,
 };

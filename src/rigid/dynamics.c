@@ -482,6 +482,52 @@ void tobi_rigid_count(const tobi_dynamics_state *d, int64_t *touching, int *swee
     for (int64_t k = 0; k < d->contacts.count; k++) *touching += d->contacts.at[k].impulse > 0;
 }
 
+/* --- what callers change between steps --------------------------------------------------------- */
+
+/* Whether contact has dropped the pull that gravity and the constant force would make. */
+static int is_held(const tobi_dynamics_state *d, const tobi_rigid *r)
+{
+    double due[3];
+    vec3_add_scaled(due, d->world.gravity, 1/r->mass, r->force);
+    return vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque) == 0 &&
+           vec3_dot(due, due) + vec3_dot(r->torque, r->torque) > 0;
+}
+
+/* The pull of the next drift. What a control program adds to it stays. */
+static void change_pull(const tobi_dynamics_state *d, tobi_rigid *r, const double gravity[3],
+                        const double force[3], const double torque[3])
+{
+    if (r->kind == TOBI_PRESCRIBED || is_held(d, r)) return;
+    for (int a = 0; a < 3; a++) {
+        const double now = gravity[a] + force[a]/r->mass;
+        const double added = r->control ? r->pull[a] - (d->world.gravity[a] + r->force[a]/r->mass) : 0;
+        r->pull[a] = now + added;
+        r->pull_torque[a] = torque[a] + (r->control ? r->pull_torque[a] - r->torque[a] : 0);
+    }
+}
+
+void tobi_rigid_set_gravity(tobi_dynamics_state *d, const double gravity[3])
+{
+    for (int k = 0; k < d->count; k++) {
+        tobi_rigid *r = &d->bodies[k].rigid;
+        change_pull(d, r, gravity, r->force, r->torque);
+    }
+    memcpy(d->world.gravity, gravity, sizeof d->world.gravity);
+}
+
+void tobi_rigid_restore_gravity(tobi_dynamics_state *d, const double gravity[3])
+{
+    memcpy(d->world.gravity, gravity, sizeof d->world.gravity);
+}
+
+void tobi_rigid_set_force(tobi_dynamics_state *d, int body, const double force[3], const double torque[3])
+{
+    tobi_rigid *r = &d->bodies[body].rigid;
+    change_pull(d, r, d->world.gravity, force, torque);
+    memcpy(r->force, force, sizeof r->force);
+    memcpy(r->torque, torque, sizeof r->torque);
+}
+
 /* --- restart ----------------------------------------------------------------------------------- */
 
 enum { KEY_HALF = 30 };
@@ -501,9 +547,9 @@ int64_t tobi_rigid_warm(const tobi_dynamics_state *d, double *rows)
     return n;
 }
 
-tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const double *rows, tobi_error *err)
+static tobi_status read_warm(const tobi_dynamics_state *d, int64_t count, const double *rows,
+                             tobi_touch_list *out, tobi_error *err)
 {
-    d->contacts.count = 0;
     for (int64_t k = 0; k < count; k++) {
         const double *row = rows + TOBI_WARM*k;
         for (int i = 0; i < TOBI_WARM; i++)
@@ -513,7 +559,7 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
         if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES - d->world.plane_count ||
             row[1] >= d->count)
             return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
-        tobi_touch *c = tobi_touch_add(&d->contacts);
+        tobi_touch *c = tobi_touch_add(out);
         if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
         c->a = (int32_t)row[0];
         c->b = (int32_t)row[1];
@@ -521,5 +567,18 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
         c->impulse = row[4];
         memcpy(c->slide, row + 5, sizeof c->slide);
     }
+    return TOBI_OK;
+}
+
+tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const double *rows, tobi_error *err)
+{
+    tobi_touch_list read = { 0 };
+    const tobi_status status = read_warm(d, count, rows, &read, err);
+    if (status != TOBI_OK) {
+        free(read.at);
+        return status;
+    }
+    free(d->contacts.at);
+    d->contacts = read;
     return TOBI_OK;
 }

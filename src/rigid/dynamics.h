@@ -28,6 +28,14 @@ void tobi_rigid_free(tobi_dynamics_state *state);
    velocity is no number. */
 tobi_status tobi_rigid_step(tobi_dynamics_state *state, double t, double dt, tobi_error *err);
 
+/* Between steps: gravity, m/s2, or a body's constant force and torque, N, N m, from the next drift on. What
+   contact holds drifts by its velocities still, once. */
+void tobi_rigid_set_gravity(tobi_dynamics_state *state, const double gravity[3]);
+void tobi_rigid_set_force(tobi_dynamics_state *state, int body, const double force[3],
+                          const double torque[3]);
+/* The same gravity where the state is a checkpoint's, whose pull is of it already. */
+void tobi_rigid_restore_gravity(tobi_dynamics_state *state, const double gravity[3]);
+
 /* s: at most 1/60, a step in which gravity does little to the smallest body that moves and the fastest turns
    by half a radian, less where bodies are thin: contact looks ahead along straight lines. */
 double tobi_rigid_step_limit(const tobi_dynamics_state *state);
@@ -39,6 +47,6 @@ void tobi_rigid_count(const tobi_dynamics_state *state, int64_t *touching, int *
    returned. rows may be NULL. */
 enum { TOBI_WARM = 8 };
 int64_t tobi_rigid_warm(const tobi_dynamics_state *state, double *rows);
-/* Takes them back; rows that name no body are TOBI_DAMAGED. */
+/* Takes them back; rows that name no body are TOBI_DAMAGED, and none is taken. */
 tobi_status tobi_rigid_set_warm(tobi_dynamics_state *state, int64_t count, const double *rows,
                                 tobi_error *err);

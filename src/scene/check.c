@@ -3,9 +3,9 @@
 #include "scene/scene.h"
 #include "scene/suggest.h"
 #include "mpm/damage.h"
-#include "world/limits.h"
 #include "world/methods.h"
 #include "world/params.h"
+#include "world/rules.h"
 #include "world/world.h"
 #include <errno.h>
 #include <math.h>
@@ -31,92 +31,27 @@ static void check_method(const tobi_scene *scene, tobi_source *source)
                         scene->world.method, near ? near : names[0]);
 }
 
-static void check_dfsph(const tobi_scene *scene, tobi_source *source)
-{
-    if (scene->method != &tobi_dfsph_table) return;
-    const tobi_dfsph_def *d = scene->method_def;
-    tobi_place method = { &root, "dfsph", 0 };
-    tobi_place density = { &method, "density_iterations_min", 0 };
-    tobi_place divergence = { &method, "divergence_iterations_min", 0 };
-    if (d->density_iterations_min > d->density_iterations_max)
-        tobi_source_mistake(source, &density, "is %d, must not be above density_iterations_max, %d",
-                            d->density_iterations_min, d->density_iterations_max);
-    if (d->divergence_iterations_min > d->divergence_iterations_max)
-        tobi_source_mistake(source, &divergence,
-                            "is %d, must not be above divergence_iterations_max, %d",
-                            d->divergence_iterations_min, d->divergence_iterations_max);
-}
-
 int tobi_check_has_domain(const tobi_scene *scene)
 {
     return tobi_bind_has(&tobi_world_table, scene->world_bound.good, "domain.min") &&
            tobi_bind_has(&tobi_world_table, scene->world_bound.good, "domain.max");
 }
 
-/* A side moves along itself, and only where the fluid sticks to it. */
-static void check_sides(const tobi_scene *scene, tobi_source *source)
+/* A rule of the world that the scene breaks, at its key. */
+static void tell_rule(void *user, const char *path, const tobi_error *why)
 {
-    const tobi_world_def *w = &scene->world;
-    tobi_place domain = { &root, "domain", 0 }, velocity = { &domain, "wall_velocity", 0 };
-    for (int a = 0; a < w->dimension; a++)
-        for (size_t side = 0; side < 2; side++) {
-            char name[2] = { axis_name[a], 0 };
-            tobi_place axis = { &velocity, name, 0 }, entry = { &axis, NULL, side };
-            const double *v = side ? w->wall_velocity_max[a] : w->wall_velocity_min[a];
-            int wall = side ? w->wall_max[a] : w->wall_min[a];
-            if (is_zero(v)) continue;
-            if (wall != TOBI_WALL_NO_SLIP)
-                tobi_source_mistake(source, &entry, "moves a side that is not no-slip");
-            else if (v[a] != 0 || (w->dimension == 2 && v[2] != 0))
-                tobi_source_mistake(source, &entry, "is not along the side: %s must be 0",
-                                    v[a] != 0 ? name : "z");
-        }
+    tobi_place chain[TOBI_PATH_STEPS];
+    char text[TOBI_PATH_TEXT];
+    tobi_source_mistake(user, tobi_place_read(path, chain, text), "%s", why->text);
 }
 
-/* tobi_world_create would say the same, but not where. */
-static void check_limits(const tobi_scene *scene, tobi_source *source)
-{
-    const tobi_method *method = tobi_method_find(scene->world.method);
-    const char *key;
-    tobi_error err = { 0 };
-    if (!method || scene->world_bound.good != scene->world_bound.given || !tobi_check_has_domain(scene) ||
-        tobi_limits_check(&scene->world, (method->fields & TOBI_SPH) != 0, &key, &err) == TOBI_OK) return;
-    tobi_place place = { &root, key, 0 };
-    tobi_source_mistake(source, &place, "%s", err.text);
-}
-
-static void check_domain(const tobi_scene *scene, tobi_source *source)
+static void check_rules(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
-    tobi_place domain = { &root, "domain", 0 }, corner = { &domain, "max", 0 },
-               walls = { &domain, "walls", 0 };
-    tobi_place spacing = { &root, "spacing", 0 };
-    for (int a = 0; a < w->dimension; a++) {
-        char name[2] = { axis_name[a], 0 };
-        tobi_place wall = { &walls, name, 0 };
-        double length = w->domain_max[a] - w->domain_min[a];
-        if ((w->wall_min[a] == TOBI_WALL_PERIODIC) != (w->wall_max[a] == TOBI_WALL_PERIODIC))
-            tobi_source_mistake(source, &wall,
-                                "is periodic on one side only; write \"%s\": \"periodic\"", name);
-        if (w->wall_min[a] == TOBI_WALL_PERIODIC && scene->method == &tobi_mlsmpm_table)
-            tobi_source_mistake(source, &wall, "is periodic, which mlsmpm does not know; allowed are slip, "
-                                               "no-slip, separate and open");
-        const int open = w->wall_min[a] == TOBI_WALL_OPEN || w->wall_max[a] == TOBI_WALL_OPEN;
-        if (open && scene->method && scene->method != &tobi_mlsmpm_table)
-            tobi_source_mistake(source, &wall, "is open, which only mlsmpm knows; allowed are slip, no-slip, "
-                                               "periodic and separate");
-        if (!tobi_check_has_domain(scene)) continue;
-        tobi_place entry = { &corner, NULL, (size_t)a };
-        if (!(length > 0))
-            tobi_source_mistake(source, &entry,
-                                "is %.10g in %s, must be greater than domain.min there, %.10g",
-                                w->domain_max[a], name, w->domain_min[a]);
-        else if (w->spacing > length)
-            tobi_source_mistake(source, &spacing, "is %.10g m, the domain has only %.10g m in %s",
-                                w->spacing, length, name);
-    }
+    const tobi_rules rules = { .tell = tell_rule, .user = source, .corners = tobi_check_has_domain(scene),
+                               .numbers = scene->world_bound.good == scene->world_bound.given };
     tobi_place gravity = { &root, "gravity", 0 };
-    check_limits(scene, source);
+    tobi_rules_world(&rules, w, scene->method_def);
     if (w->dimension == 2 && w->gravity[2] != 0)
         tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene",
                             w->gravity[2]);
@@ -425,9 +360,7 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
 {
     check_method(scene, source);
-    check_dfsph(scene, source);
-    check_domain(scene, source);
-    check_sides(scene, source);
+    check_rules(scene, source);
     check_matter(scene, source);
     check_fluids(scene, source);
     check_solids(scene, source);

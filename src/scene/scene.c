@@ -307,8 +307,14 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
                              const char *const *overrides, tobi_scene **out,
                              tobi_report **report_out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the scene goes");
     *out = NULL;
     if (report_out) *report_out = NULL;
+    TOBI_NEED(path, "the name");
+    TOBI_NEED(text || size == 0, "the text");
+    if (size > TOBI_SOURCE_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "%s: %zu bytes of scene, allowed are %d", path, size,
+                         (int)TOBI_SOURCE_LIMIT);
     tobi_scene *scene = calloc(1, sizeof *scene);
     tobi_report *report = tobi_report_create();
     tobi_source source = { 0 };

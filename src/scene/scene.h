@@ -65,12 +65,6 @@ struct tobi_scene {
 /* The absolute directory of a file that may not exist; owned by the caller. */
 char *tobi_scene_find_directory(const char *path);
 
-/* tobi_scene_load from text in memory: path is its name in messages and tells where relative paths
-   start. For tests and fuzzing. */
-tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
-                             const char *const *overrides, tobi_scene **scene, tobi_report **report,
-                             tobi_error *err);
-
 /* references.c: reports columns, bodies, probes and files that are not there. */
 void tobi_references_check(const tobi_scene *scene, tobi_source *source);
 

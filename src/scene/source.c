@@ -213,6 +213,25 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
     tell(source, place, at_key, length < 0 ? "out of memory" : what);    \
     if (length >= 0) free(what)
 
+const tobi_place *tobi_place_read(const char *path, tobi_place chain[TOBI_PATH_STEPS],
+                                  char text[TOBI_PATH_TEXT])
+{
+    tobi_place *last = &chain[0];
+    *last = (tobi_place){ 0 };
+    snprintf(text, TOBI_PATH_TEXT, "%s", path);
+    for (char *at = text; *at && last < &chain[TOBI_PATH_STEPS - 1];) {
+        char *end = at + strcspn(at, ".[]");
+        const char stop = *end;
+        last[1] = (tobi_place){ last, at, 0 };
+        if (stop == ']') last[1] = (tobi_place){ last, NULL, strtoul(at, NULL, 10) };
+        last++;
+        *end = '\0';
+        at = stop ? end + 1 : end;
+        if (stop == ']' && *at == '.') at++;
+    }
+    return last;
+}
+
 void tobi_source_mistake(tobi_source *source, const tobi_place *place, const char *format, ...)
 {
     TELL(0);

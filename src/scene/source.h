@@ -58,5 +58,10 @@ void tobi_source_mistake_at_key(tobi_source *source, const tobi_place *place, co
 /* Says that the native path comes from an old place; to be called before `translated` is set. */
 tobi_status tobi_source_add_origin(tobi_source *source, const char *native, const tobi_place *old);
 
+/* The place of a path such as "fluids[0].density"; its steps, the root first, stand in chain, their keys in
+   text. What would be too long is left out at the end. */
+enum { TOBI_PATH_STEPS = 12 };
+const tobi_place *tobi_place_read(const char *path, tobi_place chain[TOBI_PATH_STEPS],
+                                  char text[TOBI_PATH_TEXT]);
 /* Writes "fluids[0].density" into text (at least TOBI_PATH_TEXT bytes); "" for the root. */
 void tobi_place_text(const tobi_place *place, char *text);

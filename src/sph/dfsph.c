@@ -466,6 +466,14 @@ static void derive(tobi_system *s, const char *field)
     sph_derive(s, &m->view, m->kernel, field);
 }
 
+static void follow_gravity(tobi_system *s, int loaded)
+{
+    dfsph *m = s->state;
+    const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, sph_still_low,
+                                  m->def.still_water };
+    if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
+}
+
 static void free_state(void *state)
 {
     dfsph *m = state;
@@ -493,5 +501,6 @@ const tobi_method tobi_dfsph = {
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,
+    .follow_gravity = follow_gravity,
     .free = free_state,
 };

@@ -25,7 +25,7 @@ void sph_still_set(tobi_system *s, double low)
     w->push = low > 0 ? s->fluid[0].density*sqrt(g2) : 0;
 }
 
-double sph_still_low(const tobi_system *s)
+double sph_still_low(tobi_system *s)
 {
     const float *drop = s->particles.delta;
     int64_t n[DROPS] = {0}, count = s->particles.count;
@@ -56,4 +56,49 @@ void sph_still_move(tobi_system *s, tobi_still *before, double low, double speed
     sph_still_set(s, *level);
     *before = s->still;
     *level = follow(s, *level, low, speed);
+}
+
+typedef struct referring { const tobi_system *s; int sign; } referring;
+
+static void add_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const referring *r = view;
+    const tobi_particles *p = &r->s->particles;
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) {
+        const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
+        p->pressure[i] += (float)(r->sign*tobi_still_pressure(&r->s->still, x));
+    }
+}
+
+/* Adds the reference to all pressures, or takes it from them. */
+static void add_reference(tobi_system *s, int sign)
+{
+    const referring r = { s, sign };
+    if (s->still.push > 0) tobi_launch(&s->sim->exec, add_range, &r, 0, s->particles.count, NULL);
+}
+
+static void bind(tobi_system *s, sph_view *v, const sph_surface *f)
+{
+    sph_bind_view(s, v, *f->vessel);
+    sph_still_set(s, *f->level);
+    v->still = s->still;
+}
+
+void sph_still_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f)
+{
+    const tobi_step_info kept = s->info;
+    double clock = tobi_clock();
+    if (s->step > 0) add_reference(s, 1);
+    *f->low = *f->level = 0;
+    if (s->step == 0) *f->vessel = SPH_VESSEL_UNKNOWN;
+    if (*f->vessel == SPH_VESSEL_FULL) tobi_system_fill_up(s);
+    if (*f->vessel != SPH_VESSEL_OPEN) return;
+    bind(s, v, f);
+    sph_measure_density(s, v, k, 0, &clock);
+    s->info = kept;
+    *f->low = f->find(s);
+    if (f->rests) *f->level = *f->low;
+    bind(s, v, f);
+    add_reference(s, -1);
 }

@@ -230,6 +230,14 @@ static void derive(tobi_system *s, const char *field)
     sph_derive(s, &m->view, m->kernel, field);
 }
 
+static void follow_gravity(tobi_system *s, int loaded)
+{
+    wcsph *m = s->state;
+    const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, find_surface,
+                                  m->def.still_water };
+    if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
+}
+
 static void free_state(void *state) { free(state); }
 
 const tobi_method tobi_wcsph = {
@@ -250,5 +258,6 @@ const tobi_method tobi_wcsph = {
     .refresh = refresh,
     .derive = derive,
     .memory = list_memory,
+    .follow_gravity = follow_gravity,
     .free = free_state,
 };

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void describe_world(const tobi_system *s, tobi_rigid_world *r)
 {
@@ -50,7 +51,10 @@ tobi_status tobi_world_kick_bodies(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-static void name_body(int k, const char *what, char name[32]) { snprintf(name, 32, "body_%04d%s", k, what); }
+void tobi_world_name_body(int k, const char *what, char name[32])
+{
+    snprintf(name, 32, "body_%04d%s", k, what);
+}
 
 static tobi_status put_contacts(const tobi_world *w, tobi_store *f, tobi_error *err)
 {
@@ -63,76 +67,38 @@ static tobi_status put_contacts(const tobi_world *w, tobi_store *f, tobi_error *
     return status;
 }
 
+/* See load_bodies.c. */
+static tobi_status put_place(const tobi_body *b, int k, tobi_store *f, tobi_error *err)
+{
+    tobi_body_at place;
+    char name[32];
+    memcpy(place.centre, b->centre, sizeof place.centre);
+    memcpy(place.frame, b->frame, sizeof place.frame);
+    tobi_world_name_body(k, "_vertex", name);
+    TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->mesh.vertex_count, 3, b->vertex, err));
+    tobi_world_name_body(k, "_place", name);
+    return tobi_store_put(f, name, TOBI_F64, 4, 3, &place, err);
+}
+
+static tobi_status put_body(tobi_body *b, int k, tobi_store *f, tobi_error *err)
+{
+    double load[7] = { [6] = b->motion_set };
+    char name[32];
+    memcpy(load, b->rigid.force, sizeof b->rigid.force);
+    memcpy(load + 3, b->rigid.torque, sizeof b->rigid.torque);
+    tobi_world_name_body(k, "", name);
+    TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
+    tobi_world_name_body(k, "_state", name);
+    TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, TOBI_RIGID_STATE(&b->rigid), err));
+    tobi_world_name_body(k, "_load", name);
+    TOBI_TRY(tobi_store_put(f, name, TOBI_F64, 7, 1, load, err));
+    tobi_world_name_body(k, "_edge", name);
+    if (b->blade) TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->piece_count, 3, b->edge_share, err));
+    return b->motion ? put_place(b, k, f, err) : TOBI_OK;
+}
+
 tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
 {
-    for (int k = 0; k < w->sim.body_count; k++) {
-        tobi_body *b = &w->sim.bodies[k];
-        char name[32];
-        name_body(k, "", name);
-        TOBI_TRY(tobi_store_put(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
-        name_body(k, "_state", name);
-        TOBI_TRY(tobi_store_put(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, TOBI_RIGID_STATE(&b->rigid), err));
-        name_body(k, "_edge", name);
-        if (b->blade)
-            TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->piece_count, 3, b->edge_share, err));
-    }
+    for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(put_body(&w->sim.bodies[k], k, f, err));
     return w->dynamics ? put_contacts(w, f, err) : TOBI_OK;
-}
-
-static tobi_status get_contacts(tobi_world *w, tobi_store *f, tobi_error *err)
-{
-    int64_t n = 0;
-    TOBI_TRY(tobi_store_rows(f, "body_contacts", &n, err));
-    double *rows = malloc((size_t)(n + TOBI_WARM)*sizeof *rows);
-    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)n);
-    tobi_status status = tobi_store_get(f, "body_contacts", TOBI_F64, n, 1, rows, err);
-    if (status == TOBI_OK) status = tobi_rigid_set_warm(w->dynamics, n/TOBI_WARM, rows, err);
-    free(rows);
-    return status;
-}
-
-static tobi_status get_state(tobi_body *b, int k, tobi_store *f, tobi_error *err)
-{
-    double *state = TOBI_RIGID_STATE(&b->rigid);
-    char name[32];
-    name_body(k, "_state", name);
-    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, state, err));
-    for (int i = 0; i < TOBI_RIGID_DOUBLES; i++)
-        if (!isfinite(state[i]))
-            return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of body '%s' is no number", b->name);
-    b->rigid.phase = fmin(fmax(b->rigid.phase, -1e9), 1e9);
-    b->rigid.hold = (int)fmin(fmax(b->rigid.hold, 0), 63) & 63;
-    return TOBI_OK;
-}
-
-static tobi_status get_edge(tobi_body *b, int k, tobi_store *f, tobi_error *err)
-{
-    char name[32];
-    int64_t count = 0;
-    name_body(k, "_edge", name);
-    TOBI_TRY(tobi_store_rows(f, name, &count, err));
-    TOBI_TRY(tobi_blade_recall(b, count, err));
-    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, b->edge_share, err));
-    for (int64_t n = 0; n < count; n++)
-        for (int a = 0; a < 3; a++)
-            if (!(fabs(b->edge_share[n][a]) <= 2))
-                return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of the edge of '%s' is no share",
-                                 b->name);
-    return TOBI_OK;
-}
-
-tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
-{
-    for (int k = 0; k < w->sim.body_count; k++) {
-        tobi_body *b = &w->sim.bodies[k];
-        char name[32];
-        name_body(k, "", name);
-        TOBI_TRY(get_state(b, k, f, err));
-        if (b->blade) TOBI_TRY(get_edge(b, k, f, err));
-        const tobi_rigid rigid = b->rigid;
-        TOBI_TRY(tobi_body_place(b, w->sim.time, err));
-        b->rigid = rigid;            /* placing a prescribed body forgets its velocities */
-        TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof b->info, 1, &b->info, err));
-    }
-    return w->dynamics ? get_contacts(w, f, err) : TOBI_OK;
 }

@@ -12,6 +12,19 @@ void tobi_world_cap_step(tobi_world *w);
 tobi_status tobi_world_kick_bodies(tobi_world *w, tobi_error *err);
 
 /* Bodies in checkpoints: poses, velocities and the impulses that the next step starts from. */
+void tobi_world_name_body(int k, const char *what, char name[32]);
 tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err);
-/* Puts all bodies where they were at w->sim.time. */
-tobi_status tobi_world_get_bodies(tobi_world *w, tobi_store *f, tobi_error *err);
+
+/* What a checkpoint has of the bodies, read and checked before anything of the world changes. */
+typedef struct tobi_loaded_body tobi_loaded_body;
+typedef struct tobi_loaded_bodies {
+    tobi_loaded_body *body;      /* [body_count], owned */
+    int count;
+    double *contacts;            /* rows of TOBI_WARM, owned */
+    int64_t contact_count;
+} tobi_loaded_bodies;
+/* To be freed in any case. */
+tobi_status tobi_world_read_bodies(tobi_world *w, tobi_store *f, tobi_loaded_bodies *l, tobi_error *err);
+/* Takes all over; a failure has changed nothing. */
+tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_error *err);
+void tobi_loaded_bodies_free(tobi_loaded_bodies *l);

@@ -1,15 +1,18 @@
-/* The complete state in one file: particle state fields in memory order, the clock, the method's memory. */
+/* The complete state in one file: what the systems share, and each of them. Loading reads and checks all of it
+   before the world changes. Drawback: while it loads, the state is in memory twice. */
 #include "base/error.h"
 #include "io/store.h"
 #include "world/bodies.h"
+#include "world/change.h"
+#include "world/load_system.h"
 #include "world/step.h"
 #include "world/world.h"
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* To be raised whenever what a checkpoint holds changes; 0: from before there was a number. */
-enum { FORMAT = 6 };
+enum { FORMAT = 7 };
 
 static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
 {
@@ -22,60 +25,16 @@ static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err
                      path, (long long)format, FORMAT);
 }
 
-/* What the method keeps besides. */
-static tobi_status put_rows(tobi_world *w, tobi_store *f, tobi_error *err)
-{
-    double *rows = NULL;
-    int64_t count = 0;
-    if (!w->system[0].method->keep) return TOBI_OK;
-    TOBI_TRY(w->system[0].method->keep(&w->system[0], &rows, &count, err));
-    tobi_status status = tobi_store_put(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
-    free(rows);
-    return status;
-}
-
-static tobi_status get_rows(tobi_world *w, tobi_store *f, tobi_error *err)
-{
-    int64_t count;
-    if (!w->system[0].method->recall) return TOBI_OK;
-    TOBI_TRY(tobi_store_rows(f, "rows", &count, err));
-    double *rows = malloc((size_t)(count + 1)*TOBI_RECALL_ROW*sizeof *rows);
-    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)count);
-    tobi_status status = tobi_store_get(f, "rows", TOBI_F64, count, TOBI_RECALL_ROW, rows, err);
-    if (status == TOBI_OK) w->system[0].method->recall(&w->system[0], rows, count);
-    else free(rows);
-    return status;
-}
-
-/* A state field as columns of a basic type. */
-static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
-{
-    *components = f->bytes == sizeof(tobi_double3)   ? 3
-                  : f->bytes == sizeof(tobi_columns) ? 12
-                  : f->bytes == sizeof(tobi_float4)  ? 4
-                                                     : 1;
-    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64
-            : f->bytes % 16 == 0 || f->bytes == 4 ? TOBI_F32
-            : f->bytes == 8                   ? TOBI_I64
-                                              : TOBI_U8;
-}
-
 static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 {
-    tobi_system *s = &w->system[0];
-    double *memory;
-    int n = w->system[0].method->memory(&w->system[0], &memory);
+    const tobi_simulation *s = &w->sim;
+    const double clock[4] = {s->time, s->dt, s->body_speed, w->system[0].start_speed};
     TOBI_TRY(tobi_store_put_int(f, "format", FORMAT, err));
-    TOBI_TRY(tobi_store_put_text(f, "method", w->system[0].method->name, err));
-    TOBI_TRY(tobi_store_put_int(f, "step", s->sim->step, err));
-    TOBI_TRY(tobi_store_put_int(f, "bodies", s->sim->body_count, err));
-    TOBI_TRY(tobi_store_put_real(f, "spacing", s->smoothing.spacing, err));
-    double clock[4] = {s->sim->time, s->sim->dt, s->sim->body_speed, s->start_speed};
+    TOBI_TRY(tobi_store_put_int(f, "step", s->step, err));
+    TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
-    TOBI_TRY(tobi_store_put(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
-    TOBI_TRY(tobi_world_put_bodies(w, f, err));
-    TOBI_TRY(tobi_store_put(f, "memory", TOBI_F64, n, 1, memory, err));
-    return put_rows(w, f, err);
+    TOBI_TRY(tobi_store_put(f, "gravity", TOBI_F64, 3, 1, s->def.gravity, err));
+    return tobi_world_put_bodies(w, f, err);
 }
 
 tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
@@ -83,46 +42,78 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
     TOBI_NEED_WORLD(w);
     TOBI_NEED(path, "the path");
     TOBI_TRY(tobi_world_start(w, err));
+    TOBI_TRY(tobi_world_check_whole(w, err));
     tobi_store *f;
     TOBI_TRY(tobi_store_create(path, &f, err));
     tobi_status status = put_clock(w, f, err);
-    for (int k = 0; status == TOBI_OK; k++) {
-        tobi_field_ref r = tobi_particles_state(&w->system[0].particles, k);
-        tobi_vtk_type type;
-        int components;
-        if (!r.name) break;
-        shape_of(&r, &type, &components);
-        status = tobi_store_put(f, r.name, type, w->system[0].particles.count, components, r.data, err);
-    }
+    for (int k = 0; status == TOBI_OK && k < w->system_count; k++)
+        status = tobi_system_put(&w->system[k], k, f, err);
     if (status == TOBI_OK) return tobi_store_commit(f, err);
     tobi_store_close(f);
     return status;
 }
 
-static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
+/* A checkpoint as read, before the world takes it over. */
+typedef struct loaded {
+    int64_t step;
+    double clock[4], gravity[3];
+    tobi_loaded_system system[TOBI_SYSTEM_LIMIT];
+    tobi_loaded_bodies bodies;
+} loaded;
+
+static void free_loaded(loaded *l)
 {
-    tobi_system *s = &w->system[0];
-    double *memory, clock[4], spacing;
-    int64_t step, bodies;
-    int n = w->system[0].method->memory(&w->system[0], &memory);
-    TOBI_TRY(tobi_store_get_int(f, "step", &step, err));
+    for (int k = 0; k < TOBI_SYSTEM_LIMIT; k++) tobi_loaded_system_free(&l->system[k]);
+    tobi_loaded_bodies_free(&l->bodies);
+}
+
+static tobi_status check_bodies(const tobi_world *w, tobi_store *f, tobi_error *err)
+{
+    int64_t bodies;
     TOBI_TRY(tobi_store_get_int(f, "bodies", &bodies, err));
-    TOBI_TRY(tobi_store_get_real(f, "spacing", &spacing, err));
-    if (bodies != s->sim->body_count || spacing != s->smoothing.spacing)
-        return tobi_fail(err, TOBI_INVALID,
-                         "the checkpoint is of another scene: it has %lld bodies at spacing %g m, "
-                         "the scene %d at %g m",
-                         (long long)bodies, spacing, s->sim->body_count, s->smoothing.spacing);
-    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, clock, err));
-    TOBI_TRY(tobi_store_get(f, "info", TOBI_U8, (int64_t)sizeof s->info, 1, &s->info, err));
-    TOBI_TRY(tobi_store_get(f, "memory", TOBI_F64, n, 1, memory, err));
-    s->sim->step = s->step = step;
-    s->sim->time = clock[0];
-    s->sim->dt = s->dt = clock[1];
-    s->sim->body_speed = clock[2];
-    s->start_speed = clock[3];
+    if (bodies == w->sim.body_count) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies, the scene %d",
+                     (long long)bodies, w->sim.body_count);
+}
+
+static tobi_status read_clock(tobi_store *f, const char *path, loaded *l, tobi_error *err)
+{
+    TOBI_TRY(tobi_store_get_int(f, "step", &l->step, err));
+    TOBI_TRY(tobi_store_get(f, "clock", TOBI_F64, 4, 1, l->clock, err));
+    TOBI_TRY(tobi_store_get(f, "gravity", TOBI_F64, 3, 1, l->gravity, err));
+    int good = l->step >= 0 && l->clock[0] >= 0;
+    for (int k = 0; k < 4; k++) good &= isfinite(l->clock[k]) != 0;
+    for (int k = 0; k < 3; k++) good &= isfinite(l->gravity[k]) != 0;
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "%s: its clock or gravity is no number", path);
+}
+
+static tobi_status read_all(tobi_world *w, tobi_store *f, const char *path, loaded *l, tobi_error *err)
+{
+    TOBI_TRY(check_format(f, path, err));
+    TOBI_TRY(check_bodies(w, f, err));
+    TOBI_TRY(read_clock(f, path, l, err));
+    for (int k = 0; k < w->system_count; k++)
+        TOBI_TRY(tobi_system_get(&w->system[k], k, f, path, &l->system[k], err));
+    return tobi_world_read_bodies(w, f, &l->bodies, err);
+}
+
+static void take_over(tobi_world *w, loaded *l)
+{
+    tobi_simulation *s = &w->sim;
+    s->step = l->step;
+    s->time = l->clock[0];
+    s->dt = l->clock[1];
+    s->body_speed = l->clock[2];
+    for (int k = 0; k < w->system_count; k++) tobi_system_take(&w->system[k], &l->system[k]);
+    w->system[0].step = l->step;
+    w->system[0].dt = l->clock[1];
+    w->system[0].start_speed = l->clock[3];
+    tobi_world_restore_gravity(w, l->gravity);
+    for (int k = 0; k < w->system_count; k++) tobi_system_recall(&w->system[k], &l->system[k]);
     tobi_step_sum_up(w);
-    return TOBI_OK;
+    w->fresh = w->idle_steps = 0;
+    w->failure.status = TOBI_OK;
 }
 
 tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
@@ -132,30 +123,11 @@ tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
     TOBI_TRY(tobi_world_start(w, err));
     tobi_store *f;
     TOBI_TRY(tobi_store_open(path, &f, err));
-    int64_t n = 0;
-    tobi_status status = check_format(f, path, err);
-    if (status == TOBI_OK) status = tobi_store_rows(f, "id", &n, err);
-    if (status == TOBI_OK)
-        status =
-            n <= w->system[0].particles.capacity
-                ? get_clock(w, f, err)
-                : tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld",
-                            path, (long long)n, (long long)w->system[0].particles.capacity);
-    for (int k = 0; status == TOBI_OK; k++) {
-        tobi_field_ref r = tobi_particles_state(&w->system[0].particles, k);
-        tobi_vtk_type type;
-        int components;
-        if (!r.name) break;
-        shape_of(&r, &type, &components);
-        status = tobi_store_get(f, r.name, type, n, components, r.data, err);
-    }
-    if (status == TOBI_OK) {
-        w->system[0].particles.count = n;
-        status = tobi_world_get_bodies(w, f, err);
-        if (status == TOBI_OK) status = get_rows(w, f, err);
-    }
+    loaded l = { 0 };
+    tobi_status status = read_all(w, f, path, &l, err);
+    if (status == TOBI_OK) status = tobi_world_take_bodies(w, &l.bodies, err);
+    if (status == TOBI_OK) take_over(w, &l);
+    free_loaded(&l);
     tobi_store_close(f);
-    w->fresh = 0;
-    w->diverged = 0;
     return status;
 }

@@ -35,9 +35,18 @@ static tobi_status check_steps(const tobi_world_def *d, double step, tobi_error 
                      "to %g steps", step, d->end_time/step, d->end_time, STEPS);
 }
 
-tobi_status tobi_limits_check(const tobi_world_def *d, int sph, const char **key, tobi_error *err)
+tobi_status tobi_limits_gravity(const tobi_world_def *d, tobi_error *err)
 {
     double work = 0;
+    for (int a = 0; a < d->dimension; a++)
+        work += fabs(d->gravity[a])*(d->domain_max[a] - d->domain_min[a]);
+    if (!(sqrt(2*work) > TOBI_SPEED_LIMIT)) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "makes what falls through the domain %.3g m/s fast; allowed are up "
+                     "to %g m/s", sqrt(2*work), TOBI_SPEED_LIMIT);
+}
+
+tobi_status tobi_limits_check(const tobi_world_def *d, int sph, const char **key, tobi_error *err)
+{
     *key = "spacing";
     TOBI_TRY(check_box(d, sph, err));
     *key = "time_step";
@@ -45,11 +54,7 @@ tobi_status tobi_limits_check(const tobi_world_def *d, int sph, const char **key
     *key = "time_step_max";
     TOBI_TRY(check_steps(d, d->time_step_max, err));
     *key = "gravity";
-    for (int a = 0; a < d->dimension; a++)
-        work += fabs(d->gravity[a])*(d->domain_max[a] - d->domain_min[a]);
-    if (!(sqrt(2*work) > TOBI_SPEED_LIMIT)) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "makes what falls through the domain %.3g m/s fast; allowed are up "
-                     "to %g m/s", sqrt(2*work), TOBI_SPEED_LIMIT);
+    return tobi_limits_gravity(d, err);
 }
 
 tobi_status tobi_limits_progress(const tobi_simulation *s, double before, double max_dt, double left,

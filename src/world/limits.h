@@ -7,6 +7,9 @@
    keeps positions in fixed point. */
 tobi_status tobi_limits_check(const tobi_world_def *def, int sph, const char **key, tobi_error *err);
 
+/* The part of it that gravity must keep. */
+tobi_status tobi_limits_gravity(const tobi_world_def *def, tobi_error *err);
+
 /* TOBI_STALLED when time stands still, or has advanced for a hundred steps so little that `left` s would take
    more than a billion steps. steps: the caller's count of such steps in a row. max_dt: of the call, s. */
 tobi_status tobi_limits_progress(const tobi_simulation *s, double before, double max_dt, double left,

@@ -9,7 +9,13 @@
 
 /* owner: which methods have it; bodies: whether their particles have it too. Of 6: xx, yy, zz, xy, yz, zx, as
    ParaView names them; of 9: by rows. */
-typedef struct known_field { const char *name; int components; const char *unit; int owner, bodies; } known_field;
+typedef struct known_field {
+    const char *name;
+    int components;
+    const char *unit;
+    int owner, bodies;
+} known_field;
+
 static const known_field fields[] = {
     {"position", 3, "m", TOBI_ALL, 1},        {"velocity", 3, "m/s", TOBI_ALL, 1},
     {"pressure", 1, "Pa", TOBI_ALL, 0},       {"density", 1, "kg/m3", TOBI_ALL, 1},
@@ -68,7 +74,7 @@ static void order_rows(tobi_system *s)
 static tobi_status refresh_system(tobi_world *w, tobi_system *s, tobi_error *err)
 {
     const tobi_step_info kept = s->info;
-    if (!w->diverged && s->method->refresh) TOBI_TRY(s->method->refresh(s, err));
+    if (w->failure.status != TOBI_DIVERGED && s->method->refresh) TOBI_TRY(s->method->refresh(s, err));
     const double mean = s->info.density_error_mean, max = s->info.density_error_max;
     s->info = kept;
     s->info.density_error_mean = mean;
@@ -184,7 +190,8 @@ static int has_field(const tobi_world *w, int owner)
 }
 
 /* One particle; a field that its system does not have is 0. */
-static void read_particle(const tobi_world *w, const tobi_system *s, const known_field *f, int64_t i, double *out)
+static void read_particle(const tobi_world *w, const tobi_system *s, const known_field *f, int64_t i,
+                          double *out)
 {
     if (!strcmp(f->name, "particle_id")) out[0] = (double)(tobi_world_first_id(w, s) + s->particles.id[i]);
     else if (!strcmp(f->name, "material")) out[0] = tobi_world_first_material(w, s) + s->particles.fluid[i];
@@ -199,40 +206,65 @@ static void read_particle(const tobi_world *w, const tobi_system *s, const known
 static void read_system(const tobi_world *w, tobi_system *s, const known_field *f, double *buffer)
 {
     const int derived = !strcmp(f->name, "acceleration") || !strcmp(f->name, "vorticity");
-    if (!w->diverged && derived && s->method->derive) s->method->derive(s, f->name);
+    if (w->failure.status != TOBI_DIVERGED && derived && s->method->derive) s->method->derive(s, f->name);
     #pragma omp parallel for num_threads(w->sim.exec.threads)
     for (int64_t r = 0; r < s->particles.count; r++)
         read_particle(w, s, f, s->row_of[r], buffer + r*f->components);
 }
 
-tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, double *buffer,
-                            int64_t count, tobi_error *err)
+/* Finds a field by its name and checks that there is room for it. Then the rows are in order. */
+static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, const void *buffer,
+                              int64_t count, int *number, tobi_error *err)
 {
-    int k = 0, components = 0;
+    int k = 0;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(field, "the field");
     TOBI_NEED(buffer || count == 0, "the buffer");
     if (set != TOBI_FLUID && set != TOBI_BODIES)
         return tobi_fail(err, TOBI_INVALID, "there is no set of particles %d; allowed are TOBI_FLUID and "
                          "TOBI_BODIES", (int)set);
-    while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
+    const char *name = strcmp(field, "id") == 0 ? "particle_id" : field;
+    while (k < FIELD_COUNT && strcmp(fields[k].name, name) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     if (!has_field(w, fields[k].owner))
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
     if (set == TOBI_BODIES && !fields[k].bodies)
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
-    components = fields[k].components;
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, room for %lld given", field,
                          (long long)tobi_world_count(w, set), (long long)count);
+    *number = k;
+    return set == TOBI_FLUID ? tobi_world_refresh(w, err) : TOBI_OK;
+}
+
+tobi_status tobi_world_read_ids(tobi_world *w, tobi_set set, int64_t *buffer, int64_t count, tobi_error *err)
+{
+    int unused;
+    TOBI_TRY(find_field(w, set, "id", buffer, count, &unused, err));
+    const int64_t bodies = set == TOBI_BODIES ? tobi_world_count(w, set) : 0;
+    for (int k = 0; k < w->system_count && set == TOBI_FLUID; k++) {
+        const tobi_system *s = &w->system[k];
+        for (int64_t r = 0; r < s->particles.count; r++)
+            *buffer++ = tobi_world_first_id(w, s) + s->particles.id[s->row_of[r]];
+    }
+    for (int64_t r = 0; r < bodies; r++) buffer[r] = tobi_world_first_id(w, &w->system[w->system_count]) + r;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *name, double *buffer, int64_t count,
+                            tobi_error *err)
+{
+    int number;
+    TOBI_TRY(find_field(w, set, name, buffer, count, &number, err));
+    const char *field = fields[number].name;
+    const int components = fields[number].components;
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);
-    TOBI_TRY(tobi_world_refresh(w, err));
     const tobi_pieces *unused;
     if (!strcmp(field, "piece")) TOBI_TRY(tobi_world_pieces(w, &unused, err));
     if (!strcmp(field, "texture_coordinates")) TOBI_TRY(tobi_world_find_texture(w, err));
     for (int n = 0; n < w->system_count; n++) {
-        read_system(w, &w->system[n], &fields[k], buffer);
+        read_system(w, &w->system[n], &fields[number], buffer);
         buffer += w->system[n].particles.count*components;
     }
     return TOBI_OK;

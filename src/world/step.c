@@ -6,6 +6,7 @@
 #include "world/limits.h"
 #include "base/error.h"
 #include <math.h>
+#include <string.h>
 
 static tobi_status remember(tobi_world *w, tobi_error *err)
 {
@@ -127,20 +128,109 @@ void tobi_step_sum_up(tobi_world *w)
     sum->dt = w->sim.dt;
 }
 
-tobi_status tobi_step_take(tobi_world *w, double max_dt, tobi_error *err)
+/* Which key of the scene makes steps shorter, and its value. */
+static const char *name_cfl(const tobi_system *s, double *value)
 {
-    const double before = w->sim.dt;
+    const tobi_world_def *d = &s->sim->def;
+    const int mpm = (s->method->fields & TOBI_MPM) != 0;
+    *value = mpm ? ((const tobi_mlsmpm_def *)s->def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
+    return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
+}
+
+static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
+{
+    double limit = s->sim->def.speed_limit, cfl;
+    const char *key = name_cfl(s, &cfl);
+    if (limit <= 0) {
+        /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
+        const int64_t few = 20 + s->particles.count/200;
+        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
+        limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
+    }
+    if (s->info.speed_max < limit) return TOBI_OK;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        tobi_float4 v = s->particles.velocity[i];
+        tobi_double3 x = s->particles.position[i];
+        double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
+        if (speed < limit || speed == 0) continue;   /* NaN goes on */
+        if (!isfinite(speed))
+            return tobi_fail(err, TOBI_DIVERGED,
+                             "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
+                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help",
+                             s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
+                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl);
+        return tobi_fail(err, TOBI_DIVERGED,
+                         "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
+                         "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
+                         "help",
+                         s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
+                         x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
+                         limit, key, cfl);
+    }
+    return tobi_fail(err, TOBI_DIVERGED,
+                     "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
+                     "may help", s->sim->time, s->info.speed_max, key, cfl);
+}
+
+static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
+{
+    tobi_simulation *s = &w->sim;
     int64_t substeps[TOBI_SYSTEM_LIMIT];
-    TOBI_TRY(tobi_simulation_heed(&w->sim, err));
+    TOBI_TRY(tobi_simulation_heed(s, err));
     tobi_world_cap_step(w);
     TOBI_TRY(remember(w, err));
     choose_dt(w, max_dt, substeps);
-    TOBI_TRY(predict_bodies(&w->sim, err));
-    tobi_status status = step_systems(w, substeps, err);
-    if (status == TOBI_STOPPED) take_back(w, before);
-    TOBI_TRY(status);
+    TOBI_TRY(predict_bodies(s, err));
+    s->changed = 1;
+    TOBI_TRY(step_systems(w, substeps, err));
     TOBI_TRY(move_bodies(w, err));
-    w->sim.time += w->sim.dt;
-    w->sim.step++;
-    return tobi_world_kick_bodies(w, err);
+    s->time += s->dt;
+    s->step++;
+    TOBI_TRY(tobi_world_kick_bodies(w, err));
+    tobi_step_sum_up(w);
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(check_runaway(&w->system[k], err));
+    return TOBI_OK;
+}
+
+/* What the choice of a step may change before anything moves. */
+typedef struct kept { double memory[TOBI_SYSTEM_LIMIT][TOBI_MEMORY_LIMIT], dt, body_speed; } kept;
+
+static void keep_memory(tobi_world *w, kept *keep)
+{
+    double *memory;
+    for (int k = 0; k < w->system_count; k++) {
+        const int n = w->system[k].method->memory(&w->system[k], &memory);
+        assert(n <= TOBI_MEMORY_LIMIT);
+        memcpy(keep->memory[k], memory, (size_t)n*sizeof *memory);
+    }
+    keep->dt = w->sim.dt;
+    keep->body_speed = w->sim.body_speed;
+}
+
+static void put_back(tobi_world *w, const kept *keep)
+{
+    double *memory;
+    for (int k = 0; k < w->system_count; k++) {
+        const int n = w->system[k].method->memory(&w->system[k], &memory);
+        memcpy(memory, keep->memory[k], (size_t)n*sizeof *memory);
+        w->system[k].dt = keep->dt;
+    }
+    w->sim.dt = keep->dt;
+    w->sim.body_speed = keep->body_speed;
+}
+
+/* A step that fails before anything has moved leaves the world as it was; after that the failure stays in
+   w->failure. A method takes back itself what the caller stops. */
+tobi_status tobi_step_take(tobi_world *w, double max_dt, tobi_error *err)
+{
+    kept keep;
+    keep_memory(w, &keep);
+    w->sim.changed = 0;
+    const tobi_status status = take_step(w, max_dt, &w->failure);
+    if (status == TOBI_OK) return TOBI_OK;
+    tobi_fail(err, status, "%s", w->failure.text);
+    if (status == TOBI_STOPPED || !w->sim.changed) w->failure.status = TOBI_OK;
+    if (status == TOBI_STOPPED) take_back(w, keep.dt);
+    else if (!w->sim.changed) put_back(w, &keep);
+    return status;
 }

@@ -3,10 +3,12 @@
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
+#include "world/change.h"
 #include "world/fit.h"
 #include "world/limits.h"
 #include "world/note_pieces.h"
 #include "world/params.h"
+#include "world/rules.h"
 #include "world/step.h"
 #include <math.h>
 #include <stdio.h>
@@ -28,93 +30,6 @@ const char *tobi_status_text(tobi_status status)
 
 static double length(const double v[3]) { return sqrt(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]); }
 
-/* A side moves along itself, and only where the fluid sticks to it. */
-static tobi_status check_side(const double v[3], int axis, int wall, int dimension, tobi_error *err)
-{
-    if (!(length(v) > 0)) return TOBI_OK;
-    if (wall != TOBI_WALL_NO_SLIP)
-        return tobi_fail(err, TOBI_INVALID, "domain: a side along %c has a velocity but is not no-slip",
-                         "xyz"[axis]);
-    if (v[axis] != 0 || (dimension == 2 && v[2] != 0))
-        return tobi_fail(err, TOBI_INVALID,
-                         "domain: a side along %c moves by (%g, %g, %g) m/s, allowed is along itself",
-                         "xyz"[axis], v[0], v[1], v[2]);
-    return TOBI_OK;
-}
-
-static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
-{
-    TOBI_TRY(tobi_param_check(&tobi_world_table, d, err));
-    for (int a = 0; a < d->dimension; a++) {
-        if (!(d->domain_max[a] > d->domain_min[a]))
-            return tobi_fail(err, TOBI_INVALID, "domain: max %g is not above min %g along %c",
-                             d->domain_max[a], d->domain_min[a], "xyz"[a]);
-        if ((d->wall_min[a] == TOBI_WALL_PERIODIC) != (d->wall_max[a] == TOBI_WALL_PERIODIC))
-            return tobi_fail(err, TOBI_INVALID,
-                             "domain: only one side along %c is periodic; both or none are allowed",
-                             "xyz"[a]);
-        TOBI_TRY(check_side(d->wall_velocity_min[a], a, d->wall_min[a], d->dimension, err));
-        TOBI_TRY(check_side(d->wall_velocity_max[a], a, d->wall_max[a], d->dimension, err));
-    }
-    return TOBI_OK;
-}
-
-static tobi_status check_limits(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
-{
-    tobi_error why = { 0 };
-    const char *key;
-    tobi_status status = tobi_limits_check(d, (method->fields & TOBI_SPH) != 0, &key, &why);
-    return status ? tobi_fail(err, status, "world: %s %s", key, why.text) : TOBI_OK;
-}
-
-static tobi_status check_open(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
-{
-    for (int a = 0; a < d->dimension; a++)
-        if ((d->wall_min[a] == TOBI_WALL_OPEN || d->wall_max[a] == TOBI_WALL_OPEN) &&
-            !(method->fields & TOBI_MPM))
-            return tobi_fail(err, TOBI_UNSUPPORTED,
-                             "domain: a side along %c is open, which %s does not know; mlsmpm does", "xyz"[a],
-                             method->name);
-    return TOBI_OK;
-}
-
-/* Whether a system fills the domain: not half a layer of particles is missing over its smallest side. */
-static int is_full_vessel(const tobi_world *w, const tobi_system *s)
-{
-    const tobi_world_def *d = &w->sim.def;
-    double domain = 1, longest = 0, filled = 0;
-    for (int a = 0; a < d->dimension; a++) {
-        double side = d->domain_max[a] - d->domain_min[a];
-        domain *= side;
-        longest = fmax(longest, side);
-    }
-    for (int k = 0; k < w->region_count; k++)
-        if (&w->system[w->regions[k].system] == s) filled += w->regions[k].volume;
-    return filled > domain*(1 - 0.5*d->spacing/longest);
-}
-
-/* Whether a body or a side moves in a full vessel. */
-static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
-{
-    int stirred = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
-    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
-    return stirred && is_full_vessel(w, s);
-}
-
-/* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
-static void set_smoothing(tobi_world *w, tobi_system *s)
-{
-    const tobi_world_def *d = &w->sim.def;
-    int shape, periodic[3];
-    double support;
-    s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
-    const double spacing = tobi_fit_find(w, d->spacing).spacing;
-    if (s->smoothing.h == support*spacing) return;
-    tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
-    for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
-    tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
-}
-
 static tobi_status create_simulation(tobi_simulation *s, const tobi_world_def *def, tobi_error *err)
 {
     s->def = *def;
@@ -125,57 +40,13 @@ static tobi_status create_simulation(tobi_simulation *s, const tobi_world_def *d
     return tobi_exec_init(&s->exec, def->threads, err);
 }
 
-tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, const void *method_def,
-                                  tobi_error *err)
-{
-    const tobi_param_table *table = tobi_method_table(method->name);
-    TOBI_TRY(check_open(&w->sim.def, method, err));
-    TOBI_TRY(check_limits(&w->sim.def, method, err));
-    if (method_def) TOBI_TRY(tobi_param_check(table, method_def, err));
-    void *params = calloc(1, method->def_size);
-    if (!params) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a system");
-    tobi_param_defaults(table, params);
-    if (method_def) memcpy(params, method_def, method->def_size);
-    tobi_system *s = &w->system[w->system_count++];
-    *s = (tobi_system){ .sim = &w->sim, .method = method, .def = params };
-    memcpy(s->gravity, w->sim.def.gravity, sizeof s->gravity);
-    set_smoothing(w, s);
-    return TOBI_OK;
-}
-
-tobi_system *tobi_world_solids(const tobi_world *w)
-{
-    for (int k = 0; k < w->system_count; k++)
-        if (w->system[k].method->fields & TOBI_MPM) return (tobi_system *)&w->system[k];
-    return NULL;
-}
-
-tobi_system *tobi_world_fluids(const tobi_world *w)
-{
-    return w->system[0].method->fields & TOBI_SPH ? (tobi_system *)&w->system[0] : NULL;
-}
-
-int tobi_world_first_material(const tobi_world *w, const tobi_system *s)
-{
-    int first = 0;
-    for (const tobi_system *k = w->system; k < s; k++) first += k->fluid_count + k->solid_count;
-    return first;
-}
-
-int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s)
-{
-    int64_t first = 0;
-    for (const tobi_system *k = w->system; k < s; k++) first += k->particles.capacity;
-    return first;
-}
-
 tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
                               tobi_error *err)
 {
     TOBI_NEED(world, "where the world goes");
     *world = NULL;
     TOBI_NEED(def, "the definition");
-    TOBI_TRY(check_world(def, err));
+    TOBI_TRY(tobi_param_check(&tobi_world_table, def, err));
     const tobi_method *method = tobi_method_find(def->method);
     if (!method)
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
@@ -193,24 +64,12 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
     return TOBI_OK;
 }
 
-static void free_system(tobi_system *s)
-{
-    if (s->state) s->method->free(s->state);
-    free(s->def);
-    free(s->solids);
-    free(s->row_of);
-    tobi_near_free(&s->near);
-    tobi_contact_free(&s->contacts);
-    tobi_cells_free(&s->cells);
-    tobi_particles_free(&s->particles);
-}
-
 void tobi_world_destroy(tobi_world *w)
 {
     if (!w) return;
     assert(w->alive == TOBI_ALIVE);
     w->alive = 0;
-    for (int k = 0; k < w->system_count; k++) free_system(&w->system[k]);
+    for (int k = 0; k < w->system_count; k++) tobi_world_free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
@@ -294,48 +153,6 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     return status;
 }
 
-/* The owners of the particle fields that a system needs. */
-static int needed_fields(const tobi_world *w, const tobi_system *s)
-{
-    int owners = TOBI_ALL | s->method->fields;
-    for (int f = 0; f < s->fluid_count; f++)
-        if (s->fluid[f].tension > 0) owners |= TOBI_TENSION;
-    for (int k = 0; k < w->sim.body_count; k++)
-        if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (w->sim.body_count > 0 || is_full_vessel(w, s)) owners |= s->method->body_fields;
-    return owners;
-}
-
-/* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
-   of the grid (seen: 60 to 90). */
-static int64_t list_bytes(const tobi_system *s)
-{
-    if (s->method->fields & TOBI_MPM) return 80;
-    double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
-}
-
-tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
-                                int64_t *bytes, tobi_error *err)
-{
-    TOBI_NEED_WORLD(w);
-    TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
-    *fluid_particles = *body_particles = *bytes = 0;
-    for (int k = 0; k < w->system_count; k++) {
-        tobi_system *s = &w->system[k];
-        int64_t count = 0;
-        if (!w->started) set_smoothing(w, s);
-        for (int r = 0; r < w->region_count; r++)
-            if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
-        if (w->started) count = s->particles.count;
-        *fluid_particles += count;
-        *bytes += count*(tobi_particles_row_bytes(needed_fields(w, s)) + list_bytes(s));
-    }
-    for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
-    *bytes += *body_particles*48;
-    return TOBI_OK;
-}
-
 static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *err)
 {
     double have = (double)sysconf(_SC_PHYS_PAGES)*(double)sysconf(_SC_PAGESIZE);
@@ -347,72 +164,6 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
                          "%lld fluid particles need %.1f GiB; this machine has %.1f GiB. A larger "
                          "spacing needs less",
                          (long long)particles, (double)bytes / 1073741824, have / 1073741824);
-    return TOBI_OK;
-}
-
-/* The hydrostatic head of the common box of a system's regions. */
-static double start_head(const tobi_world *w, const tobi_system *s)
-{
-    double head = 0;
-    for (int a = 0; a < s->box.dimension; a++) {
-        double lower = INFINITY, upper = -INFINITY;
-        for (int k = 0; k < w->region_count; k++) {
-            if (&w->system[w->regions[k].system] != s) continue;
-            lower = fmin(lower, w->regions[k].lower[a]);
-            upper = fmax(upper, w->regions[k].upper[a]);
-        }
-        if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
-    }
-    return head;
-}
-
-/* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
-double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
-{
-    double fastest = 0;
-    for (int k = 0; k < w->region_count; k++) {
-        const tobi_region *r = &w->regions[k];
-        double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
-                          0.5*(r->upper[2] - r->lower[2])};
-        double reach = r->radius > 0 ? r->radius : length(half);
-        if (&w->system[r->system] != s) continue;
-        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
-    }
-    return fastest;
-}
-
-/* Room for the particles of a system, and the particles. */
-static tobi_status fill_system(tobi_world *w, tobi_system *s, tobi_error *err)
-{
-    int64_t room = 0;
-    for (int k = 0; k < w->region_count; k++)
-        if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
-    tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w, s), err));
-    for (int k = 0; k < w->region_count; k++)
-        if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
-    return TOBI_OK;
-}
-
-static tobi_status start_system(tobi_world *w, tobi_system *s, tobi_error *err)
-{
-    double *memory;
-    const int64_t n = s->particles.count;
-    TOBI_TRY(tobi_exec_reserve(&w->sim.exec, n > 4096 ? n : 4096, err));
-    tobi_cells_free(&s->cells);
-    if (s->method->fields & TOBI_SPH)
-        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &w->sim.exec, err));
-    free(s->row_of);
-    s->row_of = malloc((size_t)(n + 1)*sizeof *s->row_of);
-    if (!s->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
-    if (!s->state) TOBI_TRY(s->method->create(s, err));
-    s->method->memory(s, &memory);
-    memory[0] = s->start_speed = tobi_world_start_speed(w, s);
-    if (s->start_speed > TOBI_SPEED_LIMIT)
-        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
-                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
-    s->start_head = start_head(w, s);
-    s->info.fluid_particles = n;
     return TOBI_OK;
 }
 
@@ -457,63 +208,19 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     TOBI_TRY(check_systems(w, err));
-    for (int k = 0; k < w->system_count; k++) TOBI_TRY(fill_system(w, &w->system[k], err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_fill_system(w, &w->system[k], err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     for (int k = 0; k < w->system_count; k++)
-        TOBI_TRY(tobi_particles_fit(&w->system[k].particles, needed_fields(w, &w->system[k]), err));
-    for (int k = 0; k < w->system_count; k++) TOBI_TRY(start_system(w, &w->system[k], err));
+        TOBI_TRY(tobi_world_fit_system(w, &w->system[k], err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_start_system(w, &w->system[k], err));
     TOBI_TRY(start_bodies(w, err));
     tobi_step_sum_up(w);
     w->started = 1;
     const tobi_status status = tobi_world_note_pieces(w, err);
     w->started = status == TOBI_OK;
     return status;
-}
-
-/* Which key of the scene makes steps shorter, and its value. */
-static const char *name_cfl(const tobi_system *s, double *value)
-{
-    const tobi_world_def *d = &s->sim->def;
-    const int mpm = (s->method->fields & TOBI_MPM) != 0;
-    *value = mpm ? ((const tobi_mlsmpm_def *)s->def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
-    return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
-}
-
-static tobi_status check_runaway(const tobi_system *s, tobi_error *err)
-{
-    double limit = s->sim->def.speed_limit, cfl;
-    const char *key = name_cfl(s, &cfl);
-    if (limit <= 0) {
-        /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
-        const int64_t few = 20 + s->particles.count/200;
-        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
-        limit = fmin(1.4*tobi_system_speed_scale(s), TOBI_SPEED_LIMIT);
-    }
-    if (s->info.speed_max < limit) return TOBI_OK;
-    for (int64_t i = 0; i < s->particles.count; i++) {
-        tobi_float4 v = s->particles.velocity[i];
-        tobi_double3 x = s->particles.position[i];
-        double speed = sqrt((double)v.x*v.x + (double)v.y*v.y + (double)v.z*v.z);
-        if (speed < limit || speed == 0) continue;   /* NaN goes on */
-        if (!isfinite(speed))
-            return tobi_fail(err, TOBI_DIVERGED,
-                             "the simulation diverged at t = %.9g s, step %lld: the speed of particle %lld "
-                             "at (%g, %g, %g) m is no number any more; a %s smaller than %g may help",
-                             s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
-                             x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], key, cfl);
-        return tobi_fail(err, TOBI_DIVERGED,
-                         "the simulation diverged at t = %.9g s, step %lld: particle %lld at (%g, "
-                         "%g, %g) m moves at %g m/s, the limit is %g m/s; a %s smaller than %g may "
-                         "help",
-                         s->sim->time, (long long)s->sim->step, (long long)s->particles.id[i],
-                         x.x + s->box.lower[0], x.y + s->box.lower[1], x.z + s->box.lower[2], speed,
-                         limit, key, cfl);
-    }
-    return tobi_fail(err, TOBI_DIVERGED,
-                     "the simulation diverged at t = %.9g s: a speed reached %g m/s; a %s smaller than %g "
-                     "may help", s->sim->time, s->info.speed_max, key, cfl);
 }
 
 static void measure(tobi_world *w)
@@ -525,24 +232,22 @@ static void measure(tobi_world *w)
     tobi_step_sum_up(w);
 }
 
+tobi_status tobi_world_check_whole(const tobi_world *w, tobi_error *err)
+{
+    if (w->failure.status == TOBI_OK) return TOBI_OK;
+    return tobi_fail(err, w->failure.status, "the simulation cannot go on: %s", w->failure.text);
+}
+
 /* `left`: s to the end that the caller wants. */
 static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     const double before = s->time;
     TOBI_TRY(tobi_world_start(w, err));
-    if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
+    TOBI_TRY(tobi_world_check_whole(w, err));
+    TOBI_TRY(tobi_world_check_motions(w, err));
     w->fresh = s->stopped = 0;
-    const tobi_status status = tobi_step_take(w, max_dt, err);
-    if (status != TOBI_OK) {
-        w->diverged = status != TOBI_STOPPED;
-        return status;
-    }
-    tobi_step_sum_up(w);
-    for (int k = 0; k < w->system_count; k++) {
-        w->diverged |= check_runaway(&w->system[k], err) != TOBI_OK;
-        if (w->diverged) return TOBI_DIVERGED;
-    }
+    TOBI_TRY(tobi_step_take(w, max_dt, err));
     if (info) {
         measure(w);
         *info = s->info;
@@ -608,19 +313,6 @@ tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
 const char *tobi_world_body_name(const tobi_world *w, int body)
 {
     return !w || body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
-}
-
-int64_t tobi_world_bytes(const tobi_world *w)
-{
-    int64_t bytes = 0;
-    for (int k = 0; w && k < w->system_count; k++) {
-        const tobi_system *s = &w->system[k];
-        bytes += s->particles.capacity*(tobi_particles_row_bytes(needed_fields(w, s)) + 4) +
-                 s->cells.list_capacity*4 + s->cells.total*4 +
-                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) +
-                 (s->method->bytes && s->state ? s->method->bytes(s) : 0);
-    }
-    return bytes;
 }
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)

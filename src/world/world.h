@@ -26,7 +26,8 @@ struct tobi_world {
     int probe_count;
     char **notes;                  /* owned texts                                            */
     int note_count;
-    int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int started, fresh;            /* fresh: derived fields match the present positions       */
+    tobi_error failure;            /* of a step that could not be taken back; TOBI_OK: none   */
     int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
@@ -44,6 +45,11 @@ struct tobi_world {
    tobi_world_create does. */
 tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, const void *method_def,
                                   tobi_error *err);
+/* Places its particles; then gives it all fields, for as many as there are; then its cells and its state. */
+tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *err);
+tobi_status tobi_world_fit_system(tobi_world *w, tobi_system *s, tobi_error *err);
+tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *err);
+void tobi_world_free_system(tobi_system *s);
 /* The system of the solids, or of the fluids; NULL if there is none. */
 tobi_system *tobi_world_solids(const tobi_world *w);
 tobi_system *tobi_world_fluids(const tobi_world *w);
@@ -69,6 +75,11 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
+
+/* The hydrostatic head of the common box of a system's regions, m2/s2. */
+double tobi_world_start_head(const tobi_world *w, const tobi_system *s);
+/* Refuses, with its words, a world that failed in the middle of a step. */
+tobi_status tobi_world_check_whole(const tobi_world *w, tobi_error *err);
 
 /* One step, not beyond time t, which is hit exactly by a step that covers all that is left; the caller
    goes on until `end`. */

@@ -108,6 +108,18 @@ expect 0 "" check open.json
 check "check says what was repaired" grep -q "^note  .*'box': 1 hole (4 open edges)" out.txt
 expect 1 "Multiply its scale by 0.001" check tank.json --set 'bodies[0].scale=[1000,1000,1000]'
 
+# --- scripts that fail in the middle of a run -------------------------------------------------------
+rm -f bad.lua; printf 'function place(t) return t < 0.005 and 0 or oops, 0, 0 end\n' > bad.lua
+rm -rf failing
+expect 1 "bad.lua:1: unknown name 'oops'" run bad_script.json --quiet -o failing
+check "a motion that fails is no divergence" test "$(value failing/summary.json outcome)" = failed
+sed 's/"motion": {.*}}/"dynamics": "controlled", "control": {"script": "bad.lua"}}/' tank.json > bad_control.json
+printf 'function control(t, body) while t > 0.005 do end end\n' > bad.lua
+rm -rf failing
+expect 1 "bad.lua:1: endless loop" run bad_control.json --quiet -o failing
+check "nor is a control program without an end" test "$(value failing/summary.json outcome)" = failed
+rm -rf failing
+
 # --- keyframes --------------------------------------------------------------------------------------
 printf 'time,x,yaw\n0,0,0\n0.01,0.0002,1\n0.02,0.0008,2\n' > rows.csv
 sed 's/"motion": {.*}}/"motion": {"keyframes": {"file": "rows.csv", "pivot": [0, 0, 0.05]}}}/' tank.json > rows.json

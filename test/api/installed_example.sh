@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs the library into an empty folder and builds example.c against it through pkg-config: by the commands
-# of the README, with the shared and with the static library, and runs all.
+# Installs the library into an empty folder and builds the programs of this folder against it through pkg-config:
+# by the commands of the README, with the shared and with the static library, and runs all.
 # usage: installed_example.sh CMAKE BUILD_DIR CC
 set -euo pipefail
 cmake=$1 build=$2 cc=$3
@@ -14,11 +14,14 @@ export PKG_CONFIG_PATH=$pc
 libdir=$(pkg-config --variable=libdir tobiuo)
 
 flags="-std=c17 -Wall -Wextra -Werror -O1"
-# shellcheck disable=SC2046,SC2086
-"$cc" $flags "$here/example.c" -o "$work/shared" $(pkg-config --cflags --libs tobiuo)   # finds it by its rpath
-# shellcheck disable=SC2046,SC2086
-"$cc" $flags "$here/example.c" -o "$work/static" $(pkg-config --cflags tobiuo) "$libdir/libtobiuo.a" \
-    $(pkg-config --static --libs tobiuo | sed 's/-ltobiuo//')
+for program in example scene_in_memory; do
+    # The shared library is found by its rpath.
+    # shellcheck disable=SC2046,SC2086
+    "$cc" $flags "$here/$program.c" -o "$work/shared_$program" $(pkg-config --cflags --libs tobiuo)
+    # shellcheck disable=SC2046,SC2086
+    "$cc" $flags "$here/$program.c" -o "$work/static_$program" $(pkg-config --cflags tobiuo) \
+        "$libdir/libtobiuo.a" $(pkg-config --static --libs tobiuo | sed 's/-ltobiuo//')
+done
 
 # An installed program finds the scenes that were installed with it.
 "$work/usr/bin/tobiuo" check "$here/../scenes/taichi/fish.json" > "$work/check.txt"
@@ -36,7 +39,11 @@ for page in README.md README.ja.md; do
     rm -rf "$work/home/tobiuo"
 done
 
-"$work/shared" | tee "$work/shared.txt"
-"$work/static" > "$work/static.txt"
-cmp "$work/shared.txt" "$work/static.txt" || { echo "shared and static library disagree"; exit 1; }
-ldd "$work/shared" | grep 'libtobiuo\.so\.0' > /dev/null || { echo "the example is not linked to the soname"; exit 1; }
+for program in example scene_in_memory; do
+    "$work/shared_$program" | tee "$work/shared.txt"
+    "$work/static_$program" > "$work/static.txt"
+    cmp "$work/shared.txt" "$work/static.txt" ||
+        { echo "$program: shared and static library disagree"; exit 1; }
+done
+ldd "$work/shared_example" | grep 'libtobiuo\.so\.0' > /dev/null ||
+    { echo "the example is not linked to the soname"; exit 1; }

@@ -128,7 +128,7 @@ static void sph_has_no_open_sides(void **state)
     w.spacing = 0.1;
     w.wall_max[1] = TOBI_WALL_OPEN;
     REFUSED(tobi_world_create(&w, NULL, &world, &err), TOBI_UNSUPPORTED,
-            "a side along y is open, which dfsph does not know; mlsmpm does");
+            "domain.walls.y: is open, which only mlsmpm knows");
 }
 
 int main(void)

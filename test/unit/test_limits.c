@@ -180,24 +180,24 @@ static void numbers_that_do_not_fit_each_other(void **state)
     make_setup(&s, "dfsph");
     s.world.spacing = 1e-6;
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
-            "world: spacing is 1e-06 m and goes 6e+05 times into the domain along x; dfsph allows up");
+            "spacing: is 1e-06 m and goes 6e+05 times into the domain along x; dfsph allows up");
     s.world.method = "mlsmpm";
     s.world.spacing = 1e-7;
     s.world.domain_min[1] = -2e5;
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
-            "world: spacing is 1e-07 m, and the domain lies up to 2e+12 times that from the origin along y");
+            "spacing: is 1e-07 m, and the domain lies up to 2e+12 times that from the origin along y");
     make_setup(&s, "dfsph");
     s.world.time_step = 1e-10;
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
-            "world: time_step is 1e-10 s and makes 1e+10 steps until end_time, 1 s; allowed are up to 1e+09");
+            "time_step: is 1e-10 s and makes 1e+10 steps until end_time, 1 s; allowed are up to 1e+09");
     s.world.time_step = 0;
     s.world.time_step_max = 1e-11;
-    REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID, "world: time_step_max is 1e-11 s and");
+    REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID, "time_step_max: is 1e-11 s and");
     make_setup(&s, "mlsmpm");
     s.world.domain_max[2] = 1e7;
     s.world.gravity[2] = -1e6;
     REFUSED(tobi_world_create(&s.world, NULL, &w, &err), TOBI_INVALID,
-            "world: gravity makes what falls through the domain 4.47e+06 m/s fast; allowed are up");
+            "gravity: makes what falls through the domain 4.47e+06 m/s fast; allowed are up");
 }
 
 /* A world of the setup with its matter, not started. */

@@ -232,6 +232,12 @@ static void scenes(void **state)
     REFUSED(tobi_scene_load(NULL, NULL, &scene, NULL, &err), TOBI_INVALID, "the path is NULL");
     REFUSED(tobi_scene_load("x.json", NULL, NULL, NULL, &err), TOBI_INVALID,
             "where the scene goes is NULL");
+    REFUSED(tobi_scene_parse(NULL, "", 0, NULL, &scene, NULL, &err), TOBI_INVALID, "the name is NULL");
+    REFUSED(tobi_scene_parse("x.json", NULL, 3, NULL, &scene, NULL, &err), TOBI_INVALID, "the text is NULL");
+    REFUSED(tobi_scene_parse("x.json", "", 0, NULL, NULL, NULL, &err), TOBI_INVALID,
+            "where the scene goes is NULL");
+    REFUSED(tobi_scene_parse("x.json", "", 16777217, NULL, &scene, NULL, &err), TOBI_INVALID,
+            "x.json: 16777217 bytes of scene, allowed are 16777216");
     REFUSED(tobi_scene_build(NULL, &w, &err), TOBI_INVALID, "scene is NULL");
     REFUSED(tobi_scene_build(NULL, NULL, &err), TOBI_INVALID, "where the world goes is NULL");
     REFUSED(tobi_scene_import(NULL, "x", 0, &table, NULL, &err), TOBI_INVALID, "a path is NULL");
@@ -245,6 +251,41 @@ static void scenes(void **state)
     tobi_scene_free(NULL);
 }
 
+/* A text of so many bytes, with nothing behind them, for a file that is not there. */
+static void scenes_in_memory(void **state)
+{
+    (void)state;
+    static const char text[] = "{\"domain\": {\"min\": [0, 0, 0], \"max\": [1, 1, 1]}, \"spacing\": 0.1, "
+        "\"end_time\": 1, \"fluids\": [{\"name\": \"water\", \"density\": 1000, \"viscosity\": 0.001, "
+        "\"fill\": [{\"box\": {\"min\": [0, 0, 0], \"max\": [1, 1, 0.5]}}]}]}";
+    tobi_scene *scene;
+    tobi_report *report;
+    tobi_world *world;
+    tobi_error err = { 0 };
+    for (size_t size = sizeof text - 4; size < sizeof text; size++) {
+        char *exact = malloc(size);
+        assert_non_null(exact);
+        memcpy(exact, text, size);
+        const tobi_status status =
+            tobi_scene_parse("nowhere/tank.json", exact, size, NULL, &scene, &report, &err);
+        free(exact);
+        if (size < sizeof text - 1) {
+            assert_int_equal(status, TOBI_INVALID);
+            assert_null(scene);
+            assert_int_equal(tobi_report_count(report), 1);
+            assert_non_null(strstr(tobi_report_line(report, 0), "nowhere/tank.json:1:"));
+            tobi_report_free(report);
+            continue;
+        }
+        assert_int_equal(status, TOBI_OK);
+        assert_string_equal(tobi_scene_name(scene), "tank");
+        OK(tobi_scene_build(scene, &world, &err));
+        OK(tobi_world_step(world, 0, NULL, &err));
+        tobi_world_destroy(world);
+        tobi_scene_free(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -255,6 +296,7 @@ int main(void)
         cmocka_unit_test(values_that_are_none),
         cmocka_unit_test(runs),
         cmocka_unit_test(scenes),
+        cmocka_unit_test(scenes_in_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,19 +62,27 @@ static void worlds(void **state)
     tobi_world_def def = make_def();
     def.domain_max[1] = def.domain_min[1];
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
-            "domain: max 0 is not above min 0 along y");
+            "domain.max[1]: is 0 in y, must be greater than domain.min there, 0");
     def = make_def();
     def.wall_min[2] = TOBI_WALL_PERIODIC;
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
-            "domain: only one side along z is periodic; both or none are allowed");
+            "domain.walls.z: is periodic on one side only");
     def = make_def();
     def.wall_velocity_max[2][0] = 1;
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
-            "domain: a side along z has a velocity but is not no-slip");
+            "domain.wall_velocity.z[1]: moves a side that is not no-slip");
     def.wall_max[2] = TOBI_WALL_NO_SLIP;
     def.wall_velocity_max[2][2] = 2;
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
-            "domain: a side along z moves by (1, 0, 2) m/s, allowed is along itself");
+            "domain.wall_velocity.z[1]: is not along the side: z must be 0");
+    tobi_dfsph_def method = tobi_default_dfsph_def();
+    def = make_def();
+    method.divergence_iterations_min = method.divergence_iterations_max + 1;
+    REFUSED(tobi_world_create(&def, &method, &world, &err), TOBI_INVALID,
+            "dfsph.divergence_iterations_min: is 201, must not be above divergence_iterations_max, 200");
+    def.spacing = 1.5;
+    REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID,
+            "spacing: is 1.5 m, the domain has only 1 m in x");
     def = make_def();
     def.method = "magic";
     REFUSED(tobi_world_create(&def, NULL, &world, &err), TOBI_INVALID, "there is no method 'magic'");

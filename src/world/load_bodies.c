@@ -1,0 +1,150 @@
+/* Bodies from a checkpoint. All that may fail comes first: reading, checks, memory. Then the world takes it
+   over. Bodies with a motion are put where the file has their vertices, and the motion is not asked: it may
+   fail, and it may not be the one they were moved by. Drawback: the vertices are stored. */
+#include "base/error.h"
+#include "rigid/dynamics.h"
+#include "world/bodies.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct tobi_loaded_body {
+    double state[TOBI_RIGID_DOUBLES];
+    double load[7];                  /* N, N m: its constant force and torque; 1: its motion was set */
+    tobi_body_info info;
+    double (*vertex)[3];             /* of a body with a motion, owned                            */
+    tobi_body_at place;
+    double (*edge_share)[3];         /* [piece_count] of a blade, owned until taken               */
+    tobi_edge_foot *edge_foot;
+    int64_t piece_count;
+};
+
+static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
+{
+    char name[32];
+    tobi_world_name_body(k, "_state", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_RIGID_DOUBLES, 1, l->state, err));
+    tobi_world_name_body(k, "_load", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 7, 1, l->load, err));
+    tobi_world_name_body(k, "", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info, err));
+    int good = 1;
+    for (int i = 0; i < TOBI_RIGID_DOUBLES; i++) good &= isfinite(l->state[i]) != 0;
+    for (int i = 0; i < 7; i++) good &= isfinite(l->load[i]) != 0;
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of body '%s' is no number", b->name);
+}
+
+static tobi_status read_edge(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
+{
+    char name[32];
+    int64_t count = 0;
+    tobi_world_name_body(k, "_edge", name);
+    TOBI_TRY(tobi_store_rows(f, name, &count, err));
+    l->edge_share = calloc((size_t)count + 1, sizeof *l->edge_share);
+    l->edge_foot = malloc((size_t)(count + 1)*sizeof *l->edge_foot);
+    l->piece_count = count;
+    if (!l->edge_share || !l->edge_foot)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->edge_share, err));
+    for (int64_t n = 0; n < count; n++) {
+        l->edge_foot[n].triangle = -1;
+        for (int a = 0; a < 3; a++)
+            if (!(fabs(l->edge_share[n][a]) <= 2))
+                return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's state of the edge of '%s' is no share",
+                                 b->name);
+    }
+    return TOBI_OK;
+}
+
+static tobi_status read_place(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
+{
+    const int64_t count = b->mesh.vertex_count;
+    char name[32];
+    l->vertex = malloc((size_t)(count + 1)*sizeof *l->vertex);
+    if (!l->vertex) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
+    tobi_world_name_body(k, "_vertex", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->vertex, err));
+    tobi_world_name_body(k, "_place", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 4, 3, &l->place, err));
+    int good = 1;
+    for (int64_t i = 0; i < count; i++) good &= isfinite(l->vertex[i][0] + l->vertex[i][1] + l->vertex[i][2]);
+    for (int a = 0; a < 3; a++) {
+        good &= isfinite(l->place.centre[a]) != 0;
+        for (int i = 0; i < 3; i++) good &= isfinite(l->place.frame[i][a]) != 0;
+    }
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's place of body '%s' is no number", b->name);
+}
+
+static tobi_status read_contacts(tobi_store *f, tobi_loaded_bodies *l, tobi_error *err)
+{
+    int64_t n = 0;
+    TOBI_TRY(tobi_store_rows(f, "body_contacts", &n, err));
+    l->contacts = malloc((size_t)(n + TOBI_WARM)*sizeof *l->contacts);
+    if (!l->contacts) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)n);
+    l->contact_count = n/TOBI_WARM;
+    return tobi_store_get(f, "body_contacts", TOBI_F64, n, 1, l->contacts, err);
+}
+
+tobi_status tobi_world_read_bodies(tobi_world *w, tobi_store *f, tobi_loaded_bodies *l, tobi_error *err)
+{
+    *l = (tobi_loaded_bodies){ .count = w->sim.body_count };
+    l->body = calloc((size_t)l->count + 1, sizeof *l->body);
+    if (!l->body) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", l->count);
+    for (int k = 0; k < l->count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        TOBI_TRY(read_state(b, k, f, &l->body[k], err));
+        if (b->blade) TOBI_TRY(read_edge(b, k, f, &l->body[k], err));
+        if (b->motion) TOBI_TRY(read_place(b, k, f, &l->body[k], err));
+    }
+    return w->dynamics ? read_contacts(f, l, err) : TOBI_OK;
+}
+
+static void take_edge(tobi_body *b, tobi_loaded_body *l)
+{
+    free(b->edge_share);
+    free(b->edge_foot);
+    b->edge_share = l->edge_share;
+    b->edge_foot = l->edge_foot;
+    b->piece_count = l->piece_count;
+    l->edge_share = NULL;
+    l->edge_foot = NULL;
+}
+
+static void take_body(tobi_body *b, tobi_loaded_body *l)
+{
+    tobi_rigid rigid = b->rigid;
+    memcpy(TOBI_RIGID_STATE(&rigid), l->state, sizeof l->state);
+    memcpy(rigid.force, l->load, sizeof rigid.force);
+    memcpy(rigid.torque, l->load + 3, sizeof rigid.torque);
+    rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);
+    rigid.hold = (int)fmin(fmax(rigid.hold, 0), 63) & 63;
+    b->rigid = rigid;
+    if (b->motion) tobi_body_restore(b, (const double (*)[3])l->vertex, &l->place);
+    else tobi_body_place(b, 0, NULL);      /* by its state, or at rest: neither can fail */
+    b->rigid = rigid;                      /* placing a body at rest forgets its velocities */
+    b->info = l->info;
+    b->motion_set = b->motion_due = b->motion && l->load[6] > 0;
+    if (b->blade) take_edge(b, l);
+}
+
+tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_error *err)
+{
+    if (w->dynamics) TOBI_TRY(tobi_rigid_set_warm(w->dynamics, l->contact_count, l->contacts, err));
+    for (int k = 0; k < l->count; k++) take_body(&w->sim.bodies[k], &l->body[k]);
+    return TOBI_OK;
+}
+
+void tobi_loaded_bodies_free(tobi_loaded_bodies *l)
+{
+    for (int k = 0; l->body && k < l->count; k++) {
+        free(l->body[k].vertex);
+        free(l->body[k].edge_share);
+        free(l->body[k].edge_foot);
+    }
+    free(l->body);
+    free(l->contacts);
+    *l = (tobi_loaded_bodies){ 0 };
+}

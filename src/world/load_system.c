@@ -1,0 +1,240 @@
+/* Systems in checkpoints. The names in the file of all but the first begin with its number. Drawback: which
+   system is which follows from the order in which the scene makes them. */
+#include "world/load_system.h"
+#include "base/error.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OUTSIDE = 8 };      /* spacings that a particle may be outside of the domain */
+
+typedef struct entry { char name[64]; } entry;
+
+static entry name_entry(int number, const char *what)
+{
+    entry e;
+    if (number == 0) snprintf(e.name, sizeof e.name, "%s", what);
+    else snprintf(e.name, sizeof e.name, "system_%d_%s", number, what);
+    return e;
+}
+
+/* A state field as columns of a basic type. */
+static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
+{
+    *components = f->bytes == sizeof(tobi_double3)   ? 3
+                  : f->bytes == sizeof(tobi_columns) ? 12
+                  : f->bytes == sizeof(tobi_float4)  ? 4
+                                                     : 1;
+    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64
+            : f->bytes % 16 == 0 || f->bytes == 4 ? TOBI_F32
+            : f->bytes == 8                   ? TOBI_I64
+                                              : TOBI_U8;
+}
+
+/* What the method keeps besides. */
+static tobi_status put_rows(const tobi_system *s, int number, tobi_store *f, tobi_error *err)
+{
+    double *rows = NULL;
+    int64_t count = 0;
+    if (!s->method->keep) return TOBI_OK;
+    TOBI_TRY(s->method->keep(s, &rows, &count, err));
+    tobi_status status = tobi_store_put(f, name_entry(number, "rows").name, TOBI_F64, count, TOBI_RECALL_ROW,
+                                        rows, err);
+    free(rows);
+    return status;
+}
+
+/* The clock of the first is the world's. */
+static tobi_status put_clock(const tobi_system *s, int number, tobi_store *f, tobi_error *err)
+{
+    const double clock[2] = { s->dt, s->start_speed };
+    if (number == 0) return TOBI_OK;
+    TOBI_TRY(tobi_store_put_int(f, name_entry(number, "step").name, s->step, err));
+    return tobi_store_put(f, name_entry(number, "clock").name, TOBI_F64, 2, 1, clock, err);
+}
+
+tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_error *err)
+{
+    double *memory;
+    const int n = s->method->memory(s, &memory);
+    TOBI_TRY(tobi_store_put_text(f, name_entry(number, "method").name, s->method->name, err));
+    TOBI_TRY(tobi_store_put_real(f, name_entry(number, "spacing").name, s->smoothing.spacing, err));
+    TOBI_TRY(put_clock(s, number, f, err));
+    TOBI_TRY(tobi_store_put(f, name_entry(number, "info").name, TOBI_U8, (int64_t)sizeof s->info, 1, &s->info,
+                            err));
+    TOBI_TRY(tobi_store_put(f, name_entry(number, "memory").name, TOBI_F64, n, 1, memory, err));
+    TOBI_TRY(put_rows(s, number, f, err));
+    for (int k = 0;; k++) {
+        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
+        tobi_vtk_type type;
+        int components;
+        if (!r.name) return TOBI_OK;
+        shape_of(&r, &type, &components);
+        TOBI_TRY(tobi_store_put(f, name_entry(number, r.name).name, type, s->particles.count, components, r.data,
+                                err));
+    }
+}
+
+void tobi_loaded_system_free(tobi_loaded_system *l)
+{
+    for (int k = 0; k < TOBI_LOADED_FIELDS; k++) free(l->field[k]);
+    free(l->memory);
+    free(l->rows);
+}
+
+static tobi_status check_scene(const tobi_system *s, int number, tobi_store *f, const char *path,
+                               const tobi_loaded_system *l, tobi_error *err)
+{
+    double spacing;
+    char *method = NULL;
+    TOBI_TRY(tobi_store_get_text(f, name_entry(number, "method").name, &method, err));
+    tobi_status status = TOBI_OK;
+    if (strcmp(method, s->method->name) != 0)
+        status = tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: its method is %.32s, that "
+                           "of the scene %s", method, s->method->name);
+    free(method);
+    TOBI_TRY(status);
+    TOBI_TRY(tobi_store_get_real(f, name_entry(number, "spacing").name, &spacing, err));
+    if (spacing != s->smoothing.spacing)
+        return tobi_fail(err, TOBI_INVALID,
+                         "the checkpoint is of another scene: its spacing is %g m, the scene's %g m", spacing,
+                         s->smoothing.spacing);
+    if (l->count > s->particles.capacity)
+        return tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld", path,
+                         (long long)l->count, (long long)s->particles.capacity);
+    return TOBI_OK;
+}
+
+static tobi_status read_clock(int number, tobi_store *f, tobi_loaded_system *l, tobi_error *err)
+{
+    if (number == 0) return TOBI_OK;
+    TOBI_TRY(tobi_store_get_int(f, name_entry(number, "step").name, &l->step, err));
+    return tobi_store_get(f, name_entry(number, "clock").name, TOBI_F64, 2, 1, l->clock, err);
+}
+
+static tobi_status read_memory(tobi_system *s, int number, tobi_store *f, const char *path,
+                               tobi_loaded_system *l, tobi_error *err)
+{
+    double *memory;
+    l->memory_count = s->method->memory(s, &memory);
+    l->memory = malloc((size_t)(l->memory_count + 1)*sizeof *l->memory);
+    if (!l->memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
+    TOBI_TRY(tobi_store_get(f, name_entry(number, "info").name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info,
+                            err));
+    TOBI_TRY(tobi_store_get(f, name_entry(number, "memory").name, TOBI_F64, l->memory_count, 1, l->memory, err));
+    int good = l->step >= 0 && isfinite(l->clock[0]) && isfinite(l->clock[1]);
+    for (int k = 0; k < l->memory_count; k++) good &= !isnan(l->memory[k]);
+    return good ? TOBI_OK : tobi_fail(err, TOBI_DAMAGED, "%s: the memory of %s is no number", path,
+                                      s->method->name);
+}
+
+static tobi_status read_rows(const tobi_system *s, int number, tobi_store *f, tobi_loaded_system *l,
+                             tobi_error *err)
+{
+    const entry e = name_entry(number, "rows");
+    if (!s->method->recall) return TOBI_OK;
+    TOBI_TRY(tobi_store_rows(f, e.name, &l->row_count, err));
+    l->rows = malloc((size_t)(l->row_count + 1)*TOBI_RECALL_ROW*sizeof *l->rows);
+    if (!l->rows)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)l->row_count);
+    return tobi_store_get(f, e.name, TOBI_F64, l->row_count, TOBI_RECALL_ROW, l->rows, err);
+}
+
+static tobi_status read_fields(tobi_system *s, int number, tobi_store *f, const char *path,
+                               tobi_loaded_system *l, tobi_error *err)
+{
+    for (int k = 0; k < TOBI_LOADED_FIELDS; k++) {
+        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
+        tobi_vtk_type type;
+        int components;
+        if (!r.name) break;
+        shape_of(&r, &type, &components);
+        l->field[k] = malloc((size_t)(l->count + 1)*r.bytes);
+        if (!l->field[k])
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles of %s", (long long)l->count,
+                             path);
+        TOBI_TRY(tobi_store_get(f, name_entry(number, r.name).name, type, l->count, components, l->field[k],
+                                err));
+    }
+    return TOBI_OK;
+}
+
+/* Outside the domain by more than a particle can be between two steps, or no number. */
+static int is_astray(const tobi_system *s, const double *x)
+{
+    for (int a = 0; a < 3; a++) {
+        const double size = a < s->box.dimension ? s->box.size[a] : 0;
+        const double slack = s->box.periodic[a] ? size : OUTSIDE*s->smoothing.spacing;
+        if (!(x[a] >= -slack && x[a] <= size + slack)) return 1;
+    }
+    return 0;
+}
+
+/* A row that would lead outside the arrays, or is no number. seen: one byte for each id, all 0. */
+static int is_bad_row(const tobi_system *s, const tobi_field_ref *f, const void *data, int64_t i,
+                      char *seen)
+{
+    const float *number = (const float *)((const char *)data + (size_t)i*f->bytes);
+    if (strcmp(f->name, "id") == 0) {
+        const int64_t id = ((const int64_t *)data)[i];
+        return id < 0 || id >= s->particles.capacity || seen[id]++;
+    }
+    if (strcmp(f->name, "fluid") == 0)
+        return ((const uint8_t *)data)[i] >= (s->solid_count ? s->solid_count : s->fluid_count);
+    if (strcmp(f->name, "position") == 0) return is_astray(s, &((const tobi_double3 *)data)[i].x);
+    int good = 1;
+    for (size_t k = 0; k < f->bytes/sizeof *number; k++) good &= isfinite(number[k]) != 0;
+    return !good;
+}
+
+static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loaded_system *l,
+                                tobi_error *err)
+{
+    char *seen = calloc((size_t)s->particles.capacity + 1, 1);
+    if (!seen) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to check %s", path);
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < TOBI_LOADED_FIELDS && l->field[k]; k++) {
+        const tobi_field_ref field = tobi_particles_state(&s->particles, k);
+        for (int64_t i = 0; i < l->count && status == TOBI_OK; i++)
+            if (is_bad_row(s, &field, l->field[k], i, seen))
+                status = tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can "
+                                   "have", path, (long long)i, field.name);
+    }
+    free(seen);
+    return status;
+}
+
+tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const char *path, tobi_loaded_system *l,
+                            tobi_error *err)
+{
+    TOBI_TRY(tobi_store_rows(f, name_entry(number, "id").name, &l->count, err));
+    TOBI_TRY(check_scene(s, number, f, path, l, err));
+    TOBI_TRY(read_clock(number, f, l, err));
+    TOBI_TRY(read_memory(s, number, f, path, l, err));
+    TOBI_TRY(read_fields(s, number, f, path, l, err));
+    TOBI_TRY(check_fields(s, path, l, err));
+    return read_rows(s, number, f, l, err);
+}
+
+void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
+{
+    double *memory;
+    for (int k = 0; k < TOBI_LOADED_FIELDS && l->field[k]; k++) {
+        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
+        memcpy(r.data, l->field[k], (size_t)l->count*r.bytes);
+    }
+    s->particles.count = l->count;
+    s->method->memory(s, &memory);
+    memcpy(memory, l->memory, (size_t)l->memory_count*sizeof *memory);
+    s->info = l->info;
+    s->step = l->step;
+    s->dt = l->clock[0];
+    s->start_speed = l->clock[1];
+}
+
+void tobi_system_recall(tobi_system *s, tobi_loaded_system *l)
+{
+    if (s->method->recall) s->method->recall(s, l->rows, l->row_count);
+    l->rows = NULL;
+}

@@ -1,0 +1,252 @@
+/* The systems of a world: made with their method, filled, started, counted. Drawback: two at most, that of the
+   definition's method and one for solids beside fluids. */
+#include "base/error.h"
+#include "world/fit.h"
+#include "world/params.h"
+#include "world/rules.h"
+#include "world/world.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double length(const double v[3]) { return sqrt(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]); }
+
+/* Keeps the first breach of a rule. */
+static void keep_first(void *user, const char *path, const tobi_error *why)
+{
+    tobi_error *first = user;
+    if (first->status == TOBI_OK) tobi_fail(first, why->status, "%s: %s", path, why->text);
+}
+
+static tobi_status check_rules(const tobi_world_def *def, const tobi_method *method, const void *method_def,
+                               tobi_error *err)
+{
+    tobi_world_def d = *def;
+    d.method = method->name;
+    tobi_error first = { 0 };
+    const tobi_rules rules = { .tell = keep_first, .user = &first, .corners = 1, .numbers = 1 };
+    tobi_rules_world(&rules, &d, method_def);
+    return first.status ? tobi_fail(err, first.status, "%s", first.text) : TOBI_OK;
+}
+
+/* Whether a system fills the domain: not half a layer of particles is missing over its smallest side. */
+static int is_full_vessel(const tobi_world *w, const tobi_system *s)
+{
+    const tobi_world_def *d = &w->sim.def;
+    double domain = 1, longest = 0, filled = 0;
+    for (int a = 0; a < d->dimension; a++) {
+        double side = d->domain_max[a] - d->domain_min[a];
+        domain *= side;
+        longest = fmax(longest, side);
+    }
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) filled += w->regions[k].volume;
+    return filled > domain*(1 - 0.5*d->spacing/longest);
+}
+
+/* Whether a body or a side moves in a full vessel. */
+static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
+{
+    int stirred = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
+    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
+    return stirred && is_full_vessel(w, s);
+}
+
+/* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */
+static void set_smoothing(tobi_world *w, tobi_system *s)
+{
+    const tobi_world_def *d = &w->sim.def;
+    int shape, periodic[3];
+    double support;
+    s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
+    const double spacing = tobi_fit_find(w, d->spacing).spacing;
+    if (s->smoothing.h == support*spacing) return;
+    tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
+    for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
+    tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
+}
+
+tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, const void *method_def,
+                                  tobi_error *err)
+{
+    const tobi_param_table *table = tobi_method_table(method->name);
+    void *params = calloc(1, method->def_size);
+    if (!params) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a system");
+    tobi_param_defaults(table, params);
+    if (method_def) memcpy(params, method_def, method->def_size);
+    tobi_status status = tobi_param_check(table, params, err);
+    if (status == TOBI_OK) status = check_rules(&w->sim.def, method, params, err);
+    if (status != TOBI_OK) {
+        free(params);
+        return status;
+    }
+    tobi_system *s = &w->system[w->system_count++];
+    *s = (tobi_system){ .sim = &w->sim, .method = method, .def = params };
+    memcpy(s->gravity, w->sim.def.gravity, sizeof s->gravity);
+    set_smoothing(w, s);
+    return TOBI_OK;
+}
+
+tobi_system *tobi_world_solids(const tobi_world *w)
+{
+    for (int k = 0; k < w->system_count; k++)
+        if (w->system[k].method->fields & TOBI_MPM) return (tobi_system *)&w->system[k];
+    return NULL;
+}
+
+tobi_system *tobi_world_fluids(const tobi_world *w)
+{
+    return w->system[0].method->fields & TOBI_SPH ? (tobi_system *)&w->system[0] : NULL;
+}
+
+int tobi_world_first_material(const tobi_world *w, const tobi_system *s)
+{
+    int first = 0;
+    for (const tobi_system *k = w->system; k < s; k++) first += k->fluid_count + k->solid_count;
+    return first;
+}
+
+int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s)
+{
+    int64_t first = 0;
+    for (const tobi_system *k = w->system; k < s; k++) first += k->particles.capacity;
+    return first;
+}
+
+void tobi_world_free_system(tobi_system *s)
+{
+    if (s->state) s->method->free(s->state);
+    free(s->def);
+    free(s->solids);
+    free(s->row_of);
+    tobi_near_free(&s->near);
+    tobi_contact_free(&s->contacts);
+    tobi_cells_free(&s->cells);
+    tobi_particles_free(&s->particles);
+}
+
+/* The owners of the particle fields that a system needs. */
+static int needed_fields(const tobi_world *w, const tobi_system *s)
+{
+    int owners = TOBI_ALL | s->method->fields;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0) owners |= TOBI_TENSION;
+    for (int k = 0; k < w->sim.body_count; k++)
+        if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
+    if (w->sim.body_count > 0 || is_full_vessel(w, s)) owners |= s->method->body_fields;
+    return owners;
+}
+
+/* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
+   of the grid (seen: 60 to 90). */
+static int64_t list_bytes(const tobi_system *s)
+{
+    if (s->method->fields & TOBI_MPM) return 80;
+    double r = s->smoothing.h/s->smoothing.spacing;
+    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
+}
+
+tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
+                                int64_t *bytes, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
+    *fluid_particles = *body_particles = *bytes = 0;
+    for (int k = 0; k < w->system_count; k++) {
+        tobi_system *s = &w->system[k];
+        int64_t count = 0;
+        if (!w->started) set_smoothing(w, s);
+        for (int r = 0; r < w->region_count; r++)
+            if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
+        if (w->started) count = s->particles.count;
+        *fluid_particles += count;
+        *bytes += count*(tobi_particles_row_bytes(needed_fields(w, s)) + list_bytes(s));
+    }
+    for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
+    *bytes += *body_particles*48;
+    return TOBI_OK;
+}
+
+/* The hydrostatic head of the common box of a system's regions. */
+double tobi_world_start_head(const tobi_world *w, const tobi_system *s)
+{
+    double head = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int k = 0; k < w->region_count; k++) {
+            if (&w->system[w->regions[k].system] != s) continue;
+            lower = fmin(lower, w->regions[k].lower[a]);
+            upper = fmax(upper, w->regions[k].upper[a]);
+        }
+        if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
+    }
+    return head;
+}
+
+/* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
+double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
+{
+    double fastest = 0;
+    for (int k = 0; k < w->region_count; k++) {
+        const tobi_region *r = &w->regions[k];
+        double half[3] = {0.5*(r->upper[0] - r->lower[0]), 0.5*(r->upper[1] - r->lower[1]),
+                          0.5*(r->upper[2] - r->lower[2])};
+        double reach = r->radius > 0 ? r->radius : length(half);
+        if (&w->system[r->system] != s) continue;
+        fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
+    }
+    return fastest;
+}
+
+/* Room for the particles of a system, and the particles. */
+tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    int64_t room = 0;
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
+    tobi_particles_free(&s->particles);
+    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w, s), err));
+    for (int k = 0; k < w->region_count; k++)
+        if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_fit_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    return tobi_particles_fit(&s->particles, needed_fields(w, s), err);
+}
+
+tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *err)
+{
+    double *memory;
+    const int64_t n = s->particles.count;
+    TOBI_TRY(tobi_exec_reserve(&w->sim.exec, n > 4096 ? n : 4096, err));
+    tobi_cells_free(&s->cells);
+    if (s->method->fields & TOBI_SPH)
+        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &w->sim.exec, err));
+    free(s->row_of);
+    s->row_of = malloc((size_t)(n + 1)*sizeof *s->row_of);
+    if (!s->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
+    if (!s->state) TOBI_TRY(s->method->create(s, err));
+    s->method->memory(s, &memory);
+    memory[0] = s->start_speed = tobi_world_start_speed(w, s);
+    if (s->start_speed > TOBI_SPEED_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
+                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
+    s->start_head = tobi_world_start_head(w, s);
+    s->info.fluid_particles = n;
+    return TOBI_OK;
+}
+
+int64_t tobi_world_bytes(const tobi_world *w)
+{
+    int64_t bytes = 0;
+    for (int k = 0; w && k < w->system_count; k++) {
+        const tobi_system *s = &w->system[k];
+        bytes += s->particles.capacity*(tobi_particles_row_bytes(needed_fields(w, s)) + 4) +
+                 s->cells.list_capacity*4 + s->cells.total*4 +
+                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) +
+                 (s->method->bytes && s->state ? s->method->bytes(s) : 0);
+    }
+    return bytes;
+}
