@@ -110,8 +110,9 @@ typedef struct tobi_method {
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
     /* Optional, after a load: takes such rows over. */
     void (*recall)(tobi_system *s, double *rows, int64_t count);
-    /* The world's gravity has changed between two steps, after a refresh if there were steps: what was derived
-       from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is kept. */
+    /* The world's gravity has changed between two steps, after a refresh if there were steps: what was
+       derived from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is
+       kept. */
     void (*follow_gravity)(tobi_system *s, int loaded);
     /* Bytes that the state has allocated; NULL = few. */
     int64_t (*bytes)(const tobi_system *s);

@@ -27,7 +27,8 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);
-    tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES, &w->dynamics, err);
+    tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES,
+                                          &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);
     free(notes);
     w->step_cap = s->sim->def.time_step_max;

@@ -1,5 +1,5 @@
-/* The complete state in one file: what the systems share, and each of them. Loading reads and checks all of it
-   before the world changes. Drawback: while it loads, the state is in memory twice. */
+/* The complete state in one file: what the systems share, and each of them. Loading reads and checks all
+   of it before the world changes. Drawback: while it loads, the state is in memory twice. */
 #include "base/error.h"
 #include "io/store.h"
 #include "world/bodies.h"
@@ -72,8 +72,8 @@ static tobi_status check_bodies(const tobi_world *w, tobi_store *f, tobi_error *
     int64_t bodies;
     TOBI_TRY(tobi_store_get_int(f, "bodies", &bodies, err));
     if (bodies == w->sim.body_count) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies, the scene %d",
-                     (long long)bodies, w->sim.body_count);
+    return tobi_fail(err, TOBI_INVALID, "the checkpoint is of another scene: it has %lld bodies, the scene "
+                     "%d", (long long)bodies, w->sim.body_count);
 }
 
 static tobi_status read_clock(tobi_store *f, const char *path, loaded *l, tobi_error *err)

@@ -110,7 +110,8 @@ static tobi_status note_fluids(tobi_world *w, tobi_error *err)
 
 tobi_status tobi_fit_note(tobi_world *w, tobi_error *err)
 {
-    const double wish = w->sim.def.spacing, taken = w->system[0].smoothing.spacing, amount = find_amount(w, -1) - 1;
+    const double wish = w->sim.def.spacing, taken = w->system[0].smoothing.spacing;
+    const double amount = find_amount(w, -1) - 1;
     tobi_fit fit = { wish, 0 };
     char text[300], neat[80];
     if (w->system[0].solid_count > 0) return TOBI_OK;

@@ -71,8 +71,8 @@ tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_erro
         int components;
         if (!r.name) return TOBI_OK;
         shape_of(&r, &type, &components);
-        TOBI_TRY(tobi_store_put(f, name_entry(number, r.name).name, type, s->particles.count, components, r.data,
-                                err));
+        TOBI_TRY(tobi_store_put(f, name_entry(number, r.name).name, type, s->particles.count, components,
+                                r.data, err));
     }
 }
 
@@ -122,7 +122,8 @@ static tobi_status read_memory(tobi_system *s, int number, tobi_store *f, const 
     if (!l->memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
     TOBI_TRY(tobi_store_get(f, name_entry(number, "info").name, TOBI_U8, (int64_t)sizeof l->info, 1, &l->info,
                             err));
-    TOBI_TRY(tobi_store_get(f, name_entry(number, "memory").name, TOBI_F64, l->memory_count, 1, l->memory, err));
+    TOBI_TRY(tobi_store_get(f, name_entry(number, "memory").name, TOBI_F64, l->memory_count, 1, l->memory,
+                            err));
     int good = l->step >= 0 && isfinite(l->clock[0]) && isfinite(l->clock[1]);
     for (int k = 0; k < l->memory_count; k++) good &= !isnan(l->memory[k]);
     return good ? TOBI_OK : tobi_fail(err, TOBI_DAMAGED, "%s: the memory of %s is no number", path,
@@ -205,8 +206,8 @@ static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loa
     return status;
 }
 
-tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const char *path, tobi_loaded_system *l,
-                            tobi_error *err)
+tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const char *path,
+                            tobi_loaded_system *l, tobi_error *err)
 {
     TOBI_TRY(tobi_store_rows(f, name_entry(number, "id").name, &l->count, err));
     TOBI_TRY(check_scene(s, number, f, path, l, err));

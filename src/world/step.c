@@ -176,7 +176,6 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     int64_t substeps[TOBI_SYSTEM_LIMIT];
-    TOBI_TRY(tobi_simulation_heed(s, err));
     tobi_world_cap_step(w);
     TOBI_TRY(remember(w, err));
     choose_dt(w, max_dt, substeps);
@@ -224,6 +223,7 @@ static void put_back(tobi_world *w, const kept *keep)
 tobi_status tobi_step_take(tobi_world *w, double max_dt, tobi_error *err)
 {
     kept keep;
+    TOBI_TRY(tobi_simulation_heed(&w->sim, err));
     keep_memory(w, &keep);
     w->sim.changed = 0;
     const tobi_status status = take_step(w, max_dt, &w->failure);

@@ -1,5 +1,5 @@
-/* The systems of a world: made with their method, filled, started, counted. Drawback: two at most, that of the
-   definition's method and one for solids beside fluids. */
+/* The systems of a world: made with their method, filled, started, counted. Drawback: two at most, that of
+   the definition's method and one for solids beside fluids. */
 #include "base/error.h"
 #include "world/fit.h"
 #include "world/params.h"

@@ -167,8 +167,8 @@ static tobi_status check_memory(int64_t particles, int64_t bytes, tobi_error *er
     return TOBI_OK;
 }
 
-/* Their speed from their motion around time 0. What free bodies bring the material may have when they are slow
-   already. */
+/* Their speed from their motion around time 0. What free bodies bring the material may have when they are
+   slow already. */
 static tobi_status start_bodies(tobi_world *w, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -189,10 +189,11 @@ static tobi_status check_systems(tobi_world *w, tobi_error *err)
         return tobi_fail(err, TOBI_INVALID, "%s has no fluid; the method of solids alone is %s",
                          w->system[0].method->name, w->system[1].method->name);
     if (w->sim.body_count > 0)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "bodies beside fluids of %s and solids of %s: allowed are bodies "
-                         "with the one or the other", w->system[0].method->name, w->system[1].method->name);
-    return tobi_world_add_notes(w, "world", NULL, "fluids and solids do not touch each other yet: each moves as "
-                                "if it were alone\n", err);
+        return tobi_fail(err, TOBI_UNSUPPORTED, "bodies beside fluids of %s and solids of %s: allowed are "
+                         "bodies with the one or the other", w->system[0].method->name,
+                         w->system[1].method->name);
+    return tobi_world_add_notes(w, "world", NULL, "fluids and solids do not touch each other yet: each moves "
+                                "as if it were alone\n", err);
 }
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)

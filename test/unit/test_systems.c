@@ -145,11 +145,13 @@ static void what_is_not_known_yet(void **state)
     for (int a = 0; a < 3; a++) box.box_min[a] = 0.16, box.box_max[a] = 0.18;
     box.name = "box";
     OK(tobi_world_add_body(w, &box, &err));
-    REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED, "bodies beside fluids of dfsph and solids of mlsmpm");
+    REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED,
+            "bodies beside fluids of dfsph and solids of mlsmpm");
     tobi_world_destroy(w);
     for (int a = 0; a < 3; a++) fill.box_max[a] = 0.05;
     OK(tobi_world_add_solid(dry, &solid, &fill, 1, &err));
-    REFUSED(tobi_world_start(dry, &err), TOBI_INVALID, "dfsph has no fluid; the method of solids alone is mlsmpm");
+    REFUSED(tobi_world_start(dry, &err), TOBI_INVALID,
+            "dfsph has no fluid; the method of solids alone is mlsmpm");
     tobi_world_destroy(dry);
     w = make_world("dfsph", POOL | BLOCK, 1);
     OK(tobi_world_start(w, &err));
