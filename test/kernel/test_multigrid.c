@@ -1,8 +1,8 @@
 /* The preconditioner is a symmetric positive operator, the same on any number of threads. */
 #include "core/simulation.h"
 #include "core/smoothing.k.h"
+#include "linear/multigrid.h"
 #include "sph/kernels.h"
-#include "sph/multigrid.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-typedef struct pool { tobi_simulation s; sph_multigrid m; double d; } pool;
+typedef struct pool { tobi_simulation s; tobi_multigrid m; double d; } pool;
 
 static uint64_t seed;
 static double random_unit(void)
@@ -50,13 +50,19 @@ static void fill(pool *p, int dimension, int n, int threads)
         s->particles.surface[i] = x[dimension - 1] > p->d*(n - 1);
         s->particles.precondition[i] = s->particles.surface[i] ? 0 : 1e-3f;
     }
-    assert_int_equal(sph_multigrid_create(&p->m, s, &err), TOBI_OK);
-    sph_multigrid_set(&p->m, s, 1e-3/s->smoothing.volume);
+    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
+    const tobi_grid_weights w = {.strength = 1e-3,
+                                 .volume = s->smoothing.volume,
+                                 .active = s->particles.precondition,
+                                 .marked = s->particles.surface,
+                                 .hold = 1e-3/(p->d*p->d)};
+    assert_int_equal(tobi_multigrid_create(&p->m, &points, 2, &err), TOBI_OK);
+    tobi_multigrid_set(&p->m, &s->exec, &points, &w);
 }
 
 static void drop(pool *p)
 {
-    sph_multigrid_free(&p->m);
+    tobi_multigrid_free(&p->m);
     tobi_cells_free(&p->s.cells);
     tobi_particles_free(&p->s.particles);
     tobi_exec_free(&p->s.exec);
@@ -71,14 +77,14 @@ static void direction(pool *p)
     v.precondition = p->s.particles.precondition;
     v.record = p->s.particles.record;
     v.position = p->s.particles.position;
-    v.coarse = p->m.grid[0].value;
-    v.dimension = p->s.box.dimension;
-    for (int a = 0; a < 3; a++) {
-        v.cells_per_metre[a] = p->m.per_metre[a];
-        v.nodes[a] = p->m.grid[0].n[a];
-    }
+    v.coarse = tobi_multigrid_values(&p->m);
     tobi_launch(&p->s.exec, sph_kernels_for(p->s.exec.isa, TOBI_SHAPE_WENDLAND)->sph_cg_direction, &v, 0,
                 p->s.particles.count, NULL);
+}
+
+static double apply(pool *p)
+{
+    return tobi_multigrid_apply(&p->m, &p->s.exec, p->s.particles.residual, p->s.particles.precondition);
 }
 
 static void random_residual(pool *p)
@@ -97,7 +103,7 @@ static void symmetric_and_positive(void **state)
         float *a = malloc((size_t)n*sizeof *a), *za = malloc((size_t)n*sizeof *za);
         random_residual(&p);
         memcpy(a, p.s.particles.residual, (size_t)n*sizeof *a);
-        double energy = sph_multigrid_apply(&p.m, &p.s), jacobi = 0, whole = 0, ab = 0, ba = 0;
+        double energy = apply(&p), jacobi = 0, whole = 0, ab = 0, ba = 0;
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
             za[i] = p.s.particles.record[i].w;
@@ -107,7 +113,7 @@ static void symmetric_and_positive(void **state)
         assert_true(energy > 0);
         assert_true(fabs(whole - jacobi - energy) <= 1e-4*whole);      /* P is the transpose of P^T */
         random_residual(&p);
-        sph_multigrid_apply(&p.m, &p.s);
+        apply(&p);
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
             ab += (double)p.s.particles.residual[i]*za[i];
@@ -129,7 +135,7 @@ static void same_bits_on_threads(void **state)
     random_residual(&one);
     memcpy(four.s.particles.residual, one.s.particles.residual,
            (size_t)one.s.particles.count*sizeof(float));
-    double a = sph_multigrid_apply(&one.m, &one.s), b = sph_multigrid_apply(&four.m, &four.s);
+    double a = apply(&one), b = apply(&four);
     assert_memory_equal(&a, &b, sizeof a);
     const int *n = one.m.grid[0].n;
     assert_memory_equal(one.m.grid[0].value, four.m.grid[0].value,
