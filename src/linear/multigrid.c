@@ -67,7 +67,8 @@ tobi_grid_values tobi_multigrid_values(const tobi_multigrid *m)
 }
 
 /* A kernel over rows, on threads if the nodes are worth waking them. */
-static void launch_rows(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view *v, int64_t rows, int64_t nodes)
+static void launch_rows(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view *v, int64_t rows,
+                        int64_t nodes)
 {
     double unused[TOBI_TOTALS];
     if (nodes >= THREADED) tobi_launch_each(x, kernel, v, rows, NULL);
@@ -148,7 +149,8 @@ static void set_holds(const tobi_multigrid *m, tobi_exec *x, const tobi_grid_wei
     else memset(v.g.value, 0, (size_t)nodes_of(&v.g)*sizeof *v.g.value);
 }
 
-void tobi_multigrid_set(tobi_multigrid *m, tobi_exec *x, const tobi_cell_points *p, const tobi_grid_weights *w)
+void tobi_multigrid_set(tobi_multigrid *m, tobi_exec *x, const tobi_cell_points *p,
+                        const tobi_grid_weights *w)
 {
     const tobi_linear_kernels *k = kernels_of(x);
     m->points = *p;

@@ -20,8 +20,9 @@ typedef enum tobi_linear_status {
     TOBI_LINEAR_CONVERGED,
     TOBI_LINEAR_LIMIT,         /* so many iterations did not suffice                                */
     TOBI_LINEAR_STAGNATED,     /* a fresh start from the true residual gains less than 1 %          */
-    TOBI_LINEAR_BROKEN_DOWN,   /* no step can be computed: for cg, A or M is not positive definite  */
-    TOBI_LINEAR_NOT_FINITE,    /* b, x, A or M gave a number that is not finite                     */
+    TOBI_LINEAR_BROKEN_DOWN,   /* no step can be computed: for cg, A or M is not positive definite;
+                                  for all, M gives no finite numbers                                */
+    TOBI_LINEAR_NOT_FINITE,    /* b, or A times the start, has numbers that are not finite          */
     TOBI_LINEAR_STOPPED        /* `stop` said so                                                    */
 } tobi_linear_status;
 
@@ -38,8 +39,8 @@ typedef struct tobi_linear_report {
     double residual;           /* true |b - A x|/|b| of the x returned; 0 where b = 0               */
 } tobi_linear_report;
 
-/* x holds the start and receives the last iterate, which is finite if the start was. Exec is reserved for
-   the rows. work: as many doubles as the function before says.
+/* x holds the start and receives the last iterate; it is left alone where the status is NOT_FINITE at the
+   start. Exec is reserved for the rows. work: as many doubles as the function before says.
    cg: A and M symmetric positive definite; one product per iteration. */
 int64_t tobi_cg_work(int64_t rows);
 tobi_linear_report tobi_cg(tobi_exec *exec, const tobi_linear_system *a, const tobi_linear_settings *s,
