@@ -23,6 +23,7 @@ typedef struct poisson {
     tobi_linear_system system;
     tobi_multigrid grid;
     int kind, products;
+    double wall;                     /* m: so high a thin wall stands in the middle, 0 = none       */
     const double *in;                /* of the product at hand                                      */
     double *out;
 } poisson;
@@ -73,6 +74,14 @@ static int poisson_offsets(const poisson *q, int a, int64_t i, int64_t j, double
     offset[1] = x + y;
     offset[2] = x + y - 2*size;
     return 3;
+}
+
+/* 1: the thin wall stands between i and j; it mirrors nothing. */
+static int poisson_apart(const poisson *q, int64_t i, int64_t j)
+{
+    const double *x = &q->p.position[i].x, *y = &q->p.position[j].x, middle = 0.5*q->box.size[0] + 0.3*q->d;
+    const int up = q->box.dimension - 1;
+    return (x[0] < middle) != (y[0] < middle) && fmin(x[up], y[up]) < q->wall;
 }
 
 /* F, F r^2 and the hydrostatic source over j and all its images; of itself only the images. */
@@ -129,7 +138,8 @@ static void poisson_rows(const void *view, int64_t begin, int64_t end, double *t
         q->b[i] = 2*ki*own.source;
         POISSON_NEIGHBOURS(q, i, k) {
             const int64_t j = q->cells.list[k];
-            const poisson_pair s = j == i ? (poisson_pair){0, 0, 0} : poisson_sum(q, i, j);
+            const int none = j == i || poisson_apart(q, i, j);
+            const poisson_pair s = none ? (poisson_pair){0, 0, 0} : poisson_sum(q, i, j);
             const double both = ki + poisson_factor(q, j);
             q->weight[k] = s.f*both;
             q->b[i] += s.source*both;

@@ -83,6 +83,23 @@ static void as_many_iterations_at_any_depth_3d(void **state)
     check_depths(3, 16, depth, 3, 14);
 }
 
+/* The grid does not know of a wall thinner than its cells: that costs iterations, not the answer. */
+static void a_thin_wall_costs_iterations(void **state)
+{
+    (void)state;
+    for (int dimension = 2; dimension <= 3; dimension++) {
+        make(dimension, dimension == 3 ? 20 : 60, dimension == 3 ? 20 : 60, 0, 2);
+        const int without = solve(POISSON_CYCLE).iterations;
+        q.wall = 0.6*q.box.size[dimension - 1];
+        tobi_launch(&q.exec, poisson_rows, &q, 0, q.p.count, NULL);
+        poisson_set_grid(&q);
+        const int with = solve(POISSON_CYCLE).iterations;
+        printf("%d-D, a thin wall: %d iterations, %d without\n", dimension, with, without);
+        assert_true(with <= 3*without);
+        poisson_drop(&q);
+    }
+}
+
 /* Nothing holds the pressure: a constant is free, and the answer has none. */
 static void closed_box(void **state)
 {
@@ -157,6 +174,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_many_iterations_at_any_depth_2d),
         cmocka_unit_test(as_many_iterations_at_any_depth_3d),
+        cmocka_unit_test(a_thin_wall_costs_iterations),
         cmocka_unit_test(closed_box),
         cmocka_unit_test(the_cycle_is_symmetric),
         cmocka_unit_test(same_bits_on_threads),
