@@ -30,11 +30,13 @@ static int64_t plan(tobi_multigrid *m)
     }
 }
 
-tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, tobi_error *err)
+tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, int visits,
+                                  tobi_error *err)
 {
     memset(m, 0, sizeof *m);
     m->points = *p;
     m->wide = wide;
+    m->visits = visits;
     const int64_t total = plan(m), cells = (int64_t)m->cells[0]*m->cells[1]*m->cells[2];
     m->memory = calloc((size_t)total*6, sizeof *m->memory);
     m->corner = calloc((size_t)cells, sizeof *m->corner);
@@ -82,12 +84,13 @@ static void launch_nodes(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view 
 
 static const tobi_linear_kernels *kernels_of(const tobi_exec *x) { return tobi_linear_kernels_for(x->isa); }
 
-static void cycle(const tobi_multigrid *m, tobi_exec *x, int level)
+/* From nothing, or from the value that an earlier cycle left. */
+static void cycle(const tobi_multigrid *m, tobi_exec *x, int level, int from_nothing)
 {
     const tobi_linear_kernels *k = kernels_of(x);
     const int coarsest = level + 1 == m->levels, rounds = coarsest ? 8 : 1;
     tobi_grid_view v = {.g = m->grid[level]};
-    memset(v.g.value, 0, (size_t)nodes_of(&v.g)*sizeof *v.g.value);
+    if (from_nothing) memset(v.g.value, 0, (size_t)nodes_of(&v.g)*sizeof *v.g.value);
     for (int s = 0; s < 2*rounds; s++) {
         v.colour = s & 1;
         launch_nodes(x, k->grid_sweep, &v);
@@ -95,7 +98,8 @@ static void cycle(const tobi_multigrid *m, tobi_exec *x, int level)
     if (!coarsest) {
         tobi_grid_view down = {.g = m->grid[level + 1], .other = v.g};
         launch_nodes(x, k->grid_restrict, &down);
-        cycle(m, x, level + 1);
+        cycle(m, x, level + 1, 1);
+        for (int k = 1; k < m->visits && level + 2 < m->levels; k++) cycle(m, x, level + 1, 0);
         v.other = m->grid[level + 1];
         launch_nodes(x, k->grid_prolong, &v);
     }
@@ -182,7 +186,7 @@ double tobi_multigrid_apply(tobi_multigrid *m, tobi_exec *x, const float *r, con
     v.active = active;
     v.out = v.g.source;
     gather(m, x, &v);
-    cycle(m, x, 0);
+    cycle(m, x, 0, 1);
     for (int64_t c = 0; c < nodes_of(&v.g); c++) dot += (double)v.g.source[c]*v.g.value[c];
     return dot;
 }
@@ -208,7 +212,7 @@ void tobi_multigrid_cycle(tobi_multigrid *m, tobi_exec *x, const tobi_linear_sys
         v.factor = 1/totals[6];
         v.out = v.g.source;
         gather(m, x, &v);
-        cycle(m, x, 0);
+        cycle(m, x, 0, 1);
         v.coarse = tobi_multigrid_values(m);
         v.factor = totals[6];
         tobi_launch(x, k->grid_add_coarse, &v, 0, a->rows, NULL);

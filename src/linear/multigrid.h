@@ -1,13 +1,13 @@
 /* A multigrid preconditioner for equations close to -c Laplace p = f whose unknowns are points in cells.
 
    The points' values meet on a coarse grid: P interpolates linearly from the corners of grid cells, each
-   `wide` point cells wide, and B is one V-cycle for the same equation on the grid. P B P^T is symmetric,
+   `wide` point cells wide, and B is one cycle for the same equation on the grid. P B P^T is symmetric,
    positive and fixed, so conjugate gradients stay what they are; any error here costs iterations, never the
    result. Two ways to use it:
    - added to the diagonal (Bramble, Pasciak & Xu, Math. Comp. 55 (1990) 1): tobi_multigrid_apply. For
-     operators that are weak at the scale of points (DFSPH, wide = 2).
+     operators that are weak at the scale of points (DFSPH: wide = 2, V-cycle).
    - between two sweeps of damped Jacobi on the points (Brandt, Math. Comp. 31 (1977) 333):
-     tobi_multigrid_cycle. For compact Laplacians (wide = 1); two products with the matrix.
+     tobi_multigrid_cycle. For compact Laplacians (wide = 1, W-cycle); two products with the matrix.
    The grid computes in float, points in float or double. */
 #pragma once
 #include "base/error.h"
@@ -19,7 +19,7 @@ enum { TOBI_GRID_LEVELS = 16 };
 
 typedef struct tobi_multigrid {
     tobi_cell_points points;         /* of the last tobi_multigrid_set                              */
-    int levels, wide;
+    int levels, wide, visits;
     int cells[3];                    /* of the finest grid                                          */
     double per_metre[3];             /* cells per metre                                             */
     float (*corner)[8];              /* [cells] sums of a cell's points, by corner                  */
@@ -38,8 +38,10 @@ typedef struct tobi_grid_weights {
     const double *excess;            /* each point its own, the sum of its row; both NULL: nothing  */
 } tobi_grid_weights;
 
-/* Memory for a grid over these cells; start, position and count may still be unknown. TOBI_NO_MEMORY. */
-tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, tobi_error *err);
+/* Memory for a grid over these cells; start, position and count may still be unknown. visits: of a level per
+   cycle of the next finer one, 1: V-cycle, 2: W-cycle. TOBI_NO_MEMORY. */
+tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, int wide, int visits,
+                                  tobi_error *err);
 void tobi_multigrid_free(tobi_multigrid *m);
 
 /* Weights for points in the cells of tobi_multigrid_create. The arrays of w are not read later. */

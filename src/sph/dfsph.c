@@ -224,7 +224,7 @@ static tobi_status find_neighbors(tobi_simulation *s, dfsph *m, double *clock, t
 {
     if (!m->grid.memory) {
         const tobi_cell_points cells = tobi_cells_points(&s->cells, &s->box, &s->particles);
-        TOBI_TRY(tobi_multigrid_create(&m->grid, &cells, GRID_WIDTH, err));
+        TOBI_TRY(tobi_multigrid_create(&m->grid, &cells, GRID_WIDTH, 1, err));
     }
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);

@@ -56,7 +56,7 @@ static void fill(pool *p, int dimension, int n, int threads)
                                  .active = s->particles.precondition,
                                  .marked = s->particles.surface,
                                  .hold = 1e-3/(p->d*p->d)};
-    assert_int_equal(tobi_multigrid_create(&p->m, &points, 2, &err), TOBI_OK);
+    assert_int_equal(tobi_multigrid_create(&p->m, &points, 2, 1, &err), TOBI_OK);
     tobi_multigrid_set(&p->m, &s->exec, &points, &w);
 }
 

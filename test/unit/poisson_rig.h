@@ -233,7 +233,7 @@ static void poisson_assemble(poisson *q)
 static tobi_status poisson_make_grid(poisson *q, tobi_error *err)
 {
     const tobi_cell_points points = tobi_cells_points(&q->cells, &q->box, &q->p);
-    return tobi_multigrid_create(&q->grid, &points, 1, err);
+    return tobi_multigrid_create(&q->grid, &points, 1, 2, err);
 }
 
 /* What a step has to do again after each move. */
