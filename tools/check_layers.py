@@ -12,10 +12,11 @@ import sys
 RANK = {
     "base": 0,
     "exec": 1, "comm": 1, "geom": 1,
-    "core": 2, "linear": 2,
-    "sph": 3, "mpm": 3, "rigid": 3, "io": 3,
-    "world": 4,
-    "scene": 5,
+    "linear": 2,
+    "core": 3,
+    "sph": 4, "mpm": 4, "rigid": 4, "io": 4,
+    "world": 5,
+    "scene": 6,
 }
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}

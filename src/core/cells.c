@@ -143,6 +143,16 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
     }
 }
 
+tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)
+{
+    tobi_cell_points q = {.dimension = box->dimension, .strip = c->strip, .start = c->start,
+                          .position = p->position, .count = p->count};
+    memcpy(q.n, c->n, sizeof q.n);
+    memcpy(q.periodic, c->periodic, sizeof q.periodic);
+    memcpy(q.inverse, c->inverse, sizeof q.inverse);
+    return q;
+}
+
 static tobi_status grow_list(tobi_cells *c, tobi_error *err)
 {
     int64_t more = c->list_capacity + c->list_capacity/8;

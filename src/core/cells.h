@@ -1,10 +1,11 @@
 /* The box, its cell grid, sorting by cell and the neighbour list.
    A cell is at least one support radius wide, so neighbours lie in the 3^dim cells around. Cells along
-   x are contiguous; rows along x are grouped in strips along y, then z, so that the rows a sweep
-   touches stay in cache whatever the width of the domain. */
+   x are contiguous; exec/strips.h orders the rows. */
 #pragma once
 #include "core/particles.h"
 #include "exec/exec.h"
+#include "exec/strips.h"
+#include "linear/grid.h"
 
 /* The simulation box. Positions are measured from its lower corner. */
 typedef struct tobi_box {
@@ -44,9 +45,11 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
 /* Index of the first cell of the row (y, z). */
 static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 {
-    int strip = y/c->strip;
-    return (((int64_t)strip*c->n[2] + z)*c->strip + (y - strip*c->strip))*c->n[0];
+    return tobi_strip_row(c->n, c->strip, y, z);
 }
+
+/* The particles of the last sort as unknowns of a grid. */
+tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p);
 
 /* What the neighbour search reads and writes. */
 typedef struct tobi_list_view {

@@ -8,8 +8,8 @@
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/dfsph.h"
 #include "core/couple.h"
+#include "linear/multigrid.h"
 #include "sph/kernels.h"
-#include "sph/multigrid.h"
 #include "sph/stages.h"
 #include "sph/still.h"
 #include "sph/undo.h"
@@ -19,6 +19,8 @@
 
 /* Of the lattice around bodies, before the first step. */
 enum { SETTLING_ROUNDS = 10 };
+/* Cells of the preconditioner's grid, in support radii: the operator is weak below. */
+enum { GRID_WIDTH = 2 };
 /* Density error of a lattice that has nothing to settle: that of a flat wall's sums. */
 static const double SETTLED = 0.01;
 
@@ -35,7 +37,7 @@ typedef struct dfsph {
     tobi_dfsph_def def;
     sph_view view;
     const sph_kernels *kernel;
-    sph_multigrid grid;
+    tobi_multigrid grid;
     sph_undo undo;
     /* survives a restart */
     struct { double speed, head, dt, vessel, low, level; } memory;   /* vessel: SPH_VESSEL_*; low, level:
@@ -89,10 +91,6 @@ static void bind_view(tobi_system *s, dfsph *m)
     v->lean[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
     v->lean[1] = p->residual;
     v->lean[2] = p->correction;
-    for (int a = 0; a < 3; a++) {
-        v->cells_per_metre[a] = m->grid.per_metre[a];
-        v->nodes[a] = m->grid.grid[0].n[a];
-    }
     sph_still_set(s, m->memory.level);
     v->still = s->still;
 }
@@ -157,7 +155,9 @@ static double relative_residual(const tobi_system *s, const dfsph *m, const line
 /* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
 static double precondition(tobi_system *s, dfsph *m, const linear_solve *q, double jacobi)
 {
-    return q->grid ? jacobi + sph_multigrid_apply(&m->grid, s) : jacobi;
+    const tobi_particles *p = &s->particles;
+    if (!q->grid) return jacobi;
+    return jacobi + tobi_multigrid_apply(&m->grid, &s->sim->exec, p->residual, p->precondition);
 }
 
 /* Conjugate gradients until the residual at hand is small enough. t: |r|^2/diagonal, |r|; largest |r|. */
@@ -213,7 +213,7 @@ static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear
     double t[TOBI_TOTALS];
     memcpy(t, start, sizeof t);
     center(s, m, q, k->sph_center_residual, t[2], t);
-    m->view.coarse = q->grid ? m->grid.grid[0].value : NULL;
+    m->view.coarse = q->grid ? tobi_multigrid_values(&m->grid) : (tobi_grid_values){0};
     do iterate(s, m, q, t); while (hold_pulling(s, m, q, t));
     launch(s, m, k->sph_correct_pressure, t);
     center(s, m, q, k->sph_center_pressure, t[1], NULL);
@@ -222,7 +222,10 @@ static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear
 
 static tobi_status find_neighbors(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
-    if (!m->grid.memory) TOBI_TRY(sph_multigrid_create(&m->grid, s, err));
+    if (!m->grid.memory) {
+        const tobi_cell_points cells = tobi_cells_points(&s->cells, &s->box, &s->particles);
+        TOBI_TRY(tobi_multigrid_create(&m->grid, &cells, GRID_WIDTH, 1, err));
+    }
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
     return TOBI_OK;
@@ -254,6 +257,19 @@ static void apply_forces(tobi_system *s, dfsph *m, double *clock)
     sph_apply_forces(s, &m->view, m->kernel, clock);
 }
 
+/* A surface particle has pressure 0 about a spacing outside, over its share of the surface. */
+static void set_grid(tobi_system *s, dfsph *m)
+{
+    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
+    const double d = s->smoothing.spacing, strength = m->view.inverse_density[0];
+    const tobi_grid_weights w = {.strength = strength,
+                                 .volume = s->smoothing.volume,
+                                 .active = s->particles.precondition,
+                                 .marked = s->particles.surface,
+                                 .hold = strength/(d*d)};
+    tobi_multigrid_set(&m->grid, &s->sim->exec, &points, &w);
+}
+
 /* Pressure of the step: v becomes divergence-free. */
 static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
 {
@@ -273,7 +289,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
                .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
     tobi_couple_product(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
-    sph_multigrid_set(&m->grid, s, m->view.inverse_density[0]/s->smoothing.volume);
+    set_grid(s, m);
     solve_pressure(s, m, t, &q);
     launch(s, m, k->sph_pressure_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
@@ -477,7 +493,7 @@ static void follow_gravity(tobi_system *s, int loaded)
 static void free_state(void *state)
 {
     dfsph *m = state;
-    if (m) sph_multigrid_free(&m->grid);
+    if (m) tobi_multigrid_free(&m->grid);
     if (m) sph_undo_free(&m->undo);
     free(m);
 }

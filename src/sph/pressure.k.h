@@ -7,6 +7,7 @@
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
+#include "linear/value.k.h"
 #include "sph/tensor.k.h"
 #include "sph/view.h"
 
@@ -242,35 +243,12 @@ TOBI_FN void sph_cg_update(const sph_view *v, int64_t i, double *totals)
     totals[6] = size > totals[6] ? size : totals[6];
 }
 
-/* The preconditioner's value at particle i, linear between the corners of its cell. */
-TOBI_FN float sph_coarse_value(const sph_view *v, int64_t i)
-{
-    const double *x = &v->position[i].x;
-    int64_t node = 0, up[3], stride = 1;
-    float w[3], sum = 0;
-    for (int a = 0; a < v->dimension; a++) {
-        double at = x[a]*v->cells_per_metre[a];
-        int k = (int)at;
-        w[a] = (float)(at - k);
-        node += k*stride;
-        up[a] = k + 1 < v->nodes[a] ? stride : -k*stride;
-        stride *= v->nodes[a];
-    }
-    for (int z = 0; z < v->dimension - 1; z++)
-        for (int y = 0; y < 2; y++) {
-            const float *p = v->coarse + node + y*up[1] + (z ? up[2] : 0);
-            float share = y ? w[1] : 1 - w[1];
-            if (v->dimension == 3) share *= z ? w[2] : 1 - w[2];
-            sum += share*(p[0] + w[0]*(p[up[0]] - p[0]));
-        }
-    return sum;
-}
-
 /* q = z + beta q with z = r/diagonal + the grid's value, eq. (10c). totals[0]: sum of q. */
 TOBI_FN void sph_cg_direction(const sph_view *v, int64_t i, double *totals)
 {
     float m = v->precondition[i], q = v->beta != 0 ? v->beta*v->record[i].w : 0;
-    q = m > 0 ? v->residual[i]*m + q + (v->coarse ? sph_coarse_value(v, i) : 0) : 0;
+    float coarse = m > 0 && v->coarse.value ? tobi_grid_value(&v->coarse, &v->position[i].x) : 0;
+    q = m > 0 ? v->residual[i]*m + q + coarse : 0;
     v->record[i].w = q;
     totals[0] += q;
 }

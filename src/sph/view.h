@@ -3,6 +3,7 @@
 #include "core/smoothing.h"
 #include "core/still.h"
 #include "exec/portable.h"
+#include "linear/grid.h"
 
 enum { TOBI_MAX_FLUIDS = 8 };
 
@@ -66,9 +67,7 @@ typedef struct sph_view {
     float core;                               /* m: pairs nearer than this are pushed apart     */
     float push;                               /* share of their overlap taken per step and side */
     float background;                         /* Pa, uniform pressure that shifts particles     */
-    const float *coarse;                      /* Pa at the preconditioner's nodes, NULL = none  */
-    double cells_per_metre[3];                /* of its cells                                   */
-    int   nodes[3];
+    tobi_grid_values coarse;                  /* Pa, of the preconditioner; value NULL = none   */
     float stiffness, exponent;                /* Pa, 1: of the Tait equation            */
     float damping;                            /* Pa s, of sound: pressure per rate of compression */
     float relaxation;                         /* share of the density error shifted away per step */

@@ -123,13 +123,14 @@ static void rig_bind_grid(rig *g, const rig_case *k)
 {
     sph_view *v = &g->view;
     for (int a = 0; a < 3; a++) {
-        v->nodes[a] = a < k->dimension ? 4 : 1;
-        v->cells_per_metre[a] = (k->periodic[a] ? 4 : 3)/(g->box.size[a]*(1 + 1e-9));
+        v->coarse.n[a] = a < k->dimension ? 4 : 1;
+        v->coarse.per_metre[a] = (k->periodic[a] ? 4 : 3)/(g->box.size[a]*(1 + 1e-9));
     }
     for (int c = 0; c < 64; c++) g->coarse[c] = (float)(100*rig_random());
-    v->coarse = g->coarse;
+    v->coarse.value = g->coarse;
+    v->coarse.dimension = k->dimension;
     g->o.coarse = g->coarse;
-    memcpy(g->o.cells_per_metre, v->cells_per_metre, sizeof v->cells_per_metre);
+    memcpy(g->o.cells_per_metre, v->coarse.per_metre, sizeof v->coarse.per_metre);
 }
 
 static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], const double nu[2])

@@ -1,8 +1,8 @@
 /* The preconditioner is a symmetric positive operator, the same on any number of threads. */
 #include "core/system.h"
 #include "core/smoothing.k.h"
+#include "linear/multigrid.h"
 #include "sph/kernels.h"
-#include "sph/multigrid.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-typedef struct pool { tobi_simulation sim; tobi_system s; sph_multigrid m; double d; } pool;
+typedef struct pool { tobi_simulation sim; tobi_system s; tobi_multigrid m; double d; } pool;
 
 static uint64_t seed;
 static double random_unit(void)
@@ -28,17 +28,15 @@ static void fill(pool *p, int dimension, int n, int threads)
     const int periodic[3] = {0, 1, 0};
     double upper[3];
     memset(p, 0, sizeof *p);
-    s->sim = &p->sim;
     p->d = 0.01;
     for (int a = 0; a < 3; a++) upper[a] = lower[a] + p->d*(a + 1 == dimension ? n*4/3 : n);
-    assert_int_equal(tobi_exec_init(&s->sim->exec, threads, &err), TOBI_OK);
+    assert_int_equal(tobi_exec_init(&p->sim.exec, threads, &err), TOBI_OK);
     tobi_smoothing_init(&s->smoothing, TOBI_SHAPE_WENDLAND, dimension, p->d, 2);
     tobi_box_init(&s->box, dimension, lower, upper, periodic, s->smoothing.h);
     int64_t count = dimension == 3 ? (int64_t)n*n*n : (int64_t)n*n;
     assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
-    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err),
-                     TOBI_OK);
-    assert_int_equal(tobi_exec_reserve(&s->sim->exec, count, &err), TOBI_OK);
+    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err), TOBI_OK);
+    assert_int_equal(tobi_exec_reserve(&p->sim.exec, count, &err), TOBI_OK);
     seed = 11;
     for (int64_t i = 0; i < count; i++) {
         int64_t at[3] = {i%n, i/n%n, i/n/n};
@@ -46,19 +44,25 @@ static void fill(pool *p, int dimension, int n, int threads)
             (&s->particles.position[i].x)[a] = p->d*((double)at[a] + 0.5 + 0.3*(random_unit() - 0.5));
     }
     s->particles.count = count;
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->sim->exec);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, &p->sim.exec);
     for (int64_t i = 0; i < count; i++) {
         const double *x = &s->particles.position[i].x;
         s->particles.surface[i] = x[dimension - 1] > p->d*(n - 1);
         s->particles.precondition[i] = s->particles.surface[i] ? 0 : 1e-3f;
     }
-    assert_int_equal(sph_multigrid_create(&p->m, s, &err), TOBI_OK);
-    sph_multigrid_set(&p->m, s, 1e-3/s->smoothing.volume);
+    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
+    const tobi_grid_weights w = {.strength = 1e-3,
+                                 .volume = s->smoothing.volume,
+                                 .active = s->particles.precondition,
+                                 .marked = s->particles.surface,
+                                 .hold = 1e-3/(p->d*p->d)};
+    assert_int_equal(tobi_multigrid_create(&p->m, &points, 2, 1, &err), TOBI_OK);
+    tobi_multigrid_set(&p->m, &p->sim.exec, &points, &w);
 }
 
 static void drop(pool *p)
 {
-    sph_multigrid_free(&p->m);
+    tobi_multigrid_free(&p->m);
     tobi_cells_free(&p->s.cells);
     tobi_particles_free(&p->s.particles);
     tobi_exec_free(&p->sim.exec);
@@ -73,14 +77,14 @@ static void direction(pool *p)
     v.precondition = p->s.particles.precondition;
     v.record = p->s.particles.record;
     v.position = p->s.particles.position;
-    v.coarse = p->m.grid[0].value;
-    v.dimension = p->s.box.dimension;
-    for (int a = 0; a < 3; a++) {
-        v.cells_per_metre[a] = p->m.per_metre[a];
-        v.nodes[a] = p->m.grid[0].n[a];
-    }
+    v.coarse = tobi_multigrid_values(&p->m);
     tobi_launch(&p->sim.exec, sph_kernels_for(p->sim.exec.isa, TOBI_SHAPE_WENDLAND)->sph_cg_direction, &v, 0,
                 p->s.particles.count, NULL);
+}
+
+static double apply(pool *p)
+{
+    return tobi_multigrid_apply(&p->m, &p->sim.exec, p->s.particles.residual, p->s.particles.precondition);
 }
 
 static void random_residual(pool *p)
@@ -99,7 +103,7 @@ static void symmetric_and_positive(void **state)
         float *a = malloc((size_t)n*sizeof *a), *za = malloc((size_t)n*sizeof *za);
         random_residual(&p);
         memcpy(a, p.s.particles.residual, (size_t)n*sizeof *a);
-        double energy = sph_multigrid_apply(&p.m, &p.s), jacobi = 0, whole = 0, ab = 0, ba = 0;
+        double energy = apply(&p), jacobi = 0, whole = 0, ab = 0, ba = 0;
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
             za[i] = p.s.particles.record[i].w;
@@ -109,7 +113,7 @@ static void symmetric_and_positive(void **state)
         assert_true(energy > 0);
         assert_true(fabs(whole - jacobi - energy) <= 1e-4*whole);      /* P is the transpose of P^T */
         random_residual(&p);
-        sph_multigrid_apply(&p.m, &p.s);
+        apply(&p);
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
             ab += (double)p.s.particles.residual[i]*za[i];
@@ -131,7 +135,7 @@ static void same_bits_on_threads(void **state)
     random_residual(&one);
     memcpy(four.s.particles.residual, one.s.particles.residual,
            (size_t)one.s.particles.count*sizeof(float));
-    double a = sph_multigrid_apply(&one.m, &one.s), b = sph_multigrid_apply(&four.m, &four.s);
+    double a = apply(&one), b = apply(&four);
     assert_memory_equal(&a, &b, sizeof a);
     const int *n = one.m.grid[0].n;
     assert_memory_equal(one.m.grid[0].value, four.m.grid[0].value,

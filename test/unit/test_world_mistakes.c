@@ -252,6 +252,15 @@ static void checkpoints_of_others(void **state)
             "the checkpoint is of another scene: its spacing is 0.1 m");
     tobi_world_destroy(world);
 
+    tobi_body_def body = tobi_default_body_def();
+    body.name = "box";
+    for (int k = 0; k < 3; k++) body.box_min[k] = 0.8, body.box_max[k] = 0.9;
+    def.spacing = 0.1;
+    world = make_world(&def, 1);
+    OK(tobi_world_add_body(world, &body, &err));
+    REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID, "it has 0 bodies, the scene 1");
+    tobi_world_destroy(world);
+
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def small = make_fill(0, 0.2);
     def.spacing = 0.1;
