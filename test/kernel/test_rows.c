@@ -40,9 +40,10 @@ static void compare(const float *a, const float *b, const float *c)
 static void every_triple_of_hard_values(void **state)
 {
     static const float hard[] = {
-        0, 1, 1 + FLT_EPSILON, 1 - FLT_EPSILON/2, 1.5f, 3, 0x1p12f + 1, 0x1.000002p-24f, 0x1p-24f, 0x1p-25f, 0x1p24f,
-        0x1.fffffep23f, 0x1p-75f, 0x1.8p-75f, 0x1.000002p-75f, FLT_TRUE_MIN, 3*FLT_TRUE_MIN, FLT_MIN - FLT_TRUE_MIN,
-        FLT_MIN, FLT_MIN + FLT_TRUE_MIN, 0x1.555556p-2f, FLT_MAX, FLT_MAX/2, 0x1p127f, INFINITY, NAN,
+        0, 1, 1 + FLT_EPSILON, 1 - FLT_EPSILON/2, 1.5f, 3, 0x1p12f + 1, 0x1.000002p-24f, 0x1p-24f,
+        0x1p-25f, 0x1p24f, 0x1.fffffep23f, 0x1p-75f, 0x1.8p-75f, 0x1.000002p-75f, FLT_TRUE_MIN,
+        3*FLT_TRUE_MIN, FLT_MIN - FLT_TRUE_MIN, FLT_MIN, FLT_MIN + FLT_TRUE_MIN, 0x1.555556p-2f,
+        FLT_MAX, FLT_MAX/2, 0x1p127f, INFINITY, NAN,
     };
     enum { N = sizeof hard/sizeof *hard };
     float v[3][16];
@@ -64,7 +65,8 @@ static void fill_row(uint64_t *seed, int exponent, float v[3][16])
     for (int k = 0; k < 16; k++) {
         const uint64_t r = draw(seed), s = draw(seed);
         const int few = (int)(r & 15), shift = (int)(r >> 4 & 31) - 15, far = (int)(r >> 9 & 63) - 31;
-        const float a = (float)((s & 0xffffff) >> few | 1), b = (float)((s >> 24 & 0xffffff) >> (few ^ 8) | 1);
+        const float a = (float)((s & 0xffffff) >> few | 1);
+        const float b = (float)((s >> 24 & 0xffffff) >> (few ^ 8) | 1);
         const float c = (float)((r >> 40) >> (r >> 20 & 15) | 1);
         v[0][k] = ldexpf(r >> 15 & 1 ? -a : a, shift);
         v[1][k] = ldexpf(r >> 16 & 1 ? -b : b, exponent - shift);
