@@ -335,6 +335,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
+    TOBI_TRY(tobi_world_note_edges(w, err));
     TOBI_TRY(tobi_particles_fit(&s->particles, needed_fields(w), err));
     int64_t n = s->particles.count;
     TOBI_TRY(tobi_exec_reserve(&s->exec, n > 4096 ? n : 4096, err));

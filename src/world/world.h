@@ -42,6 +42,8 @@ tobi_status tobi_world_note_regions(tobi_world *w, tobi_error *err);
 double tobi_world_start_speed(const tobi_world *w);
 /* Adds a note for each body that lies so near to a side that the grid feels the side through it. */
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
+/* Notes blades whose motion ends their cut at a side before the last layer of particles is parted. */
+tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 
