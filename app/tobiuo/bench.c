@@ -46,7 +46,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 }
 
 /* The settled tank: fluid 0.584 x 0.284 x 0.182 m from wall to wall, air above. */
-static tobi_world *make_tank(const bench_options *o, double spacing, int more)
+static tobi_world *make_tank(const bench_options *o, const char *method, double spacing, int more)
 {
     tobi_world_def w = tobi_default_world_def();
     tobi_dfsph_def m = tobi_default_dfsph_def();
@@ -59,6 +59,7 @@ static tobi_world *make_tank(const bench_options *o, double spacing, int more)
         w.domain_max[a] = top[a];
         fill.box_max[a] = water[a];
     }
+    w.method = method;
     w.spacing = spacing;
     w.threads = o->threads;
     w.end_time = 1.0;
@@ -66,7 +67,8 @@ static tobi_world *make_tank(const bench_options *o, double spacing, int more)
     m.density_iterations_min += more;
     m.divergence_iterations_min += more;
     f.name = "water";
-    if (tobi_world_create(&w, &m, &world, &err) != TOBI_OK ||
+    const int dfsph = strcmp(method, "dfsph") == 0;
+    if (tobi_world_create(&w, dfsph ? &m : NULL, &world, &err) != TOBI_OK ||
         tobi_world_add_fluid(world, &f, &fill, 1, &err) != TOBI_OK) {
         complain("%s", err.text);
         tobi_world_destroy(world);
@@ -149,12 +151,33 @@ static int measure_tank(const bench_options *o, double spacing, int settle)
     printf("case                   settled tank 0.584 x 0.284 x 0.182 m at %g m, after %d steps\n",
            spacing, settle);
     fflush(stdout);
-    tobi_world *world = make_tank(o, spacing, 0);
-    tobi_world *more = world ? make_tank(o, spacing, MORE_ITERATIONS) : NULL;
+    tobi_world *world = make_tank(o, "dfsph", spacing, 0);
+    tobi_world *more = world ? make_tank(o, "dfsph", spacing, MORE_ITERATIONS) : NULL;
     int failed = !more ? EXIT_ERROR : bench_settle(world, settle);
     if (!failed) failed = compare_tanks(world, more, o->steps ? o->steps : 60, o->threads);
     tobi_world_destroy(world);
     tobi_world_destroy(more);
+    return failed;
+}
+
+static int measure_wcsph(const bench_options *o)
+{
+    const double spacing = o->spacing > 0.0 ? o->spacing : 0.008;
+    const int settle = o->settle ? o->settle : 100, steps = o->steps ? o->steps : 200;
+    bench_run run = { 0 };
+    printf("case                   tank 0.584 x 0.284 x 0.182 m at %g m by wcsph, after %d steps\n", spacing,
+           settle);
+    fflush(stdout);
+    tobi_world *world = make_tank(o, "wcsph", spacing, 0);
+    int failed = world ? bench_settle(world, settle) : EXIT_ERROR;
+    if (!failed) failed = bench_begin(&run, world, steps);
+    for (int k = 0; k < steps && !failed; k++) failed = bench_step(&run);
+    bench_end(&run);
+    if (!failed) {
+        bench_print(&run, o->threads);
+        printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
+    }
+    tobi_world_destroy(world);
     return failed;
 }
 
@@ -207,6 +230,7 @@ int tobiuo_bench(int argc, char **argv)
                "CASE is\n"
                "  small   the settled tank at 8 mm, 55 000 particles, seconds (default)\n"
                "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
+               "  wcsph   that tank at 8 mm by wcsph, seconds\n"
                "  fish    the flying fish at --spacing, --steps steps\n"
                "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
                "  cut     a ball that a blade goes through, and the same without, half a minute\n"
@@ -218,15 +242,17 @@ int tobiuo_bench(int argc, char **argv)
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
-    int cut = strcmp(which, "cut") == 0;
-    if (!tank && !small && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
-        complain("bench: there is no case '%s'; known are small, tank, fish, ball, cut and bodies", which);
+    int cut = strcmp(which, "cut") == 0, wcsph = strcmp(which, "wcsph") == 0;
+    if (!tank && !small && !wcsph && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
+        complain("bench: there is no case '%s'; known are small, tank, wcsph, fish, ball, cut and "
+                 "bodies", which);
         return EXIT_USAGE;
     }
     bench_print_machine(o.threads);
     if (ball) return bench_ball(&o);
     if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);
+    if (wcsph) return measure_wcsph(&o);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);
 }

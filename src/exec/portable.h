@@ -1,7 +1,7 @@
 /* The one header that knows which compiler reads a kernel, and how wide it computes.
    A kernel file (*.k.h) is plain arithmetic on `lane`: eight floats at once in the production build
    (GNU vectors), one float in CUDA and in the test oracles (TOBI_SCALAR_LANES). Eight lanes and one
-   reduction tree on every instruction set, so that AVX2 and AVX-512 give the same bits. */
+   reduction tree on every instruction set, so that all of them give the same bits. */
 #pragma once
 #include <math.h>
 #include <stdint.h>

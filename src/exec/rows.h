@@ -59,8 +59,8 @@ TOBI_FN quad quad_larger(quad a, quad b)
     return (quad)(((mask)a & m) | ((mask)b & ~m));
 }
 
-/* a b + c is rounded once on machines that can (x86-64-v3 and v4), where it saves a third of the work. So
-   rows give the same bits on AVX2 and AVX-512, and others on older machines. */
+/* a b + c is rounded once, which saves a third of the work on x86-64-v3 and v4. Older machines have no
+   such instruction; they get the same bits from some twenty others. */
 #if defined(__AVX512F__)
 
 typedef float row __attribute__((vector_size(64)));
@@ -117,14 +117,67 @@ TOBI_FN row_part_ row_part_set_(float a) { return quad_set(a); }
 #endif
 typedef struct row { row_part_ part[ROW_PARTS_]; } row;
 
-TOBI_FN row_part_ row_part_fma_(row_part_ a, row_part_ b, row_part_ c)
+#if defined(__SSE2__) && !defined(__FMA__)
+TOBI_FN __m128d row_low_(quad a) { return _mm_cvtps_pd((__m128)a); }
+TOBI_FN __m128d row_high_(quad a) { return _mm_cvtps_pd(_mm_movehl_ps((__m128)a, (__m128)a)); }
+TOBI_FN quad row_narrow_(__m128d low, __m128d high)
 {
-#if defined(__FMA__)
-    return (row_part_)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-#else
-    return a*b + c;
-#endif
+    return (quad)_mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 }
+/* Two of a b + c in double, rounded to odd: of the two neighbours the one with an odd last bit.
+   Rounding that again, to float, is rounding once (Boldo & Melquiond 2008, IEEE Trans. Comput. 57). */
+TOBI_FN __m128d row_fma_odd_(__m128d a, __m128d b, __m128d c)
+{
+    typedef uint64_t word __attribute__((vector_size(16)));
+    const __m128d p = a*b, s = p + c, q = s - p;                    /* p is exact */
+    const __m128d error = (p - (s - q)) + (c - q);                  /* Knuth's sum */
+    const word magnitude = (word)error & (word){INT64_MAX, INT64_MAX};
+    const word inexact = (word)((__m128d)magnitude > (__m128d){0, 0}) >> 63;    /* 0 where s is infinite */
+    const word below = ((word)error ^ (word)s) >> 63 & inexact;     /* nearer to 0 than s */
+    return (__m128d)(((word)s - below) | inexact);
+}
+TOBI_RARE_FN void row_fma_exactly_(const quad *a, const quad *b, const quad *c, quad *sum)
+{
+    for (int k = 0; k < 4; k++)
+        sum[k] = row_narrow_(row_fma_odd_(row_low_(a[k]), row_low_(b[k]), row_low_(c[k])),
+                             row_fma_odd_(row_high_(a[k]), row_high_(b[k]), row_high_(c[k])));
+}
+/* a b + c by way of double. Rounding twice is wrong only where the sum in double is half way between
+   two floats, or the float is subnormal: there `doubt` is not 0. */
+TOBI_FN quad row_fma_twice_(quad a, quad b, quad c, __m128i *doubt)
+{
+    const __m128d low = row_low_(a)*row_low_(b) + row_low_(c);
+    const __m128d high = row_high_(a)*row_high_(b) + row_high_(c);
+    const quad sum = row_narrow_(low, high);
+    const __m128i last = (__m128i)_mm_shuffle_ps((__m128)low, (__m128)high, _MM_SHUFFLE(2, 0, 2, 0));
+    const __m128i half = _mm_cmpeq_epi32(last & _mm_set1_epi32(0x1fffffff), _mm_set1_epi32(0x10000000));
+    const __m128i twice = _mm_add_epi32((__m128i)sum, (__m128i)sum);            /* no sign, 0 stays 0 */
+    const __m128i small = _mm_cmplt_epi32(_mm_add_epi32(twice, _mm_set1_epi32(INT32_MAX)),
+                                          _mm_set1_epi32(INT32_MIN + 0x02000000));
+    *doubt |= half | small;
+    return sum;
+}
+TOBI_FN row row_fma(row a, row b, row c)
+{
+    row sum;
+    __m128i doubt = _mm_setzero_si128();
+    for (int k = 0; k < 4; k++) sum.part[k] = row_fma_twice_(a.part[k], b.part[k], c.part[k], &doubt);
+    if (__builtin_expect(_mm_movemask_epi8(doubt) != 0, 0))
+        row_fma_exactly_(a.part, b.part, c.part, sum.part);
+    return sum;
+}
+#else
+TOBI_FN row row_fma(row a, row b, row c)
+{
+    for (int k = 0; k < ROW_PARTS_; k++)
+#if defined(__FMA__)
+        a.part[k] = (row_part_)_mm256_fmadd_ps((__m256)a.part[k], (__m256)b.part[k], (__m256)c.part[k]);
+#else
+        for (int n = 0; n < 4; n++) a.part[k][n] = fmaf(a.part[k][n], b.part[k][n], c.part[k][n]);
+#endif
+    return a;
+}
+#endif
 TOBI_FN row row_set(float a)
 {
     row r;
@@ -144,11 +197,6 @@ TOBI_FN row row_sub(row a, row b)
 TOBI_FN row row_mul(row a, row b)
 {
     for (int k = 0; k < ROW_PARTS_; k++) a.part[k] = a.part[k]*b.part[k];
-    return a;
-}
-TOBI_FN row row_fma(row a, row b, row c)
-{
-    for (int k = 0; k < ROW_PARTS_; k++) a.part[k] = row_part_fma_(a.part[k], b.part[k], c.part[k]);
     return a;
 }
 #if defined(__AVX__)

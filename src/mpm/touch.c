@@ -282,7 +282,8 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
     return TOBI_OK;
 }
 
-/* Each velocity of a node moves a piece of an edge by its share of the mass. */
+/* A piece of an edge moves as the momentum around it says, eq. (4b): a node that hardly has mass neither
+   moves it nor is thrown by it. */
 static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g)
 {
     const int each = nodes_each(g);
@@ -290,17 +291,14 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
         const surroundings *s = &t->around[k - t->edge_first];
         uint32_t *node = t->node + entry_of(t, k, each);
         float *weight = t->weight + 2*entry_of(t, k, each);
-        double sum = 0;
-        for (int n = 0; n < each; n++) {
+        for (int n = 0; n < each; n++)
             for (int m = 0; m < t->ways; m++) {
                 const int64_t place = s->place[m][n];
                 const double mass = place < 0 ? 0 : g->node[place].w;
-                node[t->ways*n + m] = (uint32_t)(mass > 0 ? place : s->place[0][n]);
-                weight[2*(t->ways*n + m)] = mass > 0 ? (float)(s->weight[n]*mass/s->mass[n]) : 0;
+                const int at = t->ways*n + m;
+                node[at] = (uint32_t)(mass > 0 ? place : s->place[0][n]);
+                weight[2*at] = weight[2*at + 1] = (float)(s->weight[n]*mass/s->full);
             }
-            if (s->mass[n] > 0) sum += s->weight[n];
-        }
-        for (int n = 0; n < t->ways*each; n++) weight[2*n + 1] = weight[2*n] /= (float)sum;
     }
 }
 

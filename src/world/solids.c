@@ -113,6 +113,75 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* How far a blade's edge goes past each side during the run at most, m, < 0: not so far; and at the start. */
+static tobi_status find_edge_reach(const tobi_world *w, const tobi_body *b, double most[6],
+                                   double start[6], tobi_error *err)
+{
+    enum { SAMPLES = 64 };
+    const tobi_box *box = &w->system[0].box;
+    for (int side = 0; side < 6; side++) most[side] = start[side] = -INFINITY;
+    for (int n = 0; n <= SAMPLES; n++)
+        for (int64_t k = 0; k < b->edge_count; k++) {
+            double rest[2][3], now[2][3];
+            for (int a = 0; a < 3; a++) {
+                rest[0][a] = b->rest.centre[a] + b->edge[k].a[a];
+                rest[1][a] = b->rest.centre[a] + b->edge[k].b[a];
+            }
+            TOBI_TRY(b->motion(b->motion_user, w->sim.def.end_time*n/SAMPLES, 2,
+                               (const double (*)[3])rest, now, err));
+            for (int side = 0; side < 2*box->dimension; side++)
+                for (int end = 0; end < 2; end++) {
+                    const double at = now[end][side/2] - box->lower[side/2];
+                    const double past = side%2 ? at - box->size[side/2] : -at;
+                    most[side] = fmax(most[side], past);
+                    if (n == 0) start[side] = fmax(start[side], past);
+                }
+        }
+    return TOBI_OK;
+}
+
+static int has_material_at(const tobi_system *s, int side)
+{
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const double at = (&s->particles.position[i].x)[side/2];
+        if ((side%2 ? s->box.size[side/2] - at : at) < s->smoothing.spacing) return 1;
+    }
+    return 0;
+}
+
+/* Whether an edge that goes `past` spacings past a side leaves the last layer whole. Its particles sit half a
+   spacing inside; at sides that hold the material, the edge presses them down before it. */
+static int ends_at(const tobi_world_def *d, int side, double past)
+{
+    const tobi_wall wall = (side%2 ? d->wall_max : d->wall_min)[side/2];
+    return wall != TOBI_WALL_OPEN && past > -1 && past < (wall == TOBI_WALL_SEPARATE ? -0.4 : 0.49);
+}
+
+tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    if (!s) return TOBI_OK;
+    const double spacing = s->smoothing.spacing;
+    for (int k = 0; k < w->sim.body_count && s->solid_count > 0; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        double most[6], start[6];
+        if (!b->blade || !b->motion || b->rigid.kind != TOBI_PRESCRIBED) continue;
+        TOBI_TRY(find_edge_reach(w, b, most, start, err));
+        for (int side = 0; side < 2*s->box.dimension; side++) {
+            char text[300];
+            if (!ends_at(&w->sim.def, side, most[side]/spacing)) continue;
+            if (most[side] - start[side] < spacing || !has_material_at(s, side)) continue;
+            if (fabs(most[side]) < 1e-6*spacing) most[side] = 0;
+            snprintf(text, sizeof text, "its edge comes to %.3g m %s the side at the %s %c, no farther: a "
+                     "layer there may hold the pieces together; to part them, let it go half a spacing "
+                     "(%.3g m) past the side\n", fabs(most[side]), most[side] < 0 ? "before" : "past",
+                     side%2 ? "upper" : "lower", "xyz"[side/2], 0.5*spacing);
+            TOBI_TRY(tobi_world_add_notes(w, "body", b->name, text, err));
+        }
+    }
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_pieces(tobi_world *w, const tobi_pieces **pieces, tobi_error *err)
 {
     TOBI_NEED_WORLD(w);

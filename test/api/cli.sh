@@ -434,6 +434,8 @@ vtk "one list of all" solids/all.pvd \
     "parts=$($python -c 'print(list(range(4))*11)')" \
     "names=$($python -c 'import json; print(json.dumps(["fluid", "bodies", "grid", "plate"]*11))')"
 expect 1 "there is no field \"surface\"" check solids.json --set output.fields=surface
+expect 0 "" bench wcsph --spacing 0.04 --steps 3 --settle 1
+check "bench wcsph: a hash" grep -q "^state  *[0-9a-f]*$" out.txt
 expect 0 "" bench ball --spacing 0.04 --steps 3 --settle 1
 check "bench ball: ns" grep -q "ns per particle and step and core" out.txt
 check "bench ball: a hash" grep -q "^state  *[0-9a-f]*$" out.txt

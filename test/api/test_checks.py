@@ -16,6 +16,8 @@ CASES = [
     ("check_layers.py", "include/tobiuo/a.h", '#include "base/x.h"\n', "public header includes"),
     ("check_layers.py", "src/odd/a.c", "\n", "unknown room"),
     ("check_layers.py", "src/world/a.c", '#include "sph/x.h"\n#include "tobiuo/base.h"\n', None),
+    ("check_methods.py", "src/world/methods.c", "    &tobi_new,\n", "method new lacks src/ROOM/new.c"),
+    ("check_methods.py", "src/world/methods.c", "\n", "no methods found"),
     ("check_house.py", "src/base/a.c", "int a;\n"*601, "601 lines"),
     ("check_house.py", "src/base/a.c", "int f(void)\n{\n" + "    f();\n"*80 + "}\n", "a.c:1: function f"),
     ("check_house.py", "tools/a.py", "def f():\n" + "    f()\n"*80, "function f"),

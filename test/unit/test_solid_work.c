@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "tobiuo/tobiuo.h"
+#include "solid_rig.h"
 
 /* What differs between the worlds; the rest is a block of 20 x 20 particles in a box of 1 m, 2-D. */
 typedef struct setup {
@@ -184,6 +184,76 @@ static void damping_is_exact(void **state)
     }
 }
 
+/* The edge is at a surface where one row of nodes has 1e-12 of the mass of others. */
+static void light_nodes_do_no_work(void **state)
+{
+    enum { HIGH = 12 };
+    const double d = 0.01, cell = 2*d, resistance = 1000, top = 20.5*cell*(1 + 1e-7);
+    const double start = 21.1*cell, speed = 2;
+    solid_setup s = solid_default(2, d, 1);
+    tobi_body_def b = tobi_default_body_def();
+    (void)state;
+    s.world.gravity[2] = 0;
+    s.solid.youngs_modulus = 1e5;
+    s.fill.box_min[0] = 0.4;
+    s.fill.box_max[0] = 0.6;
+    s.fill.box_max[1] = top + 0.5*d;
+    s.fill.box_min[1] = s.fill.box_max[1] - HIGH*d;
+    tobi_world *world = solid_world(&s);
+    b.name = "blade";
+    b.motion = go_down;
+    b.motion_rigid = 1;
+    b.blade = 1;
+    b.edge_resistance = resistance;
+    b.edge_start[0] = 0.505;
+    b.edge_start[1] = start;
+    add_box(world, b, 0.504, start, 0.506, 0.9);
+    double before = 0;
+    while (tobi_world_time(world)*speed < cell) {
+        solid_step(world, 1);
+        const double work = tobi_world_info(world)->fracture_work;
+        assert_true(work >= before);
+        assert_true(work <= 1.05*resistance*speed*tobi_world_time(world));
+        before = work;
+    }
+    assert_true(before > 0.5*resistance*(top - start + cell));
+    tobi_world_destroy(world);
+}
+
+/* Whether a blade is told of whose edge ends `past` (m) past the lower y side, on which a block lies. */
+static int tells_of_stop(tobi_wall wall, double past)
+{
+    const double high = 0.21;
+    solid_setup s = solid_default(2, 0.01, 1);
+    tobi_body_def b = tobi_default_body_def();
+    int told = 0;
+    s.world.wall_min[1] = wall;
+    s.world.end_time = (high + past)/2;
+    s.fill.box_max[1] = 0.2;
+    tobi_world *world = solid_world(&s);
+    b.name = "blade";
+    b.motion = go_down;
+    b.motion_rigid = 1;
+    b.blade = 1;
+    b.edge_start[0] = 0.505;
+    b.edge_start[1] = high;
+    add_box(world, b, 0.504, high, 0.506, 0.9);
+    OK(tobi_world_start(world, &err));
+    for (int k = 0; tobi_world_note(world, k); k++)
+        told |= strstr(tobi_world_note(world, k), "'blade': its edge comes to ") != NULL;
+    tobi_world_destroy(world);
+    return told;
+}
+
+static void blades_that_stop_early_are_told(void **state)
+{
+    (void)state;
+    assert_true(tells_of_stop(TOBI_WALL_NO_SLIP, 0) && tells_of_stop(TOBI_WALL_SLIP, 0.002));
+    assert_true(tells_of_stop(TOBI_WALL_NO_SLIP, -0.009) && tells_of_stop(TOBI_WALL_SEPARATE, -0.005));
+    assert_false(tells_of_stop(TOBI_WALL_NO_SLIP, 0.005) || tells_of_stop(TOBI_WALL_SEPARATE, 0));
+    assert_false(tells_of_stop(TOBI_WALL_NO_SLIP, -0.1) || tells_of_stop(TOBI_WALL_OPEN, 0));
+}
+
 static void threads_and_restarts_agree(void **state)
 {
     (void)state;
@@ -219,6 +289,8 @@ int main(void)
         cmocka_unit_test(leavers_take_theirs),
         cmocka_unit_test(parts_add_up_with_bodies),
         cmocka_unit_test(damping_is_exact),
+        cmocka_unit_test(light_nodes_do_no_work),
+        cmocka_unit_test(blades_that_stop_early_are_told),
         cmocka_unit_test(threads_and_restarts_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Short scenes whose results are known to the last bit: scenes *.json, results in hashes.csv.
+
+usage: run.py --tobiuo PROGRAM [SCENE...]
+       run.py --tobiuo PROGRAM --write        writes hashes.csv anew
+
+Each scene runs with the kernels of x86-64-v2, v3 and v4 (on older processors the best there is) times 1, 2
+and 4 threads, once in two parts (run, then resume), and once as on a processor without fused multiply-add,
+where the C library computes sines and powers in another way. All must agree with the table in two numbers:
+`state`, the state_hash of summary.json, and `files`, the names and bytes of all files but summary.json
+(times), resolved.json (paths) and checkpoints.
+A commit that changes the table says why. Prints one line per difference; exits 1 if there was one.
+"""
+import argparse, concurrent.futures, csv, hashlib, json, os, pathlib, shutil, subprocess, sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+TABLE = HERE / "hashes.csv"
+LEVELS, THREADS = (2, 3, 4), (1, 2, 4)
+OLD_PROCESSOR = "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F,-AVX2_Usable,-FMA_Usable"
+APART = {"summary.json", "resolved.json", "checkpoints"}
+
+
+def variants():
+    for level in LEVELS:
+        for threads in THREADS:
+            yield f"v{level}, threads {threads}", {"TOBIUO_ISA": str(level)}, threads, False
+    yield "resumed", {}, 2, True
+    yield "processor without FMA", {"TOBIUO_ISA": "2", "GLIBC_TUNABLES": OLD_PROCESSOR}, 2, False
+
+
+def call(program, env, *words):
+    done = subprocess.run([program, *words], env={**os.environ, "OMP_WAIT_POLICY": "passive", **env},
+                          capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(words)}: exit code {done.returncode}\n{done.stderr}")
+
+
+def hash_files(folder):
+    total = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder)
+        if path.is_file() and name.parts[0] not in APART:
+            total.update(str(name).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+    return total.hexdigest()[:16]
+
+
+def run(program, scene, variant):
+    name, env, threads, parts = variant
+    out = pathlib.Path(scene.stem + "-" + name.replace(" ", "_").replace(",", ""))
+    shutil.rmtree(out, ignore_errors=True)
+    always = [str(scene), "--quiet", "--threads", str(threads), "--out", str(out), "--set", "output.compression=none"]
+    call(program, env, "run", *always)
+    if parts:
+        with (out / "history.csv").open(newline="") as file:
+            times = [row["time"] for row in csv.DictReader(file)]
+        call(program, env, "run", *always, "--force", "--until", times[1])
+        call(program, env, "resume", str(out), "--quiet", "--until", times[-1])
+    result = {"state": json.loads((out / "summary.json").read_text())["state_hash"], "files": hash_files(out)}
+    shutil.rmtree(out)
+    return result
+
+
+def read_table():
+    with TABLE.open(newline="") as file:
+        return {row["scene"]: {"state": row["state"], "files": row["files"]} for row in csv.DictReader(file)}
+
+
+def write_table(found):
+    with TABLE.open("w", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["scene", "state", "files"])
+        rows.writerows([name, result["state"], result["files"]] for name, result in sorted(found.items()))
+
+
+def compare(scene, known, results):
+    """Lines that say what differs: from the table, or from the first variant where all differ from the table."""
+    first = results[0][1]
+    for key in ("state", "files"):
+        if known is None:
+            yield f"{scene.stem}: is not in {TABLE.name}"
+            return
+        if all(result[key] == first[key] != known[key] for _, result in results):
+            yield f"{scene.stem}: {key} is {first[key]}, {TABLE.name} has {known[key]}"
+            continue
+        for name, result in results:
+            if result[key] != known[key]:
+                yield f"{scene.stem} ({name}): {key} is {result[key]}, not {known[key]}"
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--tobiuo", required=True)
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("scenes", nargs="*")
+    options = parser.parse_args()
+    program = str(pathlib.Path(options.tobiuo).resolve())
+    scenes = [s for s in sorted(HERE.glob("*.json")) if not options.scenes or s.stem in options.scenes]
+    if options.write and options.scenes:
+        parser.error("--write takes all scenes")
+    table, found, faults = {} if options.write else read_table(), {}, []
+    if not options.scenes:
+        faults += [f"{name}: there is no such scene" for name in table if name not in {s.stem for s in scenes}]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for scene in scenes:
+            names = list(variants())
+            results = list(zip([v[0] for v in names], pool.map(lambda v, s=scene: run(program, s, v), names)))
+            found[scene.stem] = results[0][1]
+            faults += compare(scene, found[scene.stem] if options.write else table.get(scene.stem), results)
+    if faults:
+        print("\n".join(faults))
+        print(f"Where a change was meant: {os.path.relpath(HERE)}/run.py --tobiuo PROGRAM --write, and the commit says why")
+        return 1
+    if options.write:
+        write_table(found)
+    print(f"{len(scenes)} scenes, {len(list(variants()))} runs of each, all alike")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
