@@ -21,19 +21,17 @@ UNTESTED = {
     "the importer took more than": "needs a mesh that keeps the importer busy for many seconds",
     "the importer crashed": "needs a mesh that crashes the importer; assimp's mistakes come and go",
     "the importer ended early": "needs an importer that dies without a signal",
-    "cannot be read to its end": "needs an STL file that shrinks while it is read",
+    "cannot be read to its end": "needs a disk that fails or a file that shrinks while it is read",
     "the importer cannot start": "needs fork to fail, which root is never refused",
     "refining to edges of": "needs 100 million triangles",
     "no particle fits into the body": "the search moves the lattice until a point is inside; last resort",
     "dimensions, expected 1 or 2": "needs a foreign HDF5 file with our checksum",
     "STL holds at most": "needs 4 thousand million triangles",
-    "cannot read the scene": "needs a disk that fails while reading",
     "a scene must be an object": "said inside source.c, past the notes; test_scene_mistakes expects it",
     "output.fields: more than": "there are fewer fields than room for them",
     "cannot list": "needs opendir to fail, which root is never refused",
     "swims, but the program of its motion": "needs an installation without its scenes",
     "the program of the knife, scenes/": "needs an installation without its scenes",
-    "a speed reached": "needs a speed that no particle has any more after the step",
 }
 
 

@@ -59,10 +59,23 @@ typedef struct drive_options {
     double end;           /* s                                   */
     int quiet;            /* 1: no progress line                 */
 } drive_options;
-/* Catches Ctrl-C and SIGTERM from here on. */
-void drive_catch_signals(void);
-/* Returns the exit code; the run is finished, not freed. */
+/* Catches Ctrl-C and SIGTERM from here on. Returns the exit code; the run is finished, not freed. */
 int drive(tobi_world *world, tobi_run *run, const drive_options *options);
+
+/* watch.c: what is said at the end of a run. */
+typedef struct body_watch { double last[3], before[3], noise, force; int64_t steps; } body_watch;
+typedef struct watch {
+    int64_t steps, unconverged;
+    double surface_start;
+    tobi_step_info last;
+    body_watch *body;
+    int body_count;
+} watch;
+void watch_begin(watch *w, const tobi_world *world);
+void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info);
+/* Says on stderr what did not go well. */
+void watch_say(const watch *w, const tobi_world *world);
+void watch_end(watch *w);
 
 /* progress.c */
 typedef struct progress {

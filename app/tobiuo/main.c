@@ -1,5 +1,7 @@
 /* tobiuo: picks the command. */
 #include "app.h"
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,8 +44,26 @@ static void wait_without_spinning(char **argv)
     execv(path, argv);   /* returns only if it failed: then threads spin */
 }
 
+/* A file opened in the place of a closed stream would receive what is meant for that. */
+static void open_closed_streams(void)
+{
+    for (int k = STDIN_FILENO; k <= STDERR_FILENO; k++)
+        if (fcntl(k, F_GETFD) < 0 && open("/dev/null", O_RDWR) != k) _exit(EXIT_ERROR);
+}
+
+/* At every exit, those inside argp too: what could not be printed is no success. */
+static void check_output(void)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return;
+    complain("cannot write to standard output%s%s", errno ? ": " : "", errno ? strerror(errno) : "");
+    _exit(EXIT_ERROR);
+}
+
 int main(int argc, char **argv)
 {
+    open_closed_streams();
+    if (atexit(check_output) != 0) return EXIT_ERROR;
     wait_without_spinning(argv);
     argp_err_exit_status = EXIT_USAGE;
     if (argc < 2) {

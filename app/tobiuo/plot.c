@@ -138,6 +138,21 @@ static void clean_name(char *name)
         if ((unsigned char)*c < ' ' || strchr("/\\:*?\"<>|,'", *c)) *c = '_';
 }
 
+/* The path of a file in the folder, whatever stood there removed: nothing is written through a link.
+   NULL after a complaint; the caller frees. */
+static char *clear_place(const plotter *plot, const char *file)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", plot->folder, file) < 0) {
+        complain("out of memory");
+        return NULL;
+    }
+    if (unlink(path) == 0 || errno == ENOENT) return path;
+    complain("cannot replace %s: %s", path, strerror(errno));
+    free(path);
+    return NULL;
+}
+
 /* Writes the picture's commands and remembers its file; frees the picture. */
 static int finish_picture(plotter *plot, picture *p, const char *name)
 {
@@ -149,6 +164,9 @@ static int finish_picture(plotter *plot, picture *p, const char *name)
         code = complain("out of memory");
     } else {
         clean_name(file);
+        char *path = clear_place(plot, file);
+        code = path ? 0 : EXIT_ERROR;
+        free(path);
         picture_write(plot->script, p, file);
         plot->files[plot->file_count++] = file;
     }
@@ -338,9 +356,9 @@ static int run_gnuplot(const plotter *plot)
 
 static int write_script(plotter *plot)
 {
-    char *path = NULL;
-    if (asprintf(&path, "%s/plots.gnuplot", plot->folder) < 0) return complain("out of memory");
-    plot->script = fopen(path, "w");
+    char *path = clear_place(plot, "plots.gnuplot");
+    if (!path) return EXIT_ERROR;
+    plot->script = fopen(path, "wx");
     int code = plot->script ? 0 : complain("cannot write %s: %s", path, strerror(errno));
     if (code == 0) {
         rows all = { &plot->history, NULL };
@@ -413,8 +431,11 @@ static int draw_all(plotter *plot)
         code = read_table(&plot->probes, dir, "probes.csv", "time");
     if (code != 0) return code;
     if (asprintf(&plot->folder, "%s/plots", dir) < 0) return complain("out of memory");
+    struct stat st;
     if (mkdir(plot->folder, 0777) != 0 && errno != EEXIST)
         return complain("cannot make %s: %s", plot->folder, strerror(errno));
+    if (lstat(plot->folder, &st) != 0 || !S_ISDIR(st.st_mode))
+        return complain("%s is no folder (a link is not followed)", plot->folder);
     code = read_scene(plot);
     if (code == 0) code = write_script(plot);
     if (code == 0) code = run_gnuplot(plot);

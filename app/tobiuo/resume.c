@@ -37,7 +37,6 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     tobi_world *world = NULL;
     tobi_run *run = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
-    drive_catch_signals();
     int code;
     if (tobi_run_resume(world, tobi_scene_output_def(scene), o->dir, &run, &err) != TOBI_OK) {
         code = complain("%s", err.text);
@@ -45,6 +44,7 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
         double end = o->until > 0.0 ? o->until : tobi_scene_world_def(scene)->end_time;
         drive_options d = { o->dir, end, o->quiet };
         if (!o->quiet) fprintf(stderr, "tobiuo: %s\n", tobi_run_note(run));
+        if (*tobi_run_losses(run)) complain("results in %s: %s", o->dir, tobi_run_losses(run));
         code = drive(world, run, &d);
     }
     tobi_run_free(run);

@@ -67,7 +67,6 @@ static int run_scene(tobi_scene *scene, const run_options *o)
         o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
-    drive_catch_signals();
     int code = length < 0 ? complain("out of memory") : record(scene, world, o, dir);
     free(dir);
     tobi_world_destroy(world);

@@ -2,20 +2,24 @@
 #include "table.h"
 #include "app.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { SIZE_LIMIT = 1 << 29, COLUMN_LIMIT = 1000 };      /* bytes of a file; columns of a table */
 
 static char *read_whole(const char *path)
 {
     struct stat st;
-    FILE *file = fopen(path, "rb");
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);      /* a pipe must not keep us waiting */
+    FILE *file = fd < 0 ? NULL : fdopen(fd, "rb");
     if (!file) {
         complain("cannot read %s: %s", path, strerror(errno));
+        if (fd >= 0) close(fd);
         return NULL;
     }
     char *text = NULL;

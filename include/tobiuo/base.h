@@ -26,7 +26,9 @@ extern "C" {
     X(TOBI_DIVERGED,    "the simulation diverged")                                 \
     X(TOBI_SCRIPT,      "error in a user script")                                  \
     X(TOBI_UNSUPPORTED, "not supported by this build or method")                   \
-    X(TOBI_DAMAGED,     "damaged file")
+    X(TOBI_DAMAGED,     "damaged file")                                            \
+    X(TOBI_STALLED,     "the simulation gets nowhere")                             \
+    X(TOBI_STOPPED,     "stopped on request")
 
 typedef enum tobi_status {
 #define X(code, text) code,

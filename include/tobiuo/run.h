@@ -17,7 +17,13 @@
    Output k happens at the time k interval exactly, the first at 0. Every file but the three tables
    appears whole or not at all; the tables grow by whole rows, and a resumed run cuts them back to
    its checkpoint. So a run that is killed at any moment can be resumed, and the files of run +
-   resume equal those of one run, byte for byte (except the wall clock times of summary.json). */
+   resume equal those of one run, byte for byte, checkpoints too (except for the wall clock times in
+   summary.json and beside the checkpoints).
+   After a power cut the last checkpoint is whole, and so is all that was written before it; an output
+   after it may be lost or empty until the run is resumed.
+
+   DIR may be a link to a directory, but not the root of the file system. Inside DIR no link is followed
+   and nothing but plain files is replaced: TOBI_INVALID. Somebody else must not change DIR meanwhile. */
 #ifndef TOBIUO_RUN_H
 #define TOBIUO_RUN_H
 #include "tobiuo/tobiuo.h"
@@ -48,25 +54,38 @@ TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *o
 /* What tobi_run_resume found worth telling ("resumed at ..."), "" if nothing. Owned by the run. */
 TOBI_API const char *tobi_run_note(const tobi_run *run);
 
+/* What somebody has deleted of the results, "" if nothing is known: after tobi_run_resume what was
+   missing then, after tobi_run_finish what is missing at the end. A run goes on without it: folders,
+   tables and resolved.json are made again, lists leave out what is not there. Owned by the run. */
+TOBI_API const char *tobi_run_losses(const tobi_run *run);
+
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
    NULL; its energies, momentum and weight are those of the last output. When `end` is a multiple of
-   the interval to within rounding, that multiple is the end. */
+   the interval to within rounding, that multiple is the end.
+   A thread of the run writes the output while the next steps are taken, and a step waits only while
+   two outputs are not written; the step that reaches the end waits for all. TOBI_IO: an output could
+   not be written, maybe an earlier one; the next call tries again. */
 TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
                                    tobi_error *err);
-/* 1 when the world has reached `end`. */
+/* 1 when the world has reached `end` and no output is due. */
 TOBI_API int tobi_run_done(const tobi_run *run, double end);
 
-/* Writes an output now. tobi_run_step does it when it is due; call it only when stepping the world
-   without tobi_run_step, at the times k interval. */
+/* Waits until every output so far is on the disk or one has failed, and tells that. */
+TOBI_API tobi_status tobi_run_wait(tobi_run *run, tobi_error *err);
+
+/* Writes an output of the present state, beside the steps. tobi_run_step does it when it is due; call
+   it only when stepping the world without tobi_run_step, at the times k interval. */
 TOBI_API tobi_status tobi_run_output(tobi_run *run, tobi_error *err);
-/* Writes a checkpoint now; the two newest are kept. Does nothing if the last one is of this step.
- */
+/* Waits for the outputs and writes a checkpoint; the two newest are kept. None is written if the last
+   one is of this step. */
 TOBI_API tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err);
 
-/* Writes summary.json. outcome: "complete", "interrupted", "diverged" or another word. */
+/* Waits for the outputs and writes summary.json. outcome: "complete", "interrupted", "diverged",
+   "stalled" or another word; "failed" if an output could not be written, and then its failure is told. */
 TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err);
 
-/* Closes the files; NULL is fine. Writes nothing: a run that was not finished stays resumable. */
+/* Waits for the outputs and closes the files; NULL is fine. A run that was not finished stays
+   resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
 #ifdef __cplusplus

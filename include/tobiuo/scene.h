@@ -27,7 +27,10 @@ TOBI_API void        tobi_report_free(tobi_report *report);                 /* N
    anything that is not JSON is a text. On success *scene is owned by the caller and *report is
    NULL. On failure *scene is NULL; TOBI_INVALID comes with all mistakes in *report (owned by the
    caller; report may be NULL) and as many of them as fit in err; TOBI_NOT_FOUND, TOBI_IO and
-   TOBI_NO_MEMORY with a text in err. */
+   TOBI_NO_MEMORY with a text in err.
+   Each Lua script of the scene runs in a child process until the scene is freed. It is forked here, so a
+   scene is best loaded before the process holds much memory, and only the process that loaded it can
+   step its world; which of its threads do so does not matter. */
 TOBI_API tobi_status tobi_scene_load(const char *path, const char *const *overrides,
                                      tobi_scene **scene, tobi_report **report, tobi_error *err);
 /* NULL is fine. Frees the motions too, so a world built from the scene must be destroyed before. */

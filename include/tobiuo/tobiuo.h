@@ -2,9 +2,19 @@
 
    Ownership: a tobi_world is opaque and owned by the caller from create to destroy. Arrays returned
    by pointer stay owned by the world and are valid until the next call that changes it. A failing
-   call leaves the world as it was, except TOBI_DIVERGED: the world stays readable, steps no more.
-   All units are SI. No call prints, exits or keeps global state; different worlds may be used from
-   different threads. */
+   call leaves the world as it was, except TOBI_DIVERGED (the world stays readable, steps no more) and
+   TOBI_STALLED (the step was made; who wants to go on steps again). All units are SI. No call prints, exits
+   or keeps global state.
+
+   Mistakes of the calling program: a NULL where something must stand, a number out of range and an index of
+   nothing are answered with TOBI_INVALID or TOBI_NOT_FOUND by calls that return a status, with 0 or NULL by
+   the others. A world that was destroyed must not be used; dev builds stop at an assert.
+
+   Threads: different worlds may be used from different threads, one world from one thread at a time. After a
+   fork the child must not use worlds of its parent, whose threads it has not; exec is fine.
+   Callbacks (motions, flows, control programs, stop) are called from the thread that calls the library. They
+   must not use the world that asks them, and they must return: C++ exceptions and longjmp must not leave
+   them. Numbers that are not finite, and speeds above TOBI_SPEED_LIMIT, are refused with body and time. */
 #ifndef TOBIUO_H
 #define TOBIUO_H
 #include "tobiuo/types.h"
@@ -37,8 +47,10 @@ TOBI_API tobi_status tobi_world_create(const tobi_world_def *def, const void *me
                                        tobi_world **world, tobi_error *err);
 TOBI_API void tobi_world_destroy(tobi_world *world);
 
-/* Adds a fluid with the regions it fills. Particles sit on the lattice (i + 1/2) d from the region's
-   lower corner (from the domain's lower corner for meshes); those inside a body are cut out at start. */
+/* Adds a fluid with the regions it fills. Boxes take whole layers, spread evenly; the spacing of the world
+   gives way by up to 5 % until the particles of all boxes hold their volume, which the notes tell. Other
+   regions take the points (i + 1/2) d from their lower corner that lie inside. Those in a body are cut out
+   at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
 /* Adds a solid of the material point method with the regions it fills. TOBI_UNSUPPORTED for other
@@ -68,11 +80,19 @@ TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_parti
    TOBI_NO_MEMORY before allocating more than the machine has. */
 TOBI_API tobi_status tobi_world_start(tobi_world *world, tobi_error *err);
 
-/* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. */
+/* One time step, not longer than max_dt (s; 0 = no cap). info may be NULL. TOBI_STALLED when time stands
+   still, or when the end, end_time of the definition, lies more than 1e9 steps of the present length away. */
 TOBI_API tobi_status tobi_world_step(tobi_world *world, double max_dt, tobi_step_info *info,
                                      tobi_error *err);
-/* Steps until time t (s), hit exactly. */
+/* Steps until time t (s), hit exactly; nothing if the world is there already. */
 TOBI_API tobi_status tobi_world_advance(tobi_world *world, double t, tobi_step_info *info, tobi_error *err);
+
+/* Asked by the thread that steps, between steps and between the iterations of a solve; an answer other than 0
+   ends the call with TOBI_STOPPED. It may read what a signal handler or another thread sets (sig_atomic_t,
+   an atomic); it may not call functions of this world. */
+typedef int (*tobi_stop_fn)(void *user);
+/* NULL takes it away. user is owned by the caller. */
+TOBI_API void tobi_world_set_stop(tobi_world *world, tobi_stop_fn stop, void *user);
 
 TOBI_API double  tobi_world_time(const tobi_world *world);
 TOBI_API const tobi_step_info *tobi_world_info(const tobi_world *world);
@@ -98,7 +118,8 @@ TOBI_API const char *tobi_world_field_name(int field, int *components, const cha
 /* Copies a field into buffer (count x components doubles, row-major, id order). */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,
                                      double *buffer, int64_t count, tobi_error *err);
-/* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. */
+/* Sets "velocity" or "pressure" of the fluid (count rows, id order), for initial conditions. TOBI_INVALID,
+   and nothing is set, for numbers that are not finite or speeds above TOBI_SPEED_LIMIT. */
 TOBI_API tobi_status tobi_world_write(tobi_world *world, const char *field, const double *buffer,
                                       int64_t count, tobi_error *err);
 /* The moving surface of a body: vertices (m) and triangles, owned by the world. */
@@ -130,7 +151,8 @@ TOBI_API int64_t tobi_world_bytes(const tobi_world *world);
 TOBI_API const char *tobi_world_stage(const tobi_world *world, int stage, double *seconds);
 
 /* Writes / reads the complete state, so that run = run + restart bit for bit. The world read into
-   must have been created and filled by the same definitions. The file appears whole or not at all. */
+   must have been created and filled by the same definitions. The file appears whole or not at all, and
+   outlasts a power cut; at path there may be a plain file or nothing: TOBI_INVALID. */
 TOBI_API tobi_status tobi_world_save(tobi_world *world, const char *path, tobi_error *err);
 TOBI_API tobi_status tobi_world_load(tobi_world *world, const char *path, tobi_error *err);
 

@@ -11,6 +11,10 @@
 extern "C" {
 #endif
 
+/* The largest speed of anything, m/s: of bodies and sides, and of particles at the start. A particle that
+   becomes faster has diverged. */
+#define TOBI_SPEED_LIMIT 1e6
+
 /* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
    the SPH methods slip along both. Sticky and no-slip are the same. Nothing is at an open side: particles of
    mlsmpm and bodies pass it; the SPH methods refuse it. */
@@ -294,6 +298,7 @@ typedef struct tobi_step_info {
     int     density_iterations, divergence_iterations;
     int     density_converged, divergence_converged;
     double  density_error_mean, density_error_max;   /* 1, |rho/rho0 - 1| compression over all fluid   */
+    double  surface_share;        /* 1, share of the fluid's particles that are at a free surface      */
     double  divergence_mean, divergence_max;         /* 1/s over all fluid                             */
     double  pressure_residual;    /* 1, relative pressure residual of the density solve               */
     double  wall_force[3];        /* N, force of the fluid on the domain's walls                      */

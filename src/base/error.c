@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include <stdio.h>
+#include <string.h>
 
 tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, ...)
 {
@@ -10,4 +11,16 @@ tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, .
     vsnprintf(err->text, sizeof err->text, format, args);
     va_end(args);
     return status;
+}
+
+tobi_short_text tobi_excerpt(const char *text)
+{
+    tobi_short_text out = { "" };
+    size_t n = 0;
+    for (; n < TOBI_EXCERPT && text[n]; n++)
+        out.text[n] = (unsigned char)text[n] < ' ' || text[n] == 127 ? '?' : text[n];
+    if (!text[n]) return out;
+    while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80) n--;      /* no half of a letter */
+    memcpy(out.text + n, "...", 4);
+    return out;
 }

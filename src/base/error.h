@@ -7,6 +7,19 @@
 tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+enum { TOBI_EXCERPT = 16 };      /* bytes */
+
+/* A piece of a file that may not be what it was taken for, short enough to stand in a message: its first
+   bytes, those that are no plain characters as '?', and dots where it goes on. */
+typedef struct tobi_short_text { char text[TOBI_EXCERPT + 4]; } tobi_short_text;
+tobi_short_text tobi_excerpt(const char *text);
+
+/* What a public call cannot do without: a NULL there is a mistake of the calling program, told as one. */
+#define TOBI_NEED(pointer, name)                                                                   \
+    do {                                                                                           \
+        if (!(pointer)) return tobi_fail(err, TOBI_INVALID, "%s: %s is NULL", __func__, name);     \
+    } while (0)
+
 #define TOBI_TRY(call)                                  \
     do {                                                \
         tobi_status try_status_ = (call);               \

@@ -29,12 +29,9 @@ static tobi_status check_value(const tobi_param_table *table, const tobi_param *
     if (!isfinite(v))
         return tobi_fail(err, TOBI_INVALID, "%s.%s is not a finite number", table->name, p->key);
     if (v == 0 && p->text) return TOBI_OK;      /* the word's value */
-    if (p->positive && !(v > 0))
-        return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, must be greater than 0 %s", table->name,
-                         p->key, v, p->unit);
-    if ((!isnan(p->min) && v < p->min) || (!isnan(p->max) && v > p->max))
+    if (v < p->min || v > p->max)
         return tobi_fail(err, TOBI_INVALID, "%s.%s is %g, allowed is %g to %g %s", table->name, p->key, v,
-                         isnan(p->min) ? -INFINITY : p->min, isnan(p->max) ? INFINITY : p->max, p->unit);
+                         p->min, p->max, p->unit);
     return TOBI_OK;
 }
 

@@ -19,8 +19,8 @@ typedef struct tobi_param {
     tobi_param_type type;
     size_t offset;               /* of the member in its definition struct                       */
     double def[3];               /* default (first element for scalars; index for choices)       */
-    double min, max;             /* allowed range per component, inclusive; NaN = no limit       */
-    bool positive;               /* must be strictly > 0 (when min is 0 but 0 is not allowed)    */
+    double min, max;             /* allowed range per component, inclusive; NaN of texts         */
+    bool positive;               /* 0 is not allowed, even where a word stands for it            */
     bool required;               /* a scene must give it                                          */
     const char *unit;            /* "m", "Pa s", "1"                                              */
     const char *choices;         /* "slip|no-slip|periodic", NULL unless TOBI_PARAM_CHOICE        */

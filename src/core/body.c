@@ -134,7 +134,13 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
         memcpy(out, rest, (size_t)n*sizeof *out);
         return TOBI_OK;
     }
-    return b->motion(b->motion_user, t, n, rest, out, err);
+    TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
+    for (int64_t i = 0; i < n; i++)
+        if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
+            return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
+                             "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
+                             out[i][2], t);
+    return TOBI_OK;
 }
 
 /* Vertices at t relative to the box. */
@@ -473,7 +479,11 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
             b->vertex_velocity[i][a] = (b->next[i][a] - b->vertex[i][a])/dt;
         fastest = fmax(fastest, vec3_dot(b->vertex_velocity[i], b->vertex_velocity[i]));
     }
-    *speed = fmax(*speed, sqrt(fastest));
+    fastest = sqrt(fastest);
+    if (fastest > TOBI_SPEED_LIMIT)
+        return tobi_fail(err, prescribed ? TOBI_INVALID : TOBI_DIVERGED, "body '%s' moves at %g m/s at "
+                         "t = %.9g s; allowed are up to %g m/s", b->name, fastest, t, TOBI_SPEED_LIMIT);
+    *speed = fmax(*speed, fastest);
     return TOBI_OK;
 }
 

@@ -25,6 +25,9 @@ typedef struct tobi_edge_foot {
     double  barycentric[3];
 } tobi_edge_foot;
 
+/* What a point of a body's surface knows of the water: none; particles see it; particles do not fit in. */
+enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP };
+
 typedef struct tobi_body {
     char name[64];
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
@@ -62,7 +65,7 @@ typedef struct tobi_body {
     int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */
     int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
-    uint8_t *wet;                    /* [points] 1: a particle sees it                         */
+    uint8_t *wet;                    /* [points] TOBI_WET_*                                    */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
     double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */

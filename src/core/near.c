@@ -2,6 +2,7 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
+#include "core/gap.h"
 #include "core/simulation.h"
 #include "core/wall_law.h"
 #include <math.h>
@@ -147,7 +148,7 @@ static int add_point(void *user, int32_t k)
     double r[3], s = faces(l, k, r);
     if (!(s > 0) || hidden(l, k)) return 0;
     #pragma omp atomic write
-    b->wet[k] = 1;
+    b->wet[k] = TOBI_WET;
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
@@ -260,6 +261,7 @@ tobi_status tobi_near_find(tobi_simulation *s, tobi_error *err)
         fill_near(s, k, n->count, blocks);
         n->count += found;
     }
+    tobi_gap_wet(s);
     return TOBI_OK;
 }
 

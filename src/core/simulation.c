@@ -44,6 +44,19 @@ void tobi_simulation_measure(tobi_simulation *s)
     s->info.weight = t[5]*sqrt(g2);
 }
 
+int tobi_simulation_stops(tobi_simulation *s)
+{
+    if (!s->stopped && s->stop) s->stopped = s->stop(s->stop_user) != 0;
+    return s->stopped;
+}
+
+tobi_status tobi_simulation_heed(tobi_simulation *s, tobi_error *err)
+{
+    if (!tobi_simulation_stops(s)) return TOBI_OK;
+    return tobi_fail(err, TOBI_STOPPED, "stopped on request at t = %.9g s, after step %lld", s->time,
+                     (long long)s->step);
+}
+
 double tobi_simulation_fit_dt(double dt, double max_dt)
 {
     int fits = dt >= max_dt*(1 - 1e-9);      /* a fixed step fits but for rounding */
@@ -64,12 +77,19 @@ double tobi_simulation_hydrostatic(const tobi_simulation *s, const double x[3])
     return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_still_pressure(&s->still, x);
 }
 
+/* Where particles do not fit in, nothing but still water presses: all of it. */
+static double still_pressure(const tobi_still *w, const double *x, int wet)
+{
+    if (wet != TOBI_WET_GAP) return tobi_still_pressure(w, x);
+    return w->push*fmax(tobi_still_drop(w, x) - w->level, 0);
+}
+
 /* Force and torque of still water on a body, where it is wet. */
 static void sum_still(const tobi_simulation *s, const tobi_body *b, double f[6])
 {
     for (int64_t k = 0; k < b->point_count; k++) {
         if (!b->wet[k]) continue;
-        double p = -b->area[k]*tobi_still_pressure(&s->still, b->point[k]), arm[3];
+        double p = -b->area[k]*still_pressure(&s->still, b->point[k], b->wet[k]), arm[3];
         const double *n = b->normal[k];
         for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {

@@ -61,6 +61,9 @@ typedef struct tobi_simulation {
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     tobi_stages stages;
+    tobi_stop_fn stop;              /* of the caller, NULL = none                             */
+    void *stop_user;
+    int stopped;                    /* it asked to stop, in this call                         */
 } tobi_simulation;
 
 enum { TOBI_LIQUIDS = -1 };            /* in place of the number of a solid                      */
@@ -130,6 +133,11 @@ void tobi_simulation_measure(tobi_simulation *s);
 /* The step to take where `dt` is stable and `max_dt` (0 = any) is left: not longer than both, and no crumb
    remains. */
 double tobi_simulation_fit_dt(double dt, double max_dt);
+
+/* Asks the caller whether to stop, until the answer is yes: then 1. */
+int tobi_simulation_stops(tobi_simulation *s);
+/* The same as a status: TOBI_STOPPED, in words. A step that answers it has changed nothing. */
+tobi_status tobi_simulation_heed(tobi_simulation *s, tobi_error *err);
 
 /* Adds the seconds since *since to a stage and moves *since to now. */
 void tobi_stage_end(tobi_stages *st, const char *name, double *since);

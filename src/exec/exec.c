@@ -19,6 +19,8 @@ static int find_isa(void)
     return 2;
 }
 
+void tobi_exec_set_default(int threads) { omp_set_num_threads(threads); }
+
 tobi_status tobi_exec_init(tobi_exec *x, int threads, tobi_error *err)
 {
     memset(x, 0, sizeof *x);

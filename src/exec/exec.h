@@ -31,6 +31,9 @@ static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)
     return items/worth >= x->threads ? x->threads : items < 2*worth ? 1 : (int)(items/worth);
 }
 
+/* Parallel loops of the calling thread that name no number of threads (those of io) take so many. */
+void tobi_exec_set_default(int threads);
+
 /* Runs kernel over [begin, end); totals (TOBI_TOTALS doubles) may be NULL. */
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
                  double *totals);

@@ -3,7 +3,7 @@
    Single precision in a file stands for the decimal that somebody wrote: see tobi_shortest_decimal. */
 #define _POSIX_C_SOURCE 200809L
 #include "geom/file_checks.h"
-#include <errno.h>
+#include "base/plain.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,7 +87,8 @@ int tobi_stl_read_binary(const char *path, int64_t size, tobi_mesh *out, tobi_st
                          tobi_error *err)
 {
     unsigned char head[STL_HEAD];
-    FILE *f = size > STL_HEAD ? fopen(path, "rb") : NULL;
+    FILE *f = NULL;
+    if (size > STL_HEAD) tobi_plain_open(path, "mesh", 0, &f, NULL, NULL);
     int mine = f && fread(head, 1, sizeof head, f) == sizeof head &&
                (int64_t)read_u32(head + 80)*STL_ROW + STL_HEAD == size;
     *status = TOBI_OK;
@@ -192,9 +193,9 @@ static tobi_status read_header(FILE *f, const char *path, int64_t size, char *li
 
 tobi_status tobi_ply_check(const char *path, int64_t size, tobi_error *err)
 {
-    FILE *f = fopen(path, "rb");
+    FILE *f;
     char line[1000];
-    if (!f) return tobi_fail(err, TOBI_IO, "mesh '%s': %s", path, strerror(errno));
+    TOBI_TRY(tobi_plain_open(path, "mesh", 0, &f, NULL, err));
     tobi_status status = read_header(f, path, size, line, err);
     fclose(f);
     return status;

@@ -11,7 +11,10 @@
    assimp holds coordinates as float. Each is replaced by the shortest decimal that reads back as the
    same float, so that 0.1 in a text file arrives as the double 0.1. */
 #define _GNU_SOURCE
+#include "base/limit.h"
+#include "base/plain.h"
 #include "geom/file_checks.h"
+#include "geom/import_io.h"
 #include "geom/mesh.h"
 #include "geom/obj_scan.h"
 #include "geom/texture.h"
@@ -27,7 +30,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -39,6 +41,7 @@
 #define BYTES_BASE ((rlim_t)1 << 30)      /* beyond what the parent has mapped already */
 #define BYTES_PER_BYTE 200
 #define MAX_NODE_DEPTH 1000
+#define FILE_LIMIT ((int64_t)4 << 30)
 
 typedef struct allowance {
     double seconds;
@@ -126,25 +129,6 @@ static int write_all(int fd, const void *data, size_t size)
     return 1;
 }
 
-static void limit_child(const allowance *allowed)
-{
-    rlim_t seconds = (rlim_t)allowed->seconds + 1;
-    struct rlimit none = {0, 0}, cpu = {seconds, seconds};
-    setrlimit(RLIMIT_CORE, &none);
-    setrlimit(RLIMIT_CPU, &cpu);
-#ifndef __SANITIZE_ADDRESS__       /* its shadow memory maps terabytes */
-    FILE *f = fopen("/proc/self/statm", "r");
-    unsigned long pages = 0;
-    if (f) {
-        if (fscanf(f, "%lu", &pages) == 1) {
-            rlim_t bytes = (rlim_t)pages*(rlim_t)sysconf(_SC_PAGESIZE) + allowed->bytes;
-            setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
-        }
-        fclose(f);
-    }
-#endif
-}
-
 /* NULL with a text in the header if that did not work. */
 static const struct aiScene *import(const char *path, import_header *header)
 {
@@ -153,9 +137,12 @@ static const struct aiScene *import(const char *path, import_header *header)
     char *text = NULL;
     size_t size = 0;
     int changed = dot && !strcasecmp(dot, ".obj") ? tobi_obj_add_zeros(path, &text, &size) : 0;
+    FILE *file = changed > 0 ? fmemopen(text, size, "rb") : changed == 0 ? fopen(path, "rb") : NULL;
     const struct aiScene *scene = NULL;
-    if (changed > 0) scene = aiImportFileFromMemory(text, (unsigned)size, flags, "obj");
-    else if (changed == 0) scene = aiImportFile(path, flags);
+    tobi_import_io io;
+    tobi_import_io_init(&io, path, file);
+    if (file) scene = aiImportFileEx(path, flags, &io.io);
+    if (file) fclose(file);
     free(text);
     if (scene) return scene;
     snprintf(header->text, sizeof header->text, "%s",
@@ -168,12 +155,14 @@ static _Noreturn void run_child(const char *path, int fd, const allowance *allow
 {
     static const int reset[] = {SIGINT, SIGTERM, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     for (size_t i = 0; i < sizeof reset/sizeof *reset; i++) signal(reset[i], SIG_DFL);
-    limit_child(allowed);
-    int null = open("/dev/null", O_RDWR);      /* the importer must not print either */
-    if (null >= 0) {
-        dup2(null, STDOUT_FILENO);
-        dup2(null, STDERR_FILENO);
-    }
+    rlim_t seconds = (rlim_t)allowed->seconds + 1;
+    setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
+    tobi_limit_memory(allowed->bytes);
+    /* The importer must not print either. Where a host closed them, the pipe is one of the three. */
+    int out = fcntl(fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1), null = open("/dev/null", O_RDWR);
+    if (out < 0) _exit(1);
+    for (int k = STDIN_FILENO; null >= 0 && k <= STDERR_FILENO; k++) dup2(null, k);
+    fd = out;
     import_header header = {.magic = "tobimesh"};
     struct aiMatrix4x4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     collector c = {.scene = import(path, &header)};
@@ -327,24 +316,18 @@ static tobi_status import_apart(const char *path, const allowance *allowed, tobi
 static tobi_status check_file(const char *path, allowance *allowed, tobi_error *err)
 {
     static const char *const formats[] = {".obj", ".stl", ".ply"};
-    struct stat info;
     const char *dot = strrchr(path, '.');
+    FILE *file;
     int known = 0;
-    if (stat(path, &info))
-        return tobi_fail(err, errno == ENOENT || errno == ENOTDIR ? TOBI_NOT_FOUND : TOBI_IO,
-                         "mesh '%s': %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return tobi_fail(err, TOBI_IO, "mesh '%s' is not a regular file", path);
+    TOBI_TRY(tobi_plain_open(path, "mesh", FILE_LIMIT, &file, &allowed->size, err));
+    fclose(file);
     for (int i = 0; dot && i < 3; i++) known |= !strcasecmp(dot, formats[i]);
     if (!known)
         return tobi_fail(err, TOBI_INVALID, "mesh '%s': unknown format; allowed are .obj, .stl and .ply",
                          path);
-    if (access(path, R_OK))
-        return tobi_fail(err, TOBI_IO, "mesh '%s': %s", path, strerror(errno));
-    if (info.st_size == 0) return tobi_fail(err, TOBI_INVALID, "mesh '%s' is an empty file", path);
-    allowed->size = info.st_size;
-    allowed->seconds = SECONDS_BASE + SECONDS_PER_BYTE*(double)info.st_size;
-    allowed->bytes = BYTES_BASE + BYTES_PER_BYTE*(rlim_t)info.st_size;
+    if (allowed->size == 0) return tobi_fail(err, TOBI_INVALID, "mesh '%s' is an empty file", path);
+    allowed->seconds = SECONDS_BASE + SECONDS_PER_BYTE*(double)allowed->size;
+    allowed->bytes = BYTES_BASE + BYTES_PER_BYTE*(rlim_t)allowed->size;
     return TOBI_OK;
 }
 

@@ -1,6 +1,7 @@
 /* What the importer does not do: it says that an index is wrong but not where, and it knows no .5. */
 #define _POSIX_C_SOURCE 200809L
 #include "geom/obj_scan.h"
+#include "base/plain.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,12 +28,12 @@ static int is_face(const char *line) { return line[0] == 'f' && (line[1] == ' ' 
 
 int tobi_obj_scan(const char *path, tobi_obj_fault *fault)
 {
-    FILE *f = fopen(path, "r");
+    FILE *f;
     char *line = NULL;
     size_t room = 0;
     int found = 0;
     *fault = (tobi_obj_fault){0};
-    if (!f) return 0;
+    if (tobi_plain_open(path, "mesh", 0, &f, NULL, NULL) != TOBI_OK) return 0;
     while (getline(&line, &room, f) > 0) fault->vertices += is_vertex(line);
     rewind(f);
     for (int64_t so_far = 0; !found && getline(&line, &room, f) > 0;) {
@@ -55,26 +56,12 @@ static int lacks_zero(const char *text, size_t i, size_t size)
     return is_blank(text[i - 1]) || (sign && i > 1 && is_blank(text[i - 2]));
 }
 
-static char *read_whole(const char *path, size_t *size)
-{
-    FILE *f = fopen(path, "rb");
-    long length = f && fseek(f, 0, SEEK_END) == 0 ? ftell(f) : -1;
-    char *text = length >= 0 ? malloc((size_t)length + 1) : NULL;
-    *size = (size_t)length;
-    if (text && (fseek(f, 0, SEEK_SET) != 0 || fread(text, 1, *size, f) != *size)) {
-        free(text);
-        text = NULL;
-    }
-    if (f) fclose(f);
-    return text;
-}
-
 int tobi_obj_add_zeros(const char *path, char **text, size_t *size)
 {
     size_t length, lacking = 0, at = 0;
-    char *old = read_whole(path, &length);
+    char *old;
     *text = NULL;
-    if (!old) return -1;
+    if (tobi_plain_read(path, "mesh", 0, &old, &length, NULL) != TOBI_OK) return -1;
     for (size_t i = 0; i < length; i++) lacking += (size_t)lacks_zero(old, i, length);
     *size = length + lacking;
     if (lacking) *text = malloc(*size);

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE 1
 #include "io/csv.h"
+#include "base/plain.h"
 #include "io/file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -16,26 +17,30 @@ struct tobi_csv {
     int      fd;
     int      digits, columns;
     int      filled;         /* values in the row so far */
-    char    *row;            /* its text */
-    size_t   length, room;
+    int      lost;           /* rows are gone with a file that was deleted */
+    tobi_csv_rows header;
+    tobi_csv_rows row;       /* its text */
     int      no_memory;
     locale_t plain;          /* "C", for numbers */
 };
 
+static int append_text(tobi_csv_rows *rows, const char *text, size_t bytes)
+{
+    if (rows->length + bytes > rows->room) {
+        size_t room = 2*(rows->length + bytes) + 256;
+        char *more = realloc(rows->text, room);
+        if (!more) return 0;
+        rows->text = more;
+        rows->room = room;
+    }
+    memcpy(rows->text + rows->length, text, bytes);
+    rows->length += bytes;
+    return 1;
+}
+
 static void append(tobi_csv *csv, const char *text, size_t bytes)
 {
-    if (csv->length + bytes > csv->room) {
-        size_t room = 2*(csv->length + bytes) + 256;
-        char *row = realloc(csv->row, room);
-        if (!row) {
-            csv->no_memory = 1;
-            return;
-        }
-        csv->row = row;
-        csv->room = room;
-    }
-    memcpy(csv->row + csv->length, text, bytes);
-    csv->length += bytes;
+    if (!append_text(&csv->row, text, bytes)) csv->no_memory = 1;
 }
 
 static void append_value(tobi_csv *csv, const char *text, size_t bytes)
@@ -73,38 +78,60 @@ void tobi_csv_add_text(tobi_csv *csv, const char *value)
     append(csv, "\"", 1);
 }
 
-/* One write per row; after a failure the file is cut back to whole rows. */
-static tobi_status write_row(tobi_csv *csv, tobi_error *err)
+/* One write; after a failure the file is cut back to whole rows. */
+static tobi_status write_text(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
 {
     off_t end = lseek(csv->fd, 0, SEEK_END);
     size_t done = 0;
     int code = end < 0 ? errno : 0;
-    while (!code && done < csv->length) {
-        ssize_t n = write(csv->fd, csv->row + done, csv->length - done);
+    while (!code && done < rows->length) {
+        ssize_t n = write(csv->fd, rows->text + done, rows->length - done);
         if (n > 0) done += (size_t)n;
         else if (n == 0) code = ENOSPC;
         else if (errno != EINTR) code = errno;
     }
-    csv->length = 0;
     if (!code) return TOBI_OK;
     if (done > 0 && ftruncate(csv->fd, end) != 0) done = 0;   /* tobi_csv_open drops the torn line */
     return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(code));
 }
 
-tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err)
+int tobi_csv_is_gone(const tobi_csv *csv)
 {
-    int filled = csv->filled, no_memory = csv->no_memory;
+    struct stat ours, there;
+    return fstat(csv->fd, &ours) != 0 || lstat(csv->path, &there) != 0 || ours.st_dev != there.st_dev ||
+           ours.st_ino != there.st_ino;
+}
+
+int tobi_csv_has_lost(const tobi_csv *csv) { return csv->lost; }
+
+/* Ends the row in csv->row; after a failure it is empty. */
+static tobi_status end_row(tobi_csv *csv, tobi_error *err)
+{
+    int filled = csv->filled;
+    append(csv, "\n", 1);
+    int no_memory = csv->no_memory;
     csv->filled = csv->no_memory = 0;
-    if (no_memory || filled != csv->columns) csv->length = 0;
+    if (no_memory || filled != csv->columns) csv->row.length = 0;
     if (filled != csv->columns)
         return tobi_fail(err, TOBI_INVALID, "%s: a row of %d values in a table of %d columns", csv->path,
                          filled, csv->columns);
-    append(csv, "\n", 1);
-    if (no_memory || csv->no_memory) {
-        csv->length = 0;
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
-    }
-    return write_row(csv, err);
+    return no_memory ? tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path) : TOBI_OK;
+}
+
+tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err)
+{
+    TOBI_TRY(end_row(csv, err));
+    tobi_status status = tobi_csv_write_rows(csv, &csv->row, err);
+    csv->row.length = 0;
+    return status;
+}
+
+tobi_status tobi_csv_take_row(tobi_csv *csv, tobi_csv_rows *rows, tobi_error *err)
+{
+    TOBI_TRY(end_row(csv, err));
+    int fits = append_text(rows, csv->row.text, csv->row.length);
+    csv->row.length = 0;
+    return fits ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
 }
 
 static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
@@ -117,31 +144,6 @@ static void add_header(tobi_csv *csv, const tobi_csv_column *columns)
         else snprintf(text, sizeof text, "%s", columns[i].name);
         tobi_csv_add_text(csv, text);
     }
-}
-
-/* Reads a whole file; *text is the caller's. */
-static tobi_status read_all(int fd, const char *path, char **text, size_t *bytes, tobi_error *err)
-{
-    struct stat info;
-    *text = NULL;
-    *bytes = 0;
-    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
-    char *all = malloc((size_t)info.st_size + 1);
-    if (!all) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
-    while (*bytes < (size_t)info.st_size) {
-        ssize_t n = pread(fd, all + *bytes, (size_t)info.st_size - *bytes, (off_t)*bytes);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) {
-            int code = errno;
-            free(all);
-            return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
-        }
-        if (n == 0) break;
-        *bytes += (size_t)n;
-    }
-    all[*bytes] = '\0';
-    *text = all;
-    return TOBI_OK;
 }
 
 /* Length of the line at text with its newline; 0 if it has no end. Newlines in quotes belong to it. */
@@ -160,13 +162,12 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
 {
     char *text;
     size_t bytes, end = 0, n;
-    TOBI_TRY(read_all(csv->fd, csv->path, &text, &bytes, err));
+    TOBI_TRY(tobi_plain_read(csv->path, "table", 0, &text, &bytes, err));
     size_t header = line_length(text, bytes);
     while ((n = line_length(text + end, bytes - end)) > 0) end += n;
     tobi_status status = TOBI_OK;
-    if (header > 0 && (header != csv->length || memcmp(text, csv->row, header) != 0))
-        status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes: %.*s", csv->path,
-                           header < 400 ? (int)header - 1 : 400, text);
+    if (header > 0 && (header != csv->header.length || memcmp(text, csv->header.text, header) != 0))
+        status = tobi_fail(err, TOBI_INVALID, "%s has other columns than this run writes", csv->path);
     else if (end < bytes && ftruncate(csv->fd, (off_t)end) != 0)
         status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
     *empty = header == 0;
@@ -174,20 +175,33 @@ static tobi_status continue_table(tobi_csv *csv, int *empty, tobi_error *err)
     return status;
 }
 
+/* Opens the file; a new one, and one that is empty, gets the header. */
+static tobi_status open_table(tobi_csv *csv, tobi_csv_mode mode, tobi_error *err)
+{
+    int empty = 1, flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
+    TOBI_TRY(tobi_file_check_target(csv->path, err));
+    csv->fd = open(csv->path, flags | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
+    if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
+    if (mode == TOBI_CSV_APPEND) TOBI_TRY(continue_table(csv, &empty, err));
+    csv->lost |= empty && mode == TOBI_CSV_APPEND;
+    return empty ? write_text(csv, &csv->header, err) : TOBI_OK;
+}
+
 static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, tobi_csv_mode mode,
                                tobi_error *err)
 {
-    int empty = 1;
-    csv->fd = open(csv->path, O_RDWR | O_CREAT | O_CLOEXEC | (mode == TOBI_CSV_NEW ? O_TRUNC : 0), 0666);
-    if (csv->fd < 0) return tobi_fail(err, TOBI_IO, "cannot write %s: %s", csv->path, strerror(errno));
     add_header(csv, columns);
-    append(csv, "\n", 1);
-    if (csv->no_memory) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", csv->path);
-    csv->filled = 0;
-    if (mode == TOBI_CSV_APPEND) TOBI_TRY(continue_table(csv, &empty, err));
-    if (empty) return write_row(csv, err);
-    csv->length = 0;
-    return TOBI_OK;
+    TOBI_TRY(tobi_csv_take_row(csv, &csv->header, err));
+    return open_table(csv, mode, err);
+}
+
+tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
+{
+    if (tobi_csv_is_gone(csv)) {
+        if (csv->fd >= 0) close(csv->fd);
+        TOBI_TRY(open_table(csv, TOBI_CSV_APPEND, err));
+    }
+    return write_text(csv, rows, err);
 }
 
 tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, const tobi_csv_column *columns,
@@ -218,7 +232,8 @@ void tobi_csv_close(tobi_csv *csv)
     if (csv->fd >= 0) close(csv->fd);
     if (csv->plain) freelocale(csv->plain);
     free(csv->path);
-    free(csv->row);
+    free(csv->row.text);
+    free(csv->header.text);
     free(csv);
 }
 
@@ -232,17 +247,11 @@ static int keeps_row(const char *text, double time, locale_t plain)
 
 tobi_status tobi_csv_truncate(const char *path, double time, tobi_error *err)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
     char *text;
     size_t bytes, n;
-    tobi_status status = read_all(fd, path, &text, &bytes, err);
-    close(fd);
-    TOBI_TRY(status);
+    TOBI_TRY(tobi_plain_read(path, "table", 0, &text, &bytes, err));
     tobi_file file;
-    status = tobi_file_open(&file, path, err);
+    tobi_status status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
         for (size_t at = 0; (n = line_length(text + at, bytes - at)) > 0; at += n)
             if (at == 0 || keeps_row(text + at, time, file.plain)) tobi_file_write(&file, text + at, n);

@@ -9,6 +9,12 @@
 
 typedef struct tobi_csv tobi_csv;
 
+/* Whole rows as text, apart from their table: for a writer on another thread. */
+typedef struct tobi_csv_rows {
+    char *text;               /* owned; NULL = none yet */
+    size_t length, room;
+} tobi_csv_rows;
+
 typedef struct tobi_csv_column {
     const char *name;
     const char *unit;   /* "m/s": the header says "name [m/s]"; NULL, "" or "1" = no unit */
@@ -29,6 +35,15 @@ void tobi_csv_add_text(tobi_csv *csv, const char *value);
 /* Writes the row. TOBI_INVALID if it has not one value per column (the row is dropped); TOBI_IO if the disk
    refuses, and then the file ends with the row before. */
 tobi_status tobi_csv_end_row(tobi_csv *csv, tobi_error *err);
+/* The row goes behind `rows` instead of into the file; the failures of tobi_csv_end_row but TOBI_IO. */
+tobi_status tobi_csv_take_row(tobi_csv *csv, tobi_csv_rows *rows, tobi_error *err);
+/* Writes such rows, at once and all or none; TOBI_IO. Another thread may take rows meanwhile. A file that was
+   deleted begins anew. */
+tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err);
+/* 1 if somebody has deleted, moved or replaced the file. */
+int tobi_csv_is_gone(const tobi_csv *csv);
+/* 1 if it was not there, or empty, when it was to be continued. */
+int tobi_csv_has_lost(const tobi_csv *csv);
 /* NULL is fine. */
 void tobi_csv_close(tobi_csv *csv);
 

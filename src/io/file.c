@@ -1,21 +1,32 @@
 #define _GNU_SOURCE 1
 #include "io/file.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <locale.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-char *tobi_file_part_name(const char *path)
+static const char *name_kind(mode_t mode)
 {
-    size_t length = strlen(path);
-    char *part = malloc(length + 6);
-    if (part) {
-        memcpy(part, path, length);
-        memcpy(part + length, ".part", 6);
-    }
-    return part;
+    return S_ISDIR(mode) ? "folder" : S_ISLNK(mode) ? "symbolic link" : S_ISFIFO(mode) ? "FIFO"
+         : S_ISSOCK(mode) ? "socket" : "device";
+}
+
+tobi_status tobi_file_check_target(const char *path, tobi_error *err)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0 || S_ISREG(info.st_mode)) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "cannot write %s: it is a %s; only a plain file is replaced", path,
+                     name_kind(info.st_mode));
+}
+
+static char *name_part(const char *path)
+{
+    char *part = NULL;
+    return asprintf(&part, "%s.part", path) < 0 ? NULL : part;
 }
 
 static void release(tobi_file *file)
@@ -26,15 +37,30 @@ static void release(tobi_file *file)
     *file = (tobi_file){ 0 };
 }
 
+/* A file of our own: whatever stands in its place, a link too, is removed and not followed. */
+static FILE *open_part(const char *part)
+{
+    if (unlink(part) != 0 && errno != ENOENT) return NULL;
+    int fd = open(part, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    FILE *handle = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (fd >= 0 && !handle) {
+        close(fd);
+        unlink(part);
+    }
+    return handle;
+}
+
 tobi_status tobi_file_open(tobi_file *file, const char *path, tobi_error *err)
 {
-    *file = (tobi_file){ .path = strdup(path), .part = tobi_file_part_name(path),
+    *file = (tobi_file){ 0 };
+    TOBI_TRY(tobi_file_check_target(path, err));
+    *file = (tobi_file){ .path = strdup(path), .part = name_part(path),
                          .plain = newlocale(LC_ALL_MASK, "C", (locale_t)0) };
     if (!file->path || !file->part || !file->plain) {
         release(file);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
     }
-    file->handle = fopen(file->part, "wb");
+    file->handle = open_part(file->part);
     if (!file->handle) {
         int code = errno;
         release(file);
@@ -84,16 +110,35 @@ void tobi_file_patch(tobi_file *file, off_t at, const void *data, size_t bytes)
     if (!file->error && fseeko(file->handle, 0, SEEK_END) != 0) note_failure(file);
 }
 
+void tobi_file_sync(tobi_file *file)
+{
+    errno = 0;
+    if (!file->error && (fflush(file->handle) != 0 || fsync(fileno(file->handle)) != 0)) note_failure(file);
+    file->synced = 1;
+}
+
+/* The name is an entry of the folder. Some file systems cannot do that for folders: no failure. */
+static void sync_folder(tobi_file *file)
+{
+    const char *slash = strrchr(file->path, '/');
+    char *folder = strndup(slash ? file->path : ".", slash ? (size_t)(slash - file->path) + 1 : 1);
+    int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    errno = fd < 0 ? EIO : 0;
+    if (fd < 0 || (fsync(fd) != 0 && (errno == EIO || errno == ENOSPC))) note_failure(file);
+    if (fd >= 0) close(fd);
+    free(folder);
+}
+
 tobi_status tobi_file_commit(tobi_file *file, tobi_error *err)
 {
     errno = 0;
     if (fclose(file->handle) != 0) note_failure(file);
     if (!file->error && rename(file->part, file->path) != 0) note_failure(file);
+    if (file->error) remove(file->part);
+    else if (file->synced) sync_folder(file);
     tobi_status status = TOBI_OK;
-    if (file->error) {
+    if (file->error)
         status = tobi_fail(err, TOBI_IO, "cannot write %s: %s", file->path, strerror(file->error));
-        remove(file->part);
-    }
     release(file);
     return status;
 }

@@ -3,14 +3,13 @@
    other file. Drawback: while it is written, a checkpoint is in memory once more. */
 #define _GNU_SOURCE 1
 #include "io/store.h"
+#include "base/plain.h"
 #include "io/file.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <hdf5.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -118,6 +117,7 @@ static tobi_status create_image(tobi_store *store, tobi_error *err)
 {
     hid_t access = access_list(), create = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(create, SEAL_BYTES);
+    H5Pset_obj_track_times(create, 0);
     H5Pset_fapl_core(access, GROWTH_BYTES, 0);
     /* 1.8's format has checksums on metadata, but no mark that the file is open for writing, which
        would stand in an image taken before closing. */
@@ -199,6 +199,7 @@ static tobi_status write_image(tobi_store *store, tobi_error *err)
     seal s = make_seal(start, bytes);
     tobi_file_write(&store->out, &s, sizeof s);
     tobi_file_write(&store->out, start + sizeof s, bytes - sizeof s);
+    tobi_file_sync(&store->out);
     return tobi_file_commit(&store->out, err);
 }
 
@@ -211,14 +212,13 @@ tobi_status tobi_store_commit(tobi_store *store, tobi_error *err)
     return status;
 }
 
-static tobi_status check_seal(const char *path, int fd, tobi_error *err)
+static tobi_status check_seal(const char *path, int fd, int64_t bytes, tobi_error *err)
 {
-    struct stat info;
     seal s;
     uint32_t crc = 0;
-    if (fstat(fd, &info) != 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
     ssize_t n = pread(fd, &s, sizeof s, 0);
-    if (n < 0) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(errno));
+    if (n < 0)
+        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(errno));
     if (n >= (ssize_t)sizeof magic && memcmp(s.magic, magic, sizeof magic) != 0)
         return tobi_fail(err, TOBI_DAMAGED,
                          "%s is damaged or not a checkpoint: it does not start with '%.14s'", path, magic);
@@ -227,11 +227,12 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
     if (s.seal_crc != crc32(crc32(0, NULL, 0), (const Bytef *)&s, offsetof(seal, seal_crc)))
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its first %d bytes do not match their checksum",
                          path, SEAL_BYTES);
-    if (s.file_bytes != (uint64_t)info.st_size)
+    if (s.file_bytes != (uint64_t)bytes)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: it has %" PRIu64 " bytes of %" PRIu64, path,
-                         (uint64_t)info.st_size, s.file_bytes);
+                         (uint64_t)bytes, s.file_bytes);
     int code = sum_file(fd, s.file_bytes, &crc);
-    if (code) return tobi_fail(err, TOBI_IO, "cannot read %s: %s", path, strerror(code));
+    if (code)
+        return tobi_fail(err, TOBI_IO, "%s cannot be read to its end: %s", path, strerror(code));
     if (crc != s.crc)
         return tobi_fail(err, TOBI_DAMAGED, "%s is damaged: its content does not match its checksum", path);
     return TOBI_OK;
@@ -240,12 +241,11 @@ static tobi_status check_seal(const char *path, int fd, tobi_error *err)
 tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *err)
 {
     *store = NULL;
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
-    if (fd < 0)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "cannot read %s: %s", path,
-                         strerror(errno));
-    tobi_status status = check_seal(path, fd, err);
-    close(fd);
+    FILE *file;
+    int64_t bytes;
+    TOBI_TRY(tobi_plain_open(path, "checkpoint", 0, &file, &bytes, err));
+    tobi_status status = check_seal(path, fileno(file), bytes, err);
+    fclose(file);
     TOBI_TRY(status);
     tobi_store *s = allocate(path);
     if (!s) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to read %s", path);
@@ -260,6 +260,23 @@ tobi_status tobi_store_open(const char *path, tobi_store **store, tobi_error *er
     return status;
 }
 
+/* The groups on the way to an array. HDF5 would make them itself, but with the time of day in them. */
+static int make_groups(tobi_store *store, const char *name)
+{
+    int good = 1;
+    char way[512];
+    hid_t create = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_obj_track_times(create, 0);
+    for (const char *p = strchr(name, '/'); p && good; p = strchr(p + 1, '/')) {
+        snprintf(way, sizeof way, "%.*s", (int)(p - name), name);
+        if (H5Lexists(store->file, way, H5P_DEFAULT) > 0) continue;
+        hid_t group = H5Gcreate2(store->file, way, H5P_DEFAULT, create, H5P_DEFAULT);
+        good = group >= 0 && H5Gclose(group) >= 0;
+    }
+    H5Pclose(create);
+    return good;
+}
+
 /* Chunks of a quarter megabyte with a fletcher32 sum each; an empty array has no chunks. */
 static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
                             int components)
@@ -268,15 +285,14 @@ static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type t
     hsize_t size[2] = { (hsize_t)n, (hsize_t)components }, chunk[2] = { CHUNK_BYTES/row + 1, size[1] };
     if (chunk[0] > size[0]) chunk[0] = size[0];
     int rank = components == 1 ? 1 : 2;
+    if (!make_groups(store, name)) return -1;
     hid_t space = H5Screate_simple(rank, size, NULL), create = H5Pcreate(H5P_DATASET_CREATE);
-    hid_t link = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(link, 1);
+    H5Pset_obj_track_times(create, 0);
     if (n > 0) {
         H5Pset_chunk(create, rank, chunk);
         H5Pset_fletcher32(create);
     }
-    hid_t set = H5Dcreate2(store->file, name, file_type(type), space, link, create, H5P_DEFAULT);
-    H5Pclose(link);
+    hid_t set = H5Dcreate2(store->file, name, file_type(type), space, H5P_DEFAULT, create, H5P_DEFAULT);
     H5Pclose(create);
     H5Sclose(space);
     return set;

@@ -1,4 +1,4 @@
-/* ParaView files: particles (VTU), surfaces (VTP, STL) and the time series that ties them (PVD).
+/* ParaView files: particles (VTU) and surfaces (VTP, STL); lists of them are in io/pvd.h.
 
    VTU and VTP hold appended raw binary with a UInt64 header, optionally compressed in blocks by
    zlib or LZ4, or ASCII. Source: the VTK XML file format as its own readers define it. Every file
@@ -36,15 +36,6 @@ typedef struct tobi_vtk_surface {
 
 tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
                            tobi_error *err);
-
-typedef struct tobi_pvd_entry {
-    double      time;    /* s                                                            */
-    const char *file;    /* relative to the PVD file                                     */
-    const char *name;    /* of the part, "fluid"; NULL = none                            */
-    int         part;    /* files of the same time need different parts                  */
-} tobi_pvd_entry;
-
-tobi_status tobi_pvd_write(const char *path, const tobi_pvd_entry *entries, int64_t n, tobi_error *err);
 
 /* Binary STL: little-endian floats, normals by the right-hand rule. At most 2^32 - 1 triangles. */
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],

@@ -1,6 +1,7 @@
 /* Reading the rows, slopes at the rows, and the curve between two of them. Quaternions are w x y z. */
 #define _POSIX_C_SOURCE 200809L
 #include "rigid/keyframes.h"
+#include "base/plain.h"
 #include "core/rigid.h"
 #include <errno.h>
 #include <math.h>
@@ -13,7 +14,7 @@
 #define DEGREE (3.14159265358979323846/180)
 /* Bound of all numbers and rates: cubes of such numbers are finite, so the curve is. */
 #define LARGEST 1e30
-enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64 };
+enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64, FILE_LIMIT = 1 << 30 /* bytes */ };
 
 typedef enum column {
     TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, COLUMNS
@@ -129,12 +130,13 @@ static tobi_status check_unit(const reader *r, char *unit, column c, tobi_error 
 {
     const char *const *units = column_units(c);
     size_t n = strlen(unit);
-    if (n < 2 || unit[n - 1] != ']') return fail_here(r, err, "no ] after the unit [", unit);
+    if (n < 2 || unit[n - 1] != ']')
+        return fail_here(r, err, "no ] after the unit [", tobi_excerpt(unit).text);
     unit[n - 1] = 0;
     for (int k = 0; units[k]; k++)
         if (strcmp(unit, units[k]) == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: column %s is in [%.40s]; allowed is [%s] or no "
-                     "unit", r->path, (long long)r->line, column_names[c], unit, units[0]);
+    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: column %s is in [%s]; allowed is [%s] or no "
+                     "unit", r->path, (long long)r->line, column_names[c], tobi_excerpt(unit).text, units[0]);
 }
 
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
@@ -147,9 +149,10 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
             if (strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
-            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: there is no column \"%.40s\"; allowed "
+            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: there is no column \"%s\"; allowed "
                              "are time (s), x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, "
-                             "pitch, yaw (degrees)", r->path, (long long)r->line, field);
+                             "pitch, yaw (degrees)", r->path, (long long)r->line,
+                             tobi_excerpt(field).text);
         if (unit) TOBI_TRY(check_unit(r, unit, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
         r->meaning[r->fields++] = found;      /* no more than COLUMNS, since none comes twice */
@@ -166,8 +169,9 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
         if (n == r->fields) break;
         double x = strtod(field, &end);
         if (end == field || *end || !isfinite(x))
-            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: \"%.40s\" in column %s is no finite "
-                             "number", r->path, (long long)r->line, field, column_names[r->meaning[n]]);
+            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: \"%s\" in column %s is no finite "
+                             "number", r->path, (long long)r->line, tobi_excerpt(field).text,
+                             column_names[r->meaning[n]]);
         if (fabs(x) > LARGEST)
             return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: %.4g in column %s is too large; allowed "
                              "is up to %g", r->path, (long long)r->line, x, column_names[r->meaning[n]],
@@ -271,7 +275,8 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
     }
     free(line);
     if (status == TOBI_OK && ferror(file))
-        status = tobi_fail(err, TOBI_IO, "keyframes %s: %s", r->path, strerror(errno));
+        status = tobi_fail(err, TOBI_IO, "keyframes %s: cannot be read to its end: %s", r->path,
+                           strerror(errno));
     if (status == TOBI_OK && !f->count)
         status = tobi_fail(err, TOBI_INVALID, "keyframes %s: no rows; a header with the columns' names and a "
                            "row per time are needed", r->path);
@@ -367,10 +372,8 @@ static void fill_matrix(const double quaternion[4], double m[3][3])
 tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)
 {
     *out = NULL;
-    FILE *file = fopen(path, "r");
-    if (!file)
-        return tobi_fail(err, errno == ENOENT ? TOBI_NOT_FOUND : TOBI_IO, "keyframes %s: %s", path,
-                         strerror(errno));
+    FILE *file;
+    TOBI_TRY(tobi_plain_open(path, "keyframes", FILE_LIMIT, &file, NULL, err));
     reader r = {.path = path};
     tobi_keyframes *f = calloc(1, sizeof *f);
     tobi_status status = f ? read_rows(file, &r, f, err)

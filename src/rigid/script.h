@@ -34,11 +34,16 @@
      end
 
    The script sees `params` (motion.params, control.params or flow.params of the scene: numbers, texts,
-   true/false, arrays from 1, objects), math (without random), table, ipairs, pairs, next, select, tonumber,
+   true/false, arrays from 1, objects), math (without random), table, ipairs, pairs, select, tonumber,
    tostring, type, unpack, error, assert, and string.format/len/sub/byte/char/lower/upper. Nothing else: no
    files, no processes, no compiled chunks, no foreign code. After loading, reading or assigning an unknown
    global is an error, because it is nearly always a misspelt name, and because a motion that
-   remembers things would break restarts. */
+   remembers things would break restarts. Two runs see the same: pairs goes through numbers, then texts, in
+   rising order, and tostring of a table is "table".
+
+   A script has 3 s of processor time for a call (for each 8192 points of deform and velocity) and for
+   its loading, and 64 MiB. One that needs more time is stopped for good: every later call repeats the
+   reason. */
 #pragma once
 #include "base/error.h"
 #include "tobiuo/types.h"
@@ -55,9 +60,14 @@ typedef struct tobi_pose {
 
 typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT, TOBI_FLOW_SCRIPT } tobi_script_role;
 
-/* Loads and runs the file once. Errors as in tobi_motion_script. */
+/* Starts a process for the script, which loads and runs the file once. Errors as in tobi_motion_script;
+   TOBI_IO too where no process can be started. Calls must come from the process that loaded it, from
+   any of its threads, one at a time. */
 tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
                              tobi_script **out, tobi_error *err);
+/* With another limit of processor time, for tests. */
+tobi_status tobi_script_load_within(const char *path, const char *params_json, tobi_script_role role,
+                                    double seconds, tobi_script **out, tobi_error *err);
 void tobi_script_free(tobi_script *script);
 
 /* 1 when the script defines place(), 0 when it defines deform(). */

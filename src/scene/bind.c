@@ -58,6 +58,14 @@ static void list_choices(const char *choices, char *text, size_t size)
     }
 }
 
+/* Powers of ten as 1e7 and 1e-7. */
+static void write_limit(double v, char text[32])
+{
+    const int exponent = v != 0 ? (int)round(log10(fabs(v))) : 0, is_power = fabs(v) == pow(10, exponent);
+    if (is_power && (exponent > 4 || exponent < -3)) snprintf(text, 32, "%s1e%d", v < 0 ? "-" : "", exponent);
+    else snprintf(text, 32, "%.10g", v);
+}
+
 void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
 {
     const char *unit = row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
@@ -72,13 +80,16 @@ void tobi_bind_limits(const tobi_param *row, char *text, size_t size)
         return;
     }
     if (row->positive && isnan(row->max)) snprintf(numbers, sizeof numbers, "greater than 0");
-    else if (row->positive)
-        snprintf(numbers, sizeof numbers, "greater than 0, up to %.10g", row->max);
     else if (isnan(row->min) && isnan(row->max))
         snprintf(numbers, sizeof numbers, gap[0] ? "any number in" : "any number");
     else if (isnan(row->max)) snprintf(numbers, sizeof numbers, "at least %.10g", row->min);
     else if (isnan(row->min)) snprintf(numbers, sizeof numbers, "at most %.10g", row->max);
-    else snprintf(numbers, sizeof numbers, "%.10g to %.10g", row->min, row->max);
+    else {
+        char low[32], high[32];
+        write_limit(row->min, low);
+        write_limit(row->max, high);
+        snprintf(numbers, sizeof numbers, "%s to %s", low, high);
+    }
     if (row->text) snprintf(text, size, "%s%s%s, or \"%s\"", numbers, gap, unit, row->text);
     else snprintf(text, size, "%s%s%s", numbers, gap, unit);
 }
@@ -248,10 +259,11 @@ static void bind_choice(const slot *s)
                             tobi_json_kind(s->value), limits);
 }
 
-/* Names become parts of file names. */
+/* Names become parts of file names and cells of tables: a program that opens a table takes a cell
+   that begins with + - = or @ for a formula and computes it. */
 static int is_name(const char *name)
 {
-    if (!name[0] || name[0] == '.' || strlen(name) > 100) return 0;
+    if (!name[0] || strchr(".+-=@", name[0]) || strlen(name) > 100) return 0;
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 127 || strchr("/\\:*?\"<>|,", *c)) return 0;
     return 1;
@@ -324,8 +336,8 @@ static void bind_text(const slot *s)
         }
     } else if (!is_list && !is_name(given)) {
         tobi_source_mistake(s->binder->source, s->place,
-                            "is not usable as a name: 1 to 100 characters, no "
-                            "dot in front and none of / \\ : * ? \" < > | ,");
+                            "is not usable as a name: 1 to 100 characters, none of "
+                            ". + - = @ in front and none of / \\ : * ? \" < > | ,");
         return;
     }
     memcpy(s->member, &kept, sizeof kept);
@@ -383,6 +395,7 @@ static void report_unknown(const pass *p, const char *prefix, const tobi_place *
 {
     char keys[CANDIDATES][48], all[1024] = "";
     const char *list[CANDIDATES];
+    if (tobi_report_pass(p->binder->source->report)) return;
     size_t count = list_keys(p, prefix, keys), used = 0;
     for (size_t i = 0; i < count; i++) list[i] = keys[i];
     const char *near = tobi_suggest(place->key, list, count);

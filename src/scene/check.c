@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 #include "scene/suggest.h"
 #include "mpm/damage.h"
+#include "world/limits.h"
 #include "world/methods.h"
 #include "world/params.h"
 #include "world/world.h"
@@ -72,6 +73,18 @@ static void check_sides(const tobi_scene *scene, tobi_source *source)
         }
 }
 
+/* tobi_world_create would say the same, but not where. */
+static void check_limits(const tobi_scene *scene, tobi_source *source)
+{
+    const tobi_method *method = tobi_method_find(scene->world.method);
+    const char *key;
+    tobi_error err = { 0 };
+    if (!method || scene->world_bound.good != scene->world_bound.given || !tobi_check_has_domain(scene) ||
+        tobi_limits_check(&scene->world, (method->fields & TOBI_SPH) != 0, &key, &err) == TOBI_OK) return;
+    tobi_place place = { &root, key, 0 };
+    tobi_source_mistake(source, &place, "%s", err.text);
+}
+
 static void check_domain(const tobi_scene *scene, tobi_source *source)
 {
     const tobi_world_def *w = &scene->world;
@@ -103,6 +116,7 @@ static void check_domain(const tobi_scene *scene, tobi_source *source)
                                 w->spacing, length, name);
     }
     tobi_place gravity = { &root, "gravity", 0 };
+    check_limits(scene, source);
     if (w->dimension == 2 && w->gravity[2] != 0)
         tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene",
                             w->gravity[2]);
@@ -371,8 +385,10 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
     int count = tobi_world_list_fields(scene->world.method, names);
     char all[512] = "";
     if (strcmp(field, "usual") == 0) return;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++)
         if (strcmp(names[k], field) == 0) return;
+    if (tobi_report_pass(source->report)) return;
+    for (int k = 0; k < count; k++) {
         size_t used = strlen(all);
         snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
     }

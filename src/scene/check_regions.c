@@ -140,11 +140,32 @@ static int do_overlap(const tobi_world_def *w, const region *a, const region *b)
     return reach == 0 || sqrt(apart) < reach*(1 - 1e-9);
 }
 
-static int order_regions(const void *a, const void *b)
+static int order_regions(const region *p, const region *q, int axis)
 {
-    const region *p = a, *q = b;
-    if (p->lower[0] != q->lower[0]) return p->lower[0] > q->lower[0] ? 1 : -1;
+    if (p->lower[axis] != q->lower[axis]) return p->lower[axis] > q->lower[axis] ? 1 : -1;
     return p->owner != q->owner ? p->owner - q->owner : p->index - q->index;
+}
+
+static int order_x(const void *a, const void *b) { return order_regions(a, b, 0); }
+static int order_y(const void *a, const void *b) { return order_regions(a, b, 1); }
+static int order_z(const void *a, const void *b) { return order_regions(a, b, 2); }
+
+/* Sorts along an axis; returns how many pairs overlap along it. */
+static double sort_regions(region *list, size_t count, int axis)
+{
+    static int (*const orders[3])(const void *, const void *) = { order_x, order_y, order_z };
+    double pairs = 0;
+    qsort(list, count, sizeof *list, orders[axis]);
+    for (size_t i = 0; i < count; i++) {
+        size_t low = i + 1, high = count;
+        while (low < high) {
+            const size_t middle = (low + high)/2;
+            if (list[middle].lower[axis] < list[i].upper[axis]) low = middle + 1;
+            else high = middle;
+        }
+        pairs += (double)(low - i - 1);
+    }
+    return pairs;
 }
 
 static size_t list_regions(region *list, size_t count, const char *name, int owner,
@@ -173,7 +194,7 @@ static void report_overlap(tobi_source *source, const region *first, const regio
                         first->radius > 0 ? "sphere" : "box", first->list, first->owner, first->index);
 }
 
-/* Sorted along x, so that many regions side by side cost little. */
+/* Sorted along the axis on which fewest meet, so that many regions side by side cost little. */
 void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source)
 {
     size_t count = 0;
@@ -186,9 +207,16 @@ void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source)
         count = list_regions(list, count, "fluids", i, scene->fluids[i].fills, scene->fluids[i].fill_count);
     for (int i = 0; i < scene->solid_count; i++)
         count = list_regions(list, count, "solids", i, scene->solids[i].fills, scene->solids[i].fill_count);
-    qsort(list, count, sizeof *list, order_regions);
-    for (size_t i = 0; i < count && !tobi_report_full(source->report); i++)
-        for (size_t j = i + 1; j < count && list[j].lower[0] < list[i].upper[0]; j++)
+    int best = 0;
+    double least = INFINITY;
+    for (int a = 0; a < scene->world.dimension; a++) {
+        const double pairs = sort_regions(list, count, a);
+        if (pairs < least) best = a, least = pairs;
+    }
+    sort_regions(list, count, best);
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = i + 1; j < count && list[j].lower[best] < list[i].upper[best] &&
+             !tobi_report_full(source->report); j++)
             if (do_overlap(&scene->world, &list[i], &list[j])) report_overlap(source, &list[i], &list[j]);
     free(list);
 }

@@ -53,7 +53,7 @@ static const tobi_old_key configuration_keys[] = {
     { K("gravitation"), C(gravitation), VEC3, UNIT("m/s2"), BECOMES("gravity"), NEEDED,
       SAY("gravity, [0, -9.81, 0] where y is up, [0, 0, -9.81] where z is up") },
     { K("timeStepSize"), C(time_step), POSITIVE, UNIT("s"), BECOMES("time_step"),
-      SAY("a fixed step, as before; --set time_step=adaptive chooses each step by itself, which is safer"),
+      SAY("a fixed step, as before; --set time_step=adaptive chooses each step by itself"),
       .absent = "the step is adaptive" },
     { K("stiffness"), C(stiffness), POSITIVE, UNIT("Pa"), BECOMES("wcsph.stiffness"),
       SAY("of the Tait equation of WCSPH; DFSPH has no use for it") },
@@ -271,6 +271,30 @@ int tobi_import_hides(const tobi_import *im, int object)
     return 0;
 }
 
+/* What invisibleObjects became: fluids and bodies that are not visible. */
+static void tell_hidden(tobi_import *im)
+{
+    static const char *const lists[] = { "fluids", "bodies" };
+    json_t *entry;
+    size_t i;
+    char *text = NULL;
+    for (int k = 0; k < 2; k++)
+        json_array_foreach(json_object_get(im->native, lists[k]), i, entry) {
+            char *longer = NULL;
+            if (!json_is_false(json_object_get(entry, "visible"))) continue;
+            if (asprintf(&longer, "%s%s%s[%zu].visible = false", text ? text : "", text ? ", " : "", lists[k],
+                         i) < 0) {
+                im->no_memory = 1;
+                longer = NULL;
+            }
+            free(text);
+            text = longer;
+        }
+    if (text) tobi_import_tell(im, "invisibleObjects", text);
+    else if (gives(im, "invisibleObjects"))
+        tobi_import_remark(im, "invisibleObjects", "no object has one of these numbers");
+}
+
 static const char *choose_method(tobi_import *im)
 {
     tobi_place place = { &configuration, "simulationMethod", 0 };
@@ -354,7 +378,7 @@ static void check_top(tobi_import *im)
         tobi_place place = { &root, key, 0 };
         size_t i = 0;
         while (i < KNOWN && strcmp(known[i], key) != 0) i++;
-        if (i < KNOWN) continue;
+        if (i < KNOWN || tobi_report_pass(im->source->report)) continue;
         for (i = 0; i < sizeof refused/sizeof *refused && strcmp(refused[i].key, key) != 0; i++) { }
         const char *near = tobi_suggest(key, known, KNOWN);
         if (i < sizeof refused/sizeof *refused)
@@ -382,6 +406,7 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
     read_configuration(&im);
     tobi_import_fluids(&im);
     tobi_import_bodies(&im);
+    tell_hidden(&im);
     build_output(&im);
     tobi_status status = tobi_report_total(source->report) > before ? TOBI_INVALID : TOBI_OK;
     if (im.no_memory || !im.native || !im.stand_ins) status = TOBI_NO_MEMORY;

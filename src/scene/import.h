@@ -45,7 +45,12 @@ typedef struct tobi_old_body {
 } tobi_old_body;
 
 /* What became of one key. */
-typedef struct tobi_old_row { char *from, *value, *path; const char *unit; char *remark; } tobi_old_row;
+typedef struct tobi_old_row {
+    char *from, *value, *path;
+    char *paths;              /* several native values, told instead of that at `path`; NULL = one or none */
+    const char *unit;
+    char *remark;
+} tobi_old_row;
 
 /* A translation in work. */
 typedef struct tobi_import {
@@ -90,6 +95,8 @@ int tobi_import_has(const tobi_old_section *section, uint64_t given, const char 
    paths that ".a" and "^a" start from. */
 void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *object,
                       const tobi_place *place, const char *entry, const char *fluid);
+/* Replaces what the newest row about `key` became: "bodies[0].visible = false, ..."; takes `paths` over. */
+void tobi_import_tell(tobi_import *im, const char *key, char *paths);
 /* Replaces the remark of the newest row about `key`. */
 void tobi_import_remark(tobi_import *im, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE 1
 #include "scene/import.h"
 #include "geom/mesh.h"
+#include "world/world.h"
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
@@ -13,11 +14,18 @@
 static const tobi_place root = { 0 };
 
 
-/* The entries of a section; NULL if it is not there or not a list, which is told. */
+/* The entries of a section; NULL if it is not there, and if it is no list or holds more than a world takes,
+   which is told. */
 static json_t *open_section(tobi_import *im, const tobi_old_section *section)
 {
     tobi_place place = { &root, section->name, 0 };
     json_t *list = json_object_get(im->source->root, section->name);
+    const int most = section == &tobi_old_fluid_block ? TOBI_REGION_LIMIT : TOBI_BODY_LIMIT;
+    if (list && json_array_size(list) > (size_t)most) {
+        tobi_source_mistake(im->source, &place, "has %zu entries, allowed are %d", json_array_size(list),
+                            most);
+        return NULL;
+    }
     if (!list || json_is_array(list)) return list;
     tobi_source_mistake(im->source, &place, "is %s, must be a list [ { ... } ]", tobi_json_kind(list));
     return NULL;
@@ -140,7 +148,7 @@ static void name_body(tobi_import *im, json_t *bodies, json_t *body, const char 
     char clean[64], name[80];
     if (length > sizeof clean - 1) length = sizeof clean - 1;
     for (size_t i = 0; i < length; i++)
-        clean[i] = isalnum((unsigned char)stem[i]) || strchr("-_", stem[i]) ? stem[i] : '_';
+        clean[i] = isalnum((unsigned char)stem[i]) || (i > 0 && stem[i] == '-') ? stem[i] : '_';
     clean[length] = '\0';
     if (!length) strcpy(clean, "body");
     snprintf(name, sizeof name, "%s", clean);

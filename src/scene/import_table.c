@@ -69,22 +69,35 @@ void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *
     }
 }
 
-void tobi_import_remark(tobi_import *im, const char *key, const char *format, ...)
+/* The newest row about `key`, NULL if there is none. */
+static tobi_old_row *find_row(tobi_import *im, const char *key)
 {
     for (int i = im->row_count - 1; i >= 0; i--) {
         const char *from = im->rows[i].from, *dot = from ? strrchr(from, '.') : NULL;   /* NULL: no memory */
-        if (!dot || strcmp(dot + 1, key) != 0) continue;
-        char *remark = NULL;
-        va_list args;
-        va_start(args, format);
-        int length = vasprintf(&remark, format, args);
-        va_end(args);
-        im->no_memory |= length < 0;
-        if (length < 0) return;
-        free(im->rows[i].remark);
-        im->rows[i].remark = remark;
-        return;
+        if (dot && strcmp(dot + 1, key) == 0) return &im->rows[i];
     }
+    return NULL;
+}
+
+void tobi_import_tell(tobi_import *im, const char *key, char *paths)
+{
+    tobi_old_row *row = find_row(im, key);
+    if (row) row->paths = paths;
+    else free(paths);
+}
+
+void tobi_import_remark(tobi_import *im, const char *key, const char *format, ...)
+{
+    tobi_old_row *row = find_row(im, key);
+    char *remark = NULL;
+    va_list args;
+    va_start(args, format);
+    int length = row ? vasprintf(&remark, format, args) : 0;
+    va_end(args);
+    im->no_memory |= length < 0;
+    if (!row || length < 0) return;
+    free(row->remark);
+    row->remark = remark;
 }
 
 /* The value at "a[0].b" of a scene, NULL if there is none. */
@@ -115,7 +128,8 @@ static int write_row(FILE *out, const tobi_import *im, const tobi_old_row *row, 
     json_t *value = row->path ? find_value(im->native, row->path) : NULL;
     char *text = value ? value_text(value, json_is_string(value) ? NULL : row->unit) : NULL;
     fprintf(out, "%-*s  %-*s  -> ", width[0], row->from, width[1], row->value);
-    if (text) fprintf(out, "%s = %s\n", row->path, text);
+    if (row->paths) fprintf(out, "%s\n", row->paths);
+    else if (text) fprintf(out, "%s = %s\n", row->path, text);
     else fprintf(out, "nothing\n");
     if (row->remark[0]) fprintf(out, "    %s\n", row->remark);
     free(text);
@@ -160,6 +174,7 @@ void tobi_import_clear(tobi_import *im)
         free(im->rows[i].from);
         free(im->rows[i].value);
         free(im->rows[i].path);
+        free(im->rows[i].paths);
         free(im->rows[i].remark);
     }
     free(im->rows);

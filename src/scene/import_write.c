@@ -119,8 +119,10 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
                               tobi_report **report, tobi_error *err)
 {
     tobi_scene *scene;
+    TOBI_NEED(table, "where the table goes");
     *table = NULL;
     if (report) *report = NULL;
+    TOBI_NEED(old_path && new_path, "a path");
     if (!force && access(new_path, F_OK) == 0)
         return tobi_fail(err, TOBI_INVALID, "%s exists; nothing was changed (choose another name, or "
                          "--force to replace it)", new_path);

@@ -3,19 +3,14 @@
 #include "scene/parts.h"
 #include "scene/suggest.h"
 #include "scene/write.h"
+#include "world/params_rows.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define REAL(def_, member_)                                                                        \
-    .type = TOBI_PARAM_REAL, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
-#define VEC3(def_, member_)                                                                        \
-    .type = TOBI_PARAM_VEC3, .offset = offsetof(def_, member_), .min = NAN, .max = NAN
-
 static const tobi_param script_rows[] = {
     { .key = "script",
-      .type = TOBI_PARAM_TEXT,
-      .offset = offsetof(tobi_script_def, script),
+      TEXT, AT(tobi_script_def, script),
       .unit = "path",
       .required = true,
       .doc = "A Lua file that says where every point of the body is at a time; the object "
@@ -23,42 +18,43 @@ static const tobi_param script_rows[] = {
     { 0 }
 };
 static const tobi_param translation_rows[] = {
-    { .key = "velocity", VEC3(tobi_translation_def, velocity), .unit = "m/s", .required = true,
+    { .key = "velocity", VEC3, AT(tobi_translation_def, velocity), SPEED, .unit = "m/s", .required = true,
       .doc = "Constant velocity." },
     { 0 }
 };
 static const tobi_param rotation_rows[] = {
-    { .key = "center", VEC3(tobi_rotation_def, center), .unit = "m", .required = true,
+    { .key = "center", VEC3, AT(tobi_rotation_def, center), PLACE, .unit = "m", .required = true,
       .doc = "A point on the axis." },
-    { .key = "axis", VEC3(tobi_rotation_def, axis), .unit = "1", .required = true,
+    { .key = "axis", VEC3, AT(tobi_rotation_def, axis), DIRECTION, .unit = "1", .required = true,
       .doc = "Direction of the axis, of any length." },
-    { .key = "rate", REAL(tobi_rotation_def, rate), .unit = "degrees/s", .required = true,
+    { .key = "rate", REAL, AT(tobi_rotation_def, rate), RANGE(-1e9, 1e9),
+      .unit = "degrees/s", .required = true,
       .doc = "Speed of the turn, by the right-hand rule." },
     { 0 }
 };
 static const tobi_param oscillation_rows[] = {
-    { .key = "direction", VEC3(tobi_oscillation_def, direction), .unit = "1", .required = true,
+    { .key = "direction", VEC3, AT(tobi_oscillation_def, direction), DIRECTION, .unit = "1", .required = true,
       .doc = "Direction of the movement, of any length." },
-    { .key = "amplitude", REAL(tobi_oscillation_def, amplitude), .unit = "m", .required = true,
+    { .key = "amplitude", REAL, AT(tobi_oscillation_def, amplitude), PLACE, .unit = "m", .required = true,
       .doc = "Largest distance from the rest position: it moves by amplitude sin(2 pi frequency t "
              "+ phase)." },
-    { .key = "frequency", REAL(tobi_oscillation_def, frequency), .unit = "Hz", .required = true,
+    { .key = "frequency", REAL, AT(tobi_oscillation_def, frequency), RANGE(-1e9, 1e9),
+      .unit = "Hz", .required = true,
       .doc = "Cycles per second." },
-    { .key = "phase", REAL(tobi_oscillation_def, phase), .unit = "degrees",
+    { .key = "phase", REAL, AT(tobi_oscillation_def, phase), RANGE(-1e9, 1e9), .unit = "degrees",
       .doc = "Phase at time 0." },
     { 0 }
 };
 static const tobi_param keyframes_rows[] = {
     { .key = "file",
-      .type = TOBI_PARAM_TEXT,
-      .offset = offsetof(tobi_keyframes_def, file),
+      TEXT, AT(tobi_keyframes_def, file),
       .unit = "path",
       .required = true,
       .doc = "A CSV file whose first line names its columns: time (s), the shift x, y, z from the rest "
              "pose (m), and for a turn qw, qx, qy, qz or ax, ay, az, angle (degrees) or roll, pitch, yaw "
              "(degrees, about x, then y, then z). A name may bring that unit along, as in x [m]. Cubic "
              "between the rows; before the first and after the last the body stays." },
-    { .key = "pivot", VEC3(tobi_keyframes_def, pivot), .unit = "m",
+    { .key = "pivot", VEC3, AT(tobi_keyframes_def, pivot), PLACE, .unit = "m",
       .doc = "The point of the rest pose that turns are about." },
     { 0 }
 };
@@ -108,6 +104,7 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
         }
         if (known || json_object_get(value, "script")) continue;     /* a script checks its own */
         unknown = 1;
+        if (tobi_report_pass(binder->source->report)) continue;
         const char *near = tobi_suggest(key, keys, sizeof keys / sizeof keys[0]);
         if (near)
             tobi_source_mistake_at_key(binder->source, &at, "unknown key; did you mean \"%s\"?",

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE 1
 #include "scene/override.h"
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,16 +54,30 @@ static int find_named(const json_t *list, const char *name)
     return -1;
 }
 
-/* "are a, b, c" or "is none", as many names as fit. */
+/* "there are a, b, c", as many names as fit, or what there is instead. */
 static void list_names(const json_t *list, char *text, size_t size)
 {
-    size_t i, used = (size_t)snprintf(text, size, "%s", json_array_size(list) ? "are" : "is none");
+    const size_t count = json_array_size(list);
+    size_t i, named = 0, used = (size_t)snprintf(text, size, "there are");
     json_t *entry;
     json_array_foreach(list, i, entry) {
         const char *its = json_string_value(json_object_get(entry, "name"));
         if (its && used + strlen(its) + 3 < size)
-            used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : " ", its);
+            used += (size_t)snprintf(text + used, size - used, "%s%s", named++ ? ", " : " ", its);
     }
+    if (named) return;
+    if (count == 0) snprintf(text, size, "the list is empty");
+    else if (count == 1) snprintf(text, size, "the only entry has no name, write [0]");
+    else snprintf(text, size, "the entries have no names, write [0] to [%zu]", count - 1);
+}
+
+/* The entry meant by "2", where none has that name; -1 if it is no number. */
+static long long read_index(const char *step)
+{
+    char *end;
+    if (!isdigit((unsigned char)step[0])) return -1;
+    const long long index = strtoll(step, &end, 10);
+    return *end || index > TOBI_SOURCE_LIMIT ? -1 : index;
 }
 
 /* Checks step `at` against the container `node` and makes it a number where node is a list. */
@@ -84,10 +99,11 @@ static int settle_step(tobi_source *source, const char *text, json_t *node, json
     long long size = (long long)json_array_size(node), index = json_integer_value(step);
     if (json_is_string(step)) {
         index = find_named(node, json_string_value(step));
+        if (index < 0) index = read_index(json_string_value(step));
         if (index < 0) {
             char names[160];
             list_names(node, names, sizeof names);
-            tobi_report_add(source->report, 0, "--set %s: no entry is named \"%s\"; there %s", text,
+            tobi_report_add(source->report, 0, "--set %s: no entry is named \"%s\"; %s", text,
                             json_string_value(step), names);
             return 0;
         }

@@ -39,10 +39,11 @@ typedef struct reader {
     node *nodes;
     entry *entries;
     node *file;                /* a dict: what has been assigned          */
+    int names;                 /* in it                                   */
     tobi_report *report;
 } reader;
 
-enum { DEPTH_LIMIT = 30 };
+enum { DEPTH_LIMIT = 30, NAME_LIMIT = 1000 };      /* names are looked up one by one */
 
 static void refuse(reader *r, size_t at, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
@@ -365,6 +366,7 @@ static void read_statement(reader *r)
         r->at = at + length;
         if (!length || isdigit((unsigned char)name[0]) || !take(r, '=') || r->text[r->at] == '=')
             refuse(r, at, "is not read; a parameter file has lines NAME = VALUE, and import lines");
+        if (r->names++ >= NAME_LIMIT) refuse(r, at, "is one name too many; allowed are %d", NAME_LIMIT);
         node *value = r->failed ? NULL : read_right_side(r);
         if (!r->failed) {
             append(r, r->file, name, at, value);

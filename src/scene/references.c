@@ -3,11 +3,9 @@
 #include "scene/scene.h"
 #include "scene/suggest.h"
 #include "world/record.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* "; did you mean "a"?", or nothing. */
 static void suggest(const char *word, const char *const *names, int count, char text[200])
@@ -76,16 +74,12 @@ void tobi_references_check(const tobi_scene *scene, tobi_source *source)
     for (int i = 0; i < scene->reference_count; i++) {
         const tobi_reference_def *def = &scene->references[i];
         tobi_place entry = { &list, NULL, (size_t)i }, file = { &entry, "file", 0 };
-        struct stat info;
         check_owner(scene, source, &entry, def);
-        if (def->file && stat(def->file, &info) != 0)
-            tobi_source_mistake(source, &file, "cannot find %s: %s", def->file, strerror(errno));
-        else if (def->file && !S_ISREG(info.st_mode))
-            tobi_source_mistake(source, &file, "%s is not a file", def->file);
+        tobi_check_file(source, &file, def->file);
     }
 }
 
 const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene, int index)
 {
-    return index >= 0 && index < scene->reference_count ? &scene->references[index] : NULL;
+    return scene && index >= 0 && index < scene->reference_count ? &scene->references[index] : NULL;
 }

@@ -34,6 +34,13 @@ void tobi_report_free(tobi_report *report)
 
 int tobi_report_full(const tobi_report *report) { return report->count >= TOBI_REPORT_LIMIT; }
 
+int tobi_report_pass(tobi_report *report)
+{
+    const int full = tobi_report_full(report);
+    report->left_out += full;
+    return full;
+}
+
 int64_t tobi_report_total(const tobi_report *report)
 {
     return report->count + report->left_out + report->no_memory;

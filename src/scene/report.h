@@ -14,6 +14,8 @@ void tobi_report_add(tobi_report *report, size_t rank, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* True once further lines are only counted: looking for more detail is then a waste. */
 int tobi_report_full(const tobi_report *report);
+/* The same for one mistake, which it counts then. */
+int tobi_report_pass(tobi_report *report);
 /* Mistakes so far, those that were only counted included. */
 int64_t tobi_report_total(const tobi_report *report);
 /* Sorts the lines and adds the one that says how many were left out, if any. */

@@ -1,6 +1,7 @@
 /* From the text of a scene to its definitions, and from the definitions to a world. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
+#include "base/plain.h"
 #include "scene/import.h"
 #include "scene/override.h"
 #include "scene/parts.h"
@@ -221,9 +222,19 @@ static void flatten_world(tobi_scene *scene)
     tobi_world_def *w = &scene->world;
     if (w->dimension != 2) return;
     w->domain_min[2] = w->domain_max[2] = 0;
-    if (tobi_bind_has(&tobi_world_table, scene->world_bound.given, "gravity")) return;
+    if (tobi_bind_has(&tobi_world_table, scene->world_bound.good, "gravity")) return;
     w->gravity[0] = w->gravity[2] = 0;
     w->gravity[1] = -9.81;
+}
+
+/* Where the key is wrong, the corners tell which other values are right. */
+static int find_dimension(const json_t *scene)
+{
+    const json_t *given = json_object_get(scene, "dimension");
+    const json_t *corner = json_object_get(json_object_get(scene, "domain"), "max");
+    const json_int_t value = json_integer_value(given);
+    if (!given || value == 2 || value == 3) return value == 2 ? 2 : 3;
+    return json_array_size(corner) == 2 ? 2 : 3;
 }
 
 static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
@@ -233,10 +244,11 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     tobi_place root = { 0 }, output = { &root, "output", 0 };
 
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
-    if (json_integer_value(json_object_get(scene->root, "dimension")) == 2) binder.dimension = 2;
+    binder.dimension = find_dimension(scene->root);
     scene->world = tobi_default_world_def();
     scene->world_bound =
         tobi_bind(&binder, &tobi_world_table, scene->root, &root, also, &scene->world);
+    scene->world.dimension = binder.dimension;
     flatten_world(scene);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
@@ -326,9 +338,11 @@ tobi_status tobi_scene_load(const char *path, const char *const *overrides, tobi
 {
     char *text;
     size_t size;
+    TOBI_NEED(scene, "where the scene goes");
     *scene = NULL;
     if (report) *report = NULL;
-    TOBI_TRY(tobi_source_read_file(path, &text, &size, err));
+    TOBI_NEED(path, "the path");
+    TOBI_TRY(tobi_plain_read(path, "scene", TOBI_SOURCE_LIMIT, &text, &size, err));
     tobi_status status = tobi_scene_parse(path, text, size, overrides, scene, report, err);
     free(text);
     return status;
@@ -410,7 +424,9 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {
     tobi_world *world;
+    TOBI_NEED(out, "where the world goes");
     *out = NULL;
+    TOBI_NEED(scene, "scene");
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
     for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
@@ -429,10 +445,13 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     return status;
 }
 
-const char *tobi_scene_name(const tobi_scene *scene) { return scene->name; }
-const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return &scene->world; }
-const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene) { return &scene->output; }
-const char *tobi_scene_import_table(const tobi_scene *scene) { return scene->import_table; }
+const char *tobi_scene_name(const tobi_scene *scene) { return scene ? scene->name : NULL; }
+const tobi_world_def *tobi_scene_world_def(const tobi_scene *scene) { return scene ? &scene->world : NULL; }
+const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene)
+{
+    return scene ? &scene->output : NULL;
+}
+const char *tobi_scene_import_table(const tobi_scene *scene) { return scene ? scene->import_table : NULL; }
 
 /* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
 static json_t *whole(json_t *value, int failed)
@@ -494,6 +513,7 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
 
 char *tobi_scene_resolved(const tobi_scene *scene)
 {
+    if (!scene) return NULL;
     json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
     json_t *method = tobi_write_def(scene->method, scene->method_def);
     tobi_unused_drop(scene, &tobi_world_table, NULL, root);

@@ -63,9 +63,8 @@ static json_t *make_limit(double v)
 static json_t *make_number(const tobi_param *row)
 {
     json_t *schema = make_type(row->type == TOBI_PARAM_INT ? "integer" : "number");
-    if (row->positive) json_object_set_new(schema, "exclusiveMinimum", json_integer(0));
-    else if (!isnan(row->min)) json_object_set_new(schema, "minimum", make_limit(row->min));
-    if (!isnan(row->max)) json_object_set_new(schema, "maximum", make_limit(row->max));
+    json_object_set_new(schema, "minimum", make_limit(row->min));
+    json_object_set_new(schema, "maximum", make_limit(row->max));
     return schema;
 }
 
@@ -78,6 +77,14 @@ static json_t *make_words(const char *choices)
         json_array_append_new(list, json_stringn(word, (size_t)length));
     }
     json_object_set_new(schema, "enum", list);
+    return schema;
+}
+
+/* The word for 0, which may be written too unless it is no value at all. */
+static json_t *make_word(const tobi_param *row)
+{
+    json_t *schema = make_words(row->text);
+    if (!row->positive) json_array_append_new(json_object_get(schema, "enum"), json_integer(0));
     return schema;
 }
 
@@ -125,7 +132,7 @@ static json_t *make_text(const tobi_param *row)
         return schema;
     }
     json_object_set_new(schema, "maxLength", json_integer(100));
-    put_text(schema, "pattern", "^[^./\\\\:*?\"<>|,][^/\\\\:*?\"<>|,]*$");
+    put_text(schema, "pattern", "^[^.+=@/\\\\:*?\"<>|,-][^/\\\\:*?\"<>|,]*$");
     return schema;
 }
 
@@ -136,8 +143,7 @@ static json_t *make_value(const tobi_param *row)
     case TOBI_PARAM_TEXT: return make_text(row);
     case TOBI_PARAM_CHOICE: return make_words(row->choices);
     case TOBI_PARAM_BOOL: return make_type("boolean");
-    default: return row->text ? make_either(make_number(row), make_words(row->text))
-                              : make_number(row);
+    default: return row->text ? make_either(make_number(row), make_word(row)) : make_number(row);
     }
 }
 

@@ -1,44 +1,9 @@
 #define _GNU_SOURCE 1
 #include "scene/source.h"
 #include "scene/python.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err)
-{
-    *text = NULL;
-    struct stat info;
-    if (stat(path, &info) != 0)
-        return tobi_fail(err, errno == ENOENT || errno == ENOTDIR ? TOBI_NOT_FOUND : TOBI_IO,
-                         "%s: cannot open the scene: %s", path, strerror(errno));
-    if (!S_ISREG(info.st_mode))
-        return tobi_fail(err, TOBI_IO, "%s: is not a file; give the scene's JSON file", path);
-    if (info.st_size > TOBI_SOURCE_LIMIT)
-        return tobi_fail(err, TOBI_INVALID, "%s: has %lld bytes, a scene has at most %d", path,
-                         (long long)info.st_size, TOBI_SOURCE_LIMIT);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return tobi_fail(err, TOBI_IO, "%s: cannot open the scene: %s", path, strerror(errno));
-    char *bytes = malloc((size_t)info.st_size + 1);
-    if (!bytes) {
-        fclose(file);
-        return tobi_fail(err, TOBI_NO_MEMORY, "%s: no memory to read the scene", path);
-    }
-    size_t got = fread(bytes, 1, (size_t)info.st_size, file);
-    int failed = ferror(file);
-    fclose(file);
-    if (failed) {
-        free(bytes);
-        return tobi_fail(err, TOBI_IO, "%s: cannot read the scene", path);
-    }
-    bytes[got] = '\0';
-    *text = bytes;
-    *size = got;
-    return TOBI_OK;
-}
 
 /* Comments and a byte-order mark become spaces, so that every position stays what it was. */
 static void blank_comments(char *text, size_t size)
@@ -114,96 +79,6 @@ static const char *hint_at_line(const char *text, size_t size, int number)
         ? "; if this line belongs to the comment before it, put # in front" : "";
 }
 
-/* Walking valid JSON. Every function takes an offset and returns the one behind what it skipped. */
-
-static size_t skip_space(const char *text, size_t at)
-{
-    while (text[at] == ' ' || text[at] == '\t' || text[at] == '\n' || text[at] == '\r') at++;
-    return at;
-}
-
-static size_t skip_string(const char *text, size_t at)
-{
-    for (at++; text[at] && text[at] != '"'; at++)
-        if (text[at] == '\\' && text[at + 1]) at++;
-    return text[at] ? at + 1 : at;
-}
-
-static size_t skip_value(const char *text, size_t at)
-{
-    int depth = 0;
-    do {
-        at = skip_space(text, at);
-        char c = text[at];
-        if (!c) break;
-        if (c == '"') at = skip_string(text, at);
-        else if (c == '{' || c == '[') { depth++; at++; }
-        else if (c == '}' || c == ']') { depth--; at++; }
-        else if (c == ',' || c == ':') at++;
-        else while (text[at] && !strchr(",:]} \t\r\n", text[at])) at++;
-    } while (depth > 0);
-    return at;
-}
-
-/* The key whose quote stands at `at`, with its escapes undone; owned by the caller. */
-static char *read_key(const char *text, size_t at)
-{
-    size_t length = skip_string(text, at) - at;
-    if (!memchr(text + at, '\\', length)) return strndup(text + at + 1, length - 2);
-    json_t *key = json_loadb(text + at, length, JSON_DECODE_ANY, NULL);
-    char *copy = key ? strdup(json_string_value(key)) : NULL;
-    json_decref(key);
-    return copy;
-}
-
-/* Offset of the first key or entry in the container at `at`, or of its closing bracket. */
-static size_t enter(const char *text, size_t at) { return skip_space(text, at + 1); }
-
-/* Offset of the next key or entry behind a value that ends at `at`, or of the closing bracket. */
-static size_t go_on(const char *text, size_t at)
-{
-    at = skip_space(text, at);
-    return text[at] == ',' ? skip_space(text, at + 1) : at;
-}
-
-/* Offset of the value of the key at `at`. */
-static size_t value_of(const char *text, size_t at)
-{
-    at = skip_space(text, skip_string(text, at));
-    return skip_space(text, at + 1);
-}
-
-typedef struct spot { size_t key, value; } spot;
-
-/* The member `key` of the object at `at`; the last one counts, as it does in jansson. */
-static int find_member(const char *text, size_t at, const char *key, spot *found)
-{
-    int hit = 0;
-    for (at = enter(text, at); text[at] == '"';) {
-        size_t value = value_of(text, at);
-        char *name = read_key(text, at);
-        if (name && strcmp(name, key) == 0) {
-            *found = (spot){ at, value };
-            hit = 1;
-        }
-        free(name);
-        at = go_on(text, skip_value(text, value));
-    }
-    return hit;
-}
-
-static int find_entry(const char *text, size_t at, size_t index, spot *found)
-{
-    for (at = enter(text, at); text[at] && text[at] != ']'; index--) {
-        if (index == 0) {
-            *found = (spot){ at, at };
-            return 1;
-        }
-        at = go_on(text, skip_value(text, at));
-    }
-    return 0;
-}
-
 enum { DEPTH_LIMIT = 32 };
 
 /* The steps of a place from the root down; deeper ones than the limit are dropped. */
@@ -217,34 +92,15 @@ static int list_steps(const tobi_place *place, const tobi_place *steps[DEPTH_LIM
 }
 
 /* Where a place is, or as deep on the way to it as the text goes. */
-static spot locate(const tobi_source *source, const tobi_place *place)
+static tobi_spot locate(tobi_source *source, const tobi_place *place)
 {
     const tobi_place *steps[DEPTH_LIMIT];
     int depth = list_steps(place, steps);
-    size_t root = skip_space(source->text, 0);
-    spot at = { root, root };
-    for (int i = 0; i < depth; i++) {
-        char bracket = source->text[at.value];
-        int found = steps[i]->key
-            ? bracket == '{' && find_member(source->text, at.value, steps[i]->key, &at)
-            : bracket == '[' && find_entry(source->text, at.value, steps[i]->index, &at);
-        if (!found) break;
-    }
+    tobi_spot at = tobi_spots_root(&source->spots);
+    for (int i = 0; i < depth; i++)
+        if (!(steps[i]->key ? tobi_spots_member(&source->spots, at, steps[i]->key, &at)
+                            : tobi_spots_entry(&source->spots, at, steps[i]->index, &at))) break;
     return at;
-}
-
-/* Lines and columns count from 1; a column is a character, not a byte. */
-static void count_lines(const char *text, size_t offset, int *line, int *column)
-{
-    *line = *column = 1;
-    for (size_t i = 0; i < offset; i++) {
-        if (text[i] == '\n') {
-            ++*line;
-            *column = 1;
-        } else if (((unsigned char)text[i] & 0xC0) != 0x80) {
-            ++*column;
-        }
-    }
 }
 
 void tobi_place_text(const tobi_place *place, char *text)
@@ -284,7 +140,7 @@ static void add_mistake(tobi_source *source, size_t offset, const tobi_place *pl
     char path[TOBI_PATH_TEXT];
     int line, column;
     tobi_place_text(place, path);
-    count_lines(source->text, offset, &line, &column);
+    tobi_spots_line(&source->spots, offset, &line, &column);
     tobi_report_add(source->report, offset, "%s:%d:%d: %s%s%s", source->name, line, column, path,
                     path[0] ? ": " : "", what);
 }
@@ -324,7 +180,7 @@ static void tell_origin(tobi_source *source, const tobi_place *place, const char
     int line, column;
     tobi_place_text(place, path);
     const tobi_origin *o = find_origin(source, path);
-    count_lines(source->text, o->offset, &line, &column);
+    tobi_spots_line(&source->spots, o->offset, &line, &column);
     tobi_report_add(source->report, o->offset, "%s:%d:%d: %s (here %s): %s", source->name, line,
                     column, o->old ? o->old : "", path[0] ? path : "the scene", what);
 }
@@ -343,18 +199,18 @@ static void tell(tobi_source *source, const tobi_place *place, int at_key, const
         tell_origin(source, place, what);
         return;
     }
-    spot at = locate(source, place);
+    tobi_spot at = locate(source, place);
     add_mistake(source, at_key ? at.key : at.value, place, what);
 }
 
 #define TELL(at_key)                                                     \
     char *what = NULL;                                                   \
     va_list args;                                                        \
+    if (tobi_report_pass(source->report)) return;                        \
     va_start(args, format);                                              \
     int length = vasprintf(&what, format, args);                         \
     va_end(args);                                                        \
-    if (tobi_report_full(source->report)) tobi_report_add(source->report, 0, "%s", "");  \
-    else tell(source, place, at_key, length < 0 ? "out of memory" : what);            \
+    tell(source, place, at_key, length < 0 ? "out of memory" : what);    \
     if (length >= 0) free(what)
 
 void tobi_source_mistake(tobi_source *source, const tobi_place *place, const char *format, ...)
@@ -384,13 +240,10 @@ static void report_equal_keys(tobi_source *source, const tobi_place *place, seen
     if (n > 1) qsort(keys, n, sizeof *keys, order_keys);
     for (size_t i = 1; i < n; i++) {
         if (strcmp(keys[i].key, keys[i - 1].key) != 0) continue;
-        if (tobi_report_full(source->report)) {
-            tobi_report_add(source->report, 0, "%s", "");
-            continue;
-        }
+        if (tobi_report_pass(source->report)) continue;
         int line, column;
         char what[64];
-        count_lines(source->text, keys[i - 1].at, &line, &column);
+        tobi_spots_line(&source->spots, keys[i - 1].at, &line, &column);
         snprintf(what, sizeof what, "duplicate key, already given in line %d", line);
         tobi_place twin = { place, keys[i].key, 0 };
         add_mistake(source, keys[i].at, &twin, what);
@@ -403,27 +256,27 @@ static size_t find_duplicates(tobi_source *source, const tobi_place *place, size
     const char *text = source->text;
     if (text[at] == '[') {
         size_t index = 0;
-        for (at = enter(text, at); text[at] && text[at] != ']'; index++) {
+        for (at = tobi_spots_enter(text, at); text[at] && text[at] != ']'; index++) {
             tobi_place entry = { place, NULL, index };
-            at = go_on(text, find_duplicates(source, &entry, at));
+            at = tobi_spots_go_on(text, find_duplicates(source, &entry, at));
         }
         return at + (text[at] == ']');
     }
-    if (text[at] != '{') return skip_value(text, at);
+    if (text[at] != '{') return tobi_spots_skip(text, at);
     seen_key *keys = NULL;
     size_t count = 0, capacity = 0;
-    for (at = enter(text, at); text[at] == '"';) {
+    for (at = tobi_spots_enter(text, at); text[at] == '"';) {
         if (count == capacity) {
             capacity = capacity ? 2*capacity : 8;
             seen_key *more = realloc(keys, capacity*sizeof *keys);
             if (!more) break;
             keys = more;
         }
-        char *key = read_key(text, at);
+        char *key = tobi_spots_key(text, at);
         if (!key) break;
         keys[count++] = (seen_key){ key, at };
         tobi_place member = { place, key, 0 };
-        at = go_on(text, find_duplicates(source, &member, value_of(text, at)));
+        at = tobi_spots_go_on(text, find_duplicates(source, &member, tobi_spots_value(text, at)));
     }
     report_equal_keys(source, place, keys, count);
     for (size_t i = 0; i < count; i++) free(keys[i].key);
@@ -468,6 +321,7 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
     }
     TOBI_TRY(take_text(source, text, size, err));
     size = source->size;
+    source->spots.text = source->text;
 
     json_error_t mistake;
     source->root = json_loadb(source->text, size, 0, &mistake);
@@ -484,7 +338,7 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
         tobi_source_mistake(source, &root, "a scene must be an object: { ... }");
         return TOBI_INVALID;
     }
-    find_duplicates(source, &root, skip_space(source->text, 0));
+    find_duplicates(source, &root, tobi_spots_root(&source->spots).value);
     return TOBI_OK;
 }
 
@@ -497,6 +351,7 @@ void tobi_source_clear(tobi_source *source)
     }
     free(source->overrides);
     free(source->origins);
+    tobi_spots_clear(&source->spots);
     json_decref(source->root);
     free(source->text);
     free(source->name);

@@ -1,8 +1,8 @@
-/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no
-   positions, so a place is found again by walking the text along its path; that costs a scan per
-   mistake and no memory for scenes that have none. */
+/* The text of a scene: JSON with comments, and where things stand in it. jansson keeps no positions,
+   so a place is found again by its path, scene/spots.h. */
 #pragma once
 #include "scene/report.h"
+#include "scene/spots.h"
 #include <jansson.h>
 
 /* A way through a JSON value, from the leaf up to the root: a linked list on the stack. */
@@ -31,6 +31,7 @@ typedef struct tobi_source {
     char *name;                    /* path as given, for messages     */
     char *text;                    /* comments blanked, NUL at end    */
     size_t size;
+    tobi_spots spots;              /* of the text                     */
     int python;                    /* it was a parameter file of Python */
     json_t *root;                  /* an object                       */
     tobi_override *overrides;      /* those that were applied         */
@@ -45,9 +46,6 @@ typedef struct tobi_source {
    a JSON object; the reason is in the report. Clear the source in any case. */
 tobi_status tobi_source_parse(tobi_source *source, const char *name, const char *text, size_t size,
                               tobi_report *report, tobi_error *err);
-/* Reads a file of at most TOBI_SOURCE_LIMIT bytes; *text is NUL-terminated and owned by the caller.
- */
-tobi_status tobi_source_read_file(const char *path, char **text, size_t *size, tobi_error *err);
 void tobi_source_clear(tobi_source *source);
 
 /* Reports a mistake: "file:line:column: path: message", or "--set path=value: path: message". */

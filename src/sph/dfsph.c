@@ -12,6 +12,7 @@
 #include "sph/multigrid.h"
 #include "sph/stages.h"
 #include "sph/still.h"
+#include "sph/undo.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,7 @@ typedef struct dfsph {
     sph_view view;
     const sph_kernels *kernel;
     sph_multigrid grid;
+    sph_undo undo;
     /* survives a restart */
     struct { double speed, head, dt, vessel, low, level; } memory;   /* vessel: SPH_VESSEL_*; low, level:
                                      drops of the free surface and of still water, m             */
@@ -170,7 +172,7 @@ static void iterate(tobi_simulation *s, dfsph *m, solve *q, double *t)
         q->relative = relative_residual(s, m, q, t[0]);
         q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
         if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
-        if (q->converged && q->iterations >= q->min) break;
+        if ((q->converged && q->iterations >= q->min) || tobi_simulation_stops(s)) break;
         double last = rz;
         rz = precondition(s, m, q, t[0]);
         m->view.beta = last > 0 ? (float)(rz/last) : 0;
@@ -192,7 +194,7 @@ static int hold_pulling(tobi_simulation *s, dfsph *m, solve *q, double *t)
 {
     const sph_kernels *k = m->kernel;
     double pull[TOBI_TOTALS];
-    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max) return 0;
+    if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->stopped) return 0;
     launch(s, m, k->sph_hold, pull);
     if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
     launch(s, m, k->sph_pressure_accel, NULL);
@@ -336,29 +338,75 @@ static tobi_status settle(tobi_simulation *s, dfsph *m, double *clock, tobi_erro
         m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
         if (s->info.density_error_max < SETTLED) return TOBI_OK;
         correct_density(s, m, clock);
+        TOBI_TRY(tobi_simulation_heed(s, err));
         tobi_near_settle(s);
         TOBI_TRY(find_neighbors(s, m, clock, err));
     }
     return TOBI_OK;
 }
 
-static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+/* The level of still water follows the free surface of the last step. */
+static void set_still_water(tobi_simulation *s, dfsph *m)
 {
-    dfsph *m = state;
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
+                   fmax(m->memory.speed, s->body_speed), &m->memory.level);
+}
+
+static void restore_velocities(tobi_simulation *s, const tobi_float4 *kept)
+{
+    memcpy(s->particles.velocity, kept, (size_t)s->particles.count*sizeof *kept);
+}
+
+/* Before the first step: still water and the share of gravity that walls carry, (18) and (6b), follow from
+   the pressure of the step before. Without one the water would set off as if neither were there, and the
+   second step would press it back: a sensor read 1.8 times the pressure of rest. So the first step's pressure
+   is solved for twice with the velocities of the start before it is used. */
+static tobi_status find_first_pressure(tobi_simulation *s, dfsph *m, double *clock, tobi_error *err)
+{
+    if (s->step > 0) return TOBI_OK;
+    size_t bytes = (size_t)s->particles.count*sizeof(tobi_float4);
+    tobi_float4 *kept = malloc(bytes);
+    if (!kept) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the velocities of the start");
+    memcpy(kept, s->particles.velocity, bytes);
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k < 2 && status == TOBI_OK; k++) {
+        status = sph_see_walls(s, &m->view, m->kernel, clock, err);
+        if (status != TOBI_OK) break;
+        m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
+        m->memory.low = sph_still_low(s);
+        apply_forces(s, m, clock);
+        tobi_couple_begin(s);
+        remove_divergence(s, m, clock);
+        restore_velocities(s, kept);
+        set_still_water(s, m);
+        bind_view(s, m);
+    }
+    free(kept);
+    return status;
+}
+
+/* May be stopped as long as nothing has moved. */
+static tobi_status try_step(tobi_simulation *s, dfsph *m, double max_dt, tobi_error *err)
+{
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
-    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
+    set_still_water(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(sph_undo_keep(&m->undo, s, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
     TOBI_TRY(settle(s, m, &clock, err));
+    TOBI_TRY(find_first_pressure(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_still_low(s);
     apply_forces(s, m, &clock);
+    TOBI_TRY(tobi_simulation_heed(s, err));
     tobi_couple_begin(s);
     remove_divergence(s, m, &clock);
+    TOBI_TRY(tobi_simulation_heed(s, err));
     correct_density(s, m, &clock);
+    TOBI_TRY(tobi_simulation_heed(s, err));
     sph_measure_forces(s, &m->view, m->kernel, &clock);
     tobi_simulation_add_hydrostatic(s);
     tobi_couple_correct(s);
@@ -367,6 +415,17 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     s->time += s->dt;
     s->step++;
     return TOBI_OK;
+}
+
+static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_error *err)
+{
+    dfsph *m = state;
+    double *memory;
+    const int n = list_memory(m, &memory);
+    TOBI_TRY(sph_undo_begin(&m->undo, s, memory, n, err));
+    const tobi_status status = try_step(s, m, max_dt, err);
+    if (status == TOBI_STOPPED) sph_undo_restore(&m->undo, s, memory, n);
+    return status;
 }
 
 static tobi_status refresh(tobi_simulation *s, void *state, tobi_error *err)
@@ -390,6 +449,7 @@ static void free_state(void *state)
 {
     dfsph *m = state;
     if (m) sph_multigrid_free(&m->grid);
+    if (m) sph_undo_free(&m->undo);
     free(m);
 }
 

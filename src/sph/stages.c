@@ -168,6 +168,7 @@ double sph_measure_density(tobi_simulation *s, sph_view *v, const sph_kernels *k
     launch(s, v, k->sph_density, t);
     s->info.density_error_mean = t[0]/count;
     s->info.density_error_max = t[6];
+    s->info.surface_share = t[1]/count;
     s->lowest = t[7];
     s->open = t[3];
     double diagonal = t[2]/count;

@@ -40,18 +40,20 @@ double sph_still_low(const tobi_simulation *s)
     return k/scale;
 }
 
-/* Down with the surface at once, up slowly. */
-static double follow(const tobi_simulation *s, double before, double low)
+/* Down with the surface, but not faster than anything moves: a void that opens in the depth, as behind a
+   body that sets off, is no part of it. Up slowly. */
+static double follow(const tobi_simulation *s, double before, double low, double speed)
 {
     double g = 0;
+    if (!(low > 0) || !(before > 0)) return low;
     for (int a = 0; a < 3; a++) g += s->still.down[a]*s->gravity[a];
     double rise = 0.1*sqrt(g*s->smoothing.spacing)*s->dt;
-    return low > 0 && before > low ? fmax(low, before - rise) : low;
+    return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
 
-void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double *level)
+void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double speed, double *level)
 {
     sph_still_set(s, *level);
     *before = s->still;
-    *level = follow(s, *level, low);
+    *level = follow(s, *level, low, speed);
 }

@@ -9,5 +9,6 @@ void sph_still_set(tobi_simulation *s, double low);
    where it has no more. After sph_measure_density, which leaves the drops in particles.delta. */
 double sph_still_low(const tobi_simulation *s);
 /* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low`:
-   down with it at once, up slowly. *before: the reference that pressures refer to until then. */
-void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double *level);
+   down with it, by `speed` (m/s, of the fastest particle or body) at most, up slowly. *before: the reference
+   that pressures refer to until then. */
+void sph_still_move(tobi_simulation *s, tobi_still *before, double low, double speed, double *level);

@@ -179,7 +179,8 @@ static tobi_status step(tobi_simulation *s, void *state, double max_dt, tobi_err
     double clock = tobi_clock();
     sph_set_dt(s, &m->view, choose_dt(s, m), max_dt);
     TOBI_TRY(sph_predict_bodies(s, &clock, err));
-    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0, &m->memory.level);
+    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
+                   fmax(m->memory.speed, s->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);

@@ -79,6 +79,8 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 
 tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(path, "the path");
     TOBI_TRY(tobi_world_start(w, err));
     tobi_store *f;
     TOBI_TRY(tobi_store_create(path, &f, err));
@@ -123,6 +125,8 @@ static tobi_status get_clock(tobi_world *w, tobi_store *f, tobi_error *err)
 
 tobi_status tobi_world_load(tobi_world *w, const char *path, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(path, "the path");
     TOBI_TRY(tobi_world_start(w, err));
     tobi_store *f;
     TOBI_TRY(tobi_store_open(path, &f, err));

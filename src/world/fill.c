@@ -8,9 +8,11 @@
 /* Far more than any machine takes; sums of a scene's regions, in bytes, still fit in 64 bits. */
 #define COUNT_LIMIT 1e12
 
-/* Layers of a side of length a, and their distance: the lattice is stretched to fill the box evenly, so
-   that no gap of part of a spacing is left at a wall. */
-static double layers(double a, double d) { return fmax(1, floor(a/d + 0.5)); }
+/* The lattice is stretched to fill the box evenly, so that no gap of part of a spacing is left at a wall. */
+double tobi_region_layers(const tobi_region *r, int axis, double spacing)
+{
+    return fmax(1, floor((r->upper[axis] - r->lower[axis])/spacing + 0.5));
+}
 
 static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3], double step[3])
 {
@@ -18,7 +20,7 @@ static void lattice(const tobi_simulation *s, const tobi_region *r, int64_t n[3]
     for (int a = 0; a < 3; a++) {
         double side = r->upper[a] - r->lower[a];
         int flat = a == 2 && s->box.dimension == 2;
-        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : layers(side, d);
+        double count = flat ? 1 : r->shape.triangle_count ? ceil(side/d) : tobi_region_layers(r, a, d);
         n[a] = count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
         step[a] = r->shape.triangle_count ? d : side/(double)n[a];
     }
@@ -90,7 +92,7 @@ static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, t
     int64_t n = p->count - first;
     r->flow_speed = 0;
     if (!r->flow || n == 0) return TOBI_OK;
-    double (*at)[3] = malloc((size_t)n*sizeof *at), (*v)[3] = malloc((size_t)n*sizeof *v);
+    double (*at)[3] = malloc((size_t)n*sizeof *at), (*v)[3] = calloc((size_t)n, sizeof *v);
     for (int64_t i = 0; at && i < n; i++)
         for (int a = 0; a < 3; a++) at[i][a] = (&p->position[first + i].x)[a] + s->box.lower[a];
     tobi_status status = at && v ? r->flow(r->flow_user, n, (const double (*)[3])at, v, err)
@@ -101,6 +103,10 @@ static tobi_status add_flow(tobi_simulation *s, tobi_region *r, int64_t first, t
             (&p->velocity[first + i].x)[a] += (float)v[i][a];
             speed2 += v[i][a]*v[i][a];
         }
+        if (!(sqrt(speed2) <= TOBI_SPEED_LIMIT))
+            status = tobi_fail(err, TOBI_INVALID, "the flow of fill[%d] answers (%g, %g, %g) m/s at (%g, %g, "
+                               "%g) m; allowed are up to %g m/s", r->number, v[i][0], v[i][1], v[i][2],
+                               at[i][0], at[i][1], at[i][2], TOBI_SPEED_LIMIT);
         r->flow_speed = fmax(r->flow_speed, sqrt(speed2));
     }
     free(at);

@@ -21,6 +21,8 @@ typedef struct tobi_region {
     int64_t cut;                   /* points in that blade, or nearer than a quarter spacing */
 } tobi_region;
 
+/* Layers of a box along an axis. */
+double tobi_region_layers(const tobi_region *r, int axis, double spacing);
 /* Counts the lattice points of a region, an upper bound (bodies are not cut out). */
 int64_t tobi_region_count(const tobi_simulation *s, const tobi_region *r);
 /* Appends the region's particles to s->particles (capacity must suffice); counts what it left out. */

@@ -9,7 +9,7 @@
       .offset = offsetof(tobi_world_def, member_) + (axis_)*sizeof(int), .doc = doc_ }
 
 #define WALL_VELOCITY(key_, member_, axis_, doc_)                                     \
-    { .key = key_, VEC3, ANY, .unit = "m/s",                                          \
+    { .key = key_, VEC3, SPEED, .unit = "m/s",                                          \
       .offset = offsetof(tobi_world_def, member_) + (axis_)*3*sizeof(double),         \
       .doc = doc_ " Velocity along itself of a no-slip side: a lid, a belt." }
 
@@ -19,9 +19,9 @@ static const tobi_param world_rows[] = {
     { .key = "dimension", INT, AT(tobi_world_def, dimension), .def = { 3 }, RANGE(2, 3),
       .unit = "1",
       .doc = "3, or 2 for a flow in the x-y plane with masses and forces per metre of depth." },
-    { .key = "domain.min", VEC3, AT(tobi_world_def, domain_min), ANY, .unit = "m",
+    { .key = "domain.min", VEC3, AT(tobi_world_def, domain_min), PLACE, .unit = "m",
       .required = true, .doc = "Lower corner of the box that holds everything, of any sign." },
-    { .key = "domain.max", VEC3, AT(tobi_world_def, domain_max), ANY, .unit = "m",
+    { .key = "domain.max", VEC3, AT(tobi_world_def, domain_max), PLACE, .unit = "m",
       .required = true, .doc = "Upper corner of the box." },
     WALL("domain.walls.x[0]", wall_min, 0, "Side at the lower x; open lets the particles of mlsmpm out."),
     WALL("domain.walls.x[1]", wall_max, 0, "Side at the upper x; periodic comes in pairs."),
@@ -32,7 +32,7 @@ static const tobi_param world_rows[] = {
     { .key = "domain.contact_angle", REAL, AT(tobi_world_def, contact_angle), .def = { 90 },
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the sides." },
-    { .key = "domain.friction", REAL, AT(tobi_world_def, friction), FROM(0), .unit = "1",
+    { .key = "domain.friction", REAL, AT(tobi_world_def, friction), FRICTION, .unit = "1",
       .text = "none", .doc = "Coulomb friction between solids and the \"separate\" sides." },
     WALL_VELOCITY("domain.wall_velocity.x[0]", wall_velocity_min, 0, "The side at the lower x."),
     WALL_VELOCITY("domain.wall_velocity.x[1]", wall_velocity_max, 0, "The side at the upper x."),
@@ -40,24 +40,26 @@ static const tobi_param world_rows[] = {
     WALL_VELOCITY("domain.wall_velocity.y[1]", wall_velocity_max, 1, "The side at the upper y."),
     WALL_VELOCITY("domain.wall_velocity.z[0]", wall_velocity_min, 2, "The side at the lower z."),
     WALL_VELOCITY("domain.wall_velocity.z[1]", wall_velocity_max, 2, "The side at the upper z."),
-    { .key = "gravity", VEC3, AT(tobi_world_def, gravity), .def = { 0, 0, -9.81 }, ANY,
-      .unit = "m/s2",
+    { .key = "gravity", VEC3, AT(tobi_world_def, gravity), .def = { 0, 0, -9.81 },
+      RANGE(-1e6, 1e6), .unit = "m/s2",
       .doc = "Acceleration of gravity, in any direction; a 2-D scene that gives none gets [0, "
              "-9.81]." },
-    { .key = "spacing", REAL, AT(tobi_world_def, spacing), POSITIVE, .unit = "m", .required = true,
-      .doc = "Distance between fluid particles: the resolution." },
-    { .key = "end_time", REAL, AT(tobi_world_def, end_time), FROM(0), .unit = "s", .required = true,
+    { .key = "spacing", REAL, AT(tobi_world_def, spacing), LENGTHS, .unit = "m", .required = true,
+      .doc = "Distance between fluid particles: the resolution. Where layers do not fit into the boxes of "
+             "fluid, it gives way by up to 5 %, so that the particles hold the boxes' volume exactly." },
+    { .key = "end_time", REAL, AT(tobi_world_def, end_time), RANGE(0, 1e9), .unit = "s", .required = true,
       .doc = "Simulated time at which the run ends." },
-    { .key = "time_step", REAL, AT(tobi_world_def, time_step), FROM(0), .unit = "s",
+    { .key = "time_step", REAL, AT(tobi_world_def, time_step), DURATION, .unit = "s",
       .text = "adaptive",
       .doc = "A fixed time step; adaptive chooses each step from speeds, forces and viscosity." },
-    { .key = "time_step_max", REAL, AT(tobi_world_def, time_step_max), FROM(0), .unit = "s",
+    { .key = "time_step_max", REAL, AT(tobi_world_def, time_step_max), DURATION, .unit = "s",
       .text = "none", .doc = "Longest step that the adaptive choice may take." },
-    { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 }, .min = 0, .max = 1,
-      .positive = true, .unit = "1",
+    { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 },
+      RANGE(1e-4, 1), .unit = "1",
       .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step of dfsph and "
              "wcsph; mlsmpm has its own." },
-    { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit), FROM(0), .unit = "m/s",
+    { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit),
+      RANGE(1e-9, TOBI_SPEED_LIMIT), .unit = "m/s",
       .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
     { .key = "threads", INT, AT(tobi_world_def, threads), RANGE(0, 4096), .unit = "1",
       .text = "all", .doc = "Processor cores to use; the result is the same for any number." },

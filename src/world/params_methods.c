@@ -13,13 +13,13 @@
 static const tobi_param dfsph_rows[] = {
     SMOOTHING(tobi_dfsph_def),
     { .key = "density_tolerance", REAL, AT(tobi_dfsph_def, density_tolerance), .def = { 5e-4 },
-      .min = 0, .max = 0.1, .positive = true, .unit = "1",
+      RANGE(1e-9, 0.1), .unit = "1",
       .doc = "Mean relative density error at which the density solve may stop." },
     { .key = "divergence_tolerance", REAL, AT(tobi_dfsph_def, divergence_tolerance),
-      .def = { 1e-3 }, .min = 0, .max = 1, .positive = true, .unit = "1",
+      .def = { 1e-3 }, RANGE(1e-9, 1), .unit = "1",
       .doc = "Mean |div v| times the time step at which the divergence solve may stop." },
     { .key = "pressure_tolerance", REAL, AT(tobi_dfsph_def, pressure_tolerance), .def = { 0.05 },
-      .min = 0, .max = 1, .positive = true, .unit = "1",
+      RANGE(1e-9, 1), .unit = "1",
       .doc = "Relative pressure residual that both solves must reach as well." },
     { .key = "density_iterations_min", INT, AT(tobi_dfsph_def, density_iterations_min),
       .def = { 1 },
@@ -55,7 +55,7 @@ const tobi_param_table tobi_dfsph_table = {
 
 static const tobi_param wcsph_rows[] = {
     SMOOTHING(tobi_wcsph_def),
-    { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, POSITIVE,
+    { .key = "stiffness", REAL, AT(tobi_wcsph_def, stiffness), .def = { 50000 }, STIFFNESS,
       .unit = "Pa",
       .doc = "B of the Tait equation p = B ((rho/rho0)^exponent - 1). The speed of sound is "
              "sqrt(exponent B/rho0); ten times the fastest flow keeps the density within 1 %." },
@@ -95,8 +95,8 @@ static const tobi_param mlsmpm_rows[] = {
              "squares, with which slender solids that lean in the grid bend up to a tenth too easily and a "
              "step takes 4 % less time, without AVX-512 a fifth. Automatic is spline, and mls in scenes with "
              "blades or with a solid that has a strength." },
-    { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, .min = 0, .max = 0.5,
-      .positive = true, .unit = "1",
+    { .key = "cfl", REAL, AT(tobi_mlsmpm_def, cfl), .def = { 0.4 }, RANGE(1e-4, 0.5),
+      .unit = "1",
       .doc = "Largest part of a cell that sound and particles together cross in a step." },
     { .key = "measure_transfer", BOOL, AT(tobi_mlsmpm_def, measure_transfer),
       .doc = "Sum up in every step what the way to the grid and back, time steps and plastic flow cost, for "

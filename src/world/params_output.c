@@ -6,7 +6,7 @@ static const tobi_param probe_rows[] = {
       .doc = "Name of the probe, used once in a scene and in the columns of probes.csv." },
     { .key = "kind", CHOICE("point|level", 2), AT(tobi_probe_def, kind),
       .doc = "A point measures pressure and velocity, a level the height of the surface above or below it." },
-    { .key = "position", VEC3, AT(tobi_probe_def, position), ANY, .unit = "m", .required = true,
+    { .key = "position", VEC3, AT(tobi_probe_def, position), PLACE, .unit = "m", .required = true,
       .doc = "Where it sits; for a level any point of its plumb line." },
     { 0 }
 };
@@ -15,12 +15,12 @@ const tobi_param_table tobi_probe_table = {
     "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 
 static const tobi_param output_rows[] = {
-    { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, POSITIVE,
+    { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, DURATION,
       .unit = "s", .doc = "Simulated time between outputs, hit exactly." },
-    { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), FROM(0),
+    { .key = "checkpoint_interval", REAL, AT(tobi_output_def, checkpoint_interval), DURATION,
       .unit = "s", .text = "end",
       .doc = "Simulated time between checkpoints; end writes one when the run ends." },
-    { .key = "probe_interval", REAL, AT(tobi_output_def, probe_interval), FROM(0), .unit = "s",
+    { .key = "probe_interval", REAL, AT(tobi_output_def, probe_interval), DURATION, .unit = "s",
       .text = "step", .doc = "Simulated time between rows of probes.csv, at least; step writes every step." },
     { .key = "compression", CHOICE("none|zlib|lz4|ascii", 4), AT(tobi_output_def, compression),
       .def = { TOBI_COMPRESS_ZLIB }, .doc = "Form of the VTU and VTP files." },
@@ -39,11 +39,11 @@ static const tobi_param output_rows[] = {
       .doc = "Write the positions of the fluid's particles as PLY, for other programs." },
     { .key = "obj", BOOL, AT(tobi_output_def, obj),
       .doc = "Write the moving surface of each body as OBJ, for other programs." },
-    { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), ANY, .unit = "m",
+    { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), PLACE, .unit = "m",
       .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." },
-    { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), ANY, .unit = "m",
+    { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), PLACE, .unit = "m",
       .doc = "The point in the middle of the pictures." },
-    { .key = "camera.angle", REAL, AT(tobi_output_def, camera_angle), RANGE(0, 150),
+    { .key = "camera.angle", REAL, AT(tobi_output_def, camera_angle), RANGE(0.01, 150),
       .unit = "degrees", .text = "fit",
       .doc = "Vertical field of view; fit shows the whole domain from where it looks best." },
     { 0 }
@@ -67,9 +67,9 @@ static const tobi_param reference_rows[] = {
       .doc = "Column of the file with the times." },
     { .key = "y", TEXT, AT(tobi_reference_def, y), .unit = "text",
       .doc = "Column of the file with the values; without it the one that is named like column." },
-    { .key = "x_scale", REAL, AT(tobi_reference_def, x_scale), .def = { 1 }, POSITIVE, .unit = "1",
+    { .key = "x_scale", REAL, AT(tobi_reference_def, x_scale), .def = { 1 }, RANGE(1e-30, 1e30), .unit = "1",
       .doc = "Factor that turns x into seconds of the run." },
-    { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, ANY, .unit = "1",
+    { .key = "y_scale", REAL, AT(tobi_reference_def, y_scale), .def = { 1 }, RANGE(-1e30, 1e30), .unit = "1",
       .doc = "Factor that turns y into the unit of column." },
     { .key = "label", TEXT, AT(tobi_reference_def, label), .unit = "text",
       .doc = "Name in the picture, such as the publication; without it the name of the file." },

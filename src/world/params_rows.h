@@ -11,10 +11,21 @@
 #define BOOL     .type = TOBI_PARAM_BOOL, .min = 0, .max = 1, .unit = "true or false"
 #define VEC3     .type = TOBI_PARAM_VEC3
 #define TEXT     .type = TOBI_PARAM_TEXT, .min = NAN, .max = NAN
-#define ANY      .min = NAN, .max = NAN
-#define FROM(a)  .min = (a), .max = NAN
 #define RANGE(a, b) .min = (a), .max = (b)
-#define POSITIVE .min = 0, .max = NAN, .positive = true
+/* Every number has a range: what lies outside of it is a slip of the pen, and what kernels make of all that
+   lies within fits into single precision. test_limits.c steps worlds at both ends. */
+#define PLACE    RANGE(-1e7, 1e7)                           /* m: within 10 000 km                     */
+#define SPEED    RANGE(-TOBI_SPEED_LIMIT, TOBI_SPEED_LIMIT) /* m/s, and turns in rad/s                 */
+#define LENGTHS  RANGE(1e-7, 1e5)                           /* m: of particles and grains              */
+#define DURATION RANGE(1e-12, 1e9)                          /* s: up to 30 years                       */
+#define DENSITY  RANGE(1e-6, 1e9)                           /* kg/m3                                   */
+#define STIFFNESS RANGE(1e-6, 1e15)                         /* Pa: a thousand diamonds                 */
+#define MASS     RANGE(1e-30, 1e30), .positive = true       /* kg: a written 0 is no mass               */
+#define FRICTION RANGE(0, 1000)                             /* 1, of Coulomb                           */
+#define DIRECTION RANGE(-1e9, 1e9)                          /* of any length                           */
+#define ANGLE    RANGE(-1e6, 1e6)                           /* degrees                                 */
+#define FACTOR   RANGE(1e-6, 1e6)                           /* 1, of sizes                             */
+#define PULL     RANGE(-1e15, 1e15)                         /* N, N m                                  */
 /* Red, green and blue; the word of the row stands for the default, which is no colour. */
 #define COLOR .type = TOBI_PARAM_VEC3, .def = { -1, -1, -1 }, .min = 0, .max = 255, .unit = "RGB"
 #define CHOICE(words, count) \

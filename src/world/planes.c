@@ -16,6 +16,8 @@ static tobi_status check_place(const tobi_box *box, const tobi_plane_def *def, t
 
 tobi_status tobi_world_add_plane(tobi_world *w, const tobi_plane_def *def, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
     tobi_simulation *s = &w->sim;
     double size = 0;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more planes");

@@ -9,6 +9,9 @@
 
 tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_NEED(def->name, "the name of the probe");
     const tobi_box *box = &w->sim.box;
     TOBI_TRY(tobi_param_check(&tobi_probe_table, def, err));
     for (int a = 0; a < box->dimension; a++)
@@ -29,11 +32,11 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     return TOBI_OK;
 }
 
-int tobi_world_probe_count(const tobi_world *w) { return w->probe_count; }
+int tobi_world_probe_count(const tobi_world *w) { return w ? w->probe_count : 0; }
 
 const char *tobi_world_probe_name(const tobi_world *w, int probe, tobi_probe_kind *kind)
 {
-    if (probe < 0 || probe >= w->probe_count) return NULL;
+    if (!w || probe < 0 || probe >= w->probe_count) return NULL;
     if (kind) *kind = (tobi_probe_kind)w->probes[probe].kind;
     return w->probes[probe].name;
 }
@@ -48,6 +51,8 @@ void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *i
 
 tobi_status tobi_world_probe(tobi_world *w, int probe, tobi_probe_info *info, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(info, "where the values go");
     if (probe < 0 || probe >= w->probe_count)
         return tobi_fail(err, TOBI_NOT_FOUND, "there is no probe %d", probe);
     TOBI_TRY(tobi_world_refresh(w, err));

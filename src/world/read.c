@@ -43,6 +43,7 @@ int tobi_world_bodies_have(int field) { return fields[field].bodies; }
 
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
+    if (!w) return 0;
     if (set == TOBI_FLUID) return w->sim.particles.count;
     int64_t n = 0;
     for (int k = 0; k < w->sim.body_count; k++) n += w->sim.bodies[k].particle_count;
@@ -172,6 +173,12 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
                             int64_t count, tobi_error *err)
 {
     int k = 0, components = 0;
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(field, "the field");
+    TOBI_NEED(buffer || count == 0, "the buffer");
+    if (set != TOBI_FLUID && set != TOBI_BODIES)
+        return tobi_fail(err, TOBI_INVALID, "there is no set of particles %d; allowed are TOBI_FLUID and "
+                         "TOBI_BODIES", (int)set);
     while (k < FIELD_COUNT && strcmp(fields[k].name, field) != 0) k++;
     if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
     if (!(fields[k].owner & (TOBI_ALL | w->method->fields)))
@@ -206,19 +213,37 @@ tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *field, doub
     return TOBI_OK;
 }
 
+/* Of "velocity" or "pressure"; before any of them is taken. */
+static tobi_status check_values(const char *field, const double *v, int64_t count, int components,
+                                tobi_error *err)
+{
+    const double most = components == 3 ? TOBI_SPEED_LIMIT : 1e30;
+    for (int64_t k = 0; k < count*components; k++)
+        if (!(fabs(v[k]) <= most))
+            return tobi_fail(err, TOBI_INVALID, "row %lld of field '%s' holds %g; allowed is %g to %g",
+                             (long long)(k/components), field, v[k], -most, most);
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count,
                              tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(field, "the field");
+    TOBI_NEED(buffer || count == 0, "the buffer");
     int velocity = strcmp(field, "velocity") == 0;
     if (!velocity && strcmp(field, "pressure") != 0)
         return tobi_fail(err, TOBI_INVALID,
                          "field '%s' cannot be set; allowed are velocity and pressure", field);
     TOBI_TRY(tobi_world_refresh(w, err));
     tobi_particles *p = &w->sim.particles;
+    if (!velocity && !p->pressure)
+        return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->method->name, field);
     if (count != p->count)
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, %lld given", field,
                          (long long)p->count, (long long)count);
     double fastest = 0;
+    TOBI_TRY(check_values(field, buffer, count, velocity ? 3 : 1, err));
     for (int64_t r = 0; r < count; r++) {
         const double *v = buffer + r*(velocity ? 3 : 1);
         int64_t i = w->row_of[r];
@@ -240,6 +265,7 @@ tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_co
                                const double (**vertices)[3], int64_t *triangle_count,
                                const int32_t (**triangles)[3])
 {
+    if (!w || !vertex_count || !vertices || !triangle_count || !triangles) return TOBI_INVALID;
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     tobi_body *b = &w->sim.bodies[body];
     /* `next` is free between steps: it holds the pose in world coordinates. */
@@ -263,6 +289,8 @@ void tobi_world_free_grid(tobi_world *w)
 
 tobi_status tobi_world_grid(tobi_world *w, const tobi_grid **grid, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(grid, "where the grid goes");
     tobi_simulation *s = &w->sim;
     *grid = &w->grid;
     if (!w->method->nodes) return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no grid", w->method->name);
@@ -283,9 +311,9 @@ static uint64_t mix(uint64_t h, const void *data, size_t bytes)
 
 uint64_t tobi_world_hash(tobi_world *w)
 {
-    const tobi_particles *p = &w->sim.particles;
     uint64_t h = 14695981039346656037u;
-    if (tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
+    if (!w || tobi_world_refresh(w, NULL) != TOBI_OK) return 0;
+    const tobi_particles *p = &w->sim.particles;
     h = mix(h, &w->sim.time, sizeof w->sim.time);
     for (int64_t r = 0; r < p->count; r++) {
         int64_t i = w->row_of[r];

@@ -1,15 +1,20 @@
 /* The life of a run: create or resume, step, output, finish. The files are made in record_*.c. */
-#include "world/record.h"
+#include "base/plain.h"
 #include "io/file.h"
+#include "world/params.h"
+#include "world/record.h"
 #include "world/world.h"
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-/* Outputs are due when the clock is this part of an interval before them: only rounding. */
-#define SNAP 1e-9
+/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step of any
+   run that ends. */
+#define ROUNDING 1e-12
 
 double tobi_record_clock(void)
 {
@@ -21,7 +26,7 @@ double tobi_record_clock(void)
 static double next_checkpoint_after(const tobi_run *run, double t)
 {
     double every = run->output.checkpoint_interval;
-    return every > 0.0 ? (floor(t / every * (1.0 + SNAP)) + 1.0) * every : INFINITY;
+    return every > 0.0 ? (floor(t / every * (1.0 + ROUNDING)) + 1.0) * every : INFINITY;
 }
 
 /* What create and resume share: a run with its directory locked and the world started. */
@@ -46,10 +51,9 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->world = world;
     run->output = *output;
     run->lock = -1;
+    run->dir_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
-    if (!(output->interval > 0.0) || !isfinite(output->interval))
-        return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
     TOBI_TRY(tobi_series_fields(run, err));
     return tobi_record_open_dir(dir, &run->lock, err);
 }
@@ -68,13 +72,54 @@ static tobi_status write_text(const char *dir, const char *name, const char *tex
     return status;
 }
 
+/* The text of resolved.json into run->resolved, NULL if it is not there. */
+static tobi_status read_scene(tobi_run *run, tobi_error *err)
+{
+    size_t size;
+    char *path = tobi_record_path(run->dir, "resolved.json");
+    tobi_status status = path ? tobi_plain_read(path, "scene", 0, &run->resolved, &size, err)
+                              : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    free(path);
+    return status == TOBI_NOT_FOUND ? TOBI_OK : status;
+}
+
+/* resolved.json, if it is not there: without it a run cannot be resumed. */
+static tobi_status keep_scene(const tobi_run *run, tobi_error *err)
+{
+    char *path = run->resolved ? tobi_record_path(run->dir, "resolved.json") : NULL;
+    if (run->resolved && !path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    const bool there = !path || access(path, F_OK) == 0;
+    free(path);
+    return there ? TOBI_OK : write_text(run->dir, "resolved.json", run->resolved, err);
+}
+
+/* Sums up what was deleted. The writer has nothing to do meanwhile. */
+static void tell_losses(tobi_run *run)
+{
+    const struct { const tobi_csv *csv; const char *name; } tables[] = {
+        { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" } };
+    char *at = run->losses, *end = at + sizeof run->losses;
+    *at = '\0';
+    if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
+    for (int k = 0; k < 3; k++)
+        if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
+            at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
+    if (run->missing)
+        at += snprintf(at, (size_t)(end - at),
+                       "missing files of earlier outputs: %lld (the lists, *.pvd, leave them out); ",
+                       (long long)run->missing);
+    if (at > run->losses) at[-2] = '\0';
+}
+
 /* From a started world in a directory without results to output 0. */
 static tobi_status begin(tobi_run *run, tobi_error *err)
 {
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, false, err));
     run->next_checkpoint = next_checkpoint_after(run, 0.0);
-    return tobi_run_output(run, err);
+    TOBI_TRY(tobi_writer_start(run, err));
+    TOBI_TRY(tobi_run_output(run, err));
+    return tobi_writer_wait(run->writer, err);
 }
 
 static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_error *err)
@@ -87,13 +132,27 @@ static tobi_status create(tobi_run *run, int force, const char *resolved, tobi_e
     /* A world that cannot start must not cost the old results. */
     TOBI_TRY(tobi_world_start(run->world, err));
     TOBI_TRY(tobi_record_clear(run->dir, false, err));
-    if (resolved) TOBI_TRY(write_text(run->dir, "resolved.json", resolved, err));
+    if (resolved && !(run->resolved = strdup(resolved)))
+        return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    TOBI_TRY(keep_scene(run, err));
     return begin(run, err);
+}
+
+static tobi_status check_arguments(const tobi_world *world, const tobi_output_def *output, const char *dir,
+                                   tobi_error *err)
+{
+    TOBI_NEED_WORLD(world);
+    TOBI_NEED(output, "the output");
+    TOBI_NEED(dir, "the directory");
+    return tobi_param_check(&tobi_output_table, output, err);
 }
 
 tobi_status tobi_run_create(tobi_world *world, const tobi_output_def *output, const char *dir,
                             int force, const char *resolved_json, tobi_run **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the run goes");
+    *out = NULL;
+    TOBI_TRY(check_arguments(world, output, dir, err));
     tobi_run *run = NULL;
     tobi_status status = open_run(world, output, dir, &run, err);
     if (status == TOBI_OK) status = create(run, force, resolved_json, err);
@@ -109,6 +168,7 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
 {
     bool found = false;
     TOBI_TRY(tobi_record_clear(run->dir, true, err));
+    TOBI_TRY(read_scene(run, err));
     TOBI_TRY(tobi_state_load(run, &found, err));
     if (!found) {
         snprintf(run->note, sizeof run->note, "no checkpoint in %s: beginning again at t = 0",
@@ -119,13 +179,17 @@ static tobi_status resume(tobi_run *run, tobi_error *err)
     TOBI_TRY(tobi_series_prepare(run, err));
     TOBI_TRY(tobi_tables_open(run, true, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
-    return tobi_series_lists(run, err);
+    TOBI_TRY(tobi_series_lists(run, err));
+    tell_losses(run);
+    return tobi_writer_start(run, err);
 }
 
 tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, const char *dir,
                             tobi_run **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the run goes");
     *out = NULL;
+    TOBI_TRY(check_arguments(world, output, dir, err));
     bool found = false;
     TOBI_TRY(tobi_record_find_results(dir, &found, err));
     if (!found)
@@ -141,29 +205,34 @@ tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *output, co
     return status;
 }
 
-const char *tobi_run_note(const tobi_run *run) { return run->note; }
+const char *tobi_run_note(const tobi_run *run) { return run ? run->note : ""; }
 
-/* The end, moved onto the output time that it means. */
+const char *tobi_run_losses(const tobi_run *run) { return run->losses; }
+
+/* The end, moved onto the output time that it means: 3 x 0.1 is not 0.3. */
 static double snap_end(const tobi_run *run, double end)
 {
-    double nearest = tobi_record_time(run, llround(end / run->output.interval));
-    return fabs(nearest - end) <= SNAP * run->output.interval ? nearest : end;
+    double nearest = round(end / run->output.interval) * run->output.interval;
+    return fabs(nearest - end) <= ROUNDING * end ? nearest : end;
 }
 
 static bool reached(const tobi_run *run, double t)
 {
-    return tobi_world_time(run->world) >= t - SNAP * run->output.interval;
+    return tobi_world_time(run->world) >= t * (1.0 - ROUNDING);
 }
 
-int tobi_run_done(const tobi_run *run, double end) { return reached(run, snap_end(run, end)); }
+int tobi_run_done(const tobi_run *run, double end)
+{
+    return !run || (isfinite(end) && reached(run, snap_end(run, end)) &&
+                    !reached(run, tobi_record_time(run, run->outputs)));
+}
 
 /* Takes the step's own numbers from inside: tobi_world_info would add up energies in every step. */
-static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
+static tobi_status step_towards(tobi_run *run, double target, double end, tobi_error *err)
 {
     tobi_simulation *sim = &run->world->sim;
     double before = tobi_record_clock(), start = sim->time;
-    TOBI_TRY(tobi_world_step(run->world, target - sim->time, NULL, err));
-    if (reached(run, target)) sim->time = sim->info.time = target;      /* not a rounding beside it */
+    TOBI_TRY(tobi_world_step_towards(run->world, target, end, err));
     run->step_wall += tobi_record_clock() - before;
     run->particle_steps += (double)sim->info.fluid_particles;
     tobi_tally_add(&run->since, &sim->info);
@@ -174,51 +243,77 @@ static tobi_status step_towards(tobi_run *run, double target, tobi_error *err)
 
 tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
+    if (!isfinite(end)) return tobi_fail(err, TOBI_INVALID, "the end of the run is %g s, not finite", end);
     double next = tobi_record_time(run, run->outputs);
     double target = fmin(next, snap_end(run, end));
-    if (reached(run, target) && !reached(run, next)) return TOBI_OK;
-
-    if (!reached(run, next)) TOBI_TRY(step_towards(run, target, err));
+    TOBI_TRY(tobi_writer_check(run->writer, err));
+    if (!reached(run, target)) TOBI_TRY(step_towards(run, target, end, err));
+    else if (!reached(run, next)) return tobi_writer_wait(run->writer, err);
     if (info) *info = run->world->sim.info;
     if (reached(run, next)) TOBI_TRY(tobi_run_output(run, err));
     if (tobi_world_time(run->world) >= run->next_checkpoint)
         TOBI_TRY(tobi_run_checkpoint(run, err));
-    return TOBI_OK;
+    return tobi_run_done(run, end) ? tobi_writer_wait(run->writer, err) : TOBI_OK;
 }
 
 tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
 {
-    TOBI_TRY(tobi_series_write(run, err));
-    TOBI_TRY(tobi_tables_write(run, err));
+    TOBI_NEED(run, "run");
+    tobi_snapshot *snapshot;
+    TOBI_TRY(tobi_snapshot_take(run, &snapshot, err));
+    tobi_status status = tobi_writer_put(run->writer, snapshot, err);
+    if (status != TOBI_OK) {
+        tobi_snapshot_free(snapshot);
+        return status;
+    }
     run->outputs++;
     run->since = (tobi_tally){ 0 };
     memset(run->body_since, 0, (size_t)tobi_world_body_count(run->world)*sizeof *run->body_since);
     return TOBI_OK;
 }
 
+tobi_status tobi_run_wait(tobi_run *run, tobi_error *err) { return tobi_writer_wait(run->writer, err); }
+
+/* A checkpoint counts the outputs: they must be on the disk before it is. */
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
+    TOBI_NEED(run, "run");
+    TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
+    TOBI_TRY(tobi_record_keep_dir(run, err));
+    TOBI_TRY(keep_scene(run, err));
     TOBI_TRY(tobi_state_save(run, err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     return TOBI_OK;
 }
 
+/* The summary is written after a failure too, but then it says so. */
 tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
 {
-    return tobi_summary_write(run, outcome, err);
+    TOBI_NEED(run, "run");
+    TOBI_NEED(outcome, "the outcome");
+    tobi_status status = tobi_writer_wait(run->writer, err);
+    if (status == TOBI_OK) status = tobi_record_keep_dir(run, err);
+    if (status == TOBI_OK) status = tobi_series_lists(run, err);
+    tell_losses(run);
+    if (status != TOBI_OK) err = NULL;
+    tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
+    return status != TOBI_OK ? status : written;
 }
 
 void tobi_run_free(tobi_run *run)
 {
     if (!run) return;
+    tobi_writer_free(run->writer);
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);
     tobi_csv_close(run->probes);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
-    free(run->body_file);
+    tobi_snapshot_free_skins(run);
     free(run->body_since);
+    free(run->resolved);
     free(run->dir);
     free(run);
 }

@@ -1,12 +1,17 @@
 /* The recorder's insides, shared by record_*.c. See tobiuo/run.h for what it promises.
 
-   What a resumed run must know besides the world itself is in two tobi_tally and a few totals;
-   record_state.c saves them beside each checkpoint. Everything else follows from the world's time.
+   An output is a snapshot, taken from the world by the caller's thread, and then files, written by a
+   thread of the run. What a resumed run must know besides the world itself is in two tobi_tally and a
+   few totals; record_state.c saves them beside each checkpoint. Everything else follows from the
+   world's time.
  */
 #pragma once
 #include "base/error.h"
 #include "io/csv.h"
+#include "io/pvd.h"
+#include "io/vtk.h"
 #include "tobiuo/run.h"
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -34,20 +39,47 @@ typedef struct tobi_record_field {
 
 enum { TOBI_RECORD_FIELD_LIMIT = 32 };
 
+/* What has particles or nodes in a file of its own: folder NAME, files NAME_000000.vtu. */
+enum { TOBI_SET_FLUID, TOBI_SET_BODIES, TOBI_SET_GRID, TOBI_SETS };
+typedef struct tobi_point_set {
+    int64_t count;
+    double (*position)[3];
+    tobi_vtk_array array[TOBI_RECORD_FIELD_LIMIT];      /* data owned */
+    int arrays;
+} tobi_point_set;
+
+/* All that the files of one output hold. */
+typedef struct tobi_snapshot {
+    int64_t number;                       /* of the output                           */
+    tobi_point_set set[TOBI_SETS];
+    double (**surface)[3];                /* vertices of each body                   */
+    int surfaces;
+    struct tobi_drawing *drawing;         /* NULL: no picture                        */
+    tobi_csv_rows bodies, history;
+    bool bodies_written;                  /* so that a second try adds no row twice  */
+} tobi_snapshot;
+
 struct tobi_run {
     tobi_world *world;
     tobi_output_def output;               /* fields is not used after creation       */
     char *dir;
     int lock;                             /* descriptor of dir, locked               */
-    char note[1024];
+    pthread_mutex_t dir_lock;             /* of the descriptor, and of making folders */
+    char *resolved;                       /* text of resolved.json, NULL = there is none */
+    char note[1024], losses[512];         /* texts for the user                      */
+    bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
     char (*body_file)[80];                /* names of the bodies' surface files      */
     struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
     int skin_count;
+    struct tobi_writer *writer;
+    tobi_pvd *list;                       /* of each series, then of all             */
+    int series;
+    int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
     tobi_csv *history, *bodies, *probes;  /* NULL without bodies, without probes     */
-    int64_t outputs;                      /* written so far = index of the next      */
+    int64_t outputs;                      /* taken so far = number of the next       */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
     double wall, step_wall;               /* s, earlier sessions + this one          */
@@ -67,13 +99,17 @@ tobi_status tobi_record_find_results(const char *dir, bool *found, tobi_error *e
 /* Removes the files a run writes, with `only_parts` only unfinished ones. */
 tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err);
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
+/* Makes what was deleted of the run's directory and its folders again. */
+tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err);
 /* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
 /* record_tables.c: history.csv, bodies.csv and probes.csv. */
 /* Opens them: new, or continued after the rows up to the world's time. */
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
-tobi_status tobi_tables_write(tobi_run *run, tobi_error *err);
+/* The rows of an output: made, and written. */
+tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 /* The row of probes.csv that is due after the step from `before`, if any. */
 tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
 /* Names of columns, NULL past the end. In probes.csv they follow the probe's name and "_". */
@@ -84,20 +120,42 @@ const char *tobi_tables_column(tobi_table table, int index);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 
+/* record_snapshot.c: what an output holds, from the world. */
+tobi_status tobi_snapshot_take(tobi_run *run, tobi_snapshot **snapshot, tobi_error *err);
+/* NULL is fine. */
+void tobi_snapshot_free(tobi_snapshot *snapshot);
+/* What the surfaces needed. */
+void tobi_snapshot_free_skins(tobi_run *run);
+
 /* record_series.c: VTU, VTP, STL, PNG and PVD. */
 /* Reads "velocity,pressure" of output.fields into run->field. */
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
-/* Names and folders. */
+/* Names, folders and empty lists. */
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
-/* The files of output run->outputs, then the lists including it. */
-tobi_status tobi_series_write(tobi_run *run, tobi_error *err);
-/* What the surfaces needed. */
-void tobi_series_free(tobi_run *run);
-/* The lists of outputs 0 .. run->outputs - 1. */
+tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err);
+/* The files of an output, then the lists including it. */
+tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+/* The lists anew, of what is there of outputs 0 .. run->outputs - 1; the rest is run->missing. */
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
+void tobi_series_free(tobi_run *run);
 
-/* record_frame.c: the picture of output run->outputs. */
-tobi_status tobi_record_frame(tobi_run *run, tobi_error *err);
+/* record_frame.c: the picture of an output, which has its particles and surfaces already. */
+tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+void tobi_drawing_free(struct tobi_drawing *drawing);
+
+/* record_writer.c: the thread. */
+tobi_status tobi_writer_start(tobi_run *run, tobi_error *err);
+/* A snapshot to write, owned by the writer after TOBI_OK. Waits while it has two. */
+tobi_status tobi_writer_put(struct tobi_writer *writer, tobi_snapshot *snapshot, tobi_error *err);
+/* What has failed since the last call of put, check or wait; it is tried again after that. */
+tobi_status tobi_writer_check(struct tobi_writer *writer, tobi_error *err);
+/* Waits until all is written, or something fails. */
+tobi_status tobi_writer_wait(struct tobi_writer *writer, tobi_error *err);
+/* Snapshots that are not written. */
+int tobi_writer_pending(struct tobi_writer *writer);
+/* Writes what can be written and ends the thread; NULL is fine. */
+void tobi_writer_free(struct tobi_writer *writer);
 
 /* record_state.c: checkpoints. */
 tobi_status tobi_state_save(tobi_run *run, tobi_error *err);

@@ -1,7 +1,9 @@
 /* The directory of a run: making, locking, and knowing which files in it are ours.
 
    Ours is what matches the list of names below. Anything else in the directory is the user's and is
-   never touched. */
+   never touched. The directory itself may be reached by a link; inside it no link is followed,
+   because it may come from a stranger. Drawback: that is looked at when the run starts, so that a
+   directory in which somebody else works at the same time is not safe. */
 #define _GNU_SOURCE
 #include "world/record.h"
 #include <dirent.h>
@@ -75,6 +77,20 @@ static tobi_status make_parents(const char *dir, tobi_error *err)
     return status;
 }
 
+static tobi_status check_folders(const char *dir, int fd, tobi_error *err)
+{
+    struct stat info, root;
+    if (fstat(fd, &info) == 0 && stat("/", &root) == 0 && info.st_dev == root.st_dev &&
+        info.st_ino == root.st_ino)
+        return tobi_fail(err, TOBI_INVALID, "%s is the root of the file system: results need a directory of "
+                         "their own", dir);
+    for (size_t k = 1; k < sizeof folders / sizeof *folders; k++)
+        if (fstatat(fd, folders[k], &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(info.st_mode))
+            return tobi_fail(err, TOBI_INVALID, "%s/%s is a symbolic link: a run writes into plain folders "
+                             "only (the directory %s itself may be a link)", dir, folders[k], dir);
+    return TOBI_OK;
+}
+
 tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
 {
     if (!*dir) return tobi_fail(err, TOBI_INVALID, "the name of the output directory is empty");
@@ -83,6 +99,7 @@ tobi_status tobi_record_open_dir(const char *dir, int *lock, tobi_error *err)
     if (fd < 0)
         return tobi_fail(err, TOBI_IO, "cannot open the directory %s: %s", dir, strerror(errno));
     *lock = fd;
+    TOBI_TRY(check_folders(dir, fd, err));
     if (faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0)
         return tobi_fail(err, TOBI_IO, "cannot write to the directory %s: %s", dir,
                          strerror(errno));
@@ -166,6 +183,30 @@ tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *
     if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     tobi_status status = make_parents(path, err);
     free(path);
+    return status;
+}
+
+/* Whether dir is still the directory that the run has locked. */
+static bool is_ours(const tobi_run *run)
+{
+    struct stat ours, there;
+    return fstat(run->lock, &ours) == 0 && stat(run->dir, &there) == 0 && ours.st_dev == there.st_dev &&
+           ours.st_ino == there.st_ino;
+}
+
+tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err)
+{
+    tobi_status status = TOBI_OK;
+    pthread_mutex_lock(&run->dir_lock);
+    if (!is_ours(run)) {
+        int fd = -1;
+        status = tobi_record_open_dir(run->dir, &fd, err);
+        if (fd >= 0) close(status == TOBI_OK ? run->lock : fd);
+        if (status == TOBI_OK) run->lock = fd;
+        run->lost_dir |= status == TOBI_OK;
+    }
+    if (status == TOBI_OK) status = tobi_series_folders(run, err);
+    pthread_mutex_unlock(&run->dir_lock);
     return status;
 }
 

@@ -1,6 +1,8 @@
 /* The picture of an output: water coloured by speed and bodies by number unless they have colours of their
    own, seen so that the box fits unless there is a camera. */
+#include "core/cuts.h"
 #include "io/frame.h"
+#include "world/params.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>
@@ -12,42 +14,49 @@ static const float body_colors[][3] = {
 };
 enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
-typedef struct drawing {
-    double *positions, *velocities;    /* n x 3        */
+typedef struct tobi_drawing {
+    tobi_frame frame;                  /* of what follows                               */
+    char title[64];
+    double *positions;                 /* n x 3                                         */
     float *values;                     /* n, speeds; with a palette the colour's number */
     int64_t count;                     /* particles that are shown                      */
-    float palette[2*TOBI_SOLID_LIMIT][3];
-    int colors;                        /* one per fluid or solid, or its skin's and its core's */
-    int has_palette;
+    float (*palette)[3];
+    int colors;                        /* in the palette                                */
+    int has_palette;                   /* 0: colours by speed                           */
+    uint8_t *tint;                     /* of each piece, or NULL: nothing can part      */
     uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
     int mesh_count;
     tobi_frame_mesh *meshes;
-} drawing;
+} tobi_drawing;
 
-static void free_drawing(drawing *d)
+void tobi_drawing_free(tobi_drawing *d)
 {
+    if (!d) return;
     free(d->positions);
-    free(d->velocities);
     free(d->values);
+    free(d->palette);
+    free(d->tint);
     free(d->opaque);
     free(d->meshes);
+    free(d);
 }
 
-static tobi_status read_fluid(tobi_run *run, int64_t n, drawing *d, tobi_error *err)
+/* The positions are copied, because those of hidden materials are left out. */
+static tobi_status read_fluid(tobi_run *run, const tobi_point_set *fluid, tobi_drawing *d, tobi_error *err)
 {
-    d->positions = malloc((size_t)n * 3 * sizeof *d->positions + 1);
-    d->velocities = malloc((size_t)n * 3 * sizeof *d->velocities + 1);
-    d->values = malloc((size_t)n * sizeof *d->values + 1);
-    if (!d->positions || !d->velocities || !d->values)
-        return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "position", d->positions, 3 * n, err));
-    TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "velocity", d->velocities, 3 * n, err));
-    for (int64_t i = 0; i < n; i++) {
-        const double *v = d->velocities + 3 * i;
-        d->values[i] = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    }
-    d->count = n;
-    return TOBI_OK;
+    const size_t n = (size_t)fluid->count;
+    double (*v)[3] = malloc(n * sizeof *v + 1);
+    d->positions = malloc(n * 3 * sizeof *d->positions + 1);
+    d->values = malloc(n * sizeof *d->values + 1);
+    tobi_status status = v && d->positions && d->values
+        ? tobi_world_read(run->world, TOBI_FLUID, "velocity", &v[0][0], fluid->count, err)
+        : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    if (status == TOBI_OK) memcpy(d->positions, fluid->position, n * 3 * sizeof *d->positions);
+    for (size_t i = 0; status == TOBI_OK && i < n; i++)
+        d->values[i] = (float)sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    d->count = fluid->count;
+    free(v);
+    return status;
 }
 
 /* A fluid or solid as pictures see it. */
@@ -68,28 +77,106 @@ static void set_color(const double *color, float out[3])
     for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
 }
 
-/* The palette: a colour per material or, if any shows its core, two. */
-static void make_palette(const tobi_simulation *s, int materials, drawing *d)
+/* Where a particle of a material is: at its surface, below it, at the face of a cut. */
+enum { SKIN, CORE, FACE, PARTS };
+
+/* The second piece of a solid and all after it are mixed with one of these, so that halves which lie face to
+   face can be told apart. */
+static const float tints[][3] = {
+    { 0.10f, 0.30f, 0.90f }, { 0.95f, 0.75f, 0.05f }, { 0.10f, 0.65f, 0.30f }, { 0.55f, 0.15f, 0.75f },
+    { 0.95f, 0.45f, 0.05f }, { 0.05f, 0.65f, 0.75f },
+};
+enum { TINTS = 1 + sizeof tints / sizeof *tints };
+
+static void mix(float color[3], const float with[3], float share)
 {
-    int cores = 0;
-    for (int m = 0; m < materials; m++) {
-        const material look = material_at(s, m);
-        cores |= look.core != look.color;
-        d->has_palette |= look.core[0] >= 0;
-    }
-    d->colors = materials * (1 + cores);
+    for (int k = 0; k < 3; k++) color[k] += share * (with[k] - color[k]);
+}
+
+/* Without a core of its own, a cut face is paler than its material, or darker where that is pale. */
+static void find_color(const material *look, int part, int tint, float out[3])
+{
+    static const float white[3] = { 1, 1, 1 }, black[3] = { 0, 0, 0 };
+    set_color(part == SKIN ? look->color : look->core, out);
+    const int pale = out[0] + out[1] + out[2] > 2;
+    if (part == FACE && look->core == look->color) mix(out, pale ? black : white, 0.4f);
+    if (tint > 0) mix(out, tints[tint - 1], 0.3f);
+}
+
+/* Whether a blade or a crack may part a solid of the world. */
+static int can_part(const tobi_simulation *s, int solid)
+{
+    const tobi_solid_def *def = &s->solids[solid].def;
+    return tobi_solid_uses(def->model, "cut_friction") && (s->particles.cuts || def->strength > 0);
+}
+
+/* The palette, if any material has a colour: of each material skin, core and face, each in all tints. */
+static tobi_status make_palette(const tobi_simulation *s, int materials, tobi_drawing *d, tobi_error *err)
+{
+    d->colors = materials * PARTS * TINTS;
+    d->palette = malloc(((size_t)d->colors + 1) * sizeof *d->palette);
+    if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int c = 0; c < d->colors; c++) {
-        const material look = material_at(s, c / (1 + cores));
-        set_color(cores && c % 2 ? look.core : look.color, d->palette[c]);
+        const material look = material_at(s, c / (PARTS * TINTS));
+        d->has_palette |= look.core[0] >= 0;
+        find_color(&look, c % PARTS, c / PARTS % TINTS, d->palette[c]);
     }
+    return TOBI_OK;
+}
+
+static int order_pieces(const void *a, const void *b)
+{
+    const tobi_piece *p = *(const tobi_piece *const *)a, *q = *(const tobi_piece *const *)b;
+    if (p->solid != q->solid) return p->solid < q->solid ? -1 : 1;
+    return p->first_id < q->first_id ? -1 : p->first_id > q->first_id;
+}
+
+/* The tint of each piece, by its first particle, so that it keeps it as long as there are few: the first
+   piece of a solid has none, nor has debris. */
+static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
+{
+    const tobi_pieces *found;
+    int any = 0, taken[TINTS] = { 0 };
+    for (int k = 0; k < run->world->sim.solid_count; k++) any |= can_part(&run->world->sim, k);
+    if (!any || !d->has_palette) return TOBI_OK;
+    TOBI_TRY(tobi_world_pieces(run->world, &found, err));
+    d->tint = calloc((size_t)(found->count + found->fragments) + 1, sizeof *d->tint);
+    const tobi_piece **order = malloc(((size_t)found->count + 1) * sizeof *order);
+    for (int64_t k = 0; order && k < found->count; k++) order[k] = &found->piece[k];
+    if (order) qsort(order, (size_t)found->count, sizeof *order, order_pieces);
+    for (int64_t k = 0; d->tint && order && k < found->count; k++) {
+        const tobi_piece *p = order[k];
+        const int first = k == 0 || p->solid != order[k - 1]->solid;
+        if (first) memset(taken, 0, sizeof taken);
+        if (first || !can_part(&run->world->sim, p->solid)) continue;
+        int tint = 1 + (int)((uint64_t)p->first_id * 0x9e3779b97f4a7c15u >> 33) % (TINTS - 1);
+        for (int n = 0; n < TINTS && taken[tint]; n++) tint = tint % (TINTS - 1) + 1;
+        taken[tint] = 1;
+        d->tint[p - found->piece] = (uint8_t)tint;
+    }
+    free(order);
+    return d->tint && order ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+}
+
+/* At a cut: within a spacing, so that each of its sides has a layer. */
+static int find_part(const tobi_simulation *s, int64_t row)
+{
+    const tobi_particles *p = &s->particles;
+    for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[row].c[k].w != 0; k++) {
+        const tobi_float4 *way = &p->cuts[row].c[k];
+        const double square = (double)way->x * way->x + (double)way->y * way->y + (double)way->z * way->z;
+        if (square < s->smoothing.spacing * s->smoothing.spacing) return FACE;
+    }
+    return p->rest && p->rest[row].w > 0 ? CORE : SKIN;
 }
 
 /* Materials with colours: the value becomes the colour's number; hidden materials are left out. */
-static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *err)
+static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *err)
 {
     const tobi_simulation *s = &run->world->sim;
     int hidden = 0, solids = 0, materials = s->solid_count ? s->solid_count : s->fluid_count;
-    make_palette(s, materials, d);
+    TOBI_TRY(make_palette(s, materials, d, err));
+    TOBI_TRY(choose_tints(run, d, err));
     for (int m = 0; m < materials; m++) {
         const material look = material_at(s, m);
         hidden |= !look.visible;
@@ -101,29 +188,31 @@ static tobi_status color_materials(const tobi_run *run, drawing *d, tobi_error *
     int64_t n = d->count, kept = 0;
     for (int64_t i = 0; i < n; i++) {
         const int32_t row = run->world->row_of[i];              /* rows are fresh: just read */
-        const int m = s->particles.fluid[row], core = s->particles.rest && s->particles.rest[row].w > 0;
+        const int m = s->particles.fluid[row], piece = d->tint ? run->world->pieces.of[row] : -1;
         const material look = material_at(s, m);
         if (!look.visible) continue;
         memmove(d->positions + 3 * kept, d->positions + 3 * i, 3 * sizeof *d->positions);
         if (d->opaque) d->opaque[kept] = !look.liquid;
-        d->values[kept++] = !d->has_palette ? d->values[i]
-                            : d->colors > materials ? (float)(2 * m + core) : (float)m;
+        const int color = (m * TINTS + (piece >= 0 ? d->tint[piece] : 0)) * PARTS + find_part(s, row);
+        d->values[kept++] = d->has_palette ? (float)color : d->values[i];
     }
     d->count = kept;
     return TOBI_OK;
 }
 
-static tobi_status read_meshes(tobi_run *run, int count, drawing *d, tobi_error *err)
+static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapshot, tobi_drawing *d,
+                               tobi_error *err)
 {
-    d->meshes = calloc((size_t)count + 1, sizeof *d->meshes);
+    d->meshes = calloc((size_t)snapshot->surfaces + 1, sizeof *d->meshes);
     if (!d->meshes) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    for (int b = 0; b < count; b++) {
+    for (int b = 0; b < snapshot->surfaces; b++) {
         const tobi_body *body = &run->world->sim.bodies[b];
-        tobi_frame_mesh *m = &d->meshes[d->mesh_count];
         if (!body->visible) continue;
-        d->mesh_count++;
-        TOBI_TRY(tobi_world_surface(run->world, b, &m->vertex_count, &m->vertices, &m->triangle_count,
-                                    &m->triangles));
+        tobi_frame_mesh *m = &d->meshes[d->mesh_count++];
+        *m = (tobi_frame_mesh){ .vertex_count = body->mesh.vertex_count,
+                                .vertices = (const double (*)[3])snapshot->surface[b],
+                                .triangle_count = body->mesh.triangle_count,
+                                .triangles = (const int32_t (*)[3])body->mesh.triangles };
         memcpy(m->color, body_colors[b % COLOR_COUNT], sizeof m->color);
         for (int k = 0; k < 3 && body->color[0] >= 0; k++) m->color[k] = (float)(body->color[k] / 255.0);
     }
@@ -139,49 +228,54 @@ static double color_speed(const tobi_world_def *def)
     return 0.5 * sqrt(2.0 * work);
 }
 
-static tobi_status draw(tobi_run *run, const char *path, drawing *d, tobi_error *err)
+static void set_frame(const tobi_run *run, tobi_drawing *d)
 {
     const tobi_world_def *def = &run->world->sim.def;
-    char title[64];
-    tobi_frame frame = tobi_default_frame();
-    frame.dimension = def->dimension;
+    tobi_frame *frame = &d->frame;
+    *frame = tobi_default_frame();
+    frame->dimension = def->dimension;
     for (int a = 0; a < 3; a++) {
-        frame.box_min[a] = def->domain_min[a];
-        frame.box_max[a] = def->domain_max[a];
-        frame.up[a] = -def->gravity[a];
+        frame->box_min[a] = def->domain_min[a];
+        frame->box_max[a] = def->domain_max[a];
+        frame->up[a] = -def->gravity[a];
     }
-    TOBI_TRY(read_fluid(run, tobi_world_count(run->world, TOBI_FLUID), d, err));
-    TOBI_TRY(color_materials(run, d, err));
-    TOBI_TRY(read_meshes(run, tobi_world_body_count(run->world), d, err));
-    frame.particle_count = d->count;
-    frame.mesh_count = d->mesh_count;
-    frame.positions = (const double (*)[3])d->positions;
-    frame.values = d->values;
-    frame.radius = 0.5 * def->spacing;
-    frame.opaque = d->opaque;
-    frame.value_max = d->has_palette ? d->colors - 1 : color_speed(def);
+    frame->particle_count = d->count;
+    frame->mesh_count = d->mesh_count;
+    frame->positions = (const double (*)[3])(void *)d->positions;
+    frame->values = d->values;
+    frame->radius = 0.5 * def->spacing;
+    frame->opaque = d->opaque;
+    frame->value_max = d->has_palette ? d->colors - 1 : color_speed(def);
     if (d->has_palette) {
-        frame.palette = (const float (*)[3])d->palette;
-        frame.palette_count = d->colors;
+        frame->palette = (const float (*)[3])d->palette;
+        frame->palette_count = d->colors;
     }
-    frame.has_camera = run->output.camera_angle > 0 && def->dimension == 3;
-    memcpy(frame.eye, run->output.camera_position, sizeof frame.eye);
-    memcpy(frame.target, run->output.camera_look_at, sizeof frame.target);
-    if (frame.has_camera) frame.field_of_view = run->output.camera_angle;
-    frame.meshes = d->meshes;
-    snprintf(title, sizeof title, "t = %.4f s", tobi_world_time(run->world));
-    frame.title = title;
-    frame.label = d->has_palette ? NULL : "speed [m/s]";
-    return tobi_frame_write(path, &frame, err);
+    frame->has_camera = run->output.camera_angle > 0 && def->dimension == 3;
+    memcpy(frame->eye, run->output.camera_position, sizeof frame->eye);
+    memcpy(frame->target, run->output.camera_look_at, sizeof frame->target);
+    if (frame->has_camera) frame->field_of_view = run->output.camera_angle;
+    frame->meshes = d->meshes;
+    snprintf(d->title, sizeof d->title, "t = %.4f s", tobi_world_time(run->world));
+    frame->title = d->title;
+    frame->label = d->has_palette ? NULL : "speed [m/s]";
 }
 
-tobi_status tobi_record_frame(tobi_run *run, tobi_error *err)
+tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
-    drawing d = { 0 };
-    char *path = tobi_record_path(run->dir, "frames/frame_%06lld.png", (long long)run->outputs);
-    tobi_status status = path ? draw(run, path, &d, err)
+    tobi_drawing *d = snapshot->drawing = calloc(1, sizeof *d);
+    if (!d) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    TOBI_TRY(read_fluid(run, &snapshot->set[TOBI_SET_FLUID], d, err));
+    TOBI_TRY(color_materials(run, d, err));
+    TOBI_TRY(list_meshes(run, snapshot, d, err));
+    set_frame(run, d);
+    return TOBI_OK;
+}
+
+tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+{
+    char *path = tobi_record_path(run->dir, "frames/frame_%06lld.png", (long long)snapshot->number);
+    tobi_status status = path ? tobi_frame_write(path, &snapshot->drawing->frame, err)
                               : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    free_drawing(&d);
     free(path);
     return status;
 }

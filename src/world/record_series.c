@@ -1,12 +1,13 @@
-/* The files per output: particles, surfaces, and the lists that give them their times. */
+/* The files per output: particles, surfaces, and the lists that give them their times. All but names
+   and folders runs on the thread of the writer, and looks at snapshots. */
 #include "geom/texture.h"
 #include "io/exchange.h"
-#include "io/vtk.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* --- names ----------------------------------------------------------------------------- */
 
@@ -110,9 +111,34 @@ static tobi_status name_bodies(tobi_run *run, tobi_error *err)
     return TOBI_OK;
 }
 
+static const char *const set_names[TOBI_SETS] = { "fluid", "bodies", "grid" };
+
+/* What has a file in each output: folder/NAME_000000.extension. */
+typedef struct series { const char *name, *folder, *extension; } series;
+
+/* The series by number; 0 past the last. */
+static int series_at(const tobi_run *run, int number, series *out)
+{
+    const int bodies = tobi_world_body_count(run->world);
+    const int has[TOBI_SETS] = { 1, bodies > 0, run->output.grid };
+    for (int k = 0; k < TOBI_SETS; k++)
+        if (has[k] && number-- == 0) return *out = (series){ set_names[k], set_names[k], "vtu" }, 1;
+    if (!run->output.surfaces || number >= bodies) return 0;
+    *out = (series){ run->body_file[number], "surfaces", "vtp" };
+    return 1;
+}
+
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
 {
     TOBI_TRY(name_bodies(run, err));
+    for (series s; series_at(run, run->series, &s);) run->series++;
+    run->list = calloc((size_t)run->series + 1, sizeof *run->list);
+    return run->list ? tobi_series_folders(run, err)
+                     : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+}
+
+tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err)
+{
     TOBI_TRY(tobi_record_make_dir(run->dir, "fluid", err));
     TOBI_TRY(tobi_record_make_dir(run->dir, "checkpoints", err));
     if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
@@ -124,111 +150,34 @@ tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
     return run->output.surfaces ? tobi_record_make_dir(run->dir, "surfaces", err) : TOBI_OK;
 }
 
-/* --- particles ------------------------------------------------------------------------- */
+/* --- files of a snapshot --------------------------------------------------------------- */
 
-/* Turns n doubles into the type they have in files, in a new array. */
-static void *convert(const double *from, int64_t n, int type)
+static tobi_status fail_memory(tobi_error *err)
 {
-    void *to = malloc((size_t)n * tobi_type_size((tobi_vtk_type)type) + 1);
-    if (!to) return NULL;
-    if (type == TOBI_F32) for (int64_t i = 0; i < n; i++) ((float *)to)[i] = (float)from[i];
-    else if (type == TOBI_I32)
-        for (int64_t i = 0; i < n; i++) ((int32_t *)to)[i] = (int32_t)from[i];
-    else for (int64_t i = 0; i < n; i++) ((int64_t *)to)[i] = (int64_t)from[i];
-    return to;
+    return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
 }
 
-/* Reads every chosen field that the set has, *count of them; arrays[k].data is owned by the caller, also
-   after a failure. */
-static tobi_status read_arrays(tobi_run *run, tobi_set set, double *buffer, tobi_vtk_array *arrays,
-                               int *count, tobi_error *err)
+static tobi_status write_set(const tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
 {
-    int64_t n = tobi_world_count(run->world, set);
-    for (int k = 0; k < run->field_count; k++) {
-        const tobi_record_field *f = &run->field[k];
-        if (set == TOBI_BODIES && !f->bodies) continue;
-        TOBI_TRY(tobi_world_read(run->world, set, f->name, buffer, n, err));
-        tobi_vtk_array *array = &arrays[(*count)++];
-        *array = (tobi_vtk_array){ f->name, (tobi_vtk_type)f->type, f->components,
-                                   convert(buffer, n * f->components, f->type) };
-        if (!array->data) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    }
-    return TOBI_OK;
-}
-
-static tobi_status write_particles(tobi_run *run, tobi_set set, const char *name, tobi_error *err)
-{
-    int64_t n = tobi_world_count(run->world, set);
-    int count = 0;
-    tobi_vtk_array arrays[TOBI_RECORD_FIELD_LIMIT] = { 0 };
-    char *path =
-        tobi_record_path(run->dir, "%s/%s_%06lld.vtu", name, name, (long long)run->outputs);
-    double *points = malloc((size_t)n * 3 * sizeof *points + 1);
-    double *buffer = malloc((size_t)n * 9 * sizeof *buffer + 1);
-    tobi_status status = TOBI_OK;
-    if (!path || !points || !buffer)
-        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    if (status == TOBI_OK) status = tobi_world_read(run->world, set, "position", points, 3 * n, err);
-    if (status == TOBI_OK) status = read_arrays(run, set, buffer, arrays, &count, err);
-    if (status == TOBI_OK)
-        status = tobi_vtu_write(path, (tobi_compression)run->output.compression, n,
-                                (const double (*)[3])points, arrays, count, err);
-    for (int k = 0; k < count; k++) free((void *)arrays[k].data);
-    free(buffer);
-    free(points);
-    free(path);
-    return status;
-}
-
-static tobi_status write_ply(tobi_run *run, tobi_error *err)
-{
-    int64_t n = tobi_world_count(run->world, TOBI_FLUID);
-    char *path = tobi_record_path(run->dir, "ply/fluid_%06lld.ply", (long long)run->outputs);
-    double *points = malloc((size_t)n * 3 * sizeof *points + 1);
+    const tobi_point_set *set = &snapshot->set[k];
+    char *path = tobi_record_path(run->dir, "%s/%s_%06lld.vtu", set_names[k], set_names[k],
+                                  (long long)snapshot->number);
     tobi_status status =
-        path && points ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    if (status == TOBI_OK)
-        status = tobi_world_read(run->world, TOBI_FLUID, "position", points, 3 * n, err);
-    if (status == TOBI_OK) status = tobi_ply_write(path, n, (const double (*)[3])points, err);
-    free(points);
+        path ? tobi_vtu_write(path, (tobi_compression)run->output.compression, set->count,
+                              (const double (*)[3])set->position, set->array, set->arrays, err)
+             : fail_memory(err);
     free(path);
     return status;
 }
 
-static tobi_status write_grid(tobi_run *run, tobi_error *err)
+static tobi_status write_ply(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
 {
-    const tobi_grid *g;
-    TOBI_TRY(tobi_world_grid(run->world, &g, err));
-    tobi_vtk_array arrays[] = {
-        { "velocity", TOBI_F32, 3, convert(&g->velocity[0][0], 3 * g->count, TOBI_F32) },
-        { "mass", TOBI_F32, 1, convert(g->mass, g->count, TOBI_F32) },
-        { "stress", TOBI_F32, 6, convert(&g->stress[0][0], 6 * g->count, TOBI_F32) },
-    };
-    char *path = tobi_record_path(run->dir, "grid/grid_%06lld.vtu", (long long)run->outputs);
-    tobi_status status = TOBI_OK;
-    if (!path || !arrays[0].data || !arrays[1].data || !arrays[2].data)
-        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    if (status == TOBI_OK)
-        status = tobi_vtu_write(path, (tobi_compression)run->output.compression, g->count,
-                                (const double (*)[3])g->position, arrays, 3, err);
-    for (int k = 0; k < 3; k++) free((void *)arrays[k].data);
+    const tobi_point_set *set = &snapshot->set[TOBI_SET_FLUID];
+    char *path = tobi_record_path(run->dir, "ply/fluid_%06lld.ply", (long long)snapshot->number);
+    tobi_status status =
+        path ? tobi_ply_write(path, set->count, (const double (*)[3])set->position, err) : fail_memory(err);
     free(path);
     return status;
-}
-
-/* --- surfaces -------------------------------------------------------------------------- */
-
-/* The skin of a body whose mesh has a texture, made at the first output. */
-static tobi_status find_skin(tobi_run *run, int body, tobi_error *err)
-{
-    tobi_mesh *mesh = &run->world->sim.bodies[body].mesh;
-    if (!run->skin)
-        run->skin = calloc((size_t)tobi_world_body_count(run->world) + 1, sizeof *run->skin);
-    if (!run->skin) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    run->skin_count = tobi_world_body_count(run->world);
-    if (run->skin[body].vertex_count > 0) return TOBI_OK;
-    TOBI_TRY(tobi_texture_prepare(mesh->texture, err));
-    return tobi_skin_build(mesh, &run->skin[body], err);
 }
 
 /* The same surface with its vertices doubled along seams of the texture; *vertices is the caller's. */
@@ -236,7 +185,7 @@ static tobi_status put_on_skin(const tobi_skin *skin, tobi_vtk_surface *s, tobi_
                                double (**vertices)[3], tobi_error *err)
 {
     *vertices = malloc((size_t)skin->vertex_count * sizeof **vertices);
-    if (!*vertices) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    if (!*vertices) return fail_memory(err);
     for (int64_t i = 0; i < skin->vertex_count; i++)
         memcpy((*vertices)[i], s->vertices[skin->vertex[i]], sizeof **vertices);
     *uv = (tobi_vtk_array){ "texture_coordinates", TOBI_F32, 2, skin->uv };
@@ -248,130 +197,110 @@ static tobi_status put_on_skin(const tobi_skin *skin, tobi_vtk_surface *s, tobi_
     return TOBI_OK;
 }
 
-void tobi_series_free(tobi_run *run)
-{
-    for (int k = 0; k < run->skin_count; k++) tobi_skin_free(&run->skin[k]);
-    free(run->skin);
-}
-
-static tobi_status write_vtp(tobi_run *run, int body, const char *path, tobi_vtk_surface s, tobi_error *err)
+static tobi_status write_vtp(const tobi_run *run, int body, const char *path, tobi_vtk_surface s,
+                             tobi_error *err)
 {
     tobi_compression form = (tobi_compression)run->output.compression;
     tobi_vtk_array uv;
     double (*vertices)[3] = NULL;
     if (!run->world->sim.bodies[body].mesh.texture) return tobi_vtp_write(path, form, &s, err);
-    TOBI_TRY(find_skin(run, body, err));
     tobi_status status = put_on_skin(&run->skin[body], &s, &uv, &vertices, err);
     if (status == TOBI_OK) status = tobi_vtp_write(path, form, &s, err);
     free(vertices);
     return status;
 }
 
-static tobi_status write_surface(tobi_run *run, int body, tobi_error *err)
+/* kind: 0 VTP, 1 STL, 2 OBJ. */
+static tobi_status write_surface(const tobi_run *run, const tobi_snapshot *snapshot, int body, int kind,
+                                 tobi_error *err)
 {
-    tobi_vtk_surface s = { 0 };
-    TOBI_TRY(tobi_world_surface(run->world, body, &s.vertex_count, &s.vertices, &s.triangle_count,
-                                &s.triangles));
-    long long k = (long long)run->outputs;
-    char *vtp = tobi_record_path(run->dir, "surfaces/%s_%06lld.vtp", run->body_file[body], k);
-    char *stl = tobi_record_path(run->dir, "surfaces/%s_%06lld.stl", run->body_file[body], k);
+    static const char *const folders[] = { "surfaces", "surfaces", "obj" };
+    static const char *const ends[] = { "vtp", "stl", "obj" };
+    const tobi_mesh *mesh = &run->world->sim.bodies[body].mesh;
+    const tobi_vtk_surface s = { .vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count,
+                                 .vertices = (const double (*)[3])snapshot->surface[body],
+                                 .triangles = (const int32_t (*)[3])mesh->triangles };
+    char *path = tobi_record_path(run->dir, "%s/%s_%06lld.%s", folders[kind], run->body_file[body],
+                                  (long long)snapshot->number, ends[kind]);
     tobi_status status =
-        vtp && stl ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    if (status == TOBI_OK)
-        status = write_vtp(run, body, vtp, s, err);
-    if (status == TOBI_OK)
-        status =
-            tobi_stl_write(stl, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
-    free(vtp);
-    free(stl);
-    return status;
-}
-
-static tobi_status write_obj(tobi_run *run, int body, tobi_error *err)
-{
-    int64_t vertices, triangles;
-    const double (*vertex)[3];
-    const int32_t (*triangle)[3];
-    TOBI_TRY(tobi_world_surface(run->world, body, &vertices, &vertex, &triangles, &triangle));
-    char *path = tobi_record_path(run->dir, "obj/%s_%06lld.obj", run->body_file[body],
-                                  (long long)run->outputs);
-    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    tobi_status status = tobi_obj_write(path, vertices, vertex, triangles, triangle, err);
+        !path ? fail_memory(err)
+        : kind == 0 ? write_vtp(run, body, path, s, err)
+        : kind == 1 ? tobi_stl_write(path, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err)
+                    : tobi_obj_write(path, s.vertex_count, s.vertices, s.triangle_count, s.triangles, err);
     free(path);
     return status;
 }
 
 /* --- lists ----------------------------------------------------------------------------- */
 
-/* What has a file in each output: folder/NAME_000000.extension. */
-typedef struct series { const char *name, *folder, *extension; } series;
-
-/* The series by number; 0 past the last. */
-static int series_at(const tobi_run *run, int number, series *out)
-{
-    const int bodies = tobi_world_body_count(run->world);
-    const series particles[] = { { "fluid", "fluid", "vtu" }, { "bodies", "bodies", "vtu" },
-                                 { "grid", "grid", "vtu" } };
-    const int has[] = { 1, bodies > 0, run->output.grid };
-    for (int k = 0; k < 3; k++)
-        if (has[k] && number-- == 0) return *out = particles[k], 1;
-    if (!run->output.surfaces || number >= bodies) return 0;
-    *out = (series){ run->body_file[number], "surfaces", "vtp" };
-    return 1;
-}
-
-/* NAME.pvd of the first `count` outputs: `parts` series from number `first` on, by time, then by series. */
-static tobi_status write_list(const tobi_run *run, const char *name, int first, int parts, int64_t count,
-                              tobi_error *err)
-{
-    enum { ROOM = 128 };
-    const size_t room = (size_t)count * (size_t)parts;
-    tobi_pvd_entry *entries = malloc(room * sizeof *entries + 1);
-    char (*files)[ROOM] = malloc(room * sizeof *files + 1);
-    char *path = tobi_record_path(run->dir, "%s.pvd", name);
-    tobi_status status = TOBI_OK;
-    if (!entries || !files || !path)
-        status = tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-    for (int part = 0; status == TOBI_OK && part < parts; part++) {
-        series s;
-        series_at(run, first + part, &s);
-        for (int64_t k = 0; k < count; k++) {
-            const int64_t at = k * parts + part;
-            snprintf(files[at], ROOM, "%s/%s_%06lld.%s", s.folder, s.name, (long long)k, s.extension);
-            entries[at] = (tobi_pvd_entry){ .time = tobi_record_time(run, k), .file = files[at],
-                                            .name = s.name, .part = part };
-        }
-    }
-    if (status == TOBI_OK) status = tobi_pvd_write(path, entries, (int64_t)room, err);
-    free(path);
-    free(files);
-    free(entries);
-    return status;
-}
-
-/* A list of each series, then one of all. */
-static tobi_status write_lists(const tobi_run *run, int64_t count, tobi_error *err)
+/* Output `number` in the list of each series and in that of all. */
+static tobi_status list_output(tobi_run *run, int64_t number, tobi_error *err)
 {
     series s;
-    int parts = 0;
-    for (; series_at(run, parts, &s); parts++) TOBI_TRY(write_list(run, s.name, parts, 1, count, err));
-    return write_list(run, "all", 0, parts, count, err);
+    for (int k = 0; series_at(run, k, &s); k++) {
+        char file[128];
+        snprintf(file, sizeof file, "%s/%s_%06lld.%s", s.folder, s.name, (long long)number, s.extension);
+        tobi_pvd_entry entry = { .time = tobi_record_time(run, number), .file = file, .name = s.name };
+        char *path = tobi_record_path(run->dir, "%s", file);
+        const bool there = path && access(path, F_OK) == 0;
+        free(path);
+        run->missing += !there;
+        if (!there) continue;
+        TOBI_TRY(tobi_pvd_add(&run->list[k], &entry, err));
+        entry.part = k;
+        TOBI_TRY(tobi_pvd_add(&run->list[run->series], &entry, err));
+    }
+    return TOBI_OK;
+}
+
+static void forget_lists(tobi_run *run)
+{
+    for (int k = 0; run->list && k <= run->series; k++) tobi_pvd_free(&run->list[k]);
+    run->listed = run->missing = 0;
+}
+
+static tobi_status write_lists(tobi_run *run, int64_t outputs, tobi_error *err)
+{
+    while (run->listed < outputs) {
+        tobi_status status = list_output(run, run->listed, err);
+        if (status != TOBI_OK) forget_lists(run);      /* half an output may be in them */
+        TOBI_TRY(status);
+        run->listed++;
+    }
+    for (int k = 0; k <= run->series; k++) {
+        series s = { .name = "all" };
+        series_at(run, k, &s);
+        char *path = tobi_record_path(run->dir, "%s.pvd", s.name);
+        tobi_status status = path ? tobi_pvd_write(path, &run->list[k], err) : fail_memory(err);
+        free(path);
+        TOBI_TRY(status);
+    }
+    return TOBI_OK;
 }
 
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err)
 {
+    forget_lists(run);
     return write_lists(run, run->outputs, err);
 }
 
-tobi_status tobi_series_write(tobi_run *run, tobi_error *err)
+void tobi_series_free(tobi_run *run)
 {
-    int bodies = tobi_world_body_count(run->world);
-    TOBI_TRY(write_particles(run, TOBI_FLUID, "fluid", err));
-    if (bodies) TOBI_TRY(write_particles(run, TOBI_BODIES, "bodies", err));
-    for (int b = 0; run->output.surfaces && b < bodies; b++) TOBI_TRY(write_surface(run, b, err));
-    if (run->output.grid) TOBI_TRY(write_grid(run, err));
-    if (run->output.ply) TOBI_TRY(write_ply(run, err));
-    for (int b = 0; run->output.obj && b < bodies; b++) TOBI_TRY(write_obj(run, b, err));
-    if (run->output.frames) TOBI_TRY(tobi_record_frame(run, err));
-    return write_lists(run, run->outputs + 1, err);
+    forget_lists(run);
+    free(run->list);
+    free(run->body_file);
+}
+
+tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error *err)
+{
+    const tobi_output_def *o = &run->output;
+    TOBI_TRY(write_set(run, s, TOBI_SET_FLUID, err));
+    if (s->surfaces) TOBI_TRY(write_set(run, s, TOBI_SET_BODIES, err));
+    for (int b = 0; o->surfaces && b < s->surfaces; b++)
+        for (int kind = 0; kind < 2; kind++) TOBI_TRY(write_surface(run, s, b, kind, err));
+    if (o->grid) TOBI_TRY(write_set(run, s, TOBI_SET_GRID, err));
+    if (o->ply) TOBI_TRY(write_ply(run, s, err));
+    for (int b = 0; o->obj && b < s->surfaces; b++) TOBI_TRY(write_surface(run, s, b, 2, err));
+    if (o->frames) TOBI_TRY(tobi_drawing_write(run, s, err));
+    return write_lists(run, s->number + 1, err);
 }

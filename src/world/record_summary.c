@@ -97,7 +97,8 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
         "unconverged_steps", (json_int_t)t->unconverged,
         "particles_lost", (json_int_t)info->particles_lost, "put_back", (json_int_t)info->put_back,
         "world_bytes", (json_int_t)tobi_world_bytes(run->world), "peak_rss_bytes", peak_rss(),
-        "threads", run->world->sim.exec.threads, "outputs", (json_int_t)run->outputs, "state_hash", hash,
+        "threads", run->world->sim.exec.threads, "outputs",
+        (json_int_t)(run->outputs - tobi_writer_pending(run->writer)), "state_hash", hash,
         "stages_s", make_stages(run));
     if (json && more) json_object_update(json, more);
     json_decref(more);

@@ -22,6 +22,7 @@
     H("unconverged_steps",          int,  s->unconverged)                           \
     H("density_error_mean",         real, i->density_error_mean)                    \
     H("density_error_max",          real, i->density_error_max)                     \
+    H("surface_share",              real, i->surface_share)                         \
     H("divergence_mean",            real, i->divergence_mean)                       \
     H("divergence_max",             real, i->divergence_max)                        \
     H("pressure_residual",          real, i->pressure_residual)                     \
@@ -205,6 +206,7 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
 {
     double every = run->output.probe_interval, now = tobi_world_time(run->world);
     if (!run->probes || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
+    if (tobi_csv_is_gone(run->probes)) TOBI_TRY(tobi_record_keep_dir(run, err));
     tobi_csv_add_real(run->probes, now);
     for (int k = 0; k < tobi_world_probe_count(run->world); k++) {
         tobi_probe_kind kind;
@@ -221,7 +223,7 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
     return tobi_csv_end_row(run->probes, err);
 }
 
-static tobi_status write_bodies(tobi_run *run, tobi_error *err)
+static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *err)
 {
     for (int k = 0; k < tobi_world_body_count(run->world); k++) {
         tobi_body_info b;
@@ -232,21 +234,28 @@ static tobi_status write_bodies(tobi_run *run, tobi_error *err)
 #define B(column, value) tobi_csv_add_real(run->bodies, value);
         BODY(B)
 #undef B
-        TOBI_TRY(tobi_csv_end_row(run->bodies, err));
+        TOBI_TRY(tobi_csv_take_row(run->bodies, rows, err));
     }
     return TOBI_OK;
 }
 
-/* The history row comes last: a row there says that everything of this output is on disk. */
-tobi_status tobi_tables_write(tobi_run *run, tobi_error *err)
+tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     const tobi_step_info *i = tobi_world_info(run->world);
     const tobi_tally *s = &run->since;
     const tobi_pieces none = { 0 }, *pieces = &none;
     if (run->world->sim.solid_count > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
-    TOBI_TRY(write_bodies(run, err));
+    TOBI_TRY(take_bodies(run, &snapshot->bodies, err));
 #define H(column, kind, value) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)
 #undef H
-    return tobi_csv_end_row(run->history, err);
+    return tobi_csv_take_row(run->history, &snapshot->history, err);
+}
+
+tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
+{
+    if (run->bodies && !snapshot->bodies_written)
+        TOBI_TRY(tobi_csv_write_rows(run->bodies, &snapshot->bodies, err));
+    snapshot->bodies_written = true;
+    return tobi_csv_write_rows(run->history, &snapshot->history, err);
 }

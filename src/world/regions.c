@@ -18,23 +18,6 @@ static tobi_status note_support(tobi_world *w, const tobi_fluid_def *def, tobi_e
     return tobi_world_add_notes(w, "fluid", def->name, text, err);
 }
 
-/* Boxes take whole layers of particles, each of which stands for one cube of the spacing: levels and forces
-   of runs at several spacings differ by what is too much or missing. */
-static tobi_status note_amount(tobi_world *w, const char *name, int first, double volume, tobi_error *err)
-{
-    const tobi_smoothing_constants *c = &w->sim.smoothing;
-    double held = 0;
-    char text[200];
-    for (int r = first; r < w->region_count; r++)
-        held += (double)tobi_world_guess_particles(w, &w->regions[r])*c->volume;
-    double more = held/volume - 1;
-    if (!(fabs(more) > 0.01)) return TOBI_OK;
-    snprintf(text, sizeof text,
-             "its particles hold %.1f %% %s than its regions: whole layers of %g m do not fit\n",
-             100*fabs(more), more > 0 ? "more" : "less", c->spacing);
-    return tobi_world_add_notes(w, "fluid", name, text, err);
-}
-
 /* Reads and places the mesh of a region; its volume as the integrals have it. */
 static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region *r, tobi_error *err)
 {
@@ -134,9 +117,22 @@ static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def
                      def->name ? def->name : "", first->name, what, value, other, w->method->name);
 }
 
+/* All regions are checked before any of them is read. */
+static tobi_status check_fills(const tobi_fill_def *fills, int count, tobi_error *err)
+{
+    if (count < 0 || count > TOBI_REGION_LIMIT || (count > 0 && !fills))
+        return tobi_fail(err, TOBI_INVALID, "fill_count is %d%s, allowed is 0 to %d", count,
+                         fills ? "" : " and fills is NULL", TOBI_REGION_LIMIT);
+    for (int k = 0; k < count; k++) TOBI_TRY(tobi_param_check(&tobi_fill_table, &fills[k], err));
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
                                  const tobi_fill_def *fills, int fill_count, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(check_fills(fills, fill_count, err));
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
@@ -148,9 +144,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
     TOBI_TRY(note_support(w, def, err));
     double volume;
-    int first = w->region_count;
     TOBI_TRY(add_regions(w, "fluid", def->name, s->fluid_count, fills, fill_count, &volume, err));
-    TOBI_TRY(note_amount(w, def->name, first, volume, err));
     tobi_fluid *f = &s->fluid[s->fluid_count++];
     snprintf(f->name, sizeof f->name, "%s", def->name ? def->name : "fluid");
     f->density = def->density;
@@ -164,6 +158,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
 tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
                                  int fill_count, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(check_fills(fills, fill_count, err));
     tobi_simulation *s = &w->sim;
     double volume;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");

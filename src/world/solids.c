@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-int tobi_world_solid_count(const tobi_world *w) { return w->sim.solid_count; }
+int tobi_world_solid_count(const tobi_world *w) { return w ? w->sim.solid_count : 0; }
 
 static double cell_of(const tobi_world *w)
 {
@@ -23,6 +23,7 @@ int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
 
 tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *info)
 {
+    if (!w || !info) return TOBI_INVALID;
     const tobi_simulation *s = &w->sim;
     if (solid < 0 || solid >= s->solid_count) return TOBI_NOT_FOUND;
     *info = (tobi_solid_info){ .name = s->solids[solid].name, .density = s->solids[solid].def.density };
@@ -54,7 +55,7 @@ static double find_step(const tobi_world *w, double speed)
 
 double tobi_world_stable_step(const tobi_world *w)
 {
-    return find_step(w, fmax(tobi_world_start_speed(w), w->sim.wall_speed));
+    return w ? find_step(w, fmax(tobi_world_start_speed(w), w->sim.wall_speed)) : 0;
 }
 
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
@@ -177,6 +178,8 @@ tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err)
 
 tobi_status tobi_world_pieces(tobi_world *w, const tobi_pieces **pieces, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(pieces, "where the pieces go");
     *pieces = &w->pieces.found;
     if (!(w->method->fields & TOBI_MPM))
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s has no solids, so no pieces", w->method->name);

@@ -3,6 +3,9 @@
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
+#include "world/fit.h"
+#include "world/limits.h"
+#include "world/note_pieces.h"
 #include "world/params.h"
 #include <math.h>
 #include <stdio.h>
@@ -55,6 +58,14 @@ static tobi_status check_world(const tobi_world_def *d, tobi_error *err)
     return TOBI_OK;
 }
 
+static tobi_status check_limits(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
+{
+    tobi_error why = { 0 };
+    const char *key;
+    tobi_status status = tobi_limits_check(d, (method->fields & TOBI_SPH) != 0, &key, &why);
+    return status ? tobi_fail(err, status, "world: %s %s", key, why.text) : TOBI_OK;
+}
+
 static tobi_status check_open(const tobi_world_def *d, const tobi_method *method, tobi_error *err)
 {
     for (int a = 0; a < d->dimension; a++)
@@ -96,8 +107,9 @@ static void set_smoothing(tobi_world *w)
     int shape, periodic[3];
     double support;
     w->method->smoothing(w->method_def, is_stirred_vessel(w), &shape, &support);
-    if (s->smoothing.h == support*d->spacing) return;
-    tobi_smoothing_init(&s->smoothing, shape, d->dimension, d->spacing, support);
+    const double spacing = tobi_fit_find(w, d->spacing).spacing;
+    if (s->smoothing.h == support*spacing) return;
+    tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
     for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
     tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
 }
@@ -119,13 +131,16 @@ static tobi_status create_simulation(tobi_world *w, const tobi_world_def *def, t
 tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def, tobi_world **world,
                               tobi_error *err)
 {
+    TOBI_NEED(world, "where the world goes");
     *world = NULL;
+    TOBI_NEED(def, "the definition");
     TOBI_TRY(check_world(def, err));
     const tobi_method *method = tobi_method_find(def->method);
     if (!method)
         return tobi_fail(err, TOBI_INVALID, "there is no method '%s'; known is %s",
                          def->method ? def->method : "", tobi_method_at(0)->name);
     TOBI_TRY(check_open(def, method, err));
+    TOBI_TRY(check_limits(def, method, err));
     const tobi_param_table *table = tobi_method_table(method->name);
     tobi_world *w = calloc(1, sizeof *w);
     void *params = calloc(1, method->def_size);
@@ -134,6 +149,7 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
         free(params);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a world");
     }
+    w->alive = TOBI_ALIVE;
     tobi_param_defaults(table, params);
     if (method_def) memcpy(params, method_def, method->def_size);
     w->method = method;
@@ -151,6 +167,8 @@ tobi_status tobi_world_create(const tobi_world_def *def, const void *method_def,
 void tobi_world_destroy(tobi_world *w)
 {
     if (!w) return;
+    assert(w->alive == TOBI_ALIVE);
+    w->alive = 0;
     if (w->method_state) w->method->free(w->method_state);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
@@ -195,7 +213,7 @@ tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *na
 
 const char *tobi_world_note(const tobi_world *w, int note)
 {
-    return note >= 0 && note < w->note_count ? w->notes[note] : NULL;
+    return w && note >= 0 && note < w->note_count ? w->notes[note] : NULL;
 }
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
@@ -214,6 +232,8 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
 
 tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
     tobi_simulation *s = &w->sim;
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
@@ -229,9 +249,9 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     s->bodies = more;
     tobi_body *b = &s->bodies[s->body_count];
     /* Only SPH methods integrate over surfaces. */
-    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->smoothing.spacing;
+    double pieces = (w->method->fields & TOBI_SPH ? 0.5 : 1e3)*s->def.spacing;
     tobi_body_def placed = *def;
-    if (!(def->spacing > 0)) placed.spacing = s->smoothing.spacing;
+    if (!(def->spacing > 0)) placed.spacing = s->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = check_body(w, b, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
@@ -252,20 +272,22 @@ static int needed_fields(const tobi_world *w)
     return owners;
 }
 
-/* Beside the fields: neighbour lists, or sorting, tiles and nodes of the grid (seen: 60 to 90). */
+/* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
+   of the grid (seen: 60 to 90). */
 static int64_t list_bytes(const tobi_world *w)
 {
     const tobi_simulation *s = &w->sim;
     if (w->method->fields & TOBI_MPM) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
-    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 16);
+    return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
 
 tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t *body_particles,
                                 int64_t *bytes, tobi_error *err)
 {
     int64_t fluid = 0, body = 0;
-    (void)err;
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
     if (!w->started) set_smoothing(w);
     for (int k = 0; k < w->region_count; k++) fluid += tobi_world_guess_particles(w, &w->regions[k]);
     for (int k = 0; k < w->sim.body_count; k++) body += w->sim.bodies[k].particle_count;
@@ -321,6 +343,7 @@ double tobi_world_start_speed(const tobi_world *w)
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
 {
+    TOBI_NEED_WORLD(w);
     tobi_simulation *s = &w->sim;
     int64_t fluid, body, bytes, room = 0;
     if (w->started) return TOBI_OK;
@@ -333,6 +356,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w), err));
     for (int k = 0; k < w->region_count; k++) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
+    TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_world_note_edges(w, err));
@@ -349,8 +373,12 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     double *memory;
     w->method->memory(w->method_state, &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w);
+    if (s->start_speed > TOBI_SPEED_LIMIT)
+        return tobi_fail(err, TOBI_INVALID, "a region starts with %g m/s, by velocity, spin and flow "
+                         "together; allowed are up to %g m/s", s->start_speed, TOBI_SPEED_LIMIT);
     s->start_head = start_head(w);
     TOBI_TRY(tobi_world_start_bodies(w, err));
+    TOBI_TRY(tobi_world_note_starts(w, err));
     /* How fast the bodies start: their motion around time 0. */
     s->body_speed = s->wall_speed;
     for (int k = 0; k < s->body_count; k++)
@@ -359,7 +387,9 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     if (w->dynamics) s->start_speed = fmax(s->start_speed, s->body_speed);
     s->info.fluid_particles = n;
     w->started = 1;
-    return TOBI_OK;
+    const tobi_status status = tobi_world_note_pieces(w, err);
+    w->started = status == TOBI_OK;
+    return status;
 }
 
 /* Which key of the scene makes steps shorter, and its value. */
@@ -378,8 +408,9 @@ static tobi_status check_runaway(tobi_world *w, tobi_error *err)
     const char *key = name_cfl(w, &cfl);
     if (limit <= 0) {
         /* A few squeezed particles are slowed; when many are, or a number is no number, the run is lost. */
-        if (s->info.speed_max < 1e14 && s->info.capped <= 20 + s->particles.count/200) return TOBI_OK;
-        limit = 1.4*tobi_simulation_speed_scale(s);
+        const int64_t few = 20 + s->particles.count/200;
+        if (s->info.speed_max < TOBI_SPEED_LIMIT && s->info.capped <= few) return TOBI_OK;
+        limit = fmin(1.4*tobi_simulation_speed_scale(s), TOBI_SPEED_LIMIT);
     }
     if (s->info.speed_max < limit) return TOBI_OK;
     w->diverged = 1;
@@ -413,17 +444,20 @@ static void measure(tobi_world *w)
     if (w->method->measure) w->method->measure(&w->sim, w->method_state);
 }
 
-tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
+/* `left`: s to the end that the caller wants. */
+static tobi_status take_step(tobi_world *w, double max_dt, double left, tobi_step_info *info, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
+    const double before = s->time;
     TOBI_TRY(tobi_world_start(w, err));
     if (w->diverged) return tobi_fail(err, TOBI_DIVERGED, "the simulation has diverged and cannot go on");
-    w->fresh = 0;
+    w->fresh = s->stopped = 0;
+    TOBI_TRY(tobi_simulation_heed(s, err));
     tobi_world_cap_step(w);
     tobi_status status = w->method->step(s, w->method_state, max_dt, err);
     if (status == TOBI_OK) status = tobi_world_kick_bodies(w, err);
     if (status != TOBI_OK) {
-        w->diverged = 1;
+        w->diverged = status != TOBI_STOPPED;
         return status;
     }
     s->info.step = s->step;
@@ -434,15 +468,31 @@ tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, 
         measure(w);
         *info = s->info;
     }
+    return tobi_limits_progress(s, before, max_dt, left, &w->idle_steps, err);
+}
+
+tobi_status tobi_world_step(tobi_world *w, double max_dt, tobi_step_info *info, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    if (!(max_dt >= 0 && isfinite(max_dt)))
+        return tobi_fail(err, TOBI_INVALID, "max_dt is %g s, allowed are finite numbers from 0, no cap, on",
+                         max_dt);
+    return take_step(w, max_dt, fmax(w->sim.def.end_time - w->sim.time, max_dt), info, err);
+}
+
+tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_error *err)
+{
+    double way = t - w->sim.time;
+    TOBI_TRY(take_step(w, way, end - w->sim.time, NULL, err));
+    if (w->sim.dt >= way) w->sim.time = w->sim.info.time = t;      /* not a rounding beside it */
     return TOBI_OK;
 }
 
 tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, tobi_error *err)
 {
-    while (w->sim.time < t) {
-        TOBI_TRY(tobi_world_step(w, t - w->sim.time, NULL, err));
-        if (t - w->sim.time < 1e-12*fmax(t, w->sim.dt)) w->sim.time = t;
-    }
+    TOBI_NEED_WORLD(w);
+    if (!isfinite(t)) return tobi_fail(err, TOBI_INVALID, "the time to advance to is %g s, not finite", t);
+    while (w->sim.time < t) TOBI_TRY(tobi_world_step_towards(w, t, t, err));
     if (info) {
         measure(w);
         *info = w->sim.info;
@@ -450,10 +500,18 @@ tobi_status tobi_world_advance(tobi_world *w, double t, tobi_step_info *info, to
     return TOBI_OK;
 }
 
-double tobi_world_time(const tobi_world *w) { return w->sim.time; }
+void tobi_world_set_stop(tobi_world *w, tobi_stop_fn stop, void *user)
+{
+    if (!w) return;
+    w->sim.stop = stop;
+    w->sim.stop_user = user;
+}
+
+double tobi_world_time(const tobi_world *w) { return w ? w->sim.time : 0; }
 
 const tobi_step_info *tobi_world_info(const tobi_world *w)
 {
+    if (!w) return NULL;
     tobi_simulation *s = (tobi_simulation *)&w->sim;   /* fills in sums of the present state */
     s->info.step = s->step;
     s->info.time = s->time;
@@ -462,10 +520,11 @@ const tobi_step_info *tobi_world_info(const tobi_world *w)
     return &s->info;
 }
 
-int tobi_world_body_count(const tobi_world *w) { return w->sim.body_count; }
+int tobi_world_body_count(const tobi_world *w) { return w ? w->sim.body_count : 0; }
 
 tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
 {
+    if (!w || !info) return TOBI_INVALID;
     if (body < 0 || body >= w->sim.body_count) return TOBI_NOT_FOUND;
     *info = w->sim.bodies[body].info;
     return TOBI_OK;
@@ -473,11 +532,12 @@ tobi_status tobi_world_body(const tobi_world *w, int body, tobi_body_info *info)
 
 const char *tobi_world_body_name(const tobi_world *w, int body)
 {
-    return body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
+    return !w || body < 0 || body >= w->sim.body_count ? NULL : w->sim.bodies[body].name;
 }
 
 int64_t tobi_world_bytes(const tobi_world *w)
 {
+    if (!w) return 0;
     const tobi_simulation *s = &w->sim;
     return s->particles.capacity * (tobi_particles_row_bytes(needed_fields(w)) + 4) +
            s->cells.list_capacity * 4 + s->cells.total * 4 +
@@ -487,8 +547,8 @@ int64_t tobi_world_bytes(const tobi_world *w)
 
 const char *tobi_world_stage(const tobi_world *w, int stage, double *seconds)
 {
+    if (!w || stage < 0 || stage >= w->sim.stages.count) return NULL;
     const tobi_stages *st = &w->sim.stages;
-    if (stage < 0 || stage >= st->count) return NULL;
-    *seconds = st->seconds[stage];
+    if (seconds) *seconds = st->seconds[stage];
     return st->name[stage];
 }

@@ -4,12 +4,16 @@
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"
+#include <assert.h>
 
 enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024 };
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
+enum { TOBI_ALIVE = 0x70b10 };
+
 struct tobi_world {
+    int alive;                     /* TOBI_ALIVE until it is destroyed                       */
     tobi_simulation sim;
     const tobi_method *method;
     void *method_def;              /* copy of the method's parameters                        */
@@ -23,11 +27,19 @@ struct tobi_world {
     char **notes;                  /* owned texts                                            */
     int note_count;
     int started, fresh, diverged;  /* fresh: derived fields match the present positions       */
+    int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
     int32_t *row_of;               /* rows in id order, for reading; rebuilt when not fresh   */
 };
+
+/* For public calls that return a status; the assert finds, in dev builds, worlds destroyed before. */
+#define TOBI_NEED_WORLD(w)                                                                         \
+    do {                                                                                           \
+        TOBI_NEED(w, "world");                                                                     \
+        assert((w)->alive == TOBI_ALIVE);                                                          \
+    } while (0)
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */
@@ -44,8 +56,15 @@ double tobi_world_start_speed(const tobi_world *w);
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Notes blades whose motion ends their cut at a side before the last layer of particles is parted. */
 tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err);
+/* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins
+   beside a wall. */
+tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Adds a note if the definition's fixed time step will be cut. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
+
+/* One step, not beyond time t, which is hit exactly by a step that covers all that is left; the caller
+   goes on until `end`. */
+tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_error *err);
 
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);

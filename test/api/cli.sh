@@ -22,6 +22,8 @@ vtk() {
     /usr/bin/python3 "$here/read_vtk.py" "$@" > out.txt || code=$?
     check "$what: $(tail -1 out.txt)" test $code = 0 -o $code = 77
 }
+newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
+same_checkpoint() { cmp "$(newest "$1")" "$(newest "$2")"; }
 no_parts() { [ -z "$(find "$1" -name '*.part')" ]; }
 # A step takes milliseconds here, so tests that stop a run in the middle need a run of about a second.
 cat > make_scene.py <<'END'
@@ -40,9 +42,10 @@ open(name, "w").write("""{   # a small tank with a box that swings in it
   "output": {"interval": 0.01, "checkpoint_interval": 0.02}
 }""" % (end, mesh))
 open("swing.lua", "w").write(
-    "function place(t) return params.way * math.sin(20 * t), 0, 0, 0, 0, 1, 100 * t end\n")
+    "function place(t) return params.way * (1 - math.cos(20 * t)), 0, 0, 0, 0, 1, 100 * t end\n")
 END
 $python make_scene.py tank.json 0.1 box.obj
+old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 
 # --- usage ------------------------------------------------------------------------------------------
 expect 2 "usage: tobiuo"
@@ -77,7 +80,11 @@ sed 's/swing.lua/bad.lua/' tank.json > bad_script.json
 printf 'function place(t)\n  return oops, 0, 0\nend\n' > bad.lua
 expect 1 "bad.lua:2:" run bad_script.json --quiet
 printf 'function place(t) while true do end end\n' > bad.lua
-expect 1 "endless loop" run bad_script.json --quiet
+expect 1 "bad.lua:1: endless loop" run bad_script.json --quiet
+printf -- '--\rwhile true do end\n' > bad.lua
+expect 1 "endless loop" check bad_script.json
+rm bad.lua && mkfifo bad.lua
+for command in check run; do expect 1 "bad.lua: is a pipe; only plain files are read" $command bad_script.json; done
 sed 's/"fill": .*/"fill": [] }],/' tank.json > dry.json
 expect 1 "fill" run dry.json
 expect 1 "particles" check tank.json --set spacing=1e-5 --set 'bodies=[]'
@@ -102,14 +109,14 @@ check "check says what was repaired" grep -q "^note  .*'box': 1 hole (4 open edg
 expect 1 "Multiply its scale by 0.001" check tank.json --set 'bodies[0].scale=[1000,1000,1000]'
 
 # --- keyframes --------------------------------------------------------------------------------------
-printf 'time,x,yaw\n0,0,0\n0.01,0.001,1\n0.02,0.002,2\n' > rows.csv
+printf 'time,x,yaw\n0,0,0\n0.01,0.0002,1\n0.02,0.0008,2\n' > rows.csv
 sed 's/"motion": {.*}}/"motion": {"keyframes": {"file": "rows.csv", "pivot": [0, 0, 0.05]}}}/' tank.json > rows.json
 expect 0 "" run rows.json --quiet -o rows --until 0.02
 check "the body is where the rows say" $python - rows/bodies.csv <<'END'
 import csv, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
 x = [float(v) for k, v in rows[-1].items() if k.startswith("position_x") or k == "x"]
-assert len(x) == 1 and abs(x[0] - 0.002) < 1e-9, rows[-1]
+assert len(x) == 1 and abs(x[0] - 0.0008) < 1e-9, rows[-1]
 END
 echo "0.02,1,1" >> rows.csv
 expect 1 "rows.csv:5: time 0.02 s does not come after" check rows.json
@@ -117,7 +124,7 @@ rm -rf rows
 
 # --- a vessel full of liquid ------------------------------------------------------------------------
 full=(--quiet --set 'fluids[0].fill[0].box.max=[0.1,0.1,0.2]' --set 'bodies[0].translation=[0,0,0.1]'
-      --set 'bodies[0].motion.params.way=0.05')
+      --set 'bodies[0].motion.params.way=0.1')
 expect 0 "" run tank.json -o full --until 0.06 "${full[@]}"
 expect 0 "the liquid has cavities" run tank.json -o cavity --until 0.06 "${full[@]}" \
        --set dfsph.support=2 --set dfsph.density_tolerance=0.1
@@ -152,6 +159,23 @@ assert s["outcome"] == "complete" and abs(s["time"] - 0.1) < 1e-12 and s["steps"
 assert s["fluid_particles"] > 100 and s["threads"] >= 1 and s["peak_rss_bytes"] > 1e6
 END
 
+# --- streams that are closed or full ----------------------------------------------------------------
+sed 's/box\.obj/open.obj/' tank.json > noted.json      # a scene with a note
+expect 0 "1 hole" run noted.json --until 0.02 --out streams
+for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
+    eval '"$program" run noted.json --until 0.02 --out closed > out.txt 2> err.txt '"$closed"; got=$?
+    check "closed $closed: exit code 0 (was $got)" test $got = 0
+    check "closed $closed: the same results" same_results streams closed
+    rm -rf closed
+done
+for command in --help --version "run --help" "describe scene" "check tank.json" info "import $old/rigid_blocks.json --out full.json" \
+               "run tank.json --until 0.01 --out full"; do
+    got=0; "$program" $command > /dev/full 2> err.txt || got=$?
+    check "$command to a full device: exit code 1 (was $got)" test $got = 1
+    check "$command to a full device: said so" grep -q "tobiuo: cannot write to standard output" err.txt
+done
+rm -rf full full.json streams
+
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)
 echo mine > $a/notes.txt
@@ -166,6 +190,11 @@ touch a_file
 expect 1 "a_file" run tank.json --quiet --out a_file
 expect 1 "a_file" run tank.json --quiet --out a_file/below
 expect 1 "/proc" run tank.json --quiet --out /proc/tobiuo
+mkdir strange && ln -s "$PWD/$a/fluid" strange/fluid
+expect 1 "strange/fluid is a symbolic link" run tank.json --quiet --out strange --force
+ln -s "$PWD/strange" by_link && rm strange/fluid
+expect 0 "" run tank.json --quiet --out by_link --until 0.01
+check "a link to the directory itself is followed" test -s strange/history.csv
 mkdir locked && chmod a-w locked
 if [ ! -w locked ]; then expect 1 "cannot" run tank.json --quiet --out locked/here; fi
 # A full disk, played by a limit on the size of files.
@@ -176,10 +205,9 @@ check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
 check "full disk: no unfinished files" no_parts full
 
 # --- scenes of the Taichi program -------------------------------------------------------------------
-old=${TOBIUO_SOURCE:-$here/../..}/test/scenes/taichi
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt
-check "the particles of the old scene" grep -q "fluid particles  476836" out.txt
+check "the particles of the old scene" grep -q "fluid particles  480102" out.txt
 expect 0 "" run "$old/rigid_blocks.json" --quiet --out old
 check "an old scene's OBJ" test -s old/obj/block_7_000005.obj -a ! -e old/ply
 check "five outputs of two fixed steps" test "$(value old/summary.json steps)" = 10
@@ -189,6 +217,9 @@ expect 0 "" import "$old/rigid_blocks.json" --out new.json
 check "import tells what became of it" grep -q "10000 times water" out.txt
 expect 1 "new.json exists" import "$old/rigid_blocks.json" --out new.json
 expect 0 "" import "$old/rigid_blocks.json" --out new.json --force --quiet
+mkfifo fifo && ln -s new.json link      # like a device: what is no plain file is never replaced
+expect 1 "it is a FIFO" import "$old/rigid_blocks.json" --out fifo --force --quiet
+expect 1 "it is a symbolic link" import "$old/rigid_blocks.json" --out link --force --quiet
 expect 1 "native scene already" import new.json --out newer.json
 expect 1 "nowhere.json" import nowhere.json --out newer.json
 expect 0 "" run new.json --quiet --out imported
@@ -222,6 +253,7 @@ expect 0 "" run tank.json --quiet --out one --threads 1
 expect 0 "" run tank.json --quiet --out two --threads 2
 check "1 thread = 2 threads" same_results one two
 check "1 thread = 2 threads, state" same_hash one two
+check "1 thread = 2 threads, checkpoint" same_checkpoint one two
 expect 0 "" run one/resolved.json --quiet --out again
 check "resolved.json gives the same results" same_results one again
 check "resolved.json gives the same state" same_hash one again
@@ -231,20 +263,24 @@ check "resolved.json resolves to itself" diff <(sed '/threads/d' one/resolved.js
 $python make_scene.py long.json 0.2 box.obj
 expect 0 "" run long.json --quiet --out whole
 expect 0 "" run long.json --quiet --out halves --until 0.1
+cp swing.lua good.lua && echo 'table.insert({}, 2^53, 1)' > swing.lua
+expect 1 "swing.lua: endless loop? stopped after 3 s of processor time, inside one call" resume halves
+mv good.lua swing.lua
 expect 0 "" resume halves --quiet --until 0.2
 check "run = run + resume" same_results whole halves
 check "run = run + resume, state" same_hash whole halves
+check "run = run + resume, checkpoint" same_checkpoint whole halves
 check "same number of steps" test "$(value whole/summary.json steps)" = "$(value halves/summary.json steps)"
 
-# start_run DIR OUTPUT: starts a run and waits for an output or for its end; pid in $pid
+# start_run DIR OUTPUT: starts a run and waits for an output or for its end; in $pid its number and its group's
 start_run() {
-    "$program" run long.json --quiet --out "$1" > out.txt 2> err.txt &
+    setsid "$program" run long.json --quiet --out "$1" > out.txt 2> err.txt &
     pid=$!
     while [ ! -e "$1/fluid/fluid_$2.vtu" ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
 }
 for signal in INT TERM; do
     start_run stopped_$signal 000007
-    kill -$signal $pid
+    kill -$signal -- -$pid      # as a terminal does: the script's process gets it too
     got=0; wait $pid || got=$?
     check "SIG$signal: exit code 130 (was $got)" test $got = 130
     check "SIG$signal: summary says interrupted" grep -q '"interrupted"' stopped_$signal/summary.json
@@ -252,6 +288,7 @@ for signal in INT TERM; do
     expect 0 "" resume stopped_$signal --quiet --threads 2
     check "SIG$signal + resume = run" same_results whole stopped_$signal
     check "SIG$signal + resume = run, state" same_hash whole stopped_$signal
+    check "SIG$signal + resume = run, checkpoint" same_checkpoint whole stopped_$signal
 done
 for output in 000001 000005 000012; do
     start_run killed_$output $output
@@ -262,14 +299,48 @@ for output in 000001 000005 000012; do
     expect 0 "" resume killed_$output --quiet
     check "kill -9 after $output + resume = run" same_results whole killed_$output
     check "kill -9 after $output + resume = run, state" same_hash whole killed_$output
+    check "kill -9 after $output + resume = run, checkpoint" same_checkpoint whole killed_$output
     check "kill -9 after $output: no unfinished files" no_parts killed_$output
 done
+
+# A signal within a solve that takes minutes: the step is given up, the state is that of the step before.
+cat > solve.json << 'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.01, "end_time": 1,
+  "dfsph": { "divergence_iterations_min": 1000000, "divergence_iterations_max": 1000000 },
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [0.5, 0.5] } } ] } ] }
+END
+"$program" run solve.json --quiet --out solve > out.txt 2> err.txt &
+pid=$!
+while [ ! -e solve/fluid.pvd ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+sleep 0.5
+kill -TERM $pid
+for _ in $(seq 30); do kill -0 $pid 2> /dev/null && sleep 0.1; done
+kill -KILL $pid 2> /dev/null
+got=0; wait $pid || got=$?
+check "SIGTERM within a solve: exit code 130 within 3 s (was $got)" test $got = 130
+check "SIGTERM within a solve: summary says interrupted" grep -q '"interrupted"' solve/summary.json
+check "SIGTERM within a solve: no step was made" test "$(value solve/summary.json steps)" = 0
+
+# Steps that would take years.
+expect 1 "allowed is 1e-7 to 1e5 m" check long.json --spacing 5e-324
+expect 1 "gets nowhere" run long.json --quiet --out stalled --set 'fluids[0].viscosity=1e9'
+check "a run that gets nowhere: summary says stalled" grep -q '"stalled"' stalled/summary.json
+
 start_run busy 000002
 expect 1 "another run" resume busy --quiet
 kill -INT $pid; wait $pid
 
+# --- deleted results --------------------------------------------------------------------------------
+start_run deleted 000003
+rm -r deleted/fluid
+got=0; wait $pid || got=$?
+check "deleted during a run: exit code 0 (was $got)" test $got = 0
+check "deleted during a run: said so" grep -q "results in deleted: missing files of earlier outputs: [1-9]" err.txt
+check "deleted during a run: the state is there" same_hash whole deleted
+rm deleted/history.csv
+expect 0 "results in deleted: history.csv was deleted and begins anew; missing files" resume deleted --until 0.21
+
 # --- damaged checkpoints ----------------------------------------------------------------------------
-newest() { find "$1/checkpoints" -name '*.h5' | sort | tail -n 1; }
 expect 0 "" run long.json --quiet --out damaged --until 0.1
 truncate -s 1000 "$(newest damaged)"
 expect 0 "is damaged" resume damaged --until 0.2

@@ -20,13 +20,18 @@ points() { grep -c "<use xlink:href='#gpPt[0-9]*' transform=" "$1"; }
 expect 2 "which DIR?" plot
 expect 2 "neither svg nor png" plot nowhere --format gif
 expect 1 "no history.csv" plot nowhere
-mkdir made && : > made/history.csv
+mkdir made && mkfifo made/history.csv
+expect 1 "is not a file" plot made
+rm made/history.csv && : > made/history.csv
 expect 1 "is empty" plot made
 echo "when,what" > made/history.csv
 expect 1 'no column "time"' plot made
 echo "time,step,kinetic_energy" > made/history.csv
 expect 1 "no rows yet" plot made
 check "nothing was drawn so far" test ! -e made/plots
+mkdir -p fifo && mkfifo fifo/history.csv
+got=0; timeout 20 "$program" plot fifo 2> err.txt || got=$?
+check "a FIFO is not waited for (exit code $got)" test $got = 1
 printf '0,0,0\n0.1,1,2\n0.2,2,nan\n' >> made/history.csv
 got=0; PATH=/nonexistent "$program" plot made > out.txt 2> err.txt || got=$?
 check "gnuplot missing: exit code 1 (was $got)" test $got = 1
@@ -74,7 +79,7 @@ expect 1 'no column "level" in a point' check tank.json --set 'references[0].col
 expect 1 'no column "pressure" in a level' check tank.json --set 'references[0].probe=H'
 expect 1 "at most one of them" check tank.json --set 'references[3].probe=H'
 expect 1 "cannot find" check tank.json --set 'references[1].file=no_such.csv'
-expect 1 "greater than 0" check tank.json --set 'references[2].x_scale=-1'
+expect 1 "allowed is 1e-30 to 1e30" check tank.json --set 'references[2].x_scale=-1'
 expect 1 "file: is missing" check tank.json --set 'references=[{"column": "dt"}]'
 expect 1 "must be a list" check tank.json --set 'references={}'
 expect 1 "one line" check tank.json --set 'references[0].label="a\nb"'
@@ -155,6 +160,16 @@ echo "step,name" > made/bodies.csv
 expect 1 'no column "time"' plot made
 mkdir -p blocked && cp made/history.csv blocked && : > blocked/plots
 expect 1 "plots" plot blocked
+
+# A folder that a stranger has prepared: no link leads out of it.
+mkdir dear linked strange && echo dear > dear/energies.svg && cp dear/energies.svg dear/plots.gnuplot
+printf 'time,step,kinetic_energy\n0,0,1\n1,1,2\n' | tee strange/history.csv > linked/history.csv
+ln -s ../dear strange/plots
+expect 1 "a link is not followed" plot strange
+mkdir linked/plots && ln -s ../../dear/energies.svg ../../dear/plots.gnuplot linked/plots
+expect 0 "no values for the picture" plot linked
+check "a picture in the place of a link" has linked/plots/energies.svg "kinetic energy, J"
+check "nothing written through a link" test "$(cat dear/*)" = "$(printf 'dear\ndear')"
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

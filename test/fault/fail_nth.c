@@ -3,8 +3,8 @@
 
    FAIL_KIND  own: allocations asked for by the program's own code (library linked in)
               libraries: all other allocations of the process (HDF5, jansson, LuaJIT, libpng, libc)
-              child: allocations in a forked child (the mesh importer)
-              open, write, read: calls on files, with FAIL_ERRNO
+              child: allocations in forked children (the mesh importer, scripts)
+              open, write, read: calls on files, with FAIL_ERRNO; open stands for starting a child, too
    FAIL_AT    n; 0 only counts
    FAIL_ON    1: every call from the n-th on fails, as on a disk that stays full
    FAIL_SHORT 1: the n-th write or read does half of its work instead
@@ -24,6 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -178,6 +179,13 @@ FILE *fopen64(const char *path, const char *mode)
     return fails_call(OPEN, "fopen64") ? NULL : NEXT(fopen)(path, mode);
 }
 
+int socketpair(int domain, int type, int protocol, int ends[2])
+{
+    return fails_call(OPEN, "socketpair") ? -1 : NEXT(socketpair)(domain, type, protocol, ends);
+}
+
+pid_t fork(void) { return fails_call(OPEN, "fork") ? -1 : NEXT(fork)(); }
+
 int mkdir(const char *path, mode_t mode) { return fails_call(OPEN, "mkdir") ? -1 : NEXT(mkdir)(path, mode); }
 
 static int is_terminal(FILE *f) { return f == stdin || f == stdout || f == stderr; }
@@ -226,6 +234,7 @@ ssize_t pwrite64(int fd, const void *data, size_t n, off_t at) { return pwrite(f
 int ftruncate(int fd, off_t n) { return fails_call(WRITE, "ftruncate") ? -1 : NEXT(ftruncate)(fd, n); }
 int ftruncate64(int fd, off_t n) { return ftruncate(fd, n); }
 int fsync(int fd) { return fails_call(WRITE, "fsync") ? -1 : NEXT(fsync)(fd); }
+int syncfs(int fd) { return fails_call(WRITE, "syncfs") ? -1 : NEXT(syncfs)(fd); }
 
 int posix_fallocate(int fd, off_t at, off_t n)
 {

@@ -1,7 +1,19 @@
-/* Motion scripts: whatever a user's Lua does, loading and calling it end in a result or a text. */
+/* Scripts: whatever a user's Lua does, loading and calling it end in a result or a text, and the
+   process of the script does not crash. */
 #include "target.h"
 #include "rigid/script.h"
 #include <math.h>
+#include <signal.h>
+
+#define SECONDS 0.1      /* of processor time per call */
+
+/* A child ends by itself with 0, or is killed when its script is freed. */
+static void watch_child(int signal, siginfo_t *info, void *context)
+{
+    (void)signal, (void)context;
+    if (info->si_code == CLD_EXITED) PROMISE(info->si_status == 0);
+    else PROMISE(info->si_code == CLD_KILLED && info->si_status == SIGKILL);
+}
 
 static int call(tobi_script *script, double t)
 {
@@ -34,15 +46,16 @@ static int control(tobi_script *script, double t)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[64];
+    sigaction(SIGCHLD, &(struct sigaction){ .sa_sigaction = watch_child, .sa_flags = SA_SIGINFO }, NULL);
     int fd = make_file(data, size, path);
     tobi_script *script = NULL;
     tobi_error err = { 0 };
     static const char params[] = "{\"a\": 1.5, \"list\": [1, 2, 3], \"s\": \"x\"}";
-    tobi_status status = tobi_script_load(path, params, TOBI_MOTION_SCRIPT, &script, &err);
+    tobi_status status = tobi_script_load_within(path, params, TOBI_MOTION_SCRIPT, SECONDS, &script, &err);
     PROMISE(!script == !passed(status, &err));
     if (script && call(script, 0) && call(script, 0.25)) call(script, 1e300);
     tobi_script_free(script);
-    status = tobi_script_load(path, params, TOBI_CONTROL_SCRIPT, &script, &err);
+    status = tobi_script_load_within(path, params, TOBI_CONTROL_SCRIPT, SECONDS, &script, &err);
     PROMISE(!script == !passed(status, &err));
     if (script && control(script, 0)) control(script, 1e300);
     tobi_script_free(script);

@@ -11,6 +11,7 @@ import array
 import csv
 import fnmatch
 import json
+import math
 import os
 import pathlib
 import platform
@@ -290,6 +291,33 @@ def write_blade(path, thickness, wedge, height, low, high, along="z"):
     """A straight blade with its edge at the origin, pointing down; m. Returns the path."""
     half = thickness/2
     return write_prism(path, [(0, 0), (half, wedge), (half, height), (-half, height), (-half, wedge)], low, high, along)
+
+
+def write_quarter_sphere(path, radius, rings=96, sectors=48):
+    """The quarter x > 0, y > 0 of a sphere round the origin as closed OBJ, volume pi radius^3/3."""
+    points = [(0, 0, 1)]
+    for i in range(1, rings):
+        t = math.pi*i/rings
+        points += [(math.sin(t)*math.cos(p), math.sin(t)*math.sin(p), math.cos(t))
+                   for p in (math.pi/2*j/sectors for j in range(sectors + 1))]
+    points += [(0, 0, -1), (0, 0, 0)]
+    bottom, centre, row = len(points) - 2, len(points) - 1, sectors + 1
+    at = lambda i, j: 0 if i == 0 else bottom if i == rings else 1 + (i - 1)*row + j
+    faces = []
+    for i in range(rings):
+        for j in range(sectors):
+            a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+            faces += [f for f in ((a, b, c), (a, c, d)) if len(set(f)) == 3]
+        faces += [(centre, at(i + 1, 0), at(i, 0)), (centre, at(i, sectors), at(i + 1, sectors))]
+    volume = sum(sum(a*b for a, b in zip(points[p], cross(points[q], points[r]))) for p, q, r in faces)/6
+    scale = radius*(math.pi/3/volume)**(1/3)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("".join("v %.9g %.9g %.9g\n" % tuple(scale*c for c in p) for p in points)
+                    + "".join("f %d %d %d\n" % tuple(k + 1 for k in f) for f in faces))
+
+
+def cross(a, b):
+    return a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]
 
 
 def mean(values):

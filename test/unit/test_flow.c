@@ -45,7 +45,7 @@ static tobi_status ask(const char *text, double velocity[3], tobi_error *err)
     const double place[1][3] = { { 1, 2, 3 } };
     tobi_script *s;
     write_script(text);
-    TOBI_TRY(tobi_script_load(script, "{\"k\": 10}", TOBI_FLOW_SCRIPT, &s, err));
+    TOBI_TRY(tobi_script_load_within(script, "{\"k\": 10}", TOBI_FLOW_SCRIPT, 0.2, &s, err));
     tobi_status status = tobi_script_flow(s, 1, place, (double (*)[3])velocity, err);
     tobi_script_free(s);
     return status;

@@ -2,6 +2,7 @@
 #include "test_geom_solids.h"
 #include "geom/edges.h"
 #include "geom/file_checks.h"
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -33,6 +34,26 @@ static void reads_obj_with_groups_and_both_kinds_of_vt(void **state)
     OK(tobi_mesh_orient(&mesh, "groups", &err));
     NEAR(mesh_volume(&mesh), 1.0/6, 1e-15);
     tobi_mesh_free(&mesh);
+}
+
+/* A library of materials that is a pipe, for files that are read as they are and for changed ones. */
+static void opens_no_other_file(void **state)
+{
+    (void)state;
+    tobi_mesh mesh;
+    remove("pipe.mtl");
+    assert_int_equal(mkfifo("pipe.mtl", 0600), 0);
+    for (int k = 0; k < 2; k++) {
+        char text[500];
+        snprintf(text, sizeof text, "mtllib pipe.mtl\n%s%susemtl a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
+                 tetra_obj, k ? "v .5 .5 .5\n" : "");
+        const time_t begin = time(NULL);
+        OK(tobi_mesh_read(write_text("piped.obj", text), &mesh, &err));
+        assert_true(time(NULL) - begin < 5);
+        assert_int_equal(mesh.triangle_count, 4);
+        tobi_mesh_free(&mesh);
+    }
+    remove("pipe.mtl");
 }
 
 static void reads_polygons_and_decimal_numbers_as_written(void **state)
@@ -126,13 +147,34 @@ static void reads_binary_stl(void **state)
     tobi_mesh_free(&box);
 }
 
+/* The pipe of the importer may then be one of the three streams, which it shuts for its own texts. */
+static void reads_where_a_host_has_closed_its_streams(void **state)
+{
+    (void)state;
+    int kept[3];
+    tobi_mesh mesh;
+    tobi_error err = {0};
+    char text[200];
+    snprintf(text, sizeof text, "%sf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", tetra_obj);
+    write_text("streams.obj", text);
+    fflush(NULL);
+    for (int k = 0; k < 3; k++) kept[k] = dup(k);
+    for (int k = 0; k < 3; k++) close(k);
+    tobi_status status = tobi_mesh_read("streams.obj", &mesh, &err);
+    for (int k = 0; k < 3; k++) dup2(kept[k], k);
+    for (int k = 0; k < 3; k++) close(kept[k]);
+    OK(status);
+    assert_int_equal(mesh.triangle_count, 4);
+    tobi_mesh_free(&mesh);
+}
+
 static void refuses_bad_files(void **state)
 {
     (void)state;
     tobi_mesh mesh, box = make_cube(1);
     char text[1000];
     REFUSED(tobi_mesh_read("no_such.obj", &mesh, &err), TOBI_NOT_FOUND, "no_such.obj");
-    REFUSED(tobi_mesh_read(".", &mesh, &err), TOBI_IO, "not a regular file");
+    REFUSED(tobi_mesh_read(".", &mesh, &err), TOBI_IO, "mesh .: is a directory; only plain files are read");
     write_text("cube.step", "ISO-10303-21;\n");
     REFUSED(tobi_mesh_read("cube.step", &mesh, &err), TOBI_INVALID, "allowed are .obj, .stl and .ply");
     write_text("empty.obj", "");
@@ -465,10 +507,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_obj_with_groups_and_both_kinds_of_vt),
+        cmocka_unit_test(opens_no_other_file),
         cmocka_unit_test(reads_polygons_and_decimal_numbers_as_written),
         cmocka_unit_test(reads_numbers_without_leading_zero),
         cmocka_unit_test(reads_ascii_stl_and_ply),
         cmocka_unit_test(reads_binary_stl),
+        cmocka_unit_test(reads_where_a_host_has_closed_its_streams),
         cmocka_unit_test(refuses_bad_files),
         cmocka_unit_test(ply_headers_are_judged_before_the_import),
         cmocka_unit_test(floats_become_the_decimals_that_were_written),

@@ -92,6 +92,7 @@ static void resuming_keeps_whole_rows(void **state)
     assert_int_equal(tobi_csv_open(path, TOBI_CSV_APPEND, 9, columns, 4, &csv, &err), TOBI_INVALID);
     assert_null(csv);
     assert_non_null(strstr(err.text, "other columns"));
+    assert_null(strstr(err.text, "time [s],other"));      /* the file may be a foreign one */
     assert_string_equal(content(), "time [s],other\n1,2\n");
     assert_int_equal(tobi_csv_open("/no/such/t.csv", TOBI_CSV_NEW, 9, columns, 4, &csv, &err), TOBI_IO);
     assert_string_equal(err.text, "cannot write /no/such/t.csv: No such file or directory");

@@ -84,6 +84,33 @@ static tobi_status read_store(const char *path, int64_t n, tobi_error *err)
     return status;
 }
 
+/* Nothing but the content is in the file: no time of day, no byte that happened to stand in memory. */
+static void equal_content_makes_equal_files(void **state)
+{
+    (void)state;
+    tobi_error err;
+    assert_int_equal(write_store(store_path, N, &err), 0);
+    sleep(1);                                            /* HDF5 counts times in seconds */
+    enum { ROOM = 1 << 22 };
+    void *dirt = malloc(ROOM);
+    memset(dirt, 0xa5, ROOM);
+    free(dirt);
+    assert_int_equal(write_store(hurt_path, N, &err), 0);
+    char *content[2];
+    size_t bytes[2];
+    for (int k = 0; k < 2; k++) {
+        FILE *file = fopen(k ? hurt_path : store_path, "rb");
+        content[k] = malloc(ROOM);
+        bytes[k] = fread(content[k], 1, ROOM, file);
+        fclose(file);
+    }
+    assert_true(bytes[0] > 1000000 && bytes[0] < ROOM);
+    assert_int_equal(bytes[0], bytes[1]);
+    assert_memory_equal(content[0], content[1], bytes[0]);
+    free(content[0]);
+    free(content[1]);
+}
+
 static void what_is_put_is_got(void **state)
 {
     (void)state;
@@ -327,7 +354,8 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_put_is_got), cmocka_unit_test(long_texts_are_kept),
+        cmocka_unit_test(what_is_put_is_got), cmocka_unit_test(equal_content_makes_equal_files),
+        cmocka_unit_test(long_texts_are_kept),
         cmocka_unit_test(mismatches_say_what_is_wrong), cmocka_unit_test(cut_files_are_refused),
         cmocka_unit_test(damaged_files_are_refused), cmocka_unit_test(array_damage_meets_the_second_sum),
         cmocka_unit_test(full_disk_keeps_the_old_file)

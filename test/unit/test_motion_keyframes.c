@@ -216,7 +216,14 @@ static void bad_files_are_named_with_their_line(void **state)
             fail_msg("<%s>: \"%s\" does not say \"%s\"", bad[i].text, err.text, bad[i].says);
         assert_null(m);
     }
+    /* A file that is something else is not quoted at length. */
     FILE *f = fopen("rows.csv", "w");
+    fputs("machine example.org login someone password 0123456789\n", f);
+    fclose(f);
+    assert_int_equal(tobi_motion_keyframes("rows.csv", none, &m, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "rows.csv:1: there is no column \"machine example....\"; allowed are"));
+
+    f = fopen("rows.csv", "w");
     fwrite("t\0,\0x\0\n\0", 1, 8, f);
     fclose(f);
     assert_int_equal(tobi_motion_keyframes("rows.csv", none, &m, &err), TOBI_INVALID);

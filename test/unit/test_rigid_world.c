@@ -110,7 +110,7 @@ static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *e
                               .contact_force = { 10, 11, 12 },
                               .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18 };
     write_file("ask.lua", text);
-    TOBI_TRY(tobi_script_load("ask.lua", NULL, TOBI_CONTROL_SCRIPT, &script, err));
+    TOBI_TRY(tobi_script_load_within("ask.lua", NULL, TOBI_CONTROL_SCRIPT, 0.2, &script, err));
     *out = (tobi_control_output){ .phase = in.phase };
     tobi_status status = tobi_script_control(script, &in, out, err);
     out->hold = out->hold && strcmp(out->hold, "x,turn") == 0 ? "x,turn" : "";
@@ -164,7 +164,7 @@ static void test_control_script(void **state)
     tobi_script *script;
     assert_int_equal(tobi_script_load("nowhere.lua", "[1]", TOBI_CONTROL_SCRIPT, &script, &err),
                      TOBI_INVALID);
-    assert_non_null(strstr(err.text, "control params: must be a JSON object"));
+    assert_non_null(strstr(err.text, "control script params: must be a JSON object"));
 }
 
 static int answer;         /* which mistake the program below makes */

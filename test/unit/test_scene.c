@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "scene/scene.h"
+#include "scene/suggest.h"
 
 #define FISH TOBI_SOURCE_DIR "/scenes/flying_fish/scene.json"
 
@@ -359,7 +360,7 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     assert_non_null(strstr(text, "dfsph"));
     free(text);
     text = tobi_scene_describe("scene");
-    assert_non_null(strstr(text, "| `spacing` | number | m | **required** | greater than 0 m |"));
+    assert_non_null(strstr(text, "| `spacing` | number | m | **required** | 1e-7 to 1e5 m |"));
     free(text);
     text = tobi_scene_describe("schema");
     assert_non_null(strstr(text, "\"additionalProperties\": false"));
@@ -393,6 +394,18 @@ static void resolved_is_whole_or_nothing(void **state)
     tobi_scene_free(scene);
 }
 
+static void suggestions(void **state)
+{
+    (void)state;
+    static const char *const words[] = { "spacing", "support", "end_time", "velocity" };
+    assert_string_equal(tobi_suggest("Spacing", words, 4), "spacing");
+    assert_string_equal(tobi_suggest("end-time", words, 4), "end_time");
+    assert_string_equal(tobi_suggest("velcoity", words, 4), "velocity");
+    assert_null(tobi_suggest("particleRadius", words, 4));
+    assert_null(tobi_suggest("", words, 4));
+    assert_null(tobi_suggest("x", words, 4));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -408,6 +421,7 @@ int main(void)
         cmocka_unit_test(a_box_is_a_rectangle_in_2d),
         cmocka_unit_test(builds_a_world),
         cmocka_unit_test(describe_tells_units_defaults_and_ranges),
+        cmocka_unit_test(suggestions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

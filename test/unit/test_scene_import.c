@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "base/plain.h"
 #include "calls.h"
 #include "geom/mesh.h"
 #include "scene/scene.h"
@@ -97,6 +98,32 @@ static void a_run_notes_the_shipped_fish(void **state)
                      strstr(note, "the fish that comes with Tobiuo is taken");
         assert_int_equal(found, !right);
         tobi_world_destroy(world);
+        tobi_scene_free(scene);
+    }
+}
+
+/* A list of numbers becomes a property of several objects, wherever they are. */
+static void the_table_tells_what_became_invisible(void **state)
+{
+    (void)state;
+    static const struct { const char *numbers, *says; } cases[] = {
+        { "[3, 1]", "-> fluids[1].visible = false, bodies[0].visible = false\n" },
+        { "[0]", "-> fluids[0].visible = false\n" },
+        { "[9]", "-> nothing\n    no object has one of these numbers\n" },
+        { "[]", "-> nothing\n" },
+    };
+    for (size_t i = 0; i < sizeof cases/sizeof *cases; i++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, -9],"
+                 " \"particleRadius\": 0.1, \"invisibleObjects\": %s }, \"FluidBlocks\": ["
+                 " { \"objectId\": 0, \"start\": [0, 0, 0], \"end\": [0.4, 1, 0.4], \"color\": [0, 0, 9] },"
+                 " { \"objectId\": 1, \"start\": [0.6, 0, 0], \"end\": [1, 1, 0.4], \"color\": [9, 0, 0] } ],"
+                 " \"RigidBlocks\": [ { \"objectId\": 3, \"start\": [0.4, 0, 0.5], \"end\": [0.6, 1, 0.8],"
+                 " \"isDynamic\": false } ] }", cases[i].numbers);
+        tobi_scene *scene = parse(text);
+        if (!strstr(tobi_scene_import_table(scene), cases[i].says))
+            fail_msg("no '%s' in\n%s", cases[i].says, tobi_scene_import_table(scene));
         tobi_scene_free(scene);
     }
 }
@@ -397,6 +424,7 @@ static void later_mistakes(void **state)
         "\"RigidBodies\": [ { \"geometryFile\": \"nowhere/at_all.obj\" } ],\n"
         "\"RigidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 0, 1] } ] }";
     EXPECT(text, "output.interval): is 1e-09 s and makes more than",
+           "(here time_step): is 1e-09 s and makes 5e+09 steps until end_time, 5 s; allowed are up to",
            "old.json:3:18: FluidBlocks[0] (here fluids[0].fill[0].box): reaches from 0 to 2 m in z",
            "old.json:4:2: FluidBlocks[1] (here fluids[1].fill[0].box): min is 0 and max is 0 in y",
            "old.json:5:36: RigidBodies[0].geometryFile (here bodies[0].mesh): cannot find",
@@ -481,14 +509,14 @@ static void paths_below_the_new_scene_are_relative(void **state)
     fclose(file);
     char *table, *text;
     size_t size;
-    OK(tobi_source_read_file(TOBI_SOURCE_DIR "/test/meshes/wedge.obj", &text, &size, &err));
+    OK(tobi_plain_read(TOBI_SOURCE_DIR "/test/meshes/wedge.obj", "mesh", 0, &text, &size, &err));
     file = fopen(mesh, "w");
     assert_non_null(file);
     assert_true(fwrite(text, 1, size, file) == size && fclose(file) == 0);
     free(text);
     OK(tobi_scene_import(old, new, 0, &table, NULL, &err));
     assert_non_null(strstr(table, "-> bodies[0].mesh = \"wedge.obj\"\n"));
-    OK(tobi_source_read_file(new, &text, &size, &err));
+    OK(tobi_plain_read(new, "scene", 0, &text, &size, &err));
     assert_non_null(strstr(text, "-> bodies[0].mesh = \"wedge.obj\"\n"));
     assert_null(strstr(text, folder));
     assert_null(strstr(table, "Absolute path"));
@@ -507,6 +535,7 @@ int main(void)
         cmocka_unit_test(the_flying_fish_of_the_users),
         cmocka_unit_test(a_run_notes_the_shipped_fish),
         cmocka_unit_test(the_table_tells_every_key),
+        cmocka_unit_test(the_table_tells_what_became_invisible),
         cmocka_unit_test(blocks_with_their_own_values),
         cmocka_unit_test(rigid_blocks_are_boxes),
         cmocka_unit_test(the_water_moves_dynamic_bodies),

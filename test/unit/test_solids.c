@@ -168,12 +168,12 @@ static void bad_solids_are_refused_in_words(void **state)
     char text[2048];
     snprintf(text, sizeof text, "\"mass\": 0, %s", ball);
     refuse(make(text, ""), "s.json:4:9: solids[0].mass: ",
-           "is 0, allowed is greater than 0 kg, or \"by density\"");
+           "is 0, allowed is 1e-30 to 1e30 kg, or \"by density\"");
     snprintf(text, sizeof text, "\"mass\": \"by density\", %s", ball);
     tobi_scene_free(parse(make(text, "")));
     refuse(make(ball, ", \"bodies\": [ { \"name\": \"b\", \"mass\": 0,\n"
                       BOX("[-1, -1, -1]", "[0, 0, -0.6]") " } ]"),
-           "s.json:6:38: bodies[0].mass: ", "is 0, allowed is greater than 0 kg, or \"by density\"");
+           "s.json:6:38: bodies[0].mass: ", "is 0, allowed is 1e-30 to 1e30 kg, or \"by density\"");
     refuse(make("\"density\": 1000, \"mass\": 2, \"fill\": [ { " SPHERE("[0, 0, 0]", "0.5") " } ]", ""),
            "s.json:4:18: solids[0].mass: ", "given beside density");
     snprintf(text, sizeof text, "\"model\": \"liquid\", \"youngs_modulus\": 1e5, %s", ball);
@@ -182,9 +182,9 @@ static void bad_solids_are_refused_in_words(void **state)
     snprintf(text, sizeof text, "\"poissons_ratio\": 0.5, %s", ball);
     refuse(make(text, ""), "s.json:4:19: solids[0].poissons_ratio: ", "is 0.5, allowed is -0.99 to 0.495");
     snprintf(text, sizeof text, "\"youngs_modulus\": 0, %s", ball);
-    refuse(make(text, ""), "s.json:4:19: solids[0].youngs_modulus: ", "is 0, allowed is greater than 0 Pa");
+    refuse(make(text, ""), "s.json:4:19: solids[0].youngs_modulus: ", "is 0, allowed is 1e-6 to 1e15 Pa");
     snprintf(text, sizeof text, "\"surface_friction\": -1, %s", ball);
-    refuse(make(text, ""), "s.json:4:21: solids[0].surface_friction: ", "is -1, allowed is at least 0");
+    refuse(make(text, ""), "s.json:4:21: solids[0].surface_friction: ", "is -1, allowed is 0 to 1000");
     snprintf(text, sizeof text, "\"bonded\": 0, %s", ball);
     refuse(make(text, ""), "s.json:4:11: solids[0].bonded: ", "is a number, must be true or false");
     snprintf(text, sizeof text, "\"model\": \"liquid\", \"surface_friction\": 0.1, %s", ball);

@@ -6,7 +6,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from harness import Case, read_table
+from harness import Case, read_table, write_quarter_sphere
 
 case = Case("heave", "Heave decay of a sphere", """
 A sphere of R = 5 m and 261.8e3 kg floats half submerged in deep water (1000 kg/m3, 9.81 m/s2); lifted by 1 m and let go,
@@ -18,33 +18,6 @@ themselves by 2 % in the period, from the first extremum to the third, and by 3,
 R, G, RHO = 5.0, 9.81, 1000
 # Time (s) and height (m) of the first three extrema: mean over ProteusDS, InWave, Marin, NREL CFD, WavEC and InWave+H.
 EXTREMA = [(2.220, -0.875), (4.418, 0.638), (6.588, -0.479)]
-
-
-def write_quarter(path, rings=96, sectors=48):
-    """The quarter x > 0, y > 0 of a sphere round the origin as closed OBJ, volume pi R^3/3."""
-    points = [(0, 0, 1)]
-    for i in range(1, rings):
-        t = math.pi*i/rings
-        points += [(math.sin(t)*math.cos(p), math.sin(t)*math.sin(p), math.cos(t))
-                   for p in (math.pi/2*j/sectors for j in range(sectors + 1))]
-    points += [(0, 0, -1), (0, 0, 0)]
-    bottom, centre, row = len(points) - 2, len(points) - 1, sectors + 1
-    at = lambda i, j: 0 if i == 0 else bottom if i == rings else 1 + (i - 1)*row + j
-    faces = []
-    for i in range(rings):
-        for j in range(sectors):
-            a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
-            faces += [f for f in ((a, b, c), (a, c, d)) if len(set(f)) == 3]
-        faces += [(centre, at(i + 1, 0), at(i, 0)), (centre, at(i, sectors), at(i + 1, sectors))]
-    volume = sum(sum(a*b for a, b in zip(points[p], cross(points[q], points[r]))) for p, q, r in faces)/6
-    scale = R*(math.pi/3/volume)**(1/3)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("".join("v %.9g %.9g %.9g\n" % tuple(scale*c for c in p) for p in points)
-                    + "".join("f %d %d %d\n" % tuple(k + 1 for k in f) for f in faces))
-
-
-def cross(a, b):
-    return a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]
 
 
 def extrema(times, heights, count=3):
@@ -61,7 +34,7 @@ def extrema(times, heights, count=3):
 def heave(across, far, deep, support):
     d = R/across
     mesh = case.out / "quarter.obj"
-    write_quarter(mesh)
+    write_quarter_sphere(mesh, R)
     scene = case.write_scene(f"heave{across}_{support}", {
         "dfsph": {"support": support},
         "domain": {"min": [0, 0, -deep], "max": [far, far, 8]}, "gravity": [0, 0, -G], "spacing": d, "end_time": 7.4,

@@ -1,0 +1,260 @@
+/* Programs that call wrongly: every public function with NULL, with numbers of nothing and with numbers that
+   are none. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "calls.h"
+#include "tobiuo/run.h"
+#include "tobiuo/scene.h"
+
+#define NULL_WORLD "world is NULL"
+
+static tobi_world *make_world(const char *method)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world;
+    def.method = method;
+    for (int a = 0; a < 3; a++) def.domain_max[a] = fill.box_max[a] = 0.4;
+    def.spacing = 0.1;
+    def.threads = 1;
+    OK(tobi_world_create(&def, NULL, &world, &err));
+    if (strcmp(method, "mlsmpm") == 0) OK(tobi_world_add_solid(world, &solid, &fill, 1, &err));
+    else OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    return world;
+}
+
+static void no_world(void **state)
+{
+    (void)state;
+    const tobi_fluid_def fluid = tobi_default_fluid_def();
+    const tobi_solid_def solid = tobi_default_solid_def();
+    const tobi_body_def body = tobi_default_body_def();
+    const tobi_plane_def plane = tobi_default_plane_def();
+    const tobi_probe_def probe = tobi_default_probe_def();
+    tobi_probe_info seen;
+    const tobi_grid *grid;
+    const tobi_pieces *pieces;
+    int64_t n;
+    double v;
+    REFUSED(tobi_world_add_fluid(NULL, &fluid, NULL, 0, &err), TOBI_INVALID,
+            "tobi_world_add_fluid: world is NULL");
+    REFUSED(tobi_world_add_solid(NULL, &solid, NULL, 0, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_add_body(NULL, &body, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_add_plane(NULL, &plane, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_add_probe(NULL, &probe, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_estimate(NULL, &n, &n, &n, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_start(NULL, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_step(NULL, 0, NULL, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_advance(NULL, 1, NULL, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_probe(NULL, 0, &seen, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_read(NULL, TOBI_FLUID, "velocity", &v, 1, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_write(NULL, "velocity", &v, 0, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_grid(NULL, &grid, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_pieces(NULL, &pieces, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_save(NULL, "x.h5", &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_world_load(NULL, "x.h5", &err), TOBI_INVALID, NULL_WORLD);
+    assert_int_equal(tobi_world_step(NULL, 0, NULL, NULL), TOBI_INVALID);
+    tobi_world_set_stop(NULL, NULL, NULL);
+    tobi_world_destroy(NULL);
+}
+
+/* Calls without a text: a status, or 0 and NULL. */
+static void no_world_and_no_text(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph");
+    tobi_body_info body;
+    tobi_solid_info solid;
+    int64_t n;
+    const double (*vertices)[3];
+    const int32_t (*triangles)[3];
+    assert_int_equal(tobi_world_body(NULL, 0, &body), TOBI_INVALID);
+    assert_int_equal(tobi_world_body(w, 0, NULL), TOBI_INVALID);
+    assert_int_equal(tobi_world_solid(NULL, 0, &solid), TOBI_INVALID);
+    assert_int_equal(tobi_world_solid(w, 0, NULL), TOBI_INVALID);
+    assert_int_equal(tobi_world_surface(NULL, 0, &n, &vertices, &n, &triangles), TOBI_INVALID);
+    assert_int_equal(tobi_world_surface(w, 0, NULL, NULL, NULL, NULL), TOBI_INVALID);
+    for (int k = -1; k < 3; k += 2) {
+        assert_int_equal(tobi_world_body(w, k, &body), TOBI_NOT_FOUND);
+        assert_int_equal(tobi_world_solid(w, k, &solid), TOBI_NOT_FOUND);
+        assert_int_equal(tobi_world_surface(w, k, &n, &vertices, &n, &triangles), TOBI_NOT_FOUND);
+        assert_null(tobi_world_body_name(w, k));
+        assert_null(tobi_world_probe_name(w, k, NULL));
+        assert_null(tobi_world_note(NULL, k));
+        assert_null(tobi_world_stage(w, k, NULL));
+        assert_null(tobi_world_field_name(k < 0 ? k : 1000, NULL, NULL));
+    }
+    assert_true(tobi_world_time(NULL) == 0 && tobi_world_stable_step(NULL) == 0);
+    assert_true(!tobi_world_info(NULL) && !tobi_world_note(NULL, 0) && !tobi_world_stage(NULL, 0, NULL));
+    assert_true(!tobi_world_body_name(NULL, 0) && !tobi_world_probe_name(NULL, 0, NULL));
+    assert_int_equal(tobi_world_body_count(NULL) + tobi_world_solid_count(NULL) +
+                        tobi_world_probe_count(NULL), 0);
+    assert_int_equal(tobi_world_count(NULL, TOBI_FLUID) + tobi_world_bytes(NULL), 0);
+    assert_int_equal(tobi_world_hash(NULL), 0);
+    assert_non_null(tobi_status_text((tobi_status)1000));
+    tobi_world_destroy(w);
+}
+
+static void nothing_where_something_must_stand(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph"), *none = w;
+    const tobi_world_def def = tobi_default_world_def();
+    const tobi_fluid_def fluid = tobi_default_fluid_def();
+    const tobi_fill_def fill = tobi_default_fill_def();
+    tobi_probe_def nameless = tobi_default_probe_def();
+    double v = 0;
+    nameless.name = NULL;
+    REFUSED(tobi_world_create(&def, NULL, NULL, &err), TOBI_INVALID, "where the world goes is NULL");
+    REFUSED(tobi_world_create(NULL, NULL, &none, &err), TOBI_INVALID, "the definition is NULL");
+    assert_null(none);
+    REFUSED(tobi_world_add_fluid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
+    REFUSED(tobi_world_add_fluid(w, &fluid, NULL, 2, &err), TOBI_INVALID,
+            "fill_count is 2 and fills is NULL, allowed is 0 to 2048");
+    REFUSED(tobi_world_add_fluid(w, &fluid, &fill, -1, &err), TOBI_INVALID, "fill_count is -1, allowed is");
+    REFUSED(tobi_world_add_solid(w, NULL, &fill, 1, &err), TOBI_INVALID, "the definition is NULL");
+    REFUSED(tobi_world_add_body(w, NULL, &err), TOBI_INVALID, "the definition is NULL");
+    REFUSED(tobi_world_add_plane(w, NULL, &err), TOBI_INVALID, "the definition is NULL");
+    REFUSED(tobi_world_add_probe(w, NULL, &err), TOBI_INVALID, "the definition is NULL");
+    REFUSED(tobi_world_add_probe(w, &nameless, &err), TOBI_INVALID, "the name of the probe is NULL");
+    REFUSED(tobi_world_probe(w, 0, NULL, &err), TOBI_INVALID, "where the values go is NULL");
+    REFUSED(tobi_world_estimate(w, NULL, NULL, NULL, &err), TOBI_INVALID, "where a number goes is NULL");
+    REFUSED(tobi_world_read(w, TOBI_FLUID, NULL, &v, 1, &err), TOBI_INVALID, "the field is NULL");
+    REFUSED(tobi_world_read(w, TOBI_FLUID, "pressure", NULL, 64, &err), TOBI_INVALID, "the buffer is NULL");
+    REFUSED(tobi_world_read(w, (tobi_set)7, "pressure", &v, 1, &err), TOBI_INVALID,
+            "there is no set of particles 7");
+    REFUSED(tobi_world_write(w, NULL, &v, 1, &err), TOBI_INVALID, "the field is NULL");
+    REFUSED(tobi_world_grid(w, NULL, &err), TOBI_INVALID, "where the grid goes is NULL");
+    REFUSED(tobi_world_pieces(w, NULL, &err), TOBI_INVALID, "where the pieces go is NULL");
+    REFUSED(tobi_world_save(w, NULL, &err), TOBI_INVALID, "the path is NULL");
+    REFUSED(tobi_world_load(w, NULL, &err), TOBI_INVALID, "the path is NULL");
+    tobi_world_destroy(w);
+}
+
+static void times_that_are_none(void **state)
+{
+    (void)state;
+    const double none[] = { NAN, INFINITY, -1 };
+    tobi_world *w = make_world("dfsph");
+    for (int k = 0; k < 3; k++)
+        REFUSED(tobi_world_step(w, none[k], NULL, &err), TOBI_INVALID,
+                "allowed are finite numbers from 0, no cap");
+    for (int k = 0; k < 2; k++)
+        REFUSED(tobi_world_advance(w, none[k], NULL, &err), TOBI_INVALID, "the time to advance to is ");
+    assert_true(tobi_world_time(w) == 0);
+    OK(tobi_world_advance(w, -1, NULL, &err));
+    OK(tobi_world_step(w, 0, NULL, &err));
+    tobi_world_destroy(w);
+}
+
+/* What cannot be is not taken over, not even in part. */
+static void values_that_are_none(void **state)
+{
+    (void)state;
+    double v[3*64] = { 0 };
+    tobi_world *w = make_world("dfsph"), *solids = make_world("mlsmpm");
+    const int64_t n = tobi_world_start(w, NULL) == TOBI_OK ? tobi_world_count(w, TOBI_FLUID) : 0;
+    const uint64_t before = tobi_world_hash(w);
+    assert_int_equal(n, 64);
+    v[0] = 1;
+    v[3*n - 1] = NAN;
+    REFUSED(tobi_world_write(w, "velocity", v, n, &err), TOBI_INVALID,
+            "row 63 of field 'velocity' holds nan; allowed is -1e+06 to 1e+06");
+    v[3*n - 1] = 2e6;
+    REFUSED(tobi_world_write(w, "velocity", v, n, &err), TOBI_INVALID,
+            "row 63 of field 'velocity' holds 2e+06");
+    v[n - 1] = INFINITY;
+    REFUSED(tobi_world_write(w, "pressure", v, n, &err), TOBI_INVALID,
+            "row 63 of field 'pressure' holds inf");
+    assert_int_equal(tobi_world_hash(w), before);
+    REFUSED(tobi_world_write(solids, "pressure", v, n, &err), TOBI_NOT_FOUND,
+            "mlsmpm has no field 'pressure'");
+    tobi_fill_def fill = tobi_default_fill_def();
+    const tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_world_destroy(w);
+    w = make_world("dfsph");
+    fill.velocity[1] = NAN;
+    REFUSED(tobi_world_add_fluid(w, &fluid, &fill, 1, &err), TOBI_INVALID,
+            "fill.velocity is not a finite number");
+    tobi_world_destroy(w);
+    tobi_world_destroy(solids);
+}
+
+static void runs(void **state)
+{
+    (void)state;
+    tobi_world *w = make_world("dfsph");
+    tobi_output_def out = tobi_default_output_def();
+    tobi_run *run = NULL;
+    REFUSED(tobi_run_create(NULL, &out, "misuse", 1, NULL, &run, &err), TOBI_INVALID, NULL_WORLD);
+    REFUSED(tobi_run_create(w, NULL, "misuse", 1, NULL, &run, &err), TOBI_INVALID, "the output is NULL");
+    REFUSED(tobi_run_create(w, &out, NULL, 1, NULL, &run, &err), TOBI_INVALID, "the directory is NULL");
+    REFUSED(tobi_run_create(w, &out, "misuse", 1, NULL, NULL, &err), TOBI_INVALID,
+            "where the run goes is NULL");
+    REFUSED(tobi_run_resume(w, &out, NULL, &run, &err), TOBI_INVALID, "the directory is NULL");
+    REFUSED(tobi_run_resume(w, &out, "misuse", NULL, &err), TOBI_INVALID, "where the run goes is NULL");
+    out.interval = NAN;
+    REFUSED(tobi_run_create(w, &out, "misuse", 1, NULL, &run, &err), TOBI_INVALID,
+            "output.interval is not a finite");
+    assert_null(run);
+    REFUSED(tobi_run_step(NULL, 1, NULL, &err), TOBI_INVALID, "run is NULL");
+    REFUSED(tobi_run_output(NULL, &err), TOBI_INVALID, "run is NULL");
+    REFUSED(tobi_run_checkpoint(NULL, &err), TOBI_INVALID, "run is NULL");
+    REFUSED(tobi_run_finish(NULL, "complete", &err), TOBI_INVALID, "tobi_run_finish: run is NULL");
+    assert_string_equal(tobi_run_note(NULL), "");
+    assert_int_equal(tobi_run_done(NULL, 1), 1);
+    tobi_run_free(NULL);
+    out.interval = 1;
+    OK(tobi_run_create(w, &out, "misuse", 1, NULL, &run, &err));
+    REFUSED(tobi_run_step(run, NAN, NULL, &err), TOBI_INVALID, "the end of the run is nan s, not finite");
+    REFUSED(tobi_run_step(run, INFINITY, NULL, &err), TOBI_INVALID,
+            "the end of the run is inf s, not finite");
+    assert_int_equal(tobi_run_done(run, NAN), 0);
+    REFUSED(tobi_run_finish(run, NULL, &err), TOBI_INVALID, "tobi_run_finish: the outcome is NULL");
+    tobi_run_free(run);
+    tobi_world_destroy(w);
+}
+
+static void scenes(void **state)
+{
+    (void)state;
+    tobi_scene *scene;
+    tobi_world *w = NULL;
+    char *table;
+    REFUSED(tobi_scene_load(NULL, NULL, &scene, NULL, &err), TOBI_INVALID, "the path is NULL");
+    REFUSED(tobi_scene_load("x.json", NULL, NULL, NULL, &err), TOBI_INVALID,
+            "where the scene goes is NULL");
+    REFUSED(tobi_scene_build(NULL, &w, &err), TOBI_INVALID, "scene is NULL");
+    REFUSED(tobi_scene_build(NULL, NULL, &err), TOBI_INVALID, "where the world goes is NULL");
+    REFUSED(tobi_scene_import(NULL, "x", 0, &table, NULL, &err), TOBI_INVALID, "a path is NULL");
+    REFUSED(tobi_scene_import("x", "y", 0, NULL, NULL, &err), TOBI_INVALID, "where the table goes is NULL");
+    assert_true(!tobi_scene_name(NULL) && !tobi_scene_world_def(NULL) && !tobi_scene_output_def(NULL));
+    assert_true(!tobi_scene_reference(NULL, 0) && !tobi_scene_import_table(NULL) &&
+                !tobi_scene_resolved(NULL));
+    assert_true(tobi_report_count(NULL) == 0 && !tobi_report_line(NULL, 0) &&
+                !tobi_scene_describe("nothing"));
+    tobi_report_free(NULL);
+    tobi_scene_free(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_world),
+        cmocka_unit_test(no_world_and_no_text),
+        cmocka_unit_test(nothing_where_something_must_stand),
+        cmocka_unit_test(times_that_are_none),
+        cmocka_unit_test(values_that_are_none),
+        cmocka_unit_test(runs),
+        cmocka_unit_test(scenes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

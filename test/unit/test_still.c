@@ -1,0 +1,153 @@
+/* Still water: its pressure in the first steps, the level that it follows, gaps that no particle fits into,
+   and what is told of starts that are not still. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "calls.h"
+#include "sph/still.h"
+#include "world/world.h"
+
+#define D 0.01
+#define G 9.81
+
+/* Water in a square tank from the height `lower` up, 0.1 m deep. */
+static tobi_world *make_pool(double side, double lower)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_world *world;
+    w.dimension = 3;
+    w.spacing = D;
+    w.threads = 2;
+    w.domain_max[0] = w.domain_max[1] = fill.box_max[0] = fill.box_max[1] = side;
+    w.domain_max[2] = 0.2;
+    fill.box_min[2] = lower;
+    fill.box_max[2] = lower + 0.1;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    return world;
+}
+
+static void the_first_steps_feel_the_pressure_of_rest(void **state)
+{
+    (void)state;
+    tobi_world *world = make_pool(0.1, 0);
+    tobi_probe_def probe = tobi_default_probe_def();
+    tobi_probe_info seen;
+    probe.position[0] = probe.position[1] = 0.05;
+    OK(tobi_world_add_probe(world, &probe, &err));
+    for (int k = 1; k <= 8; k++) {
+        OK(tobi_world_step(world, 0, NULL, &err));
+        OK(tobi_world_probe(world, 0, &seen, &err));
+        const double part = seen.pressure/(1000*G*0.1);
+        if (!(fabs(part - 1) < 0.05)) fail_msg("step %d: %g times the pressure of rest", k, part);
+    }
+    tobi_world_destroy(world);
+}
+
+static void the_level_falls_no_faster_than_the_liquid(void **state)
+{
+    (void)state;
+    const double speed = 0.5, void_below = 0.15;
+    double level;
+    tobi_still before;
+    tobi_world *world = make_pool(0.1, 0);
+    OK(tobi_world_step(world, 0, NULL, &err));
+    level = world->sim.still.level + 0.5*D;
+    const double start = level;
+    for (int k = 1; k <= 3; k++) sph_still_move(&world->sim, &before, void_below, speed, &level);
+    assert_true(fabs(level - start - 3*speed*world->sim.dt) < 1e-9);
+    sph_still_move(&world->sim, &before, start, speed, &level);
+    assert_true(level > start);                                                    /* up slowly */
+    tobi_world_destroy(world);
+}
+
+/* A ball 8 spacings across that stands on the floor, where particles do not fit in. */
+static void water_in_gaps_presses(void **state)
+{
+    (void)state;
+    tobi_world *world = make_pool(0.2, 0);
+    tobi_body_def ball = tobi_default_body_def();
+    tobi_body_info info;
+    double force = 0, volume = acos(-1)/6*8e-6*64;
+    ball.name = "ball";
+    ball.mesh = TOBI_SOURCE_DIR "/test/meshes/sphere.obj";
+    for (int a = 0; a < 3; a++) ball.scale[a] = 0.08, ball.translation[a] = a < 2 ? 0.1 : 0.04;
+    OK(tobi_world_add_body(world, &ball, &err));
+    OK(tobi_world_advance(world, 0.2, NULL, &err));
+    for (int k = 1; k <= 20; k++) {
+        OK(tobi_world_step(world, 0, NULL, &err));
+        OK(tobi_world_body(world, 0, &info));
+        force += info.pressure_force[2]/20;
+    }
+    const double part = force/(1000*G*volume*0.98);      /* the sphere's facets hold 2 % less */
+    printf("buoyancy on the floor: %.3f of the exact one\n", part);
+    assert_true(part > 0.9 && part < 1.05);
+    tobi_world_destroy(world);
+}
+
+static tobi_status jump(void *user, double t, int64_t n, const double (*rest)[3], double (*x)[3],
+                        tobi_error *err)
+{
+    (void)err;
+    for (int64_t k = 0; k < n; k++) {
+        memcpy(x[k], rest[k], sizeof *x);
+        x[k][0] += *(double *)user*t;
+    }
+    return TOBI_OK;
+}
+
+static void restless_starts_are_told(void **state)
+{
+    (void)state;
+    double speed = 0.5;
+    tobi_world *world = make_pool(0.2, 0.02);
+    tobi_body_def box = tobi_default_body_def();
+    box.name = "box";
+    for (int a = 0; a < 3; a++) box.box_min[a] = 0.05, box.box_max[a] = 0.1;
+    box.motion = jump;
+    box.motion_rigid = 1;
+    box.motion_user = &speed;
+    OK(tobi_world_add_body(world, &box, &err));
+    OK(tobi_world_start(world, &err));
+    int found = 0;
+    for (int k = 0; tobi_world_note(world, k); k++) {
+        const char *note = tobi_world_note(world, k);
+        found += strstr(note, "sets off at 0.5 m/s") != NULL;
+        found += strstr(note, "fill[0] begins 0.02 m from the side at the lower z") != NULL;
+    }
+    assert_int_equal(found, 2);
+    tobi_world_destroy(world);
+}
+
+static void spray_has_a_large_surface(void **state)
+{
+    (void)state;
+    tobi_step_info pool, drop;
+    tobi_world *world = make_pool(0.2, 0);
+    OK(tobi_world_step(world, 0, &pool, &err));
+    tobi_world_destroy(world);
+    world = make_pool(0.02, 0.05);
+    OK(tobi_world_step(world, 0, &drop, &err));
+    tobi_world_destroy(world);
+    printf("share at a free surface: pool %.3f, column %.3f\n", pool.surface_share, drop.surface_share);
+    assert_true(pool.surface_share < 0.2 && drop.surface_share > pool.surface_share);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_steps_feel_the_pressure_of_rest),
+        cmocka_unit_test(the_level_falls_no_faster_than_the_liquid),
+        cmocka_unit_test(water_in_gaps_presses),
+        cmocka_unit_test(restless_starts_are_told),
+        cmocka_unit_test(spray_has_a_large_surface),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
