@@ -578,7 +578,14 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
         free(read.at);
         return status;
     }
-    free(d->contacts.at);
-    d->contacts = read;
+    tobi_touch_list *kept = &d->contacts;      /* its memory, if that suffices: steps allocate nothing */
+    if (kept->capacity >= read.count) {
+        if (read.count > 0) memcpy(kept->at, read.at, (size_t)read.count*sizeof *read.at);
+        kept->count = read.count;
+        free(read.at);
+    } else {
+        free(kept->at);
+        *kept = read;
+    }
     return TOBI_OK;
 }
