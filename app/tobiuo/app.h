@@ -64,6 +64,18 @@ void drive_catch_signals(void);
 /* Returns the exit code; the run is finished, not freed. */
 int drive(tobi_world *world, tobi_run *run, const drive_options *options);
 
+/* cost.c */
+/* "123 MB" or "1.2 GB"; buffer of 32. */
+const char *bytes_text(double bytes, char *buffer);
+/* Why results of this size in dir need --force; NULL if they do not. The caller frees. */
+char *size_objection(const tobi_run_size *size, const char *dir);
+/* Steps the world from its start for about a second: wall clock per step and step, both s, without the
+   first. Returns the steps taken, 0 if there were too few or they failed. */
+int measure_steps(tobi_world *world, double end, double *wall, double *step);
+
+/* run.c: where the results go without and with --out; the caller frees, NULL without memory. */
+char *results_path(const tobi_scene *scene, const char *out);
+
 /* progress.c */
 typedef struct progress {
     int shown, terminal, columns;    /* is there a line; is stderr a terminal; its width       */

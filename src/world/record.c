@@ -10,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step of any
-   run that ends. */
+/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step
+   of any run that ends. */
 #define ROUNDING 1e-12
 
 double tobi_record_clock(void)
@@ -25,6 +25,18 @@ static double next_checkpoint_after(const tobi_run *run, double t)
 {
     double every = run->output.checkpoint_interval;
     return every > 0.0 ? (floor(t / every * (1.0 + ROUNDING)) + 1.0) * every : INFINITY;
+}
+
+tobi_status tobi_record_check_output(const tobi_output_def *output, tobi_error *err)
+{
+    if (!(output->interval > 0.0) || !isfinite(output->interval))
+        return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
+    return TOBI_OK;
+}
+
+int64_t tobi_record_count(double interval, double end)
+{
+    return (int64_t)fmin(fmax(floor(end / interval * (1.0 + ROUNDING)), 0.0), 1e18) + 1;
 }
 
 /* What create and resume share: a run with its directory locked and the world started. */
@@ -52,8 +64,7 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->dir_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
-    if (!(output->interval > 0.0) || !isfinite(output->interval))
-        return tobi_fail(err, TOBI_INVALID, "output.interval must be positive and finite");
+    TOBI_TRY(tobi_record_check_output(output, err));
     TOBI_TRY(tobi_series_fields(run, err));
     return tobi_record_open_dir(dir, &run->lock, err);
 }
