@@ -40,7 +40,8 @@ static void print_solids(const tobi_world *world, int dimension)
     }
 }
 
-/* Says what a fixed step costs: of the automatic one the shortest is guessed. Returns the step that is taken, 0 = it is not known. */
+/* Says what a fixed step costs: of the automatic one the shortest is guessed. Returns the step that is
+   taken, 0 = it is not known. */
 static double print_step(const tobi_world_def *d, const tobi_world *world)
 {
     const double stable = tobi_world_stable_step(world), automatic = guess_step(d, stable);
@@ -107,7 +108,8 @@ static void print_time(const tobi_scene *scene, tobi_world *world, double step)
 /* Particles that are placed as a run would place them; a check of more takes an estimate, in no time. */
 enum { START_LIMIT = 1000000, MEASURE_LIMIT = 300000 };
 
-/* What the world takes; the start knows for certain what bodies and planes leave, and what a run would refuse. */
+/* What a run takes. The start knows for certain what bodies and planes leave, and what a run would
+   refuse. */
 typedef struct cost { int64_t fluid, bodies, bytes; tobi_run_size size; } cost;
 
 static tobi_status find_cost(const tobi_scene *scene, tobi_world *world, cost *c, tobi_error *err)

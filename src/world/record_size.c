@@ -64,8 +64,8 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
     TOBI_TRY(tobi_record_check_output(output, err));
     TOBI_TRY(tobi_series_fields(&run, err));
     TOBI_TRY(tobi_world_estimate(world, &particles, &body_particles, &memory, err));
-    const int bodies = tobi_world_body_count(world), repeated = output->checkpoint_interval > 0 && output->checkpoint_interval < end,
-              checkpoints = 1 + repeated,
+    const double every = output->checkpoint_interval;
+    const int bodies = tobi_world_body_count(world), checkpoints = every > 0 && every < end ? 2 : 1,
               lists = 1 + (bodies > 0) + output->grid + (output->surfaces ? bodies : 0),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
