@@ -70,8 +70,9 @@ const char *bytes_text(double bytes, char *buffer);
 /* Why results of this size in dir need --force; NULL if they do not. The caller frees. */
 char *size_objection(const tobi_run_size *size, const char *dir);
 /* Steps the world from its start for about a second: wall clock per step and step, both s, without the
-   first. Returns the steps taken, 0 if there were too few or they failed. */
-int measure_steps(tobi_world *world, double end, double *wall, double *step);
+   first. *steps that were taken; below 2 nothing is known. */
+tobi_status measure_steps(tobi_world *world, double end, int *steps, double *wall, double *step,
+                          tobi_error *err);
 
 /* run.c: where the results go without and with --out; the caller frees, NULL without memory. */
 char *results_path(const tobi_scene *scene, const char *out);

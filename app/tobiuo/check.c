@@ -89,13 +89,16 @@ static void print_size(const tobi_scene *scene, const tobi_run_size *size)
 
 /* The world takes some steps. They are often longer than what is guessed for the whole run: the truth lies
    between. */
-static void print_time(const tobi_scene *scene, tobi_world *world, double step)
+static int print_time(const tobi_scene *scene, tobi_world *world, double step)
 {
     const double end = tobi_scene_world_def(scene)->end_time;
     double wall, taken;
     char least[32], most[32];
-    const int steps = measure_steps(world, end, &wall, &taken);
-    if (steps == 0) return;
+    int steps;
+    tobi_error err;
+    if (measure_steps(world, end, &steps, &wall, &taken, &err) != TOBI_OK)
+        return complain("after %d steps: %s", steps, err.text);
+    if (steps < 2) return 0;
     if (step == 0) step = taken;
     duration_text(wall * end / taken, least);
     duration_text(wall * end / step, most);
@@ -103,6 +106,7 @@ static void print_time(const tobi_scene *scene, tobi_world *world, double step)
     printf("wall clock       about %s%s%s for the steps on this machine, if as fast as the first %d%s\n",
            differ ? least : "", differ ? " to " : "", most, steps,
            tobi_scene_output_def(scene)->frames ? "; pictures take more" : "");
+    return 0;
 }
 
 /* Particles that are placed as a run would place them; a check of more takes an estimate, in no time. */
@@ -140,10 +144,11 @@ static int check_world(tobi_scene *scene)
     printf("body particles   %lld\n", (long long)c.bodies);
     printf("memory           %.1f MB of %.0f MB\n", (double)c.bytes * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
-    if (c.fluid <= MEASURE_LIMIT) print_time(scene, world, step);
+    int code = (double)c.bytes > machine ? complain("more particles than this machine has memory for") : 0;
+    if (c.fluid <= MEASURE_LIMIT) code |= print_time(scene, world, step);
     else printf("wall clock       not measured with more than %d particles\n", MEASURE_LIMIT);
     tobi_world_destroy(world);
-    return (double)c.bytes > machine ? complain("more particles than this machine has memory for") : 0;
+    return code;
 }
 
 int tobiuo_check(int argc, char **argv)

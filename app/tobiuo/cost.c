@@ -49,20 +49,20 @@ char *size_objection(const tobi_run_size *size, const char *dir)
 enum { MEASURED_STEPS = 100 };
 static const double MEASURED_TIME = 0.7;    /* s */
 
-int measure_steps(tobi_world *world, double end, double *wall, double *step)
+tobi_status measure_steps(tobi_world *world, double end, int *steps, double *wall, double *step,
+                          tobi_error *err)
 {
-    tobi_error err;
     double first = 0, start = 0;
-    int steps = 0;
-    while (steps < MEASURED_STEPS && tobi_world_time(world) < end) {
-        if (tobi_world_step(world, end - tobi_world_time(world), NULL, &err) != TOBI_OK) return 0;
-        if (steps++ == 0) {
+    *steps = 0;
+    while (*steps < MEASURED_STEPS && tobi_world_time(world) < end) {
+        tobi_status status = tobi_world_step(world, end - tobi_world_time(world), NULL, err);
+        if (status != TOBI_OK) return status;
+        if ((*steps)++ == 0) {
             first = wall_clock();
             start = tobi_world_time(world);
         } else if (wall_clock() - first > MEASURED_TIME) break;
     }
-    if (steps < 2) return 0;
-    *wall = (wall_clock() - first) / (steps - 1);
-    *step = (tobi_world_time(world) - start) / (steps - 1);
-    return steps;
+    *wall = (wall_clock() - first) / (*steps - 1);
+    *step = (tobi_world_time(world) - start) / (*steps - 1);
+    return TOBI_OK;
 }
