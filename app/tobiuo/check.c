@@ -109,8 +109,9 @@ static int print_time(const tobi_scene *scene, tobi_world *world, double step)
     return 0;
 }
 
-/* Particles that are placed as a run would place them; a check of more takes an estimate, in no time. */
-enum { START_LIMIT = 1000000, MEASURE_LIMIT = 300000 };
+/* So many particles are placed as a run would place them, and stepped; a check of more takes an estimate,
+   in no time. */
+enum { START_LIMIT = 1000000 };
 
 /* What a run takes. The start knows for certain what bodies and planes leave, and what a run would
    refuse. */
@@ -145,8 +146,8 @@ static int check_world(tobi_scene *scene)
     printf("memory           %.1f MB of %.0f MB\n", (double)c.bytes * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);
     int code = (double)c.bytes > machine ? complain("more particles than this machine has memory for") : 0;
-    if (c.fluid <= MEASURE_LIMIT) code |= print_time(scene, world, step);
-    else printf("wall clock       not measured with more than %d particles\n", MEASURE_LIMIT);
+    if (c.fluid <= START_LIMIT) code |= print_time(scene, world, step);
+    else printf("wall clock       not measured with more than %d particles\n", START_LIMIT);
     tobi_world_destroy(world);
     return code;
 }

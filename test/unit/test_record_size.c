@@ -92,13 +92,13 @@ static void test_mistakes_are_those_of_a_run(void **state)
     tobi_error err = { 0 };
     output.interval = NAN;
     assert_int_equal(tobi_run_estimate(world, &output, 1, &size, &err), TOBI_INVALID);
-    assert_non_null(strstr(err.text, "output.interval must be positive and finite"));
+    assert_non_null(strstr(err.text, "output.interval is not a finite number"));
     output = make_output();
     output.fields = "presure";
     assert_int_equal(tobi_run_estimate(world, &output, 1, &size, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "there is no field 'presure'"));
     output = make_output();
-    output.interval = 1e-300;
+    output.interval = 1e-12;
     assert_int_equal(tobi_run_estimate(world, &output, 1e9, &size, &err), TOBI_OK);
     assert_true(size.outputs > 0 && isfinite(size.bytes) && size.bytes > 1e18);
     tobi_world_destroy(world);
