@@ -99,7 +99,8 @@ int64_t tobi_particles_widest(int owners)
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
 {
 #define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name) tobi_permute(threads, p->name, sizeof(type), order, p->count, scratch);
+    if ((life) == TOBI_STATE && p->name)                                                                   \
+        tobi_permute(threads, p->name, sizeof(type), order, p->count, scratch);
     TOBI_PARTICLE_FIELDS(X)
 #undef X
 }

@@ -2,7 +2,6 @@
 #include "geom/vec3.h"
 #include "rigid/broad.h"
 #include "rigid/overlap.h"
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -305,6 +304,28 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
     return TOBI_OK;
 }
 
+/* What the parts of the search share: the next body and the next pair that nobody has taken. */
+typedef struct touching { tobi_dynamics_state *d; double dt; int64_t *body, *pair; } touching;
+
+enum { TAKEN = 4 };              /* bodies or pairs at a time */
+
+/* Each part takes bodies, then pairs, as long as there are any, and has a list of its own. */
+static void touch_parts(const void *view, int64_t begin, int64_t end)
+{
+    const touching *v = view;
+    const tobi_dynamics_state *d = v->d;
+    const int64_t pairs = d->broad.pair_count;
+    int64_t first;
+    for (int64_t t = begin; t < end; t++) {
+        while ((first = __atomic_fetch_add(v->body, TAKEN, __ATOMIC_RELAXED)) < d->count)
+            for (int k = (int)first; k < first + TAKEN && k < d->count; k++)
+                touch_planes(d, k, tobi_broad_margin(&d->broad, k), &d->part[t]);
+        while ((first = __atomic_fetch_add(v->pair, TAKEN, __ATOMIC_RELAXED)) < pairs)
+            for (int64_t p = first; p < first + TAKEN && p < pairs; p++)
+                touch_pair(d, d->broad.pairs[p], v->dt, &d->part[t]);
+    }
+}
+
 static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
 {
     tobi_touch_list swap = d->before;
@@ -312,15 +333,10 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
-#pragma omp parallel num_threads(d->world.threads)
-    {
-        tobi_touch_list *out = &d->part[omp_get_thread_num()];
-        out->count = 0;
-#pragma omp for schedule(dynamic, 4) nowait
-        for (int k = 0; k < d->count; k++) touch_planes(d, k, tobi_broad_margin(&d->broad, k), out);
-#pragma omp for schedule(dynamic, 4)
-        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], dt, out);
-    }
+    int64_t body = 0, pair = 0;
+    const touching view = { d, dt, &body, &pair };
+    for (int t = 0; t < d->world.threads; t++) d->part[t].count = 0;
+    tobi_loop(d->world.threads, d->world.threads, 0, touch_parts, &view);
     return gather_contacts(d, err);
 }
 
