@@ -25,8 +25,8 @@ void tobi_exec_free(tobi_exec *x);
 /* Makes room for sums over n items, so that launches never allocate. */
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 
-/* Threads for a loop that launch does not run: waking one costs some 10 us, so each gets at least `worth`
-   items. The result must not depend on them. */
+/* Threads for a loop (tobi_loop): waking one costs some 10 us, so each gets at least `worth` items.
+   The result must not depend on them. */
 static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)
 {
     return items/worth >= x->threads ? x->threads : items < 2*worth ? 1 : (int)(items/worth);
@@ -35,12 +35,12 @@ static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)
 /* Loops that the calling thread starts with 0 threads (those of io and geom) take so many. */
 void tobi_exec_set_default(int threads);
 
-/* Runs over [begin, end), one part of a loop. The items of a loop write nothing that others read; what all
-   write (a mark, a count) is atomic and the same in any order. */
+/* Runs over [begin, end), one part of a loop. No item writes what another one reads; what all write (a mark,
+   a count) is atomic and the same in any order. */
 typedef void (*tobi_range)(const void *view, int64_t begin, int64_t end);
 
-/* Runs over [0, count). chunk > 0: parts of so many items, each for the next thread that is free, for items of
-   uneven work; chunk 0: one part per thread. threads 0: see above. One part, or one thread, runs in the
+/* Runs over [0, count). chunk > 0: parts of so many items, each for the next thread that is free, for items
+   of uneven work; chunk 0: one part per thread. threads 0: see above. One part, or one thread, runs in the
    caller. */
 void tobi_loop(int threads, int64_t count, int64_t chunk, tobi_range range, const void *view);
 
