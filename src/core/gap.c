@@ -25,16 +25,25 @@ static int faces_body(const tobi_system *s, int body, const double x[3], const d
     return 0;
 }
 
+typedef struct wetting { const tobi_system *s; int body; } wetting;
+
+static void wet_points(const void *view, int64_t begin, int64_t end)
+{
+    const wetting *w = view;
+    const tobi_system *s = w->s;
+    const tobi_body *b = &s->sim->bodies[w->body];
+    for (int64_t q = begin; q < end; q++) {
+        const double *x = b->point[q], *n = b->normal[q];
+        if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;
+        if (faces_side(s, x, n) || faces_body(s, w->body, x, n)) b->wet[q] = TOBI_WET_GAP;
+    }
+}
+
 void tobi_gap_wet(tobi_system *s)
 {
     if (!(s->still.push > 0)) return;
     for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body *b = &s->sim->bodies[k];
-        #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 256)
-        for (int64_t q = 0; q < b->point_count; q++) {
-            const double *x = b->point[q], *n = b->normal[q];
-            if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;
-            if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
-        }
+        const wetting view = {s, k};
+        tobi_loop(s->sim->exec.threads, s->sim->bodies[k].point_count, 256, wet_points, &view);
     }
 }

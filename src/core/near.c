@@ -147,8 +147,7 @@ static int add_point(void *user, int32_t k)
     tobi_near_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
     if (!(s > 0) || hidden(l, k)) return 0;
-    #pragma omp atomic write
-    b->wet[k] = TOBI_WET;
+    __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
@@ -206,14 +205,23 @@ static void place_look(look *l, int64_t i)
     l->x[0] = q.x; l->x[1] = q.y; l->x[2] = q.z;
 }
 
-/* Marks the particles that see body k in `delta` (free at this time) and counts them per block. */
-static void count_near(tobi_system *s, int k, int64_t blocks)
+/* What the loops below need. */
+typedef struct looking {
+    tobi_system *s;
+    int body;
+    int64_t first;                     /* entry of the body                             */
+    int64_t *cut;                      /* pairs that a body parts, seen from both sides */
+} looking;
+
+/* Marks the particles that see the body in `delta` (free at this time) and counts them per block. */
+static void count_near(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
-    for (int64_t block = 0; block < blocks; block++) {
-        int64_t end = (block + 1)*TOBI_BLOCK, found = 0;
-        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
-            look l = {.s = s, .b = &s->sim->bodies[k]};
+    const looking *v = view;
+    tobi_system *s = v->s;
+    for (int64_t block = begin; block < end; block++) {
+        int64_t last = (block + 1)*TOBI_BLOCK, found = 0;
+        for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
+            look l = {.s = s, .b = &s->sim->bodies[v->body]};
             place_look(&l, i);
             int near = visit_points(&s->near, l.x, sees_any, &l);
             s->particles.delta[i] = (float)near;
@@ -223,16 +231,17 @@ static void count_near(tobi_system *s, int k, int64_t blocks)
     }
 }
 
-static void fill_near(tobi_system *s, int k, int64_t first, int64_t blocks)
+static void fill_near(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
-    for (int64_t block = 0; block < blocks; block++) {
-        int64_t end = (block + 1)*TOBI_BLOCK, at = first + s->near.block_count[block];
-        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
+    const looking *v = view;
+    tobi_system *s = v->s;
+    for (int64_t block = begin; block < end; block++) {
+        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + s->near.block_count[block];
+        for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
             if (s->particles.delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->sim->bodies[k], .entry = &s->near.entry[at]};
+            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &s->near.entry[at]};
             place_look(&l, i);
-            if (!look_at(&l, (int32_t)i, k)) l.entry->distance = s->smoothing.h;
+            if (!look_at(&l, (int32_t)i, v->body)) l.entry->distance = s->smoothing.h;
             l.entry->previous = s->particles.near[i];
             s->particles.near[i] = (int32_t)at++;
         }
@@ -252,13 +261,14 @@ tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
     for (int k = 0; k < s->sim->body_count; k++) {
         TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
         memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
-        count_near(s, k, blocks);
+        const looking view = {.s = s, .body = k, .first = n->count};
+        tobi_loop(s->sim->exec.threads, blocks, 4, count_near, &view);
         int64_t found = tobi_scan(&s->sim->exec, blocks, n->block_count);
         p = n->entry;
         status = grow(&p, &n->capacity, n->count + found, sizeof *n->entry, err);
         n->entry = p;
         TOBI_TRY(status);
-        fill_near(s, k, n->count, blocks);
+        tobi_loop(s->sim->exec.threads, blocks, 4, fill_near, &view);
         n->count += found;
     }
     tobi_gap_wet(s);
@@ -297,12 +307,13 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     return 0;
 }
 
-void tobi_near_cut_pairs(tobi_system *s)
+static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
+    const looking *v = view;
+    const tobi_system *s = v->s;
     const tobi_particles *p = &s->particles;
     int64_t cut = 0;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
-    for (int64_t k = 0; k < s->near.count; k++) {
+    for (int64_t k = begin; k < end; k++) {
         int64_t i = s->near.entry[k].particle;
         if (p->near[i] != k) continue;      /* once per particle */
         int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
@@ -313,36 +324,52 @@ void tobi_near_cut_pairs(tobi_system *s)
             cut++;
         }
     }
+    __atomic_fetch_add(v->cut, cut, __ATOMIC_RELAXED);      /* whole numbers: any order gives the same */
+}
+
+void tobi_near_cut_pairs(tobi_system *s)
+{
+    int64_t cut = 0;
+    const looking view = {.s = s, .cut = &cut};
+    tobi_loop(s->sim->exec.threads, s->near.count, 64, cut_pairs, &view);
     s->near.cut_pairs = cut/2;
 }
 
-/* Runs over the entries of all particles; one particle's entries are handled together. */
+static void visit_entries(tobi_system *s, tobi_range visit)
+{
+    const looking view = {.s = s};
+    tobi_loop(s->sim->exec.threads, s->near.count, 0, visit, &view);
+}
+
+/* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
-    _Pragma("omp parallel for num_threads((s)->sim->exec.threads) schedule(static)")                       \
-    for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
+    for (int64_t k = begin; k < end; k++)                                                                  \
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
 
-void tobi_near_mark_beside(tobi_system *s)
+static void mark_beside(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = ((const looking *)view)->s;
     const tobi_particles *p = &s->particles;
-    if (!p->beside) return;
-    memset(p->beside, 0, (size_t)p->count);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t k = 0; k < s->near.count; k++) {
+    for (int64_t k = begin; k < end; k++) {
         int64_t i = s->near.entry[k].particle;
         const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
-            #pragma omp atomic write
-            p->beside[list[g]] = 1;
-        }
-        #pragma omp atomic write
-        p->beside[i] = 1;
+        for (int g = 0; g < 8*p->list_groups[i]; g++)
+            __atomic_store_n(&p->beside[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&p->beside[i], 1, __ATOMIC_RELAXED);
     }
 }
 
-void tobi_near_add_gradients(tobi_system *s)
+void tobi_near_mark_beside(tobi_system *s)
 {
+    if (!s->particles.beside) return;
+    memset(s->particles.beside, 0, (size_t)s->particles.count);
+    visit_entries(s, mark_beside);
+}
+
+static void add_gradients(const void *view, int64_t begin, int64_t end)
+{
+    tobi_system *s = ((const looking *)view)->s;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &s->particles.wall[i];
         w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
@@ -350,6 +377,8 @@ void tobi_near_add_gradients(tobi_system *s)
         s->particles.density[i] = 1 - (1 - s->particles.density[i])*(1 - (float)e->share);
     }
 }
+
+void tobi_near_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
 static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const double u[3],
@@ -372,8 +401,9 @@ static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const do
     for (int c = 0; c < 3; c++) drag[c] *= law;
 }
 
-void tobi_near_add_forces(tobi_system *s)
+static void add_forces(const void *view, int64_t begin, int64_t end)
 {
+    tobi_system *s = ((const looking *)view)->s;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
@@ -387,6 +417,8 @@ void tobi_near_add_forces(tobi_system *s)
     }
 }
 
+void tobi_near_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
+
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
@@ -397,12 +429,12 @@ static void keep_away(const tobi_system *s, int64_t i, double least, double way[
     }
 }
 
-void tobi_near_settle(tobi_system *s)
+static void settle_particles(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = ((const looking *)view)->s;
     const tobi_particles *p = &s->particles;
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t i = 0; i < p->count; i++) {
+    for (int64_t i = begin; i < end; i++) {
         if (!p->beside[i]) continue;
         double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
                scale = s->dt*s->dt, *x = &p->position[i].x;
@@ -416,8 +448,15 @@ void tobi_near_settle(tobi_system *s)
     }
 }
 
-void tobi_near_contact(tobi_system *s)
+void tobi_near_settle(tobi_system *s)
 {
+    const looking view = {.s = s};
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, settle_particles, &view);
+}
+
+static void bend_normals(const void *view, int64_t begin, int64_t end)
+{
+    tobi_system *s = ((const looking *)view)->s;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &s->particles.normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -430,6 +469,8 @@ void tobi_near_contact(tobi_system *s)
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }
 }
+
+void tobi_near_contact(tobi_system *s) { visit_entries(s, bend_normals); }
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */

@@ -146,8 +146,8 @@ static void push_range(const void *view, int64_t begin, int64_t end, double *t)
         int outside = 0;
         for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
         if (outside || !push_particle(p, i, t)) continue;
-        #pragma omp atomic
-        p->s->near.contacts++;      /* all sums are taken; whole numbers add up the same in any order */
+        /* All sums are taken; whole numbers add up the same in any order. */
+        __atomic_fetch_add(&p->s->near.contacts, 1, __ATOMIC_RELAXED);
     }
 }
 
