@@ -6,7 +6,7 @@
 int complain(const char *format, ...)
 {
     va_list args;
-    fputs("tobiuo: ", stderr);
+    fprintf(stderr, "%stobiuo:%s ", colour(stderr, RED), colour(stderr, PLAIN));
     va_start(args, format);
     vfprintf(stderr, format, args);
     va_end(args);
@@ -23,8 +23,8 @@ void print_notes(const tobi_world *world, FILE *file, const char *head)
 int complain_scene(tobi_report *report, const tobi_error *err)
 {
     int count = tobi_report_count(report);
-    for (int k = 0; k < count; k++) fprintf(stderr, "tobiuo: %s\n", tobi_report_line(report, k));
-    if (count > 1) fprintf(stderr, "tobiuo: %d mistakes\n", count);
+    for (int k = 0; k < count; k++) complain("%s", tobi_report_line(report, k));
+    if (count > 1) complain("%d mistakes", count);
     if (count == 0) complain("%s", err->text);
     tobi_report_free(report);
     return EXIT_ERROR;

@@ -444,12 +444,13 @@ static int draw_all(plotter *plot)
     return code;
 }
 
+const struct argp plot_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Draw the tables of the run in DIR as pictures in DIR/plots, with gnuplot." };
+
 int tobiuo_plot(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
-        .doc = "Draw the tables of the run in DIR as pictures in DIR/plots, with gnuplot." };
     plot_options o = { .format = "svg" };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    argp_parse(&plot_argp, argc, argv, 0, NULL, &o);
     plotter plot = { .options = &o, .dimension = 3 };
     int code = draw_all(&plot);
     for (int k = 0; k < plot.file_count; k++) free(plot.files[k]);

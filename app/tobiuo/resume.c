@@ -52,12 +52,13 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     return code;
 }
 
+const struct argp resume_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Go on with the run in DIR from its last whole checkpoint." };
+
 int tobiuo_resume(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
-        .doc = "Go on with the run in DIR from its last whole checkpoint." };
     resume_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    argp_parse(&resume_argp, argc, argv, 0, NULL, &o);
     char *path = NULL;
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {

@@ -72,6 +72,11 @@ TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_pat
    Owned by the caller (free()). NULL when out of memory. */
 TOBI_API char *tobi_scene_resolved(const tobi_scene *scene);
 
+/* A file that comes with Tobiuo, "flying_fish/scene.json", or with "." the folder of all scenes, by its
+   absolute path: beside the library (share/tobiuo/scenes of an installation, scenes of the source tree).
+   Owned by the caller (free()); NULL if it cannot be found. */
+TOBI_API char *tobi_scene_shipped(const char *name);
+
 /* Parameters, units, defaults and ranges of a topic, as text: a method ("dfsph"), "world", "fluid",
    "fill", "body", "motion", "output" or "reference"; "history", "bodies" or "probes" are the columns of the
    tables of a run. "scene" is the page of all keys in Markdown (docs/scene.md), "tables" that of all columns

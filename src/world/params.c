@@ -2,6 +2,7 @@
    it cannot be set by a scene, has no default and appears in no help text; a unit test checks that the tables
    cover the structs. */
 #include "world/params_rows.h"
+#include "tobiuo/tobiuo.h"
 #include <string.h>
 
 #define WALL(key_, member_, axis_, doc_)                                              \
