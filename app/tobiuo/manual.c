@@ -31,9 +31,9 @@ static void print_option(const struct argp_option *o)
 void print_man_page(void)
 {
     const command *c;
-    printf(".TH TOBIUO 1 \"\" \"tobiuo %s\" \"User Commands\"\n.SH NAME\ntobiuo \\- water, soft solids and "
-           "rigid bodies by particle methods\n.SH SYNOPSIS\n.B tobiuo\n.I COMMAND\n[ARGUMENTS]\n.SH COMMANDS\n",
-           tobi_version());
+    printf(".TH TOBIUO 1 \"\" \"tobiuo %s\" \"User Commands\"\n.SH NAME\n"
+           "tobiuo \\- water, soft solids and rigid bodies by particle methods\n"
+           ".SH SYNOPSIS\n.B tobiuo\n.I COMMAND\n[ARGUMENTS]\n.SH COMMANDS\n", tobi_version());
     for (int k = 0; (c = command_at(k)); k++) {
         printf(".SS tobiuo %s", c->name);
         if (*c->arguments) printf(" %s", c->arguments);
