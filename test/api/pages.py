@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """The pages are true: what the program writes is up to date, examples and commands work, links lead somewhere.
 
-usage: pages.py tables PROGRAM | scripts PROGRAM | links
+usage: pages.py tables PROGRAM | scripts PROGRAM | readme PROGRAM | links
   tables   docs/tables.md is what `tobiuo describe tables` prints, and names the columns of a real run
   scripts  each scene of docs/scripts.md, with the script beside it, is accepted and runs its first steps
+  readme   the scene in README is scenes/ball_drop; its commands are accepted (check for run)
   links    every relative link and picture of every page leads to a file, and to a heading of it
 """
 import csv
+import json
 import os
 import pathlib
 import re
@@ -89,6 +91,35 @@ def check_scripts(program):
     return failed or count < 5
 
 
+def parse(text):
+    """A scene: JSON with comments; strings may hold // and #."""
+    return json.loads(re.sub(r'("(?:\\.|[^"\\])*")|(?:#|//)[^\n]*', lambda m: m.group(1) or "", text))
+
+
+def check_readme(program):
+    failed = 0
+    scene = parse((ROOT / "scenes/ball_drop/scene.json").read_text())
+    for path in ("README.md", "README.ja.md"):
+        text = (ROOT / path).read_text()
+        if parse(re.search(r"```jsonc\n(.*?)```", text, re.S).group(1)) != scene:
+            print(f"{path}: the scene is not scenes/ball_drop")
+            failed += 1
+        shutil.rmtree("my_ball", ignore_errors=True)
+        commands = re.findall(r"^build/release/tobiuo (new|check|run|describe) ([^#\n]*)", text, re.M)
+        for command, rest in commands:
+            words = re.sub(r"--frames|--out \S+", "", rest).split()
+            result = call(program, "check" if command == "run" else command, *words)
+            if result.returncode != 0:
+                print(f"{path}: tobiuo {command} {rest}:", result.stderr)
+                failed += 1
+        for name in re.findall(r"\./test\.sh --slow (\w+)", text):
+            if not (ROOT / f"test/physics/{name}/run.py").exists():
+                print(f"{path}: there is no case {name}")
+                failed += 1
+        failed += len(commands) < 4
+    return failed
+
+
 def anchor(heading):
     """As GitHub and MkDocs make it from a heading."""
     text = re.sub(r"[`*]|\[([^]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
@@ -118,7 +149,7 @@ def check_links():
 
 def main():
     what = sys.argv[1] if len(sys.argv) > 1 else ""
-    checks = {"tables": check_tables, "scripts": check_scripts}
+    checks = {"tables": check_tables, "scripts": check_scripts, "readme": check_readme}
     if what == "links":
         return 1 if check_links() else 0
     if what not in checks or len(sys.argv) != 3:
