@@ -48,14 +48,43 @@ static void choose_cells(tobi_cells *c, const tobi_box *box, double h, int64_t p
 }
 
 /* The list doubles as scratch of the sort: keys, order and their copies, or one widest state field. */
-static int64_t scratch_entries(int64_t particles)
+static int64_t scratch_entries(int64_t particles, int64_t widest)
 {
-    int64_t sort = 4*particles, widest = tobi_particles_widest(TOBI_ALL | TOBI_SPH);
+    int64_t sort = 4*particles;
     int64_t permute = particles + particles*widest/4 + 64;
     return sort > permute ? sort : permute;
 }
 
-tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int64_t particles,
+static tobi_status give_up(tobi_cells *c, tobi_error *err)
+{
+    const long long total = (long long)c->total;
+    tobi_cells_free(c);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list", total);
+}
+
+/* Nothing is kept: all is made anew after the next sort. */
+tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err)
+{
+    const int64_t n = p->capacity, sort = scratch_entries(n, tobi_particles_widest(p)) + 16;
+    const int64_t guess = n*36 + 4096, entries = sort > guess ? sort : guess;
+    if (!c->record || c->rows < n) {
+        free(c->record);
+        free(c->list_start);
+        free(c->list_groups);
+        c->rows = n;
+        c->record = tobi_particles_rows(n, sizeof *c->record);
+        c->list_start = tobi_particles_rows(n, sizeof *c->list_start);
+        c->list_groups = tobi_particles_rows(n, sizeof *c->list_groups);
+    }
+    if (!c->list || c->list_capacity < entries) {
+        free(c->list);
+        c->list_capacity = entries;
+        c->list = aligned_alloc(64, (size_t)(entries*4 + 63)/64*64);
+    }
+    return c->record && c->list_start && c->list_groups && c->list ? TOBI_OK : give_up(c, err);
+}
+
+tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
                               const tobi_exec *x, tobi_error *err)
 {
     memset(c, 0, sizeof *c);
@@ -65,17 +94,11 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int6
                              "the periodic domain is %g m along %c, allowed is at least three "
                              "support radii (%g m)",
                              box->size[a], "xyz"[a], 3 * h);
-    choose_cells(c, box, h, particles);
-    c->list_capacity = scratch_entries(particles) + 16;
-    int64_t guess = particles*36 + 4096;
-    if (guess > c->list_capacity) c->list_capacity = guess;
+    choose_cells(c, box, h, p->capacity);
     c->start = malloc((size_t)(c->total + 1)*sizeof *c->start);
     c->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *c->histogram);
-    c->list = aligned_alloc(64, (size_t)(c->list_capacity*4 + 63)/64*64);
-    if (c->start && c->histogram && c->list) return TOBI_OK;
-    tobi_cells_free(c);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list",
-                     (long long)c->total);
+    if (!c->start || !c->histogram) return give_up(c, err);
+    return tobi_cells_grow(c, p, err);
 }
 
 void tobi_cells_free(tobi_cells *c)
@@ -83,6 +106,9 @@ void tobi_cells_free(tobi_cells *c)
     free(c->start);
     free(c->histogram);
     free(c->list);
+    free(c->record);
+    free(c->list_start);
+    free(c->list_groups);
     memset(c, 0, sizeof *c);
 }
 
@@ -113,6 +139,7 @@ typedef struct sorting {
     const tobi_cells *cells;
     const tobi_box *box;
     tobi_particles *particles;
+    const float *payload;
     uint32_t *keys;
 } sorting;
 
@@ -145,17 +172,18 @@ static void make_records(const void *view, int64_t begin, int64_t end)
     const tobi_particles *p = s->particles;
     for (int64_t i = begin; i < end; i++) {
         tobi_double3 q = p->position[i];
-        p->record[i] = (tobi_record){to_fixed(s->box, 0, q.x), to_fixed(s->box, 1, q.y),
-                                     to_fixed(s->box, 2, q.z), p->pressure[i]};
+        s->cells->record[i] = (tobi_record){to_fixed(s->box, 0, q.x), to_fixed(s->box, 1, q.y),
+                                            to_fixed(s->box, 2, q.z), s->payload ? s->payload[i] : 0};
     }
 }
 
-void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi_exec *x)
+void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, const float *payload,
+                     tobi_exec *x)
 {
     int64_t n = p->count;
     uint32_t *keys = (uint32_t *)c->list, *key_copy = keys + n;
     int32_t *order_copy = (int32_t *)(key_copy + n), *order = order_copy + n;
-    const sorting view = {c, box, p, keys};
+    const sorting view = {c, box, p, payload, keys};
     tobi_loop(x->threads, n, 0, find_keys, &view);
     tobi_sort_by_key(x, n, (uint32_t)c->total, keys, order, key_copy, order_copy, c->histogram);
     tobi_loop(x->threads, n + 1, 0, fill_starts, &view);
@@ -194,8 +222,8 @@ tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_p
         int overflow = 0;
         c->list_used = 0;
         tobi_list_view v = {
-            .cells = c, .record = p->record, .position = p->position, .list = c->list,
-            .list_start = p->list_start, .list_groups = p->list_groups,
+            .cells = c, .record = c->record, .position = p->position, .list = c->list,
+            .list_start = c->list_start, .list_groups = c->list_groups,
             .capacity = c->list_capacity, .used = &c->list_used, .overflow = &overflow,
             .from_fixed = {box->from_fixed[0], box->from_fixed[1], box->from_fixed[2]}, .h2 = (float)(h*h),
         };

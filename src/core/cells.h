@@ -33,15 +33,26 @@ typedef struct tobi_cells {
     int32_t *list;          /* neighbour indices, groups of 8 padded with the own index */
     int64_t  list_capacity; /* in int32                                               */
     int64_t  list_used;
+    /* by particle */
+    tobi_record *record;    /* fixed-point position; w: a number that neighbours read  */
+    uint32_t *list_start;   /* first neighbour, in groups of 8                        */
+    uint16_t *list_groups;  /* groups of 8 neighbours                                 */
+    int64_t  rows;          /* that there is memory for                               */
 } tobi_cells;
 
-tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int64_t particles,
+/* For as many particles as p has memory for. */
+tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
                               const tobi_exec *x, tobi_error *err);
+/* The same after p has grown: to be called before the next sort. */
+tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err);
 void tobi_cells_free(tobi_cells *c);
+/* Bytes per particle, without the neighbours. */
+enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) };
 
-/* Wraps periodic positions, sorts all state fields by cell, fills start and the records. */
-void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi_exec *x);
-
+/* Wraps periodic positions, sorts all state fields by cell, fills start and the records, their w from
+   `payload`, a field of p; NULL = 0. */
+void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, const float *payload,
+                     tobi_exec *x);
 /* Index of the first cell of the row (y, z). */
 static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 {

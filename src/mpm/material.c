@@ -1,4 +1,5 @@
 #include "mpm/material.h"
+#include "mpm/particle_fields.h"
 #include "tobiuo/types.h"
 #include <math.h>
 
@@ -83,7 +84,7 @@ double mpm_material_squeezed_sound(tobi_system *s, const mpm_view *v)
    only mls leaves no wild velocity. */
 int mpm_takes_spline(const tobi_system *s, int gradient)
 {
-    int measured = s->particles.cuts != NULL;
+    int measured = mpm_fields_of(&s->particles)->cuts != NULL;
     for (int k = 0; k < s->solid_count; k++) measured |= s->solids[k].def.strength > 0;
     return gradient == TOBI_GRADIENT_SPLINE || (gradient == TOBI_GRADIENT_AUTOMATIC && !measured);
 }

@@ -1,7 +1,7 @@
 /* Everything an SPH kernel may read or write, as plain pointers and constants. */
 #pragma once
 #include "core/smoothing.h"
-#include "core/still.h"
+#include "sph/still_water.h"
 #include "exec/portable.h"
 #include "linear/grid.h"
 

@@ -1,6 +1,7 @@
 /* Every model and all transfers of the material point method against a double-precision loop over all
    particles and all nodes; the same bits for any instruction set and number of threads. */
 #include "kernel/mpm_oracle.h"
+#include "mpm/particle_fields.h"
 #include "mpm/fields.h"
 #include "mpm/grid.h"
 #include "mpm/kernels.h"
@@ -60,6 +61,7 @@ static void choose_solids(rig *g, int only)
 /* only: number of a model, or -1 for all, one beside the other. strain: size of F - I. */
 static void fill(rig *g, int only, double strain)
 {
+    const mpm_fields *f = mpm_fields_of(&g->p);
     const int dim = g->dimension;
     for (int i = 0; i < COUNT; i++) {
         tobi_particles *p = &g->p;
@@ -72,13 +74,13 @@ static void fill(rig *g, int only, double strain)
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3; r++) {
                 int plane = r < dim && c < dim, out = r == c && only != TOBI_LIQUID;
-                (&p->strain[i].c[c].x)[r] = (float)(plane || out ? strain*noise() : 0);
-                (&p->affine[i].c[c].x)[r] = (float)(plane ? 20*noise() : 0);
+                (&f->strain[i].c[c].x)[r] = (float)(plane || out ? strain*noise() : 0);
+                (&f->affine[i].c[c].x)[r] = (float)(plane ? 20*noise() : 0);
             }
-        p->strain[i].c[0].w = (float)(pow(H/2, dim)*(1 + 0.3*noise()));
-        p->strain[i].c[1].w = (float)(p->fluid[i] == TOBI_NEO_HOOKEAN ? 0 : 0.02*(1 + noise()));
-        if (p->fluid[i] >= BREAKING) p->strain[i].c[1].w = (float)fmin(1, 0.6*(1 + noise()));
-        p->strain[i].c[2].w = p->strain[i].c[0].w*1000;
+        f->strain[i].c[0].w = (float)(pow(H/2, dim)*(1 + 0.3*noise()));
+        f->strain[i].c[1].w = (float)(p->fluid[i] == TOBI_NEO_HOOKEAN ? 0 : 0.02*(1 + noise()));
+        if (p->fluid[i] >= BREAKING) f->strain[i].c[1].w = (float)fmin(1, 0.6*(1 + noise()));
+        f->strain[i].c[2].w = f->strain[i].c[0].w*1000;
     }
     g->p.count = COUNT;
 }
@@ -91,14 +93,14 @@ static void make(rig *g, int dim, int only, double strain, int threads, int isa,
     g->dimension = dim;
     assert_int_equal(tobi_exec_init(&g->exec, threads, &err), TOBI_OK);
     if (isa && isa < g->exec.isa) g->exec.isa = isa;
-    assert_int_equal(tobi_particles_create(&g->p, COUNT, TOBI_ALL | TOBI_MPM, &err), TOBI_OK);
+    assert_int_equal(tobi_particles_create(&g->p, &mpm_field_list, 0, COUNT, &err), TOBI_OK);
     assert_int_equal(mpm_grid_create(&g->grid, dim, 1 + transfer, &g->exec, &err), TOBI_OK);
     g->kernels = mpm_kernels_for(g->exec.isa, dim);
     choose_solids(g, only);
     fill(g, only, strain);
     mpm_view *v = &g->view;
     *v = (mpm_view){
-        .position = g->p.position, .velocity = g->p.velocity, .strain = g->p.strain, .affine = g->p.affine,
+        .position = g->p.position, .velocity = g->p.velocity, .strain = mpm_fields_of(&g->p)->strain, .affine = mpm_fields_of(&g->p)->affine,
         .solid = g->p.fluid, .material = g->material, .cell = (float)H, .inverse_cell = 1/H, .dt = (float)DT,
         .strain_dt = (float)STRAIN_DT, .affine_momentum = transfer == TOBI_APIC,
         .bent = transfer != TOBI_XPIC, .flip = transfer == TOBI_FLIP ? 0.9f : 1,
@@ -148,7 +150,7 @@ static oracle_grid *see(const rig *g, oracle_particle *out)
     o->side[1] = (oracle_side){.axis = 1, .kind = 3, .friction = 0.4f};
     o->side[2] = (oracle_side){.axis = 0, .upper = 1, .at = 9*H};
     for (int64_t i = 0; i < g->p.count; i++) {
-        const tobi_columns *e = &g->p.strain[i], *c = &g->p.affine[i];
+        const tobi_columns *e = &mpm_fields_of(&g->p)->strain[i], *c = &mpm_fields_of(&g->p)->affine[i];
         out[i] = (oracle_particle){
             .volume = e->c[0].w, .state = e->c[1].w, .mass = e->c[2].w, .solid = g->p.fluid[i] };
         for (int r = 0; r < 3; r++) {
@@ -212,7 +214,7 @@ static double compare_strain(const rig *g, const oracle_particle *p)
 {
     double worst = 0;
     for (int64_t i = 0; i < g->p.count; i++) {
-        const tobi_columns *e = &g->p.strain[i];
+        const tobi_columns *e = &mpm_fields_of(&g->p)->strain[i];
         for (int r = 0; r < 3; r++)
             for (int c = 0; c < 3; c++)
                 worst = worst_of(worst, fabs((r == c) + (double)(&e->c[c].x)[r] - p[i].F[r][c]), 1e-6);
@@ -233,7 +235,7 @@ static double compare_particles(const rig *g, oracle_grid *o, oracle_particle *p
             worst = worst_of(worst, fabs((&g->p.velocity[i].x)[a] - p[i].v[a]), part);
             worst = worst_of(worst, fabs((&g->p.position[i].x)[a] - p[i].x[a]), part*DT);
             for (int b = 0; b < 3; b++)
-                worst = worst_of(worst, fabs((&g->p.affine[i].c[b].x)[a] - p[i].C[a][b]), 4/H*part);
+                worst = worst_of(worst, fabs((&mpm_fields_of(&g->p)->affine[i].c[b].x)[a] - p[i].C[a][b]), 4/H*part);
         }
         if (p[i].solid != TOBI_STATIONARY) assert_true(memcmp(before.x, p[i].x, sizeof before.x) != 0);
     }
@@ -307,8 +309,8 @@ static void same_state(const rig *a, const rig *b)
 {
     assert_memory_equal(a->p.position, b->p.position, COUNT*sizeof *a->p.position);
     assert_memory_equal(a->p.velocity, b->p.velocity, COUNT*sizeof *a->p.velocity);
-    assert_memory_equal(a->p.strain, b->p.strain, COUNT*sizeof *a->p.strain);
-    assert_memory_equal(a->p.affine, b->p.affine, COUNT*sizeof *a->p.affine);
+    assert_memory_equal(mpm_fields_of(&a->p)->strain, mpm_fields_of(&b->p)->strain, COUNT*sizeof *mpm_fields_of(&a->p)->strain);
+    assert_memory_equal(mpm_fields_of(&a->p)->affine, mpm_fields_of(&b->p)->affine, COUNT*sizeof *mpm_fields_of(&a->p)->affine);
     size_t nodes = (size_t)(a->grid.patch_count*(a->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D));
     assert_memory_equal(a->view.node, b->view.node, nodes*sizeof *a->view.node);
 }

@@ -1,4 +1,6 @@
-#include "core/couple.h"
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
+#include "sph/couple.h"
 #include "core/system.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -52,8 +54,8 @@ static double flux(const tobi_near_entry *e, const double u[6])
 static double answer_at(const tobi_system *s, int64_t i)
 {
     double sum = 0;
-    for (int64_t k = s->particles.near[i]; k >= 0; k = s->near.entry[k].previous) {
-        const tobi_near_entry *e = &s->near.entry[k];
+    for (int64_t k = sph_fields_of(&s->particles)->near[i]; k >= 0; k = sph_of(s)->near.entry[k].previous) {
+        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
         if (moves(&s->sim->bodies[e->body])) sum += flux(e, s->sim->bodies[e->body].rigid.answer);
     }
     return sum;
@@ -64,7 +66,7 @@ static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
     const tobi_system *s = view;
     (void)t;
     for (int64_t i = begin; i < end; i++)
-        if (s->particles.near[i] >= 0) s->particles.wall[i].w += (float)answer_at(s, i);
+        if (sph_fields_of(&s->particles)->near[i] >= 0) sph_fields_of(&s->particles)->wall[i].w += (float)answer_at(s, i);
 }
 
 void tobi_couple_begin(tobi_system *s)
@@ -76,7 +78,7 @@ void tobi_couple_begin(tobi_system *s)
         double f[6];
         if (!moves(b)) continue;
         tobi_near_known_forces(s, k, f);
-        tobi_system_body_hydrostatic(s, k, f);
+        sph_body_hydrostatic(s, k, f);
         foresee(s, b, f);
         vec3_sub(r->answer, r->foreseen, r->velocity);
         vec3_sub(r->answer + 3, r->foreseen_spin, r->angular_velocity);
@@ -89,8 +91,8 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
 {
     const tobi_system *s = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
-        double q = s->particles.record[e->particle].w;
+        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
+        double q = s->cells.record[e->particle].w;
         for (int a = 0; a < 3; a++) {
             t[a] += q*e->gradient[a];
             t[3 + a] += q*e->torque_arm[a];
@@ -102,12 +104,12 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
 static void add_answer(const void *view, int64_t begin, int64_t end, double *t)
 {
     const tobi_system *s = view;
-    const tobi_particles *p = &s->particles;
+    const sph_fields *p = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
         if (p->near[i] < 0) continue;
         float before = p->product[i], after = before + (float)(2*answer_at(s, i));
         p->product[i] = after;
-        t[0] += ((double)after - before)*p->record[i].w;
+        t[0] += ((double)after - before)*s->cells.record[i].w;
         t[1] += (double)after - before;
     }
 }
@@ -119,7 +121,7 @@ void tobi_couple_product(tobi_system *s, double *totals)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_rigid *r = &s->sim->bodies[k].rigid;
         if (!moves(&s->sim->bodies[k])) continue;
-        tobi_launch(&s->sim->exec, sum_pressure, s, first_entry(&s->near, k), first_entry(&s->near, k + 1),
+        tobi_launch(&s->sim->exec, sum_pressure, s, first_entry(&sph_of(s)->near, k), first_entry(&sph_of(s)->near, k + 1),
                     t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         for (int a = 0; a < 3; a++) {
@@ -144,7 +146,7 @@ void tobi_couple_correct(tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
-        if (!moves(b) || first_entry(&s->near, k) == first_entry(&s->near, k + 1)) continue;
+        if (!moves(b) || first_entry(&sph_of(s)->near, k) == first_entry(&sph_of(s)->near, k + 1)) continue;
         collect_forces(b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);
