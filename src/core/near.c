@@ -257,6 +257,10 @@ tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
     tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
     n->block_count = p;
     TOBI_TRY(status);
+    p = n->answer;
+    status = grow(&p, &n->answer_capacity, s->sim->body_count, sizeof *n->answer, err);
+    n->answer = p;
+    TOBI_TRY(status);
     memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
     for (int k = 0; k < s->sim->body_count; k++) {
         TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
@@ -523,7 +527,7 @@ void tobi_near_known_forces(tobi_system *s, int body, double force[6])
     for (int viscous = 0; viscous < 2; viscous++) {
         double t[TOBI_TOTALS];
         reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, s->near.count, t);
         for (int a = 0; a < 6; a++) force[a] += t[a];
     }
 }
@@ -534,11 +538,11 @@ void tobi_near_body_forces(tobi_system *s)
         tobi_body_info *info = &s->sim->bodies[k].info;
         double t[TOBI_TOTALS];
         reaction r = {s, k, 0, 0};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, s->near.count, t);
         memcpy(info->pressure_force, t, 3*sizeof *t);
         memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
         r.viscous = 1;
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, s->near.count, t);
         memcpy(info->viscous_force, t, 3*sizeof *t);
         memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
     }
@@ -550,5 +554,6 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->block_count);
     free(n->bin_start);
     free(n->bin_item);
+    free(n->answer);
     memset(n, 0, sizeof *n);
 }

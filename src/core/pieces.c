@@ -327,7 +327,7 @@ tobi_status tobi_pieces_find(tobi_system *s, const int32_t *row_of, tobi_piece_l
     choose_strides(&f, n);
     if (status == TOBI_OK) status = sort_by_cell(&f, &s->sim->exec, n, err);
     if (status == TOBI_OK) {
-        tobi_launch(&s->sim->exec, link_range, &f, 0, n, NULL);
+        tobi_launch(&s->sim->exec, TOBI_HOST(link_range, 0, 0), &f, 0, n, NULL);
         status = list_pieces(s, row_of, &f, list, err);
     }
     free_search(&f);

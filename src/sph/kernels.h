@@ -4,8 +4,8 @@
 #include "sph/view.h"
 
 typedef struct sph_kernels {
-#define PAIR(K) tobi_kernel K;
-#define FOR(K) tobi_kernel K;
+#define PAIR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+#define FOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR

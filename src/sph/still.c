@@ -85,7 +85,8 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
 static void add_reference(tobi_system *s, int sign)
 {
     const referring r = { s, sign };
-    if (s->still.push > 0) tobi_launch(&s->sim->exec, add_range, &r, 0, s->particles.count, NULL);
+    if (s->still.push > 0)
+        tobi_launch(&s->sim->exec, TOBI_HOST(add_range, 0, 0), &r, 0, s->particles.count, NULL);
 }
 
 static void bind(tobi_system *s, sph_view *v, const sph_surface *f)

@@ -50,8 +50,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_curvature oracle_curvature
 #define oracle_sph_tension oracle_tension
 static const entry kernels[] = {
-#define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
-#define FOR(K) PAIR(K)
+#define PAIR(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_of(K)},
+#define FOR PAIR
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
