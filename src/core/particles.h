@@ -12,9 +12,6 @@ enum { TOBI_STATE, TOBI_SCRATCH };
    method, scenes with blades, liquids with bodies in them. The fields of the others are NULL. */
 enum { TOBI_ALL = 1, TOBI_SPH = 2, TOBI_TENSION = 4, TOBI_MPM = 8, TOBI_BLADES = 16, TOBI_WETTED = 32 };
 
-/* Three columns of a 3x3 matrix; the w of each column is free for a number that goes with it. */
-typedef struct tobi_columns { tobi_float4 c[3]; } tobi_columns;
-
 /*   type          name                 life, owner                unit     meaning */
 #define TOBI_PARTICLE_FIELDS(X) \
     X(tobi_double3, position,     TOBI_STATE,   TOBI_ALL,     "m",    "position from the lower corner") \
