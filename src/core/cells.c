@@ -1,4 +1,6 @@
 #include "core/cells.h"
+#include "core/cells.k.h"
+#include "core/kernels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,85 +114,39 @@ void tobi_cells_free(tobi_cells *c)
     memset(c, 0, sizeof *c);
 }
 
-static int cell_along(const tobi_cells *c, int axis, double x)
+static tobi_cells_view see_cells(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)
 {
-    int k = (int)floor(x*c->inverse[axis]);
-    return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : k;
-}
-
-static void wrap(const tobi_box *box, tobi_double3 *x)
-{
-    double *v = &x->x;
-    for (int a = 0; a < 3; a++)
-        if (box->periodic[a]) {
-            if (v[a] < 0) v[a] += box->size[a];
-            if (v[a] >= box->size[a]) v[a] -= box->size[a];
-            if (v[a] < 0 || v[a] >= box->size[a]) v[a] -= box->size[a]*floor(v[a]/box->size[a]);
-        }
-}
-
-static int32_t to_fixed(const tobi_box *box, int axis, double x)
-{
-    return (int32_t)(uint32_t)(int64_t)llrint((x - box->centre[axis])*box->to_fixed[axis]);
-}
-
-/* What the loops of a sort read and write. */
-typedef struct sorting {
-    const tobi_cells *cells;
-    const tobi_box *box;
-    tobi_particles *particles;
-    const float *payload;
-    uint32_t *keys;
-} sorting;
-
-static void find_keys(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    const tobi_cells *c = s->cells;
-    for (int64_t i = begin; i < end; i++) {
-        tobi_double3 *x = &s->particles->position[i];
-        wrap(s->box, x);
-        int64_t row = tobi_cells_row(c, cell_along(c, 1, x->y), cell_along(c, 2, x->z));
-        s->keys[i] = (uint32_t)(row + cell_along(c, 0, x->x));
-    }
-}
-
-/* Over the particles and one place behind them. */
-static void fill_starts(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    for (int64_t k = begin; k < end; k++) {
-        int64_t before = k > 0 ? (int64_t)s->keys[k - 1] : -1;
-        int64_t here = k < s->particles->count ? (int64_t)s->keys[k] : s->cells->total;
-        for (int64_t cell = before + 1; cell <= here; cell++) s->cells->start[cell] = (int32_t)k;
-    }
-}
-
-static void make_records(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    const tobi_particles *p = s->particles;
-    for (int64_t i = begin; i < end; i++) {
-        tobi_double3 q = p->position[i];
-        s->cells->record[i] = (tobi_record){to_fixed(s->box, 0, q.x), to_fixed(s->box, 1, q.y),
-                                            to_fixed(s->box, 2, q.z), s->payload ? s->payload[i] : 0};
-    }
+    tobi_cells_view v = {
+        .count = p->count, .strip = c->strip, .total = c->total, .start = c->start,
+        .keys = (uint32_t *)c->list, .position = p->position, .record = c->record,
+        .list_start = c->list_start, .list_groups = c->list_groups,
+    };
+    memcpy(v.n, c->n, sizeof v.n);
+    memcpy(v.periodic, c->periodic, sizeof v.periodic);
+    memcpy(v.inverse, c->inverse, sizeof v.inverse);
+    memcpy(v.size, box->size, sizeof v.size);
+    memcpy(v.centre, box->centre, sizeof v.centre);
+    memcpy(v.to_fixed, box->to_fixed, sizeof v.to_fixed);
+    memcpy(v.from_fixed, box->from_fixed, sizeof v.from_fixed);
+    return v;
 }
 
 void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, const float *payload,
                      tobi_exec *x)
 {
     int64_t n = p->count;
-    uint32_t *keys = (uint32_t *)c->list, *key_copy = keys + n;
+    const tobi_core_kernels *k = tobi_core_kernels_for(x->isa);
+    tobi_cells_view v = see_cells(c, box, p);
+    v.payload = payload;
+    uint32_t *keys = v.keys, *key_copy = keys + n;
     int32_t *order_copy = (int32_t *)(key_copy + n), *order = order_copy + n;
-    const sorting view = {c, box, p, payload, keys};
-    tobi_loop(x->threads, n, 0, find_keys, &view);
+    tobi_launch(x, k->cells_key, &v, 0, n, NULL);
     tobi_sort_by_key(x, n, (uint32_t)c->total, keys, order, key_copy, order_copy, c->histogram);
-    tobi_loop(x->threads, n + 1, 0, fill_starts, &view);
+    tobi_launch(x, k->cells_start, &v, 0, n + 1, NULL);
     memmove(c->list, order, (size_t)n*sizeof *order);
     char *scratch = (char *)c->list + ((size_t)n*sizeof *order + 63)/64*64;
     tobi_particles_permute(p, c->list, scratch, x->threads);
-    tobi_loop(x->threads, n, 0, make_records, &view);
+    tobi_launch(x, k->cells_record, &v, 0, n, NULL);
 }
 
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)
@@ -217,17 +173,17 @@ static tobi_status grow_list(tobi_cells *c, tobi_error *err)
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
                             tobi_error *err)
 {
-    static const tobi_kernel search[] = {tobi_neighbors_v2, tobi_neighbors_v3, tobi_neighbors_v4};
+    tobi_cells_view v = see_cells(c, box, p);
+    int overflow;
+    v.h2 = (float)(h*h);
+    v.used = &c->list_used;
+    v.overflow = &overflow;
     for (;;) {
-        int overflow = 0;
+        overflow = 0;
         c->list_used = 0;
-        tobi_list_view v = {
-            .cells = c, .record = c->record, .position = p->position, .list = c->list,
-            .list_start = c->list_start, .list_groups = c->list_groups,
-            .capacity = c->list_capacity, .used = &c->list_used, .overflow = &overflow,
-            .from_fixed = {box->from_fixed[0], box->from_fixed[1], box->from_fixed[2]}, .h2 = (float)(h*h),
-        };
-        tobi_launch(x, search[x->isa - 2], &v, 0, p->count, NULL);
+        v.list = c->list;
+        v.capacity = c->list_capacity;
+        tobi_launch(x, tobi_core_kernels_for(x->isa)->cells_search, &v, 0, p->count, NULL);
         if (overflow == 2)
             return tobi_fail(err, TOBI_DIVERGED,
                              "more than 1000 particles crowd into one support radius");

@@ -62,26 +62,6 @@ static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 /* The particles of the last sort as unknowns of a grid. */
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p);
 
-/* What the neighbour search reads and writes. */
-typedef struct tobi_list_view {
-    const tobi_cells *cells;
-    const tobi_record *record;
-    const tobi_double3 *position;
-    int32_t  *list;
-    uint32_t *list_start;
-    uint16_t *list_groups;
-    int64_t   capacity;
-    int64_t  *used;         /* atomic counter, int32 entries                          */
-    int *overflow; /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
-    float     from_fixed[3];
-    float     h2;
-} tobi_list_view;
-
 /* Builds the list of all pairs nearer than h. TOBI_DIVERGED when particles crowd beyond sense. */
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
                             tobi_error *err);
-
-/* The search kernel per instruction set (isa_neighbors.c). */
-void tobi_neighbors_v2(const void *view, int64_t begin, int64_t end, double *totals);
-void tobi_neighbors_v3(const void *view, int64_t begin, int64_t end, double *totals);
-void tobi_neighbors_v4(const void *view, int64_t begin, int64_t end, double *totals);

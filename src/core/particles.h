@@ -27,8 +27,8 @@ typedef struct tobi_particles {
     TOBI_COMMON_FIELDS(TOBI_FIELD_POINTER)
 } tobi_particles;
 
-/* Allocates the common fields and those of `list` that `needs` asks for, zero, for `capacity` particles; count
-   becomes 0. */
+/* Allocates the common fields and those of `list` that `needs` asks for, zero, for `capacity` particles;
+   count becomes 0. */
 tobi_status tobi_particles_create(tobi_particles *p, const tobi_field_list *list, unsigned needs,
                                   int64_t capacity, tobi_error *err);
 void tobi_particles_free(tobi_particles *p);

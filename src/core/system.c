@@ -22,7 +22,7 @@ static void measure_range(const void *view, int64_t begin, int64_t end, double *
 void tobi_system_measure(tobi_system *s)
 {
     double t[TOBI_TOTALS], g2 = 0;
-    tobi_launch(&s->sim->exec, measure_range, s, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, TOBI_HOST(measure_range, 6, 0), s, 0, s->particles.count, t);
     for (int a = 0; a < s->box.dimension; a++) g2 += s->sim->def.gravity[a]*s->sim->def.gravity[a];
     s->info.kinetic_energy = t[0];
     s->info.potential_energy = t[1];

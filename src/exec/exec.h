@@ -8,9 +8,17 @@
 
 enum { TOBI_BLOCK = 512 };
 
-/* Runs over [begin, end) of one block. totals[0..5] are summed over all blocks, totals[6..7] are
-   maxima (start at 0); all eight are zero on entry. */
-typedef void (*tobi_kernel)(const void *view, int64_t begin, int64_t end, double *totals);
+/* A kernel: runs over [begin, end) of one block. totals[0] to [sums - 1] are summed over all blocks,
+   totals[6] to [5 + maxima] are maxima (start at 0); all eight are zero on entry, and a kernel writes no
+   others. The kernels.def of a room lists its kernels; its kernels.h has them by name, for one instruction
+   set. */
+typedef struct tobi_kernel {
+    void (*run)(const void *view, int64_t begin, int64_t end, double *totals);
+    int sums, maxima;
+} tobi_kernel;
+
+/* A loop with totals that stays on the host, as one of no list. */
+#define TOBI_HOST(RUN, SUMS, MAXIMA) ((tobi_kernel){RUN, SUMS, MAXIMA})
 
 typedef struct tobi_exec {
     int threads;             /* OpenMP threads of every launch          */

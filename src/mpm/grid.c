@@ -228,13 +228,14 @@ static void key_particles(const void *view, int64_t begin, int64_t end)
 {
     const sorting *s = view;
     const tobi_particles *p = s->particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = begin; i < end; i++) {
         int b[3];
         uint32_t cell = 0;
         find_block(p, i, s->inverse_cell, s->home, s->grid->dimension, b);
         for (int a = 0; a < s->grid->dimension && !s->home; a++)
             cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], s->inverse_cell)%BLOCK;
-        if (mpm_fields_of(p)->cuts && !s->home) cell = cell*2 + (mpm_fields_of(p)->cuts[i].c[0].w < 0);
+        if (f->cuts && !s->home) cell = cell*2 + (f->cuts[i].c[0].w < 0);
         s->keys[i] = block_key(s->grid, b) << key_bits(p) | cell;
     }
 }

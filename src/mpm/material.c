@@ -76,7 +76,7 @@ static void find_squeezed(const void *view, int64_t begin, int64_t end, double *
 double mpm_material_squeezed_sound(tobi_system *s, const mpm_view *v)
 {
     double t[TOBI_TOTALS];
-    tobi_launch(&s->sim->exec, find_squeezed, v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, TOBI_HOST(find_squeezed, 0, 1), v, 0, s->particles.count, t);
     return t[6];
 }
 

@@ -9,7 +9,8 @@
      affine   columns of the velocity gradient, 1/s
    F lags behind: the gradient of the last step is put into it by the next one (docs/theory/mlsmpm.md). */
 #pragma once
-#include "core/particles.h"
+#include "exec/portable.h"
+#include "tobiuo/kinds.h"
 
 enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
        MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };

@@ -263,12 +263,13 @@ static void apply_forces(tobi_system *s, dfsph *m, double *clock)
 /* A surface particle has pressure 0 about a spacing outside, over its share of the surface. */
 static void set_grid(tobi_system *s, dfsph *m)
 {
+    const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     const double d = s->smoothing.spacing, strength = m->view.inverse_density[0];
     const tobi_grid_weights w = {.strength = strength,
                                  .volume = s->smoothing.volume,
-                                 .active = sph_fields_of(&s->particles)->precondition,
-                                 .marked = sph_fields_of(&s->particles)->surface,
+                                 .active = f->precondition,
+                                 .marked = f->surface,
                                  .hold = strength/(d*d)};
     tobi_multigrid_set(&m->grid, &s->sim->exec, &points, &w);
 }

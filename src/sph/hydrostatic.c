@@ -45,7 +45,9 @@ static void sum_still(const tobi_system *s, const tobi_body *b, double f[6])
 /* The walls take what is left of the weight that still water holds. */
 static void add_still(tobi_system *s)
 {
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] += sph_of(s)->still.down[a]*sph_of(s)->still.push*sph_of(s)->still_volume;
+    sph_state *state = sph_of(s);
+    const double held = state->still.push*state->still_volume;
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += state->still.down[a]*held;
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6] = {0};
         sum_still(s, &s->sim->bodies[k], f);

@@ -175,8 +175,9 @@ static int add_point(void *user, int32_t k)
 static void feel_gravity(look *l)
 {
     const tobi_system *s = l->s;
-    double held = tobi_still_share(&sph_of(s)->still, l->x)*sph_of(s)->still.push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*sph_of(s)->still.down[a];
+    sph_state *state = sph_of(s);
+    double held = tobi_still_share(&state->still, l->x)*state->still.push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*state->still.down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
@@ -219,16 +220,17 @@ static void count_near(const void *view, int64_t begin, int64_t end)
 {
     const looking *v = view;
     tobi_system *s = v->s;
+    sph_state *state = sph_of(s);
     for (int64_t block = begin; block < end; block++) {
         int64_t last = (block + 1)*TOBI_BLOCK, found = 0;
         for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
             look l = {.s = s, .b = &s->sim->bodies[v->body]};
             place_look(&l, i);
-            int near = visit_points(&sph_of(s)->near, l.x, sees_any, &l);
+            int near = visit_points(&state->near, l.x, sees_any, &l);
             sph_fields_of(&s->particles)->delta[i] = (float)near;
             found += near;
         }
-        sph_of(s)->near.block_count[block] = found;
+        state->near.block_count[block] = found;
     }
 }
 
@@ -236,15 +238,17 @@ static void fill_near(const void *view, int64_t begin, int64_t end)
 {
     const looking *v = view;
     tobi_system *s = v->s;
+    sph_state *state = sph_of(s);
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t block = begin; block < end; block++) {
-        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + sph_of(s)->near.block_count[block];
+        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + state->near.block_count[block];
         for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
-            if (sph_fields_of(&s->particles)->delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &sph_of(s)->near.entry[at]};
+            if (f->delta[i] == 0) continue;
+            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &state->near.entry[at]};
             place_look(&l, i);
             if (!look_at(&l, (int32_t)i, v->body)) l.entry->distance = s->smoothing.h;
-            l.entry->previous = sph_fields_of(&s->particles)->near[i];
-            sph_fields_of(&s->particles)->near[i] = (int32_t)at++;
+            l.entry->previous = f->near[i];
+            f->near[i] = (int32_t)at++;
         }
     }
 }
@@ -258,7 +262,11 @@ tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
     tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
     n->block_count = p;
     TOBI_TRY(status);
-    memset(sph_fields_of(&s->particles)->near, 0xFF, (size_t)s->particles.count*sizeof *sph_fields_of(&s->particles)->near);
+    p = n->answer;
+    status = grow(&p, &n->answer_capacity, s->sim->body_count, sizeof *n->answer, err);
+    n->answer = p;
+    TOBI_TRY(status);
+    memset(sph_fields_of(&s->particles)->near, 0xFF, (size_t)s->particles.count*sizeof(int32_t));
     for (int k = 0; k < s->sim->body_count; k++) {
         TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
         memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
@@ -285,16 +293,18 @@ static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_e
    rounding would let a segment through an edge pass one way only. */
 static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
+    sph_state *state = sph_of(s);
     const tobi_particles *p = &s->particles;
     const sph_fields *f = sph_fields_of(&s->particles);
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const tobi_near_entry *a = &sph_of(s)->near.entry[f->near[i]], *b;
-    double d[3] = {(int32_t)((uint32_t)s->cells.record[i].x - (uint32_t)s->cells.record[j].x)/s->box.to_fixed[0],
-                   (int32_t)((uint32_t)s->cells.record[i].y - (uint32_t)s->cells.record[j].y)/s->box.to_fixed[1],
-                   (int32_t)((uint32_t)s->cells.record[i].z - (uint32_t)s->cells.record[j].z)/s->box.to_fixed[2]};
+    const tobi_near_entry *a = &state->near.entry[f->near[i]], *b;
+    const tobi_record *from = &s->cells.record[i], *to = &s->cells.record[j];
+    const double d[3] = {(int32_t)((uint32_t)from->x - (uint32_t)to->x)/s->box.to_fixed[0],
+                         (int32_t)((uint32_t)from->y - (uint32_t)to->y)/s->box.to_fixed[1],
+                         (int32_t)((uint32_t)from->z - (uint32_t)to->z)/s->box.to_fixed[2]};
     double length = sqrt(dot(d, d)), x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     for (; a; a = next_entry(s, a))
-        for (b = &sph_of(s)->near.entry[f->near[j]]; b; b = next_entry(s, b)) {
+        for (b = &state->near.entry[f->near[j]]; b; b = next_entry(s, b)) {
             if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
             for (int c = 0; c < 3; c++) {
@@ -331,10 +341,11 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 
 void tobi_near_cut_pairs(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     int64_t cut = 0;
     const looking view = {.s = s, .cut = &cut};
-    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 64, cut_pairs, &view);
-    sph_of(s)->near.cut_pairs = cut/2;
+    tobi_loop(s->sim->exec.threads, state->near.count, 64, cut_pairs, &view);
+    state->near.cut_pairs = cut/2;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
@@ -346,7 +357,8 @@ static void visit_entries(tobi_system *s, tobi_range visit)
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = sph_of(s)->near.entry[k].particle, once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)   \
+        for (int64_t i = sph_of(s)->near.entry[k].particle,                                                \
+                     once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
             for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
 
 static void mark_beside(const void *view, int64_t begin, int64_t end)
@@ -364,19 +376,21 @@ static void mark_beside(const void *view, int64_t begin, int64_t end)
 
 void tobi_near_mark_beside(tobi_system *s)
 {
-    if (!sph_fields_of(&s->particles)->beside) return;
-    memset(sph_fields_of(&s->particles)->beside, 0, (size_t)s->particles.count);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    if (!f->beside) return;
+    memset(f->beside, 0, (size_t)s->particles.count);
     visit_entries(s, mark_beside);
 }
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     tobi_system *s = ((const looking *)view)->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
     FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_float4 *w = &sph_fields_of(&s->particles)->wall[i];
+        tobi_float4 *w = &f->wall[i];
         w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
         w->w += (float)e->wall_flux;
-        sph_fields_of(&s->particles)->density[i] = 1 - (1 - sph_fields_of(&s->particles)->density[i])*(1 - (float)e->share);
+        f->density[i] = 1 - (1 - f->density[i])*(1 - (float)e->share);
     }
 }
 
@@ -496,6 +510,7 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
         const tobi_near_entry *e = &sph_of(s)->near.entry[k];
         if (e->body != r->body) continue;
@@ -508,8 +523,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        float capillary = sph_fields_of(&s->particles)->capillary ? sph_fields_of(&s->particles)->capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : sph_fields_of(&s->particles)->pressure[e->particle];
+        float capillary = f->capillary ? f->capillary[e->particle] : 0;
+        float pressure = r->known ? 0 : f->pressure[e->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
@@ -526,22 +541,23 @@ void tobi_near_known_forces(tobi_system *s, int body, double force[6])
     for (int viscous = 0; viscous < 2; viscous++) {
         double t[TOBI_TOTALS];
         reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, sph_of(s)->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, sph_of(s)->near.count, t);
         for (int a = 0; a < 6; a++) force[a] += t[a];
     }
 }
 
 void tobi_near_body_forces(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body_info *info = &s->sim->bodies[k].info;
         double t[TOBI_TOTALS];
         reaction r = {s, k, 0, 0};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, sph_of(s)->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
         memcpy(info->pressure_force, t, 3*sizeof *t);
         memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
         r.viscous = 1;
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, sph_of(s)->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
         memcpy(info->viscous_force, t, 3*sizeof *t);
         memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
     }
@@ -553,5 +569,6 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->block_count);
     free(n->bin_start);
     free(n->bin_item);
+    free(n->answer);
     memset(n, 0, sizeof *n);
 }

@@ -165,11 +165,11 @@ void tobi_push_out(tobi_system *s)
         }
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
-            tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+            tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
             p.counting = 0;
         }
-        tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
         tobi_body_info *info = &s->sim->bodies[k].info;
         for (int a = 0; a < 3; a++) {
             info->pressure_force[a] += t[a]/s->dt;

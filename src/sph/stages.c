@@ -124,7 +124,8 @@ void sph_use_dt(const tobi_system *s, sph_view *v)
 
 tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 {
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, sph_fields_of(&s->particles)->pressure, &s->sim->exec);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, f->pressure, &s->sim->exec);
     tobi_stage_end(&s->sim->stages, "sort", clock);
     TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->sim->exec, err));
     tobi_stage_end(&s->sim->stages, "neighbours", clock);
@@ -163,6 +164,7 @@ tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels 
 double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, double smooth,
                            double *clock)
 {
+    sph_state *state = sph_of(s);
     double t[TOBI_TOTALS], count = (double)s->particles.count;
     v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = (float)smooth;
@@ -170,8 +172,8 @@ double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, do
     s->info.density_error_mean = t[0]/count;
     s->info.density_error_max = t[6];
     s->info.surface_share = t[1]/count;
-    sph_of(s)->lowest = t[7];
-    sph_of(s)->open = t[3];
+    state->lowest = t[7];
+    state->open = t[3];
     double diagonal = t[2]/count;
     v->isolated = (float)(ISOLATED*diagonal);
     tobi_stage_end(&s->sim->stages, "density", clock);

@@ -41,10 +41,11 @@ static void count_drops(const void *view, int64_t begin, int64_t end)
 
 double sph_still_low(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
-    double scale = DROPS/(1.0001*sph_of(s)->lowest);
+    double scale = DROPS/(1.0001*state->lowest);
     const counting view = { sph_fields_of(&s->particles)->delta, scale, n };
-    if (!(sph_of(s)->lowest > 0)) return 0;
+    if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
@@ -88,7 +89,8 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
 static void add_reference(tobi_system *s, int sign)
 {
     const referring r = { s, sign };
-    if (sph_of(s)->still.push > 0) tobi_launch(&s->sim->exec, add_range, &r, 0, s->particles.count, NULL);
+    if (sph_of(s)->still.push > 0)
+        tobi_launch(&s->sim->exec, TOBI_HOST(add_range, 0, 0), &r, 0, s->particles.count, NULL);
 }
 
 static void bind(tobi_system *s, sph_view *v, const sph_surface *f)

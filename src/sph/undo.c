@@ -54,7 +54,7 @@ tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
         if (!u->field[k]) u->field[k] = malloc((size_t)(s->particles.capacity + 1)*f->bytes);
         if (!u->field[k]) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
         copying c = { u->field[k], data, f->bytes };
-        tobi_launch(&s->sim->exec, copy_range, &c, 0, s->particles.count, NULL);
+        tobi_launch(&s->sim->exec, TOBI_HOST(copy_range, 0, 0), &c, 0, s->particles.count, NULL);
     }
     u->kept = 1;
     return TOBI_OK;

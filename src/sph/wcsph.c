@@ -106,7 +106,9 @@ static double choose_dt(tobi_system *s)
    count. */
 static double find_surface(tobi_system *s)
 {
-    for (int64_t k = 0; k < sph_of(s)->near.count; k++) sph_fields_of(&s->particles)->delta[sph_of(s)->near.entry[k].particle] = 0;
+    sph_state *state = sph_of(s);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.entry[k].particle] = 0;
     return sph_still_low(s);
 }
 
@@ -161,10 +163,11 @@ static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
 /* Walls feel the pressure with its damping, which stands in delta. */
 static void measure_forces(tobi_system *s, wcsph *m, double *clock)
 {
-    float *state = sph_fields_of(&s->particles)->pressure;
-    sph_fields_of(&s->particles)->pressure = sph_fields_of(&s->particles)->delta;
+    sph_fields *f = sph_fields_of(&s->particles);
+    float *state = f->pressure;
+    f->pressure = f->delta;
     sph_measure_forces(s, &m->view, m->kernel, clock);
-    m->view.pressure = sph_fields_of(&s->particles)->pressure = state;
+    m->view.pressure = f->pressure = state;
 }
 
 static void shift_positions(tobi_system *s, wcsph *m, double *clock)

@@ -57,8 +57,8 @@ tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_erro
         void *data;
         const tobi_field *r = tobi_particles_state(&s->particles, k, &data);
         if (!r) return TOBI_OK;
-        TOBI_TRY(tobi_store_put(f, name_entry(number, r->name).name, r->type, s->particles.count, r->components,
-                                data, err));
+        TOBI_TRY(tobi_store_put(f, name_entry(number, r->name).name, r->type, s->particles.count,
+                                r->components, data, err));
     }
 }
 

@@ -64,7 +64,10 @@ const char *tobi_world_field_name(int field, int *components, const char **unit)
     return o->name;
 }
 
-int tobi_world_bodies_have(int field) { return field < COMMON && strcmp(common[field].name, "pressure") != 0; }
+int tobi_world_bodies_have(int field)
+{
+    return field < COMMON && strcmp(common[field].name, "pressure") != 0;
+}
 
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
@@ -397,7 +400,8 @@ static uint64_t mix_system(uint64_t h, const tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     size_t pressure_row, strain_row;
-    const char *pressure = find_state(p, "pressure", &pressure_row), *strain = find_state(p, "strain", &strain_row);
+    const char *pressure = find_state(p, "pressure", &pressure_row);
+    const char *strain = find_state(p, "strain", &strain_row);
     for (int64_t r = 0; r < p->count; r++) {
         int64_t i = s->row_of[r];
         h = mix(h, &p->position[i], sizeof p->position[i]);

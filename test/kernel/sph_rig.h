@@ -199,7 +199,8 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, &sph_field_list, SPH_NEED_TENSION | SPH_NEED_WETTED, count, err)) return 1;
+    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED;
+    if (tobi_particles_create(&g->p, &sph_field_list, all, count, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);

@@ -86,13 +86,15 @@ static void direction(pool *p)
 
 static double apply(pool *p)
 {
-    return tobi_multigrid_apply(&p->m, &p->sim.exec, sph_fields_of(&p->s.particles)->residual, sph_fields_of(&p->s.particles)->precondition);
+    const sph_fields *f = sph_fields_of(&p->s.particles);
+    return tobi_multigrid_apply(&p->m, &p->sim.exec, f->residual, f->precondition);
 }
 
 static void random_residual(pool *p)
 {
+    const sph_fields *f = sph_fields_of(&p->s.particles);
     for (int64_t i = 0; i < p->s.particles.count; i++)
-        sph_fields_of(&p->s.particles)->residual[i] = sph_fields_of(&p->s.particles)->precondition[i] > 0 ? (float)(random_unit() - 0.3) : 0;
+        f->residual[i] = f->precondition[i] > 0 ? (float)(random_unit() - 0.3) : 0;
 }
 
 static void symmetric_and_positive(void **state)

@@ -51,17 +51,27 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_curvature oracle_curvature
 #define oracle_sph_tension oracle_tension
 static const entry kernels[] = {
-#define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
-#define FOR(K) PAIR(K)
+#define PAIR(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_of(K)},
+#define FOR PAIR
+#define COUPLE(K, SUMS, MAXIMA, DOC)      /* see test_couple.c */
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
+#undef COUPLE
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };
 
 static tobi_kernel kernel_at(const sph_kernels *table, int k)
 {
     return *(const tobi_kernel *)((const char *)table + kernels[k].offset);
+}
+
+/* Totals beside those that kernels.def names stay 0. */
+static void keeps_to_list(tobi_kernel k, const double *t, const char *what)
+{
+    for (int n = 0; n < TOBI_TOTALS; n++)
+        if (t[n] != 0 && (n < TOBI_SUMS ? n >= k.sums : n >= TOBI_SUMS + k.maxima))
+            fail_msg("%s writes total %d, which kernels.def does not name", what, n);
 }
 
 static const rig_case cases[] = {
@@ -132,9 +142,12 @@ static void walk(const rig_case *c, int case_index, reading other, double tolera
     const sph_kernels *table = sph_kernels_for(g.exec.isa, c->shape);
     for (int k = 0; k < KERNELS; k++) {
         char what[128];
-        double t[TOBI_TOTALS], u[TOBI_TOTALS] = {0}, size[TOBI_TOTALS] = {0};
+        double t[TOBI_TOTALS], all[TOBI_TOTALS] = {0}, u[TOBI_TOTALS] = {0}, size[TOBI_TOTALS] = {0};
         snprintf(what, sizeof what, "case %d, %s", case_index, kernels[k].name);
         rig_get(&g, in);
+        kernel_at(table, k).run(&g.view, 0, g.p.count, all);
+        keeps_to_list(kernel_at(table, k), all, what);
+        rig_set(&g, in);
         tobi_launch(&g.exec, kernel_at(table, k), &g.view, 0, g.p.count, t);
         rig_get(&g, made);
         rig_set(&g, in);

@@ -169,7 +169,7 @@ static void poisson_apply(void *user, double *y, const double *x)
     q->in = x;
     q->out = y;
     q->products++;
-    tobi_launch(&q->exec, poisson_product, q, 0, q->p.count, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_product, 0, 0), q, 0, q->p.count, NULL);
 }
 
 static void poisson_precondition(void *user, double *z, const double *r)
@@ -223,8 +223,8 @@ static void poisson_assemble(poisson *q)
     for (size_t k = 0; k < sizeof array/sizeof *array; k++) *array[k] = calloc((size_t)n, sizeof(double));
     q->weight = malloc((size_t)q->cells.list_used*sizeof *q->weight);
     q->work = calloc((size_t)tobi_cg_work(n), sizeof *q->work);
-    tobi_launch(&q->exec, poisson_moments, q, 0, n, NULL);
-    tobi_launch(&q->exec, poisson_rows, q, 0, n, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_moments, 0, 0), q, 0, n, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_rows, 0, 0), q, 0, n, NULL);
     for (int64_t i = 0; i < n; i++) q->b[i] += 0.1/q->d*poisson_random();
     q->system = (tobi_linear_system){.rows = n, .user = q, .apply = poisson_apply,
                                      .precondition = poisson_precondition, .singular = 1};

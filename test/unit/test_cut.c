@@ -434,7 +434,8 @@ static void same_bits(void **state)
     OK(tobi_world_advance(later, 0.03, NULL, &err));
     assert_true(tobi_world_hash(one) == tobi_world_hash(four));
     assert_true(tobi_world_hash(one) == tobi_world_hash(later));
-    assert_memory_equal(mpm_fields_of(&one->system[0].particles)->cuts, mpm_fields_of(&later->system[0].particles)->cuts,
+    assert_memory_equal(mpm_fields_of(&one->system[0].particles)->cuts,
+                        mpm_fields_of(&later->system[0].particles)->cuts,
                         (size_t)count*sizeof(tobi_columns));
     tobi_error why = { 0 };
     double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);

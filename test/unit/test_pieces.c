@@ -480,7 +480,8 @@ static char *picture(const double core[3], double gap, size_t *size)
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, core, 1);
     for (int64_t i = 0; i < 1000; i++)
-        if (mpm_fields_of(&world->system[0].particles)->rest[i].x > 1.5f) world->system[0].particles.position[i].x += gap;
+        if (mpm_fields_of(&world->system[0].particles)->rest[i].x > 1.5f)
+            world->system[0].particles.position[i].x += gap;
     assert_non_null(mkdtemp(folder));
     output.frames = 1;
     OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));
