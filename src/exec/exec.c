@@ -73,14 +73,6 @@ static void combine(tobi_kernel kernel, double *p, int64_t blocks, double *total
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
 }
 
-/* 1 if the kernel wrote to no total beside those that its list says. */
-static inline int keeps_to_list(tobi_kernel kernel, const double *totals)
-{
-    for (int k = 0; k < TOBI_TOTALS; k++)
-        if (totals[k] != 0 && (k < TOBI_SUMS ? k >= kernel.sums : k >= TOBI_SUMS + kernel.maxima)) return 0;
-    return 1;
-}
-
 /* Cuts [begin, end) into blocks of `grain`. */
 static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
                        int64_t grain, double *totals)
@@ -94,7 +86,7 @@ static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64
         double sums[TOBI_TOTALS] = {0};
         int64_t first = begin + b*grain, last = first + grain;
         kernel.run(view, first, last < end ? last : end, sums);
-        assert(keeps_to_list(kernel, sums));
+        assert(tobi_kernel_keeps(kernel, sums));
         if (totals) memcpy(partial + b*TOBI_TOTALS, sums, sizeof sums);
     }
     if (totals) combine(kernel, partial, blocks, totals);

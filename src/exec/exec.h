@@ -17,6 +17,14 @@ typedef struct tobi_kernel {
     int sums, maxima;
 } tobi_kernel;
 
+/* 1 if totals that were zero before the kernel are zero still, but for those that it makes. */
+static inline int tobi_kernel_keeps(tobi_kernel kernel, const double *totals)
+{
+    for (int k = 0; k < TOBI_TOTALS; k++)
+        if (totals[k] != 0 && (k < TOBI_SUMS ? k >= kernel.sums : k >= TOBI_SUMS + kernel.maxima)) return 0;
+    return 1;
+}
+
 /* A loop with totals that stays on the host, as one of no list. */
 #define TOBI_HOST(RUN, SUMS, MAXIMA) ((tobi_kernel){RUN, SUMS, MAXIMA})
 

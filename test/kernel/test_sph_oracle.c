@@ -66,14 +66,6 @@ static tobi_kernel kernel_at(const sph_kernels *table, int k)
     return *(const tobi_kernel *)((const char *)table + kernels[k].offset);
 }
 
-/* Totals beside those that kernels.def names stay 0. */
-static void keeps_to_list(tobi_kernel k, const double *t, const char *what)
-{
-    for (int n = 0; n < TOBI_TOTALS; n++)
-        if (t[n] != 0 && (n < TOBI_SUMS ? n >= k.sums : n >= TOBI_SUMS + k.maxima))
-            fail_msg("%s writes total %d, which kernels.def does not name", what, n);
-}
-
 static const rig_case cases[] = {
     {3, TOBI_SHAPE_WENDLAND, 2.0, {0, 0, 0}, 0, 1, 0.2, 0, 0},
     {3, TOBI_SHAPE_CUBIC,    2.0, {0, 0, 0}, 0, 2, 0.2, -3, 0},
@@ -146,7 +138,8 @@ static void walk(const rig_case *c, int case_index, reading other, double tolera
         snprintf(what, sizeof what, "case %d, %s", case_index, kernels[k].name);
         rig_get(&g, in);
         kernel_at(table, k).run(&g.view, 0, g.p.count, all);
-        keeps_to_list(kernel_at(table, k), all, what);
+        if (!tobi_kernel_keeps(kernel_at(table, k), all))
+            fail_msg("%s: totals beside those of its line", what);
         rig_set(&g, in);
         tobi_launch(&g.exec, kernel_at(table, k), &g.view, 0, g.p.count, t);
         rig_get(&g, made);
