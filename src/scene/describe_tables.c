@@ -13,6 +13,8 @@ static const char head[] =
     "\n"
     "<!-- Written by `tobiuo describe tables` from the lists that write the tables; do not edit. -->\n"
     "\n"
+    "[日本語](tables.ja.md)\n"
+    "\n"
     "A run leaves up to three tables in its folder. They are CSV files: a row of names, then numbers\n"
     "with a decimal point and commas between.\n"
     "\n"
