@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 """The pages are true: what the program writes is up to date, examples and commands work, links lead somewhere.
 
-usage: pages.py tables PROGRAM | scripts PROGRAM | readme PROGRAM | links
+usage: pages.py tables PROGRAM | scripts PROGRAM | readme PROGRAM | commands PROGRAM | links
   tables   docs/tables.md is what `tobiuo describe tables` prints, and names the columns of a real run
   scripts  each scene of docs/scripts.md, with the script beside it, is accepted and runs its first steps
   readme   the scene in README is scenes/ball_drop; its commands are accepted (check for run)
-  links    every relative link and picture of every page leads to a file, and to a heading of it
+  commands every `tobiuo run` and `tobiuo check` of a scene of the tree, on any page, is accepted
+  links    every relative link and picture of every page leads to a file, and to a heading of it; the
+           gallery has every scene
 """
 import csv
 import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -119,6 +122,35 @@ def check_readme(program):
     return failed
 
 
+def find_commands():
+    """(page, words) of each `tobiuo run SCENE ...` whose scene is in the tree."""
+    seen = set()
+    for page in sorted(p for pattern in PAGES for p in ROOT.glob(pattern)):
+        if page.parent.name == "validation":
+            continue                                # written with the commands that were run
+        text = page.read_text().replace("\\\n", " ")
+        for line in re.findall(r"(?:^|`) *(?:build/release/)?tobiuo (?:run|check) ([^`\n]*)", text, re.M):
+            words = shlex.split(line, comments=True)
+            if words and (ROOT / words[0]).exists() and tuple(words) not in seen:
+                seen.add(tuple(words))
+                yield page, words
+
+
+def check_commands(program):
+    """check in the place of run, for no time: it builds the world."""
+    failed = count = 0
+    for page, words in find_commands():
+        text = re.sub(r"--frames|--force|--quiet|--out \S+|--threads \S+", "", shlex.join(words))
+        result = subprocess.run([program, "check", *shlex.split(text), "--until", "1e-9"], capture_output=True,
+                                text=True, cwd=ROOT)
+        count += 1
+        if result.returncode != 0:
+            print(f"{page.relative_to(ROOT)}: tobiuo run {shlex.join(words)}:", result.stderr)
+            failed += 1
+    print(f"{count} commands, {failed} failed")
+    return failed or count < 30
+
+
 def anchor(heading):
     """As GitHub and MkDocs make it from a heading."""
     text = re.sub(r"[`*]|\[([^]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
@@ -142,13 +174,19 @@ def check_links():
             if not file.exists() or (part and part not in map(anchor, headings)):
                 print(f"{page.relative_to(ROOT)}: dead link: {target}")
                 failed += 1
+    gallery = (ROOT / "docs/gallery/README.md").read_text()
+    for scene in sorted(path.parent.name for path in ROOT.glob("scenes/*/scene.json")):
+        if f"(../../scenes/{scene}/README.md)" not in gallery:
+            print(f"docs/gallery/README.md: there is no picture of {scene}")
+            failed += 1
     print(f"{count} links, {failed} dead")
     return failed or count < 100
 
 
 def main():
     what = sys.argv[1] if len(sys.argv) > 1 else ""
-    checks = {"tables": check_tables, "scripts": check_scripts, "readme": check_readme}
+    checks = {"tables": check_tables, "scripts": check_scripts, "readme": check_readme,
+              "commands": check_commands}
     if what == "links":
         return 1 if check_links() else 0
     if what not in checks or len(sys.argv) != 3:
