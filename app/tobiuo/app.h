@@ -53,6 +53,10 @@ void free_names(char **names, size_t count);
 char *relative_path(const char *path);
 /* The scene that a path leading nowhere may mean; NULL if none is near. Owned by the caller. */
 char *near_scene(const char *path);
+/* The same for the folder of a run. */
+char *near_run(const char *path);
+/* Says that there is no run in dir, and which one may be meant. Returns EXIT_ERROR. */
+int complain_run(const char *dir, const char *what);
 
 /* complain.c: "tobiuo: ..." on stderr, one line; returns EXIT_ERROR. */
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));

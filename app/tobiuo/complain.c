@@ -2,6 +2,7 @@
 #include "app.h"
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 int complain(const char *format, ...)
 {
@@ -27,5 +28,13 @@ int complain_scene(tobi_report *report, const tobi_error *err)
     if (count > 1) complain("%d mistakes", count);
     if (count == 0) complain("%s", err->text);
     tobi_report_free(report);
+    return EXIT_ERROR;
+}
+
+int complain_run(const char *dir, const char *what)
+{
+    char *near = near_run(dir);
+    complain("%s: %s%s%s%s", dir, what, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+    free(near);
     return EXIT_ERROR;
 }

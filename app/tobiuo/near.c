@@ -1,5 +1,5 @@
-/* "Did you mean" for scenes: what a path that leads nowhere may mean. Looked at are the folder that the path
-   names and the shipped scenes. Drawback: nothing below other folders is found. */
+/* "Did you mean" for scenes and runs: what a path that leads nowhere may mean. Looked at are the folder that
+   the path names and, for scenes, the shipped ones. Drawback: nothing below other folders is found. */
 #define _GNU_SOURCE
 #include "app.h"
 #include <dirent.h>
@@ -8,14 +8,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static int is_scene(const char *folder, const char *name)
+static const char scene_mark[] = "scene.json", run_mark[] = "resolved.json";
+
+/* Whether a folder is marked by a file: scenes by scene.json, runs by resolved.json. */
+static int is_marked(const char *folder, const char *name, const char *mark)
 {
     char *path = NULL;
     struct stat st;
     const char *dot = strrchr(name, '.');
     if (name[0] == '.') return 0;
-    if (dot && (strcmp(dot, ".json") == 0 || strcmp(dot, ".py") == 0)) return 1;
-    int length = asprintf(&path, "%s/%s/scene.json", folder, name);
+    if (mark == scene_mark && dot && (strcmp(dot, ".json") == 0 || strcmp(dot, ".py") == 0)) return 1;
+    int length = asprintf(&path, "%s/%s/%s", folder, name, mark);
     int found = length > 0 && stat(path, &st) == 0;
     if (length > 0) free(path);
     return found;
@@ -23,13 +26,13 @@ static int is_scene(const char *folder, const char *name)
 
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-char **list_scenes(const char *folder, size_t *count)
+static char **list_marked(const char *folder, const char *mark, size_t *count)
 {
     char **names = NULL;
     *count = 0;
     DIR *dir = opendir(folder);
     for (struct dirent *entry; dir && (entry = readdir(dir));) {
-        if (!is_scene(folder, entry->d_name)) continue;
+        if (!is_marked(folder, entry->d_name, mark)) continue;
         char **more = realloc(names, (*count + 1)*sizeof *more);
         if (!more || !(more[*count] = strdup(entry->d_name))) exit(complain("out of memory"));
         names = more;
@@ -39,6 +42,8 @@ char **list_scenes(const char *folder, size_t *count)
     if (names) qsort(names, *count, sizeof *names, by_name);
     return names;
 }
+
+char **list_scenes(const char *folder, size_t *count) { return list_marked(folder, scene_mark, count); }
 
 void free_names(char **names, size_t count)
 {
@@ -55,10 +60,10 @@ char *relative_path(const char *path)
     return strdup(below ? path + length + 1 : path);
 }
 
-static char *find_in(const char *folder, const char *shown, const char *name)
+static char *find_in(const char *folder, const char *shown, const char *name, const char *mark)
 {
     size_t count;
-    char **names = list_scenes(folder, &count), *found = NULL;
+    char **names = list_marked(folder, mark, &count), *found = NULL;
     const char *near = NULL;
     for (size_t k = 0; k < count; k++)
         if (strcmp(names[k], name) == 0) near = names[k];
@@ -68,19 +73,28 @@ static char *find_in(const char *folder, const char *shown, const char *name)
     return found;
 }
 
-char *near_scene(const char *path)
+static char *find_beside(const char *path, const char *mark)
 {
-    char *copy = strdup(path), *slash, *found = NULL;
+    char *copy = strdup(path);
     if (!copy) return NULL;
     for (size_t n = strlen(copy); n > 1 && copy[n - 1] == '/'; n--) copy[n - 1] = '\0';
-    slash = strrchr(copy, '/');
+    char *slash = strrchr(copy, '/');
     const char *name = slash ? slash + 1 : copy;
     if (slash) *slash = '\0';
-    found = slash ? find_in(*copy ? copy : "/", copy, name) : find_in(".", "", name);
+    char *found = slash ? find_in(*copy ? copy : "/", copy, name, mark) : find_in(".", "", name, mark);
+    free(copy);
+    return found;
+}
+
+char *near_run(const char *path) { return find_beside(path, run_mark); }
+
+char *near_scene(const char *path)
+{
+    char *found = find_beside(path, scene_mark);
     char *shipped = found ? NULL : tobi_scene_shipped("."), *shown = shipped ? relative_path(shipped) : NULL;
-    if (shown) found = find_in(shipped, shown, name);
+    const char *slash = strrchr(path, '/');
+    if (shown) found = find_in(shipped, shown, slash && slash[1] ? slash + 1 : path, scene_mark);
     free(shown);
     free(shipped);
-    free(copy);
     return found;
 }

@@ -423,7 +423,7 @@ static int draw_all(plotter *plot)
 {
     const char *dir = plot->options->dir;
     if (!has_file(dir, "history.csv"))
-        return complain("%s: there is no run to draw (no history.csv)", dir);
+        return complain_run(dir, "there is no run to draw (no history.csv)");
     int code = read_table(&plot->history, dir, "history.csv", "step");
     if (code == 0 && has_file(dir, "bodies.csv"))
         code = read_table(&plot->bodies, dir, "bodies.csv", "name");

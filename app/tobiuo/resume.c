@@ -63,7 +63,7 @@ int tobiuo_resume(int argc, char **argv)
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {
         free(path);
-        return complain("%s: there is no run to resume (no resolved.json)", o.dir);
+        return complain_run(o.dir, "there is no run to resume (no resolved.json)");
     }
     tobi_scene *scene = load_scene(path, &o.set);
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;

@@ -274,6 +274,9 @@ for command in --help --version "run --help" "describe scene" "check tank.json" 
 done
 rm -rf full full.json streams
 
+expect 1 "out/tnak: there is no run to resume (no resolved.json); did you mean out/tank?" resume out/tnak
+expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/tank?" plot out/tnak
+
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)
 echo mine > $a/notes.txt
