@@ -1,5 +1,6 @@
 /* A system: particles that one method computes, in the world that all systems share. */
 #pragma once
+#include "base/param.h"
 #include "core/particles.h"
 #include "core/simulation.h"
 #include "core/smoothing.h"
@@ -64,7 +65,7 @@ typedef struct tobi_output {
 typedef struct tobi_method {
     const char *name;
     const char *doc;
-    size_t def_size;                                             /* of the parameter struct        */
+    const tobi_param_table *params;                              /* of its parameter struct        */
     int solids;                                                  /* 1: computes solids, 0: fluids  */
     const tobi_field_list *fields;                               /* of particles, NULL = no others */
     const tobi_output *outputs;                                  /* ends with a NULL name          */

@@ -483,7 +483,7 @@ static void free_state(void *state)
 const tobi_method tobi_mlsmpm = {
     .name = "mlsmpm",
     .doc = "The material point method (MLS-MPM) for elastic and plastic solids, liquids, snow and sand.",
-    .def_size = sizeof(tobi_mlsmpm_def),
+    .params = &tobi_mlsmpm_table,
     .solids = 1,
     .fields = &mpm_field_list,
     .outputs = mpm_outputs,
