@@ -87,11 +87,11 @@ typedef struct tobi_method {
     void (*take_back)(tobi_system *s);
     /* The longest step, s, from the present state. */
     double (*max_dt)(tobi_system *s);
-    /* Sort, neighbours, what it sees of the boundaries; bodies have their velocities of this step. */
+    /* Sort, neighbours, what it sees of the boundaries; bodies have their velocities of this step. Optional. */
     tobi_status (*begin)(tobi_system *s, tobi_error *err);
     /* Gravity, viscosity, tension. Optional. */
     void (*forces)(tobi_system *s);
-    /* Pressure or stress, with the answer of bodies. */
+    /* Pressure or stress, with the answer of bodies. Optional. */
     tobi_status (*solve)(tobi_system *s, tobi_error *err);
     /* The forces on walls and bodies, then the new positions. */
     void (*move)(tobi_system *s);
