@@ -122,6 +122,8 @@ typedef struct tobi_method {
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
     /* Optional, after a load: takes such rows over. */
     void (*recall)(tobi_system *s, double *rows, int64_t count);
+    /* Optional: rows have been inserted, arrays may have moved. */
+    void (*inserted)(tobi_system *s);
     /* The world's gravity has changed between two steps, after a refresh if there were steps: what was
        derived from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is
        kept. */
@@ -134,5 +136,9 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);
+/* `count` new particles between two steps of a world that has started: the first row into *first, all zero but
+   their ids, which go on from the world's. The caller places them (position, velocity, fluid) and calls
+   method->place. On failure no particle is new. */
+tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, tobi_error *err);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_system_measure(tobi_system *s);
