@@ -87,7 +87,8 @@ typedef struct tobi_method {
     void (*take_back)(tobi_system *s);
     /* The longest step, s, from the present state. */
     double (*max_dt)(tobi_system *s);
-    /* Sort, neighbours, what it sees of the boundaries; bodies have their velocities of this step. Optional. */
+    /* Optional: sort, neighbours, what it sees of the boundaries; bodies have their velocities of this
+       step. */
     tobi_status (*begin)(tobi_system *s, tobi_error *err);
     /* Gravity, viscosity, tension. Optional. */
     void (*forces)(tobi_system *s);
@@ -136,8 +137,8 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);
-/* `count` new particles between two steps of a world that has started: the first row into *first, all zero but
-   their ids, which go on from the world's. The caller places them (position, velocity, fluid) and calls
+/* `count` new particles between two steps of a world that has started: the first row into *first, all zero
+   but their ids, which go on from the world's. The caller places them (position, velocity, fluid) and calls
    method->place. On failure no particle is new. */
 tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, tobi_error *err);
 /* Energies, momentum and weight of the fluid into s->info. */

@@ -12,7 +12,8 @@ static const tobi_param rows[] = {
       .doc = "Rate at which the air slows a particle." },
     { 0 }
 };
-static const tobi_param_table table = { "free_flight", "Particles that fall.", sizeof(free_flight_def), rows };
+static const tobi_param_table table = {
+    "free_flight", "Particles that fall.", sizeof(free_flight_def), rows };
 
 #define FIELDS(X) X(float, TOBI_F32, 1, path, TOBI_STATE, 0, "m", "way flown since the start")
 typedef struct fields { FIELDS(TOBI_FIELD_POINTER) } fields;
@@ -70,7 +71,7 @@ static void move(tobi_system *s)
 
 static void read_field(const tobi_system *s, const char *name, int64_t i, double *out)
 {
-    *out = name[1] == 'a' ? ((const fields *)s->particles.own)->path[i] : 0;      /* no pressure, no density */
+    *out = name[1] == 'a' ? ((const fields *)s->particles.own)->path[i] : 0;      /* no pressure, density */
 }
 
 static int memory(tobi_system *s, double **values)

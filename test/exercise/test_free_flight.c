@@ -1,4 +1,4 @@
-/* The exercise method in all that the product does with a method: scene, run, fields, restart, description. */
+/* The exercise method in all that the product does with a method: scene, fields, restart, mistakes. */
 #include "unit/calls.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
