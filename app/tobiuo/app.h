@@ -78,6 +78,8 @@ char *scene_path(const char *path);
 tobi_scene *load_scene(const char *path, overrides *set);
 
 /* options.c: parsing of values; a usage error ends the program as argp does. */
+/* argp_parse, which may run out of memory before it has looked at anything: then the program ends. */
+void parse_arguments(const struct argp *argp, int argc, char **argv, void *input);
 double parse_positive(struct argp_state *state, const char *option, const char *text);
 int parse_threads(struct argp_state *state, const char *text);
 /* For all keys that a command does not know itself: takes its one argument, called SCENE or DIR. */

@@ -239,7 +239,7 @@ const struct argp bench_argp = {
 int tobiuo_bench(int argc, char **argv)
 {
     bench_options o = { 0 };
-    argp_parse(&bench_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&bench_argp, argc, argv, &o);
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;

@@ -164,7 +164,7 @@ const struct argp check_argp = {
 int tobiuo_check(int argc, char **argv)
 {
     check_options o = { 0 };
-    argp_parse(&check_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&check_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? check_world(scene) : EXIT_ERROR;
     tobi_scene_free(scene);

@@ -19,7 +19,7 @@ const struct argp describe_argp = { .parser = parse, .args_doc = "[WORD]",
 int tobiuo_describe(int argc, char **argv)
 {
     const char *topic = NULL;
-    argp_parse(&describe_argp, argc, argv, 0, NULL, &topic);
+    parse_arguments(&describe_argp, argc, argv, &topic);
     char *text = tobi_scene_describe(topic);
     if (!text) {
         char *near = tobi_scene_suggest(topic ? topic : "");

@@ -37,7 +37,7 @@ const struct argp import_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_import(int argc, char **argv)
 {
     import_options o = { 0 };
-    argp_parse(&import_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&import_argp, argc, argv, &o);
     char *table = NULL, *path = scene_path(o.scene);
     tobi_report *report = NULL;
     tobi_error err = { 0 };

@@ -55,7 +55,7 @@ const struct argp info_argp = { .doc = "Version, machine, libraries, methods." }
 
 int tobiuo_info(int argc, char **argv)
 {
-    argp_parse(&info_argp, argc, argv, 0, NULL, NULL);
+    parse_arguments(&info_argp, argc, argv, NULL);
     printf("tobiuo        %s\n", tobi_version());
 #ifdef __clang__
     printf("compiler      clang %s\n", __clang_version__);

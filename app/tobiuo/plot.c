@@ -450,7 +450,7 @@ const struct argp plot_argp = { .options = options, .parser = parse, .args_doc =
 int tobiuo_plot(int argc, char **argv)
 {
     plot_options o = { .format = "svg" };
-    argp_parse(&plot_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&plot_argp, argc, argv, &o);
     plotter plot = { .options = &o, .dimension = 3 };
     int code = draw_all(&plot);
     for (int k = 0; k < plot.file_count; k++) free(plot.files[k]);

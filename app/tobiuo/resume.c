@@ -58,7 +58,7 @@ const struct argp resume_argp = { .options = options, .parser = parse, .args_doc
 int tobiuo_resume(int argc, char **argv)
 {
     resume_options o = { 0 };
-    argp_parse(&resume_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&resume_argp, argc, argv, &o);
     char *path = NULL;
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {

@@ -103,7 +103,7 @@ const struct argp run_argp = { .options = options, .parser = parse, .args_doc = 
 int tobiuo_run(int argc, char **argv)
 {
     run_options o = { 0 };
-    argp_parse(&run_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&run_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? run_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);

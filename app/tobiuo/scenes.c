@@ -69,7 +69,7 @@ static void print_purpose(const char *text)
 int tobiuo_scenes(int argc, char **argv)
 {
     size_t count, size;
-    argp_parse(&scenes_argp, argc, argv, 0, NULL, NULL);
+    parse_arguments(&scenes_argp, argc, argv, NULL);
     char *folder = tobi_scene_shipped(".");
     if (!folder) return complain("the shipped scenes are not there");
     char **names = list_scenes(folder, &count), *shown = relative_path(folder);
@@ -174,7 +174,7 @@ const struct argp new_argp = { .parser = parse, .args_doc = "NAME [DIR]",
 int tobiuo_new(int argc, char **argv)
 {
     new_options o = { 0 };
-    argp_parse(&new_argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&new_argp, argc, argv, &o);
     const char *slash = strrchr(o.name, '/'), *name = slash ? slash + 1 : o.name;
     const char *dir = o.dir ? o.dir : name;
     char *file = join(name, "scene.json"), *path = *name && *name != '.' ? tobi_scene_shipped(file) : NULL;
