@@ -1,12 +1,14 @@
 #include "world/methods.h"
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
+#include "sph/isph.h"
 #include "sph/wcsph.h"
 #include <string.h>
 
 static const tobi_method *const methods[] = {
     &tobi_dfsph,
     &tobi_wcsph,
+    &tobi_isph,
     &tobi_mlsmpm,
 };
 

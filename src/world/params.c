@@ -71,13 +71,14 @@ const tobi_param_table tobi_world_table = {
     sizeof(tobi_world_def), world_rows };
 
 static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table,
-                                                 &tobi_mlsmpm_table };
+                                                 &tobi_isph_table, &tobi_mlsmpm_table };
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
 const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const tables[] = {
-        &tobi_world_table, &tobi_dfsph_table,  &tobi_wcsph_table, &tobi_mlsmpm_table,
+        &tobi_world_table, &tobi_dfsph_table,  &tobi_wcsph_table, &tobi_isph_table,
+        &tobi_mlsmpm_table,
         &tobi_fluid_table, &tobi_solid_table,  &tobi_fill_table,  &tobi_body_table,
         &tobi_plane_table, &tobi_probe_table,  &tobi_output_table, &tobi_reference_table
     };
@@ -124,6 +125,7 @@ int tobi_choice_count(const char *choices)
 DEFAULT(world)
 DEFAULT(dfsph)
 DEFAULT(wcsph)
+DEFAULT(isph)
 DEFAULT(mlsmpm)
 DEFAULT(fluid)
 DEFAULT(solid)

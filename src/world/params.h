@@ -19,6 +19,7 @@
 extern const tobi_param_table tobi_world_table;
 extern const tobi_param_table tobi_dfsph_table;
 extern const tobi_param_table tobi_wcsph_table;
+extern const tobi_param_table tobi_isph_table;
 extern const tobi_param_table tobi_mlsmpm_table;
 extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_solid_table;

@@ -1,0 +1,210 @@
+/* Incompressible SPH: one Poisson equation per step, with a compact Laplacian, for the pressure that makes
+   the velocity free of divergence (Cummins & Rudman 1999). Walls are mirrors, made pair by pair. Volume is
+   held by a small source of pressure, evenness by a shift of positions; neither gives speed to particles.
+   The step is symplectic: one list, at the positions before it (decision 46). Drawback: what divergence and
+   Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
+#include "sph/isph.h"
+#include "sph/isph_passes.h"
+#include "sph/isph_solve.h"
+#include "sph/kernels.h"
+#include "sph/stages.h"
+#include "sph/undo.h"
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct isph {
+    tobi_isph_def def;
+    sph_view view;                   /* of what it shares with the other SPH methods                */
+    const sph_kernels *kernel;
+    isph_solver solver;
+    sph_undo undo;
+    struct { double speed, vessel; } memory;       /* survives a restart; vessel: SPH_VESSEL_*      */
+    double nominal_dt;               /* s, what the state allows                                    */
+} isph;
+
+static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
+{
+    tobi_launch(&s->sim->exec, k, &m->solver.view, 0, s->particles.count, totals);
+}
+
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+{
+    const tobi_isph_def *d = def;
+    (void)stirred;
+    *shape = d->kernel;
+    *support = d->support > 0 ? d->support : 2.5;
+}
+
+static tobi_status create(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the isph state");
+    for (int f = 1; f < s->fluid_count; f++)
+        if (s->fluid[f].density != s->fluid[0].density)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "isph computes fluids of one density; '%s' has %g kg/m3, "
+                             "'%s' %g", s->fluid[0].name, s->fluid[0].density, s->fluid[f].name,
+                             s->fluid[f].density);
+    if (s->sim->body_count > 0)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "isph knows no bodies yet, there is '%s'; take dfsph",
+                         s->sim->bodies[0].name);
+    m->def = *(const tobi_isph_def *)s->def;
+    m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
+    TOBI_TRY(isph_solver_create(&m->solver, s, err));
+    m->solver.view.volume_gain = m->def.volume_gain;
+    m->solver.view.shifting = m->def.shifting;
+    return TOBI_OK;
+}
+
+static int list_memory(tobi_system *s, double **values)
+{
+    isph *m = s->state;
+    *values = &m->memory.speed;
+    return 2;
+}
+
+/* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
+static double choose_dt(tobi_system *s)
+{
+    isph *m = s->state;
+    const double fixed = s->sim->def.time_step, most = s->sim->def.time_step_max;
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
+    double dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
+    dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    m->nominal_dt = fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
+    return m->nominal_dt;
+}
+
+static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
+{
+    TOBI_TRY(sph_find_neighbors(s, clock, err));
+    sph_bind_view(s, &m->view, m->memory.vessel);
+    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    sph_bind_view(s, &m->view, m->memory.vessel);
+    TOBI_TRY(isph_solver_bind(&m->solver, s, err));
+    m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
+    m->solver.view.nominal_dt = fmax(m->nominal_dt, s->dt);
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
+    sph_measure_density(s, &m->view, m->kernel, 0, clock);
+    return TOBI_OK;
+}
+
+static tobi_status remember(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    return sph_undo_begin(&m->undo, s, &m->memory.speed, 2, err);
+}
+
+static void take_back(tobi_system *s)
+{
+    isph *m = s->state;
+    sph_undo_restore(&m->undo, s, &m->memory.speed, 2);
+}
+
+static tobi_status begin(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    sph_use_dt(s, &m->view);
+    sph_drive_bodies(s, &clock);
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(sph_undo_keep(&m->undo, s, err));
+    launch(s, m, isph_measure_geometry, NULL);
+    tobi_stage_end(&s->sim->stages, "geometry", &clock);
+    return TOBI_OK;
+}
+
+/* Viscosity, friction and tension are those of the other SPH methods, with gravity, and what walls make of
+   it, left out: the images of the pressure equation know that. */
+static void forces(tobi_system *s)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    sph_view without = m->view;
+    for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    sph_apply_forces(s, &without, m->kernel, &clock);
+    launch(s, m, isph_add_gravity, NULL);
+}
+
+static tobi_status solve(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    const tobi_linear_settings settings = { .tolerance = m->def.tolerance, .max = m->def.iterations_max };
+    const double count = (double)s->particles.count;
+    double t[TOBI_TOTALS], clock = tobi_clock();
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    s->info.divergence_iterations = report.iterations;
+    s->info.divergence_converged = report.status == TOBI_LINEAR_CONVERGED;
+    s->info.density_converged = 1;          /* there is no second equation */
+    s->info.pressure_residual = report.residual;
+    tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
+    launch(s, m, isph_kick, t);
+    s->info.force_sum = t[0]*s->smoothing.volume;
+    launch(s, m, isph_measure_divergence, t);
+    s->info.divergence_mean = t[0]/count;
+    s->info.divergence_max = t[6];
+    tobi_stage_end(&s->sim->stages, "pressure force", &clock);
+    return TOBI_OK;
+}
+
+static void move(tobi_system *s)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    sph_measure_forces(s, &m->view, m->kernel, &clock);
+    launch(s, m, isph_find_shift, NULL);
+    launch(s, m, isph_use_change, NULL);
+    tobi_stage_end(&s->sim->stages, "shifting", &clock);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+}
+
+static tobi_status refresh(tobi_system *s, tobi_error *err)
+{
+    double clock = tobi_clock();
+    return find_neighbors(s, s->state, &clock, err);
+}
+
+static void derive(tobi_system *s, const char *field)
+{
+    isph *m = s->state;
+    sph_derive(s, &m->view, m->kernel, field);
+}
+
+
+static int64_t count_bytes(const tobi_system *s)
+{
+    const isph *m = s->state;
+    return isph_solver_bytes(&m->solver, s->particles.capacity);
+}
+
+static void free_state(void *state)
+{
+    isph *m = state;
+    if (m) isph_solver_free(&m->solver);
+    if (m) sph_undo_free(&m->undo);
+    free(m);
+}
+
+const tobi_method tobi_isph = {
+    .name = "isph",
+    .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
+    .def_size = sizeof(tobi_isph_def),
+    .fields = TOBI_SPH,
+    .body_fields = TOBI_WETTED,
+    .smoothing = choose_smoothing,
+    .create = create,
+    .remember = remember,
+    .take_back = take_back,
+    .max_dt = choose_dt,
+    .begin = begin,
+    .forces = forces,
+    .solve = solve,
+    .move = move,
+    .finish = sph_finish,
+    .refresh = refresh,
+    .derive = derive,
+    .memory = list_memory,
+    .bytes = count_bytes,
+    .free = free_state,
+};

@@ -1,0 +1,5 @@
+/* Incompressible SPH: a compact Poisson equation for the pressure. */
+#pragma once
+#include "core/system.h"
+
+extern const tobi_method tobi_isph;
