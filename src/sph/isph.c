@@ -11,6 +11,7 @@
 #include "sph/undo.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct isph {
     tobi_isph_def def;
@@ -148,11 +149,25 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Pressure by the images, friction as it was made. */
+static void measure_forces(tobi_system *s, isph *m, double *clock)
+{
+    double pressure[TOBI_TOTALS], friction[TOBI_TOTALS];
+    sph_view without = m->view;
+    without.pressure = s->particles.residual;
+    memset(without.pressure, 0, (size_t)s->particles.count*sizeof *without.pressure);
+    for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
+    launch(s, m, isph_press_walls, pressure);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] = pressure[a] + friction[a];
+    tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
+}
+
 static void move(tobi_system *s)
 {
     isph *m = s->state;
     double clock = tobi_clock();
-    sph_measure_forces(s, &m->view, m->kernel, &clock);
+    measure_forces(s, m, &clock);
     launch(s, m, isph_find_shift, NULL);
     launch(s, m, isph_use_change, NULL);
     tobi_stage_end(&s->sim->stages, "shifting", &clock);

@@ -158,6 +158,28 @@ void isph_kick(const void *view, int64_t begin, int64_t end, double *totals)
     }
 }
 
+static int has_images(const isph_view *v, int64_t i)
+{
+    const double *x = isph_place(v, i);
+    for (int a = 0; a < v->dimension; a++)
+        if (!v->periodic[a] && fmin(x[a], v->size[a] - x[a]) < v->h) return 1;
+    return 0;
+}
+
+void isph_press_walls(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const isph_view *v = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double own = v->pressure[i];
+        if (!has_images(v, i)) continue;
+        ISPH_PAIRS(v, i, p) {
+            if (!p->mirrored) continue;
+            const double both = v->volume*(own + v->pressure[p->j] + isph_lift(v, p)), f = isph_falloff(v, p->r2);
+            for (int a = 0; a < v->dimension; a++) totals[a] -= both*f*p->x[a];
+        }
+    }
+}
+
 void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;

@@ -12,6 +12,8 @@ void isph_assemble_rows(const void *view, int64_t begin, int64_t end, double *to
 void isph_multiply(const void *view, int64_t begin, int64_t end, double *totals);
 /* v -= dt/rho grad p, eq. (9). totals: [0] sum of |grad p|. */
 void isph_kick(const void *view, int64_t begin, int64_t end, double *totals);
+/* Force of the pressure on the sides of the domain, eq. (11). totals: [0..2], N. */
+void isph_press_walls(const void *view, int64_t begin, int64_t end, double *totals);
 /* totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
 void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals);
 /* The shift of positions, as an acceleration in accel, and the change of velocity that goes with it,
