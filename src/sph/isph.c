@@ -20,7 +20,7 @@ typedef struct isph {
     isph_solver solver;
     sph_undo undo;
     struct { double speed, vessel; } memory;       /* survives a restart; vessel: SPH_VESSEL_*      */
-    double nominal_dt;               /* s, what the state allows                                    */
+    double motion_dt;                /* s, the step that motion alone allows                        */
 } isph;
 
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
@@ -69,10 +69,9 @@ static double choose_dt(tobi_system *s)
     isph *m = s->state;
     const double fixed = s->sim->def.time_step, most = s->sim->def.time_step_max;
     const double speed = fmax(m->memory.speed, s->sim->body_speed);
-    double dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
-    dt = fmin(dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
-    m->nominal_dt = fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
-    return m->nominal_dt;
+    m->motion_dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
+    const double dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
 }
 
 static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
@@ -83,7 +82,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     sph_bind_view(s, &m->view, m->memory.vessel);
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
-    m->solver.view.nominal_dt = fmax(m->nominal_dt, s->dt);
+    m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;

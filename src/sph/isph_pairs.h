@@ -21,7 +21,7 @@ typedef struct isph_view {
     int periodic[3];
     double gravity[3];               /* m/s2                                                        */
     double density;                  /* kg/m3                                                       */
-    double dt, nominal_dt;           /* s; nominal: as long as if no output were due                */
+    double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
     double volume_gain, shifting;    /* parameters                                                  */
     /* particle arrays */
     const tobi_double3 *position;

@@ -90,7 +90,7 @@ static double volume_source(const isph_view *v, int64_t i)
 {
     const int bulk = v->trace[i] > BULK*v->dimension || !v->open;
     const double e = fmax(v->filled[i] - 1.0, bulk ? -STRETCH_MAX : 0);
-    return v->density*v->volume_gain*e/(v->dt*v->nominal_dt);
+    return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 
 static double assemble(const isph_view *v, int64_t i)
