@@ -4,6 +4,7 @@
    The step is symplectic: one list, at the positions before it (decision 46). Drawback: what divergence and
    Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
 #include "sph/isph.h"
+#include "sph/isph_bodies.h"
 #include "sph/isph_passes.h"
 #include "sph/isph_solve.h"
 #include "sph/kernels.h"
@@ -45,9 +46,10 @@ static tobi_status create(tobi_system *s, tobi_error *err)
             return tobi_fail(err, TOBI_UNSUPPORTED, "isph computes fluids of one density; '%s' has %g kg/m3, "
                              "'%s' %g", s->fluid[0].name, s->fluid[0].density, s->fluid[f].name,
                              s->fluid[f].density);
-    if (s->sim->body_count > 0)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "isph knows no bodies yet, there is '%s'; take dfsph",
-                         s->sim->bodies[0].name);
+    for (int k = 0; k < s->sim->body_count; k++)
+        if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
+                             "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
     m->def = *(const tobi_isph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     TOBI_TRY(isph_solver_create(&m->solver, s, err));
@@ -80,10 +82,11 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     sph_bind_view(s, &m->view, m->memory.vessel);
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
-    TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
+    TOBI_TRY(isph_solver_bind(&m->solver, s, err));
+    TOBI_TRY(isph_bodies_see(&m->solver, s, err));
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;
 }
@@ -122,6 +125,7 @@ static void forces(tobi_system *s)
     sph_view without = m->view;
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     sph_apply_forces(s, &without, m->kernel, &clock);
+    isph_bodies_unlift(s);
     launch(s, m, isph_add_gravity, NULL);
 }
 
@@ -159,6 +163,8 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     launch(s, m, isph_press_walls, pressure);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = pressure[a] + friction[a];
+    tobi_near_body_forces(s);
+    isph_bodies_press(&m->solver, s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 

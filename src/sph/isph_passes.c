@@ -38,17 +38,20 @@ static isph_tensor invert(const double m[6], double gate)
 
 static void measure(const isph_view *v, int64_t i)
 {
-    double m[6] = { 0 }, w = v->weight, g[3] = { 0 };
+    double m[6] = { 0 }, w = v->weight, g[3] = { 0 }, bodies = 0;
     ISPH_PAIRS(v, i, p) {
-        const double f = isph_falloff(v, p->r2), *x = p->x;
+        const double f = isph_falloff(v, p), *x = p->x;
         for (int a = 0; a < 3; a++) {
             m[a] += f*x[a]*x[a];
             m[3 + a] += f*x[a]*x[(a + 1)%3];
             g[a] -= f*x[a];
         }
-        w += isph_weight(v, p->r2);
+        w += isph_weight(v, p);
+        if (p->body >= 0) bodies += f*p->r2;
     }
-    const double trace = m[0] + m[1] + m[2], loss = 1 - trace/v->dimension;
+    /* one plane per body leaves gaps in its corners, which are no surface */
+    const double sum = m[0] + m[1] + m[2], trace = fmax(sum, sum - bodies + v->dimension*v->behind[i]);
+    const double loss = 1 - trace/v->dimension;
     const double gate = v->open ? clamp((loss - GATE_BEGIN)/(GATE_OPEN - GATE_BEGIN), 0, 1) : 0;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
@@ -100,7 +103,7 @@ static double assemble(const isph_view *v, int64_t i)
     for (int64_t k = 8*(int64_t)v->list_start[i], end = k + 8*(int64_t)v->list_groups[i]; k < end; k++)
         v->entry[k] = 0;
     ISPH_PAIRS(v, i, p) {
-        const double f = isph_falloff(v, p->r2), a = f*((double)v->scale[i] + v->scale[p->j]);
+        const double f = isph_falloff(v, p), a = f*((double)v->scale[i] + v->scale[p->j]);
         source += a*isph_lift(v, p) - rate*diverge(v, i, p, f, v->dt);
         sum += a;
         if (p->k < 0) self += a;
@@ -140,7 +143,7 @@ static void find_gradient(const isph_view *v, int64_t i, double out[3])
     const double own = v->pressure[i], mean = 2*v->gate[i]*own;
     double g[3] = { 0 };
     ISPH_PAIRS(v, i, p) {
-        const double f = isph_falloff(v, p->r2), q = v->pressure[p->j] + isph_lift(v, p) - own;
+        const double f = isph_falloff(v, p), q = v->pressure[p->j] + isph_lift(v, p) - own;
         for (int a = 0; a < 3; a++) g[a] -= q*f*p->x[a];
     }
     isph_apply(&v->inverse[i], g, out);
@@ -173,11 +176,37 @@ void isph_press_walls(const void *view, int64_t begin, int64_t end, double *tota
         const double own = v->pressure[i];
         if (!has_images(v, i)) continue;
         ISPH_PAIRS(v, i, p) {
-            if (!p->mirrored) continue;
-            const double both = v->volume*(own + v->pressure[p->j] + isph_lift(v, p)), f = isph_falloff(v, p->r2);
+            if (!p->image || p->body >= 0) continue;
+            const double both = v->volume*(own + v->pressure[p->j] + isph_lift(v, p)), f = isph_falloff(v, p);
             for (int a = 0; a < v->dimension; a++) totals[a] -= both*f*p->x[a];
         }
     }
+}
+
+/* Of the pressure on the body of the view; arms from its centre. */
+static void press_body(const isph_view *v, int64_t i, double *totals)
+{
+    const double own = v->pressure[i];
+    ISPH_PAIRS(v, i, p) {
+        if (p->body != v->body) continue;
+        const double both = -v->volume*(own + v->pressure[p->j] + isph_lift(v, p))*isph_falloff(v, p);
+        double arm[3];
+        for (int a = 0; a < 3; a++) {
+            arm[a] = isph_place(v, i)[a] - 0.5*p->x[a] - v->centre[a];
+            totals[a] += both*p->x[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            const int q = (a + 1)%3, r = (a + 2)%3;
+            totals[3 + a] += both*(arm[q]*p->x[r] - arm[r]*p->x[q]);
+        }
+    }
+}
+
+void isph_press_body(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const isph_view *v = view;
+    for (int64_t i = begin; i < end; i++)
+        if (v->near[i] >= 0) press_body(v, i, totals);
 }
 
 void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals)
@@ -186,7 +215,7 @@ void isph_measure_divergence(const void *view, int64_t begin, int64_t end, doubl
     for (int64_t i = begin; i < end; i++) {
         double sum = 0;
         if (v->gate[i] > 0) continue;
-        ISPH_PAIRS(v, i, p) sum += diverge(v, i, p, isph_falloff(v, p->r2), 0);
+        ISPH_PAIRS(v, i, p) sum += diverge(v, i, p, isph_falloff(v, p), 0);
         totals[0] += fabs(sum);
         totals[6] = fmax(totals[6], fabs(sum));
     }
@@ -214,11 +243,11 @@ typedef struct shift_sums { double core[3], normal[3], slope[3][3]; } shift_sums
 
 static void add_pair(const isph_view *v, int64_t i, const isph_pair *p, shift_sums *s)
 {
-    const double f = isph_falloff(v, p->r2), r = sqrt(p->r2), overlap = CORE*v->spacing - r;
+    const double f = isph_falloff(v, p), r = sqrt(p->r2), overlap = CORE*v->spacing - r;
     double u[3];
     if (overlap > 0 && r > 0)
         for (int a = 0; a < 3; a++) s->core[a] += PUSH*overlap*p->x[a]/r;
-    if (!p->mirrored) add_normal(v, p, s->normal);
+    if (!p->image) add_normal(v, p, s->normal);
     isph_velocity(v, p, 0, u);
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) s->slope[a][b] -= (u[a] - (&v->velocity[i].x)[a])*f*p->x[b];

@@ -14,7 +14,8 @@ static const double DAMPING = 0.7;
     X(double, m->pressure) X(double, m->scratch) X(double, m->view.excess)                           \
     X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
     X(tobi_float4, m->view.lack) X(isph_tensor, m->view.inverse) X(float, m->view.trace)             \
-    X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.filled)
+    X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.filled) \
+    X(float, m->view.behind)
 
 static int64_t row_bytes(void)
 {
@@ -127,12 +128,14 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 
 int64_t isph_solver_bytes(const isph_solver *m, int64_t particles)
 {
-    return (particles + 8)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry;
+    return (particles + 8)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
+           m->mirrors*(int64_t)sizeof *m->mirror;
 }
 
 void isph_solver_free(isph_solver *m)
 {
     tobi_multigrid_free(&m->grid);
     free(m->view.entry);
+    free(m->mirror);
     free(m->memory);
 }

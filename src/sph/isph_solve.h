@@ -12,6 +12,8 @@ typedef struct isph_solver {
     void *memory;                    /* all arrays of the view but the entries, and those below     */
     double *pressure, *scratch, *work;
     int64_t entries;                 /* room for them                                               */
+    isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */
+    int64_t mirrors;                 /* room for them                                               */
 } isph_solver;
 
 /* Room for the system's particles; the grid is made with the first list. */

@@ -1,0 +1,86 @@
+/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface. How much
+   of the half space behind the plane is body tells edges and tips from faces. Drawback: a particle in a
+   concave corner of one body mirrors at one of its faces only. */
+#include "sph/isph_bodies.h"
+#include "sph/isph_passes.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double behind_plane(const tobi_smoothing_constants *c, double distance)
+{
+    const double at = fmax(distance, 0)/c->h*TOBI_PLANE_SAMPLES;
+    if (at >= TOBI_PLANE_SAMPLES) return 0;
+    const int k = (int)at;
+    return c->plane.lambda[k] + (at - k)*((double)c->plane.lambda[k + 1] - c->plane.lambda[k]);
+}
+
+static void move_foot(const tobi_body *b, const tobi_near_entry *e, double velocity[3])
+{
+    const int32_t *t = b->mesh.triangles[e->triangle];
+    for (int a = 0; a < 3; a++) {
+        velocity[a] = 0;
+        for (int c = 0; c < 3; c++) velocity[a] += e->barycentric[c]*b->vertex_velocity[t[c]][a];
+    }
+}
+
+static isph_mirror make_mirror(const tobi_system *s, const tobi_near_entry *e)
+{
+    isph_mirror m = { .body = e->body, .previous = e->previous };
+    const tobi_smoothing_constants *c = &s->smoothing;
+    const double lambda = behind_plane(c, e->distance);
+    /* beside an edge the plane faces the particle */
+    const int faces = e->distance > 0.05*c->spacing;
+    if (e->triangle < 0) return m;
+    m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
+    memcpy(m.offset, e->offset, sizeof m.offset);
+    for (int a = 0; a < 3; a++) m.normal[a] = faces ? e->offset[a]/e->distance : e->foot_normal[a];
+    move_foot(&s->sim->bodies[e->body], e, m.velocity);
+    return m;
+}
+
+tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
+{
+    const tobi_near_bodies *n = &s->near;
+    isph_view *v = &m->view;
+    memset(v->behind, 0, (size_t)s->particles.count*sizeof *v->behind);
+    v->near = s->sim->body_count ? s->particles.near : NULL;
+    if (!v->near) return TOBI_OK;
+    if (n->count > m->mirrors) {
+        const int64_t room = n->count + n->count/2 + 64;
+        isph_mirror *more = realloc(m->mirror, (size_t)room*sizeof *more);
+        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
+        m->mirror = more;
+        m->mirrors = room;
+    }
+    v->mirror = m->mirror;
+    for (int64_t k = 0; k < n->count; k++) {
+        m->mirror[k] = make_mirror(s, &n->entry[k]);
+        float *behind = &v->behind[n->entry[k].particle];
+        *behind = 1 - (1 - *behind)*(1 - (float)n->entry[k].share);
+    }
+    return TOBI_OK;
+}
+
+/* Particles may have several entries: not shared among threads. */
+void isph_bodies_unlift(tobi_system *s)
+{
+    for (int64_t k = 0; k < s->near.count; k++) {
+        const tobi_near_entry *e = &s->near.entry[k];
+        for (int a = 0; a < 3; a++)
+            (&s->particles.velocity[e->particle].x)[a] -= (float)(s->dt*e->lift[a]);
+    }
+}
+
+void isph_bodies_press(isph_solver *m, tobi_system *s)
+{
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_body *b = &s->sim->bodies[k];
+        double t[TOBI_TOTALS];
+        m->view.body = k;
+        for (int a = 0; a < 3; a++) m->view.centre[a] = b->centre[a] - b->lower[a];
+        tobi_launch(m->exec, isph_press_body, &m->view, 0, m->view.count, t);
+        memcpy(b->info.pressure_force, t, 3*sizeof *t);
+        memcpy(b->info.pressure_torque, t + 3, 3*sizeof *t);
+    }
+}
