@@ -101,9 +101,9 @@ typedef struct tobi_wcsph_def {
 /* Parameters of the ISPH method. */
 typedef struct tobi_isph_def {
     int    kernel;                    /* tobi_smoothing                                               */
+    int    iterations_max;            /* of the pressure solve                                        */
     double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double tolerance;                 /* 1, true relative residual of the pressure equation           */
-    int    iterations_max;
     double volume_gain;               /* 1, share of the error of volume in the source of pressure    */
     double shifting;                  /* 1, strength of particle shifting                             */
 } tobi_isph_def;

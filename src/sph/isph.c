@@ -41,11 +41,6 @@ static tobi_status create(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the isph state");
-    for (int f = 1; f < s->fluid_count; f++)
-        if (s->fluid[f].density != s->fluid[0].density)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "isph computes fluids of one density; '%s' has %g kg/m3, "
-                             "'%s' %g", s->fluid[0].name, s->fluid[0].density, s->fluid[f].name,
-                             s->fluid[f].density);
     for (int k = 0; k < s->sim->body_count; k++)
         if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
             return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
