@@ -1,11 +1,14 @@
 /* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface. How much
-   of the half space behind the plane is body tells edges and tips from faces. Drawback: a particle in a
+   of the half space behind the plane is body tells edges and tips from faces. Forces are those of the pressure
+   at the surface: sums over images would not cancel under a uniform pressure. Drawback: a particle in a
    concave corner of one body mirrors at one of its faces only. */
 #include "sph/isph_bodies.h"
-#include "sph/isph_passes.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Share of the kernel with particles in it below which a point of a body is dry. */
+static const double DRY = 0.1;
 
 static double behind_plane(const tobi_smoothing_constants *c, double distance)
 {
@@ -72,14 +75,88 @@ void isph_bodies_unlift(tobi_system *s)
     }
 }
 
+/* A body's points, and the particles around them. */
+typedef struct pressing {
+    const isph_view *v;
+    const tobi_cells *cells;
+    const tobi_body *b;
+} pressing;
+
+typedef struct point_sums { double weight, pressure; } point_sums;
+
+/* Particles before the point, with the pressure that liquid at rest would have at its height. */
+static void add_cell(const pressing *q, int64_t k, int64_t cell, point_sums *s)
+{
+    const isph_view *v = q->v;
+    for (int64_t i = q->cells->start[cell]; i < q->cells->start[cell + 1]; i++) {
+        isph_pair p = { .weight = 1 };
+        double ahead = 0, rise = 0;
+        for (int a = 0; a < v->dimension; a++) {
+            p.x[a] = isph_place(v, i)[a] - q->b->point[k][a];
+            if (v->periodic[a]) p.x[a] -= v->size[a]*round(p.x[a]/v->size[a]);
+            p.r2 += p.x[a]*p.x[a];
+            ahead += p.x[a]*q->b->normal[k][a];
+            rise -= v->density*v->gravity[a]*p.x[a];
+        }
+        if (!(ahead > 0) || p.r2 >= v->h*v->h) continue;
+        const double w = isph_weight(v, &p);
+        s->weight += w;
+        s->pressure += w*(v->pressure[i] + rise);
+    }
+}
+
+/* The cell at an offset from that of x; -1: there is none. */
+static int64_t find_cell(const tobi_cells *c, const double x[3], const int offset[3])
+{
+    int at[3];
+    for (int a = 0; a < 3; a++) {
+        at[a] = (int)floor(x[a]*c->inverse[a]) + offset[a];
+        if (c->periodic[a]) at[a] = (at[a] + c->n[a])%c->n[a];
+        if (at[a] < 0 || at[a] >= c->n[a]) return -1;
+    }
+    return tobi_cells_row(c, at[1], at[2]) + at[0];
+}
+
+static double press_point(const pressing *q, int64_t k)
+{
+    const int deep = q->v->dimension == 3;
+    double x[3] = { 0 };
+    point_sums s = { 0, 0 };
+    for (int a = 0; a < q->v->dimension; a++) x[a] = q->b->point[k][a];
+    for (int z = -deep; z <= deep; z++)
+        for (int y = -1; y <= 1; y++)
+            for (int o = -1; o <= 1; o++) {
+                const int64_t cell = find_cell(q->cells, x, (int[3]){ o, y, z });
+                if (cell >= 0) add_cell(q, k, cell, &s);
+            }
+    return s.weight > DRY ? s.pressure/s.weight : 0;
+}
+
+static void press_points(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const pressing *q = view;
+    const tobi_body *b = q->b;
+    for (int64_t k = begin; k < end; k++) {
+        const double push = b->area[k] > 0 ? -b->area[k]*press_point(q, k) : 0, *n = b->normal[k];
+        double arm[3];
+        for (int a = 0; a < 3; a++) {
+            arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
+            totals[a] += push*n[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            const int c = (a + 1)%3, d = (a + 2)%3;
+            totals[3 + a] += push*(arm[c]*n[d] - arm[d]*n[c]);
+        }
+    }
+}
+
 void isph_bodies_press(isph_solver *m, tobi_system *s)
 {
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
+        const pressing view = { &m->view, &s->cells, b };
         double t[TOBI_TOTALS];
-        m->view.body = k;
-        for (int a = 0; a < 3; a++) m->view.centre[a] = b->centre[a] - b->lower[a];
-        tobi_launch(m->exec, isph_press_body, &m->view, 0, m->view.count, t);
+        tobi_launch(m->exec, press_points, &view, 0, b->point_count, t);
         memcpy(b->info.pressure_force, t, 3*sizeof *t);
         memcpy(b->info.pressure_torque, t + 3, 3*sizeof *t);
     }

@@ -45,8 +45,6 @@ typedef struct isph_view {
     const int32_t *near;             /* last mirror of each particle, < 0: none; NULL: no bodies    */
     const isph_mirror *mirror;
     float *behind;                   /* 1: share of the kernel in and behind bodies                 */
-    int body;                        /* whose force is summed                                       */
-    double centre[3];                /* m, of that body, from the lower corner                      */
     /* the method's own: geometry, eq. (2) to (5) */
     isph_tensor *inverse;            /* 1: B                                                        */
     float *trace;                    /* 1: tr M                                                     */

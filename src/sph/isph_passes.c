@@ -183,32 +183,6 @@ void isph_press_walls(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
-/* Of the pressure on the body of the view; arms from its centre. */
-static void press_body(const isph_view *v, int64_t i, double *totals)
-{
-    const double own = v->pressure[i];
-    ISPH_PAIRS(v, i, p) {
-        if (p->body != v->body) continue;
-        const double both = -v->volume*(own + v->pressure[p->j] + isph_lift(v, p))*isph_falloff(v, p);
-        double arm[3];
-        for (int a = 0; a < 3; a++) {
-            arm[a] = isph_place(v, i)[a] - 0.5*p->x[a] - v->centre[a];
-            totals[a] += both*p->x[a];
-        }
-        for (int a = 0; a < 3; a++) {
-            const int q = (a + 1)%3, r = (a + 2)%3;
-            totals[3 + a] += both*(arm[q]*p->x[r] - arm[r]*p->x[q]);
-        }
-    }
-}
-
-void isph_press_body(const void *view, int64_t begin, int64_t end, double *totals)
-{
-    const isph_view *v = view;
-    for (int64_t i = begin; i < end; i++)
-        if (v->near[i] >= 0) press_body(v, i, totals);
-}
-
 void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;

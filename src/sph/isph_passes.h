@@ -14,8 +14,6 @@ void isph_multiply(const void *view, int64_t begin, int64_t end, double *totals)
 void isph_kick(const void *view, int64_t begin, int64_t end, double *totals);
 /* Force of the pressure on the sides of the domain, eq. (11). totals: [0..2], N. */
 void isph_press_walls(const void *view, int64_t begin, int64_t end, double *totals);
-/* The same on the body of the view. totals: [0..2], N; [3..5], N m about `centre`. */
-void isph_press_body(const void *view, int64_t begin, int64_t end, double *totals);
 /* totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
 void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals);
 /* The shift of positions, as an acceleration in accel, and the change of velocity that goes with it,
