@@ -14,13 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* MEMORY: numbers that survive a restart; steps in a row that may fail to converge. */
+enum { MEMORY = 3, FAILURES = 50 };
+
 typedef struct isph {
     tobi_isph_def def;
     sph_view view;                   /* of what it shares with the other SPH methods                */
     const sph_kernels *kernel;
     isph_solver solver;
     sph_undo undo;
-    struct { double speed, vessel; } memory;       /* survives a restart; vessel: SPH_VESSEL_*      */
+    /* survives a restart; vessel: SPH_VESSEL_*; failures: steps in a row that did not converge */
+    struct { double speed, vessel, failures; } memory;
     double motion_dt;                /* s, the step that motion alone allows                        */
 } isph;
 
@@ -57,7 +61,7 @@ static int list_memory(tobi_system *s, double **values)
 {
     isph *m = s->state;
     *values = &m->memory.speed;
-    return 2;
+    return MEMORY;
 }
 
 /* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
@@ -89,13 +93,13 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
 static tobi_status remember(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
-    return sph_undo_begin(&m->undo, s, &m->memory.speed, 2, err);
+    return sph_undo_begin(&m->undo, s, &m->memory.speed, MEMORY, err);
 }
 
 static void take_back(tobi_system *s)
 {
     isph *m = s->state;
-    sph_undo_restore(&m->undo, s, &m->memory.speed, 2);
+    sph_undo_restore(&m->undo, s, &m->memory.speed, MEMORY);
 }
 
 static tobi_status begin(tobi_system *s, tobi_error *err)
@@ -124,6 +128,21 @@ static void forces(tobi_system *s)
     launch(s, m, isph_add_gravity, NULL);
 }
 
+/* One failure is an event, and the best answer so far is used; many in a row are the end of the run. */
+static tobi_status judge(tobi_system *s, isph *m, const tobi_linear_report *report, tobi_error *err)
+{
+    const int good = report->status == TOBI_LINEAR_CONVERGED;
+    s->info.divergence_iterations = report->iterations;
+    s->info.divergence_converged = good;
+    s->info.density_converged = 1;          /* there is no second equation */
+    s->info.pressure_residual = report->residual;
+    m->memory.failures = good ? 0 : m->memory.failures + 1;
+    if (m->memory.failures <= FAILURES) return TOBI_OK;
+    return tobi_fail(err, TOBI_DIVERGED, "the pressure equation did not converge in %d steps in a row; at "
+                     "t = %.9g s its residual is %.3g after %d iterations, isph.tolerance asks for %.3g",
+                     FAILURES + 1, s->sim->time, report->residual, report->iterations, m->def.tolerance);
+}
+
 static tobi_status solve(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
@@ -133,10 +152,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
-    s->info.divergence_iterations = report.iterations;
-    s->info.divergence_converged = report.status == TOBI_LINEAR_CONVERGED;
-    s->info.density_converged = 1;          /* there is no second equation */
-    s->info.pressure_residual = report.residual;
+    TOBI_TRY(judge(s, m, &report, err));
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
     launch(s, m, isph_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;

@@ -1,7 +1,7 @@
-/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface. How much
-   of the half space behind the plane is body tells edges and tips from faces. Forces are those of the pressure
-   at the surface: sums over images would not cancel under a uniform pressure. Drawback: a particle in a
-   concave corner of one body mirrors at one of its faces only. */
+/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface. How
+   much of the half space behind the plane is body tells edges and tips from faces. Forces are those of the
+   pressure at the surface: sums over images would not cancel under a uniform pressure. Drawback: a particle
+   in a concave corner of one body mirrors at one of its faces only. */
 #include "sph/isph_bodies.h"
 #include <math.h>
 #include <stdlib.h>

@@ -84,8 +84,8 @@ static const tobi_param isph_rows[] = {
     SMOOTHING(tobi_isph_def),
     { .key = "tolerance", REAL, AT(tobi_isph_def, tolerance), .def = { 1e-4 }, RANGE(1e-12, 0.1),
       .unit = "1",
-      .doc = "Relative residual of the pressure equation, computed afresh from its answer, at which the solve "
-             "may stop." },
+      .doc = "Relative residual of the pressure equation, computed afresh from its answer, at which the "
+             "solve may stop." },
     { .key = "iterations_max", INT, AT(tobi_isph_def, iterations_max), .def = { 200 },
       RANGE(1, 1000000), .unit = "1",
       .doc = "Most iterations of the pressure solve; a step that needs more is reported as not converged." },
