@@ -2,6 +2,7 @@
    in an order that only the number of items decides. Drawback: a loop without totals is not checked for items
    that depend on one another. */
 #include "exec/exec.h"
+#include <assert.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,13 +61,14 @@ tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err)
 }
 
 /* Pairwise over blocks: error grows with log n, order fixed by n alone. */
-static void combine(double *p, int64_t blocks, double *totals)
+static void combine(tobi_kernel kernel, double *p, int64_t blocks, double *totals)
 {
+    const int last = TOBI_SUMS + kernel.maxima;
     for (int64_t step = 1; step < blocks; step *= 2)
         for (int64_t b = 0; b + step < blocks; b += 2*step) {
             double *a = p + b*TOBI_TOTALS, *c = p + (b + step)*TOBI_TOTALS;
-            for (int k = 0; k < TOBI_SUMS; k++) a[k] += c[k];
-            for (int k = TOBI_SUMS; k < TOBI_TOTALS; k++) if (c[k] > a[k]) a[k] = c[k];
+            for (int k = 0; k < kernel.sums; k++) a[k] += c[k];
+            for (int k = TOBI_SUMS; k < last; k++) if (c[k] > a[k]) a[k] = c[k];
         }
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
 }
@@ -83,10 +85,11 @@ static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64
     for (int64_t b = 0; b < blocks; b++) {
         double sums[TOBI_TOTALS] = {0};
         int64_t first = begin + b*grain, last = first + grain;
-        kernel(view, first, last < end ? last : end, sums);
+        kernel.run(view, first, last < end ? last : end, sums);
+        assert(tobi_kernel_keeps(kernel, sums));
         if (totals) memcpy(partial + b*TOBI_TOTALS, sums, sizeof sums);
     }
-    if (totals) combine(partial, blocks, totals);
+    if (totals) combine(kernel, partial, blocks, totals);
 }
 
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,

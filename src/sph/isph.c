@@ -9,6 +9,7 @@
 #include "sph/isph_solve.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
+#include "sph/state.h"
 #include "sph/undo.h"
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +19,7 @@
 enum { MEMORY = 3, FAILURES = 50 };
 
 typedef struct isph {
+    sph_state common;
     tobi_isph_def def;
     sph_view view;                   /* of what it shares with the other SPH methods                */
     const sph_kernels *kernel;
@@ -51,7 +53,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
                              "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
     m->def = *(const tobi_isph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
-    TOBI_TRY(isph_solver_create(&m->solver, s, err));
+    isph_solver_begin(&m->solver, s);
     m->solver.view.volume_gain = m->def.volume_gain;
     m->solver.view.shifting = m->def.shifting;
     return TOBI_OK;
@@ -168,7 +170,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
 {
     double pressure[TOBI_TOTALS], friction[TOBI_TOTALS];
     sph_view without = m->view;
-    without.pressure = s->particles.residual;
+    without.pressure = sph_fields_of(&s->particles)->residual;
     memset(without.pressure, 0, (size_t)s->particles.count*sizeof *without.pressure);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
@@ -206,12 +208,13 @@ static void derive(tobi_system *s, const char *field)
 static int64_t count_bytes(const tobi_system *s)
 {
     const isph *m = s->state;
-    return isph_solver_bytes(&m->solver, s->particles.capacity);
+    return sph_bytes(s) + isph_solver_bytes(&m->solver);
 }
 
 static void free_state(void *state)
 {
     isph *m = state;
+    if (m) tobi_near_free(&m->common.near);
     if (m) isph_solver_free(&m->solver);
     if (m) sph_undo_free(&m->undo);
     free(m);
@@ -221,8 +224,9 @@ const tobi_method tobi_isph = {
     .name = "isph",
     .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
     .def_size = sizeof(tobi_isph_def),
-    .fields = TOBI_SPH,
-    .body_fields = TOBI_WETTED,
+    .fields = &sph_field_list,
+    .outputs = sph_outputs,
+    .needs = sph_needs,
     .smoothing = choose_smoothing,
     .create = create,
     .remember = remember,
@@ -234,6 +238,7 @@ const tobi_method tobi_isph = {
     .move = move,
     .finish = sph_finish,
     .refresh = refresh,
+    .read = sph_read,
     .derive = derive,
     .memory = list_memory,
     .bytes = count_bytes,

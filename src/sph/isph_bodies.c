@@ -3,6 +3,7 @@
    pressure at the surface: sums over images would not cancel under a uniform pressure. Drawback: a particle
    in a concave corner of one body mirrors at one of its faces only. */
 #include "sph/isph_bodies.h"
+#include "sph/state.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,10 +45,10 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_near_entry *e)
 
 tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
 {
-    const tobi_near_bodies *n = &s->near;
+    const tobi_near_bodies *n = &sph_of(s)->near;
     isph_view *v = &m->view;
     memset(v->behind, 0, (size_t)s->particles.count*sizeof *v->behind);
-    v->near = s->sim->body_count ? s->particles.near : NULL;
+    v->near = s->sim->body_count ? sph_fields_of(&s->particles)->near : NULL;
     if (!v->near) return TOBI_OK;
     if (n->count > m->mirrors) {
         const int64_t room = n->count + n->count/2 + 64;
@@ -68,8 +69,9 @@ tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
 /* Particles may have several entries: not shared among threads. */
 void isph_bodies_unlift(tobi_system *s)
 {
-    for (int64_t k = 0; k < s->near.count; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    for (int64_t k = 0; k < n->count; k++) {
+        const tobi_near_entry *e = &n->entry[k];
         for (int a = 0; a < 3; a++)
             (&s->particles.velocity[e->particle].x)[a] -= (float)(s->dt*e->lift[a]);
     }
@@ -156,7 +158,7 @@ void isph_bodies_press(isph_solver *m, tobi_system *s)
         tobi_body *b = &s->sim->bodies[k];
         const pressing view = { &m->view, &s->cells, b };
         double t[TOBI_TOTALS];
-        tobi_launch(m->exec, press_points, &view, 0, b->point_count, t);
+        tobi_launch(m->exec, TOBI_HOST(press_points, 6, 0), &view, 0, b->point_count, t);
         memcpy(b->info.pressure_force, t, 3*sizeof *t);
         memcpy(b->info.pressure_torque, t + 3, 3*sizeof *t);
     }

@@ -62,13 +62,13 @@ static void measure(const isph_view *v, int64_t i)
     v->inverse[i] = invert(m, gate);
 }
 
-void isph_measure_geometry(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_measure_geometry(const void *view, int64_t begin, int64_t end, double *totals)
 {
     (void)totals;
     for (int64_t i = begin; i < end; i++) measure(view, i);
 }
 
-void isph_add_gravity(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_add_gravity(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     (void)totals;
@@ -118,12 +118,12 @@ static double assemble(const isph_view *v, int64_t i)
     return excess;
 }
 
-void isph_assemble_rows(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_assemble_rows(const void *view, int64_t begin, int64_t end, double *totals)
 {
     for (int64_t i = begin; i < end; i++) totals[0] += assemble(view, i);
 }
 
-void isph_multiply(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_multiply(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     (void)totals;
@@ -150,7 +150,7 @@ static void find_gradient(const isph_view *v, int64_t i, double out[3])
     for (int a = 0; a < 3; a++) out[a] += mean*(&v->lack[i].x)[a];
 }
 
-void isph_kick(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_kick(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     for (int64_t i = begin; i < end; i++) {
@@ -169,7 +169,7 @@ static int has_images(const isph_view *v, int64_t i)
     return 0;
 }
 
-void isph_press_walls(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_press_walls(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     for (int64_t i = begin; i < end; i++) {
@@ -183,7 +183,7 @@ void isph_press_walls(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
-void isph_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_measure_divergence(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     for (int64_t i = begin; i < end; i++) {
@@ -251,16 +251,26 @@ static void shift(const isph_view *v, int64_t i)
     }
 }
 
-void isph_find_shift(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_find_shift(const void *view, int64_t begin, int64_t end, double *totals)
 {
     (void)totals;
     for (int64_t i = begin; i < end; i++) shift(view, i);
 }
 
-void isph_use_change(const void *view, int64_t begin, int64_t end, double *totals)
+static void run_use_change(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     (void)totals;
     for (int64_t i = begin; i < end; i++)
         for (int a = 0; a < v->dimension; a++) (&v->velocity[i].x)[a] += (float)(&v->change[i].x)[a];
 }
+
+const tobi_kernel isph_measure_geometry = { run_measure_geometry, 0, 0 };
+const tobi_kernel isph_add_gravity = { run_add_gravity, 0, 0 };
+const tobi_kernel isph_assemble_rows = { run_assemble_rows, 1, 0 };
+const tobi_kernel isph_multiply = { run_multiply, 0, 0 };
+const tobi_kernel isph_kick = { run_kick, 1, 0 };
+const tobi_kernel isph_press_walls = { run_press_walls, 3, 0 };
+const tobi_kernel isph_measure_divergence = { run_measure_divergence, 1, 1 };
+const tobi_kernel isph_find_shift = { run_find_shift, 0, 0 };
+const tobi_kernel isph_use_change = { run_use_change, 0, 0 };

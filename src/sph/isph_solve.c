@@ -2,6 +2,7 @@
    gradients with a cycle of the cell multigrid (decision 42). Drawback: entries take as much memory as the
    list, which a product that computes them anew would not. */
 #include "sph/isph_solve.h"
+#include "sph/fields.h"
 #include "sph/isph_passes.h"
 #include <stdlib.h>
 #include <string.h>
@@ -26,17 +27,27 @@ static int64_t row_bytes(void)
     return sum;
 }
 
-tobi_status isph_solver_create(isph_solver *m, tobi_system *s, tobi_error *err)
+/* Nothing of it outlives a step. */
+static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_error *err)
 {
-    const int64_t n = s->particles.capacity + 8;
-    const tobi_smoothing_constants *c = &s->smoothing;
-    isph_view *v = &m->view;
+    if (p->capacity <= m->rows) return TOBI_OK;
+    const int64_t n = p->capacity + TOBI_PAD_ROWS;
+    free(m->memory);
+    m->rows = 0;
     char *at = m->memory = calloc((size_t)n, (size_t)row_bytes());
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the rows of %lld particles", (long long)n);
 #define X(type, pointer) pointer = (void *)at; at += n*(int64_t)sizeof(type);
     ARRAYS(X)
 #undef X
-    v->change = (tobi_double3 *)m->work;      /* free between the solves */
+    m->view.change = (tobi_double3 *)m->work;      /* free between the solves */
+    m->rows = p->capacity;
+    return TOBI_OK;
+}
+
+void isph_solver_begin(isph_solver *m, tobi_system *s)
+{
+    const tobi_smoothing_constants *c = &s->smoothing;
+    isph_view *v = &m->view;
     m->exec = &s->sim->exec;
     m->sim = s->sim;
     v->dimension = c->dimension;
@@ -50,7 +61,6 @@ tobi_status isph_solver_create(isph_solver *m, tobi_system *s, tobi_error *err)
     v->density = s->fluid[0].density;
     memcpy(v->size, s->box.size, sizeof v->size);
     memcpy(v->periodic, s->box.periodic, sizeof v->periodic);
-    return TOBI_OK;
 }
 
 static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi_error *err)
@@ -68,7 +78,9 @@ static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi
 tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
 {
     const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(p);
     isph_view *v = &m->view;
+    TOBI_TRY(reserve_rows(m, p, err));
     if (!m->grid.memory) {
         const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, p);
         TOBI_TRY(tobi_multigrid_create(&m->grid, &points, 1, 2, err));
@@ -77,11 +89,11 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->count = p->count;
     v->position = p->position;
     v->velocity = p->velocity;
-    v->accel = p->accel;
-    v->pressure = p->pressure;
+    v->accel = f->accel;
+    v->pressure = f->pressure;
     v->list = s->cells.list;
-    v->list_start = p->list_start;
-    v->list_groups = p->list_groups;
+    v->list_start = s->cells.list_start;
+    v->list_groups = s->cells.list_groups;
     v->dt = s->dt;
     memcpy(v->gravity, s->gravity, sizeof v->gravity);
     return TOBI_OK;
@@ -112,7 +124,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 {
     double t[TOBI_TOTALS];
     const int64_t n = m->view.count;
-    float *p = s->particles.pressure;
+    float *p = sph_fields_of(&s->particles)->pressure;
     tobi_launch(m->exec, isph_assemble_rows, &m->view, 0, n, t);
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
@@ -126,9 +138,9 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
     return report;
 }
 
-int64_t isph_solver_bytes(const isph_solver *m, int64_t particles)
+int64_t isph_solver_bytes(const isph_solver *m)
 {
-    return (particles + 8)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
+    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
            m->mirrors*(int64_t)sizeof *m->mirror;
 }
 

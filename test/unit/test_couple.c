@@ -1,6 +1,6 @@
 /* How easily water moves a body, and sound: what bounds the steps of an explicit coupling. */
 #include "calls.h"
-#include "core/couple.h"
+#include "sph/couple.h"
 #include "world/world.h"
 #include <math.h>
 

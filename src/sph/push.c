@@ -2,7 +2,8 @@
    it is inside, but not through which side it came: of a wing thinner than the way of a step the nearest
    side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
    turns within the step is taken to turn about the point nearest to the particle. */
-#include "core/push.h"
+#include "sph/state.h"
+#include "sph/push.h"
 #include "core/system.h"
 #include <math.h>
 #include <string.h>
@@ -29,8 +30,8 @@ typedef struct touch {
 
 static const tobi_near_entry *entry_of(const pusher *p, int64_t i)
 {
-    const tobi_near_entry *entry = p->s->near.entry;
-    int32_t k = p->s->particles.near[i];
+    const tobi_near_entry *entry = sph_of(p->s)->near.entry;
+    int32_t k = sph_fields_of(&p->s->particles)->near[i];
     while (k >= 0 && entry[k].body != p->body) k = entry[k].previous;
     return k >= 0 && entry[k].triangle >= 0 ? &entry[k] : NULL;
 }
@@ -147,13 +148,13 @@ static void push_range(const void *view, int64_t begin, int64_t end, double *t)
         for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
         if (outside || !push_particle(p, i, t)) continue;
         /* All sums are taken; whole numbers add up the same in any order. */
-        __atomic_fetch_add(&p->s->near.contacts, 1, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&sph_of(p->s)->near.contacts, 1, __ATOMIC_RELAXED);
     }
 }
 
 void tobi_push_out(tobi_system *s)
 {
-    s->near.contacts = 0;
+    sph_of(s)->near.contacts = 0;
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
@@ -164,11 +165,11 @@ void tobi_push_out(tobi_system *s)
         }
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
-            tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+            tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
             p.counting = 0;
         }
-        tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
         tobi_body_info *info = &s->sim->bodies[k].info;
         for (int a = 0; a < 3; a++) {
             info->pressure_force[a] += t[a]/s->dt;

@@ -2,27 +2,7 @@
 #pragma once
 #include "core/body.h"
 #include "core/cells.h"
-
-/* What one fluid particle sees of one body. particles.near names a particle's last entry. */
-typedef struct tobi_near_entry {
-    int32_t particle;
-    int16_t body;
-    int32_t previous;         /* the particle's entry for an earlier body, -1 = none              */
-    double gradient[3];       /* G = -sum A W n, 1/m                                              */
-    double torque_arm[3];     /* -sum A W (x_b - centre) x n                                      */
-    double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
-    double share;             /* lambda: share of the kernel inside or behind the body            */
-    double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
-    double friction[3];       /* acceleration by no-slip friction in this step                    */
-    double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
-    double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */
-    double foot[3];           /* closest point on the body, relative to the box                   */
-    double foot_normal[3];    /* outward                                                          */
-    double distance;          /* signed distance to the body, m                                   */
-    double offset[3];         /* from foot to the particle, m                                     */
-    double barycentric[3];    /* of foot in its triangle                                          */
-    int32_t triangle;
-} tobi_near_entry;
+#include "sph/couple.k.h"
 
 typedef struct tobi_near_bodies {
     tobi_near_entry *entry;
@@ -33,6 +13,8 @@ typedef struct tobi_near_bodies {
     int64_t block_capacity;
     int32_t *bin_start, *bin_item;   /* points of one body by cell of width h                     */
     int64_t bin_capacity, item_capacity;
+    double (*answer)[6];      /* of each body, sph/couple.k.h                                    */
+    int64_t answer_capacity;
     int bins[3];
     double bin_lower[3], bin_width;
 } tobi_near_bodies;

@@ -2,9 +2,10 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
-#include "core/gap.h"
+#include "sph/state.h"
+#include "sph/gap.h"
 #include "core/system.h"
-#include "core/wall_law.h"
+#include "sph/wall_law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,7 @@ static int bin_along(const tobi_near_bodies *n, int a, double x)
 /* Sorts a body's points into cells of width h over its box. */
 static tobi_status fill_bins(tobi_system *s, const tobi_body *b, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     double lo[3], hi[3];
     tobi_bvh_box(b->bvh, lo, hi);
     int64_t total = 1;
@@ -174,8 +175,9 @@ static int add_point(void *user, int32_t k)
 static void feel_gravity(look *l)
 {
     const tobi_system *s = l->s;
-    double held = tobi_still_share(&s->still, l->x)*s->still.push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*s->still.down[a];
+    sph_state *state = sph_of(s);
+    double held = tobi_still_share(&state->still, l->x)*state->still.push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*state->still.down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
@@ -194,7 +196,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    visit_points(&l->s->near, l->x, add_point, l);
+    visit_points(&sph_of(l->s)->near, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }
@@ -218,16 +220,17 @@ static void count_near(const void *view, int64_t begin, int64_t end)
 {
     const looking *v = view;
     tobi_system *s = v->s;
+    sph_state *state = sph_of(s);
     for (int64_t block = begin; block < end; block++) {
         int64_t last = (block + 1)*TOBI_BLOCK, found = 0;
         for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
             look l = {.s = s, .b = &s->sim->bodies[v->body]};
             place_look(&l, i);
-            int near = visit_points(&s->near, l.x, sees_any, &l);
-            s->particles.delta[i] = (float)near;
+            int near = visit_points(&state->near, l.x, sees_any, &l);
+            sph_fields_of(&s->particles)->delta[i] = (float)near;
             found += near;
         }
-        s->near.block_count[block] = found;
+        state->near.block_count[block] = found;
     }
 }
 
@@ -235,29 +238,35 @@ static void fill_near(const void *view, int64_t begin, int64_t end)
 {
     const looking *v = view;
     tobi_system *s = v->s;
+    sph_state *state = sph_of(s);
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t block = begin; block < end; block++) {
-        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + s->near.block_count[block];
+        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + state->near.block_count[block];
         for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
-            if (s->particles.delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &s->near.entry[at]};
+            if (f->delta[i] == 0) continue;
+            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &state->near.entry[at]};
             place_look(&l, i);
             if (!look_at(&l, (int32_t)i, v->body)) l.entry->distance = s->smoothing.h;
-            l.entry->previous = s->particles.near[i];
-            s->particles.near[i] = (int32_t)at++;
+            l.entry->previous = f->near[i];
+            f->near[i] = (int32_t)at++;
         }
     }
 }
 
 tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     n->count = 0;
     void *p = n->block_count;
     tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
     n->block_count = p;
     TOBI_TRY(status);
-    memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
+    p = n->answer;
+    status = grow(&p, &n->answer_capacity, s->sim->body_count, sizeof *n->answer, err);
+    n->answer = p;
+    TOBI_TRY(status);
+    memset(sph_fields_of(&s->particles)->near, 0xFF, (size_t)s->particles.count*sizeof(int32_t));
     for (int k = 0; k < s->sim->body_count; k++) {
         TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
         memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
@@ -277,22 +286,25 @@ tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
+    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
 }
 
 /* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
    rounding would let a segment through an edge pass one way only. */
 static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
+    sph_state *state = sph_of(s);
     const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(&s->particles);
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
-    double d[3] = {(int32_t)((uint32_t)p->record[i].x - (uint32_t)p->record[j].x)/s->box.to_fixed[0],
-                   (int32_t)((uint32_t)p->record[i].y - (uint32_t)p->record[j].y)/s->box.to_fixed[1],
-                   (int32_t)((uint32_t)p->record[i].z - (uint32_t)p->record[j].z)/s->box.to_fixed[2]};
+    const tobi_near_entry *a = &state->near.entry[f->near[i]], *b;
+    const tobi_record *from = &s->cells.record[i], *to = &s->cells.record[j];
+    const double d[3] = {(int32_t)((uint32_t)from->x - (uint32_t)to->x)/s->box.to_fixed[0],
+                         (int32_t)((uint32_t)from->y - (uint32_t)to->y)/s->box.to_fixed[1],
+                         (int32_t)((uint32_t)from->z - (uint32_t)to->z)/s->box.to_fixed[2]};
     double length = sqrt(dot(d, d)), x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     for (; a; a = next_entry(s, a))
-        for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
+        for (b = &state->near.entry[f->near[j]]; b; b = next_entry(s, b)) {
             if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
             for (int c = 0; c < 3; c++) {
@@ -311,13 +323,13 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
     const looking *v = view;
     const tobi_system *s = v->s;
-    const tobi_particles *p = &s->particles;
+    const sph_fields *p = sph_fields_of(&s->particles);
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = s->near.entry[k].particle;
+        int64_t i = sph_of(s)->near.entry[k].particle;
         if (p->near[i] != k) continue;      /* once per particle */
-        int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+        int32_t *list = s->cells.list + 8*(int64_t)s->cells.list_start[i];
+        for (int g = 0; g < 8*s->cells.list_groups[i]; g++) {
             int32_t j = list[g];
             if (j == i || p->near[j] < 0 || !separated(s, i, j)) continue;
             list[g] = (int32_t)i;
@@ -329,32 +341,34 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 
 void tobi_near_cut_pairs(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     int64_t cut = 0;
     const looking view = {.s = s, .cut = &cut};
-    tobi_loop(s->sim->exec.threads, s->near.count, 64, cut_pairs, &view);
-    s->near.cut_pairs = cut/2;
+    tobi_loop(s->sim->exec.threads, state->near.count, 64, cut_pairs, &view);
+    state->near.cut_pairs = cut/2;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
 {
     const looking view = {.s = s};
-    tobi_loop(s->sim->exec.threads, s->near.count, 0, visit, &view);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, visit, &view);
 }
 
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
-            for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
+        for (int64_t i = sph_of(s)->near.entry[k].particle,                                                \
+                     once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
+            for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
 
 static void mark_beside(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = ((const looking *)view)->s;
-    const tobi_particles *p = &s->particles;
+    const sph_fields *p = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = s->near.entry[k].particle;
-        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++)
+        int64_t i = sph_of(s)->near.entry[k].particle;
+        const int32_t *list = s->cells.list + 8*(int64_t)s->cells.list_start[i];
+        for (int g = 0; g < 8*s->cells.list_groups[i]; g++)
             __atomic_store_n(&p->beside[list[g]], 1, __ATOMIC_RELAXED);
         __atomic_store_n(&p->beside[i], 1, __ATOMIC_RELAXED);
     }
@@ -362,19 +376,21 @@ static void mark_beside(const void *view, int64_t begin, int64_t end)
 
 void tobi_near_mark_beside(tobi_system *s)
 {
-    if (!s->particles.beside) return;
-    memset(s->particles.beside, 0, (size_t)s->particles.count);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    if (!f->beside) return;
+    memset(f->beside, 0, (size_t)s->particles.count);
     visit_entries(s, mark_beside);
 }
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     tobi_system *s = ((const looking *)view)->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
     FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_float4 *w = &s->particles.wall[i];
+        tobi_float4 *w = &f->wall[i];
         w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
         w->w += (float)e->wall_flux;
-        s->particles.density[i] = 1 - (1 - s->particles.density[i])*(1 - (float)e->share);
+        f->density[i] = 1 - (1 - f->density[i])*(1 - (float)e->share);
     }
 }
 
@@ -422,8 +438,8 @@ void tobi_near_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
-    int32_t k = s->particles.near[i];
-    for (const tobi_near_entry *e = k >= 0 ? &s->near.entry[k] : NULL; e; e = next_entry(s, e)) {
+    int32_t k = sph_fields_of(&s->particles)->near[i];
+    for (const tobi_near_entry *e = k >= 0 ? &sph_of(s)->near.entry[k] : NULL; e; e = next_entry(s, e)) {
         double lack = least - e->distance - dot(way, e->foot_normal);
         for (int a = 0; a < 3 && lack > 0; a++) way[a] += lack*e->foot_normal[a];
     }
@@ -433,10 +449,11 @@ static void settle_particles(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = ((const looking *)view)->s;
     const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
     for (int64_t i = begin; i < end; i++) {
-        if (!p->beside[i]) continue;
-        double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
+        if (!f->beside[i]) continue;
+        double way[3] = {f->accel[i].x, f->accel[i].y, f->accel[i].z}, size = sqrt(dot(way, way)),
                scale = s->dt*s->dt, *x = &p->position[i].x;
         if (size*scale > most) scale = most/size;
         for (int a = 0; a < 3; a++) way[a] *= scale;
@@ -458,7 +475,7 @@ static void bend_normals(const void *view, int64_t begin, int64_t end)
 {
     tobi_system *s = ((const looking *)view)->s;
     FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_float4 *n = &s->particles.normal[i];
+        tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
         for (int c = 0; c < 3; c++) {
             u[c] -= across*e->foot_normal[c];
@@ -493,8 +510,9 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
+        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
         if (e->body != r->body) continue;
         const tobi_body *b = &s->sim->bodies[e->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
@@ -505,8 +523,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : s->particles.pressure[e->particle];
+        float capillary = f->capillary ? f->capillary[e->particle] : 0;
+        float pressure = r->known ? 0 : f->pressure[e->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
@@ -523,22 +541,23 @@ void tobi_near_known_forces(tobi_system *s, int body, double force[6])
     for (int viscous = 0; viscous < 2; viscous++) {
         double t[TOBI_TOTALS];
         reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, sph_of(s)->near.count, t);
         for (int a = 0; a < 6; a++) force[a] += t[a];
     }
 }
 
 void tobi_near_body_forces(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body_info *info = &s->sim->bodies[k].info;
         double t[TOBI_TOTALS];
         reaction r = {s, k, 0, 0};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
         memcpy(info->pressure_force, t, 3*sizeof *t);
         memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
         r.viscous = 1;
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
+        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
         memcpy(info->viscous_force, t, 3*sizeof *t);
         memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
     }
@@ -550,5 +569,6 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->block_count);
     free(n->bin_start);
     free(n->bin_item);
+    free(n->answer);
     memset(n, 0, sizeof *n);
 }

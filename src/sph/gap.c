@@ -2,7 +2,8 @@
    sphere 8 spacings across a third of the section. Water would fill it, at the pressure of still water (18).
    So points there are pressed by all the water above them, and only what moves is missing. Drawback: a flat
    body that lies close has its full buoyancy too, as if it stood on grains. */
-#include "core/gap.h"
+#include "sph/state.h"
+#include "sph/gap.h"
 #include "core/system.h"
 
 static int faces_side(const tobi_system *s, const double x[3], const double n[3])
@@ -34,14 +35,14 @@ static void wet_points(const void *view, int64_t begin, int64_t end)
     const tobi_body *b = &s->sim->bodies[w->body];
     for (int64_t q = begin; q < end; q++) {
         const double *x = b->point[q], *n = b->normal[q];
-        if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;
+        if (b->wet[q] || !(tobi_still_pressure(&sph_of(s)->still, x) > 0)) continue;
         if (faces_side(s, x, n) || faces_body(s, w->body, x, n)) b->wet[q] = TOBI_WET_GAP;
     }
 }
 
 void tobi_gap_wet(tobi_system *s)
 {
-    if (!(s->still.push > 0)) return;
+    if (!(sph_of(s)->still.push > 0)) return;
     for (int k = 0; k < s->sim->body_count; k++) {
         const wetting view = {s, k};
         tobi_loop(s->sim->exec.threads, s->sim->bodies[k].point_count, 256, wet_points, &view);
