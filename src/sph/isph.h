@@ -1,0 +1,6 @@
+/* Incompressible SPH: a compact Poisson equation for the pressure. */
+#pragma once
+#include "core/system.h"
+
+extern const tobi_method tobi_isph;
+extern const tobi_param_table tobi_isph_table;
