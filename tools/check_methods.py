@@ -3,7 +3,7 @@
 
 usage: check_methods.py [ROOT]
 
-The methods are those of src/world/methods.c; the first is the one that a scene without "method" gets. A bench
+The methods are those of src/world/methods.def; the first is the one that a scene without "method" gets. A bench
 is a case of `tobiuo bench` that names the method; oracles are test/kernel/test_ROOM_oracle.c, which reads the
 room's kernels.def, where there is one, and does not compile without an oracle of every kernel.
 """
@@ -47,8 +47,8 @@ def check(root, name, is_default):
 
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[1])
-    names = re.findall(r"^    &tobi_(\w+),$", (root / "src/world/methods.c").read_text(), re.M)
-    faults = [] if names else ["src/world/methods.c: no methods found"]
+    names = re.findall(r"^METHOD\((\w+)\)$", (root / "src/world/methods.def").read_text(), re.M)
+    faults = [] if names else ["src/world/methods.def: no methods found"]
     for number, name in enumerate(names):
         faults += [f"method {name} lacks {what}" for what in check(root, name, number == 0)]
     print("\n".join(faults + [f"{len(names)} methods, {len(faults)} lacks"]))

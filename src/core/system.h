@@ -1,5 +1,6 @@
 /* A system: particles that one method computes, in the world that all systems share. */
 #pragma once
+#include "base/param.h"
 #include "core/particles.h"
 #include "core/simulation.h"
 #include "core/smoothing.h"
@@ -64,7 +65,7 @@ typedef struct tobi_output {
 typedef struct tobi_method {
     const char *name;
     const char *doc;
-    size_t def_size;                                             /* of the parameter struct        */
+    const tobi_param_table *params;                              /* of its parameter struct        */
     int solids;                                                  /* 1: computes solids, 0: fluids  */
     const tobi_field_list *fields;                               /* of particles, NULL = no others */
     const tobi_output *outputs;                                  /* ends with a NULL name          */
@@ -86,11 +87,12 @@ typedef struct tobi_method {
     void (*take_back)(tobi_system *s);
     /* The longest step, s, from the present state. */
     double (*max_dt)(tobi_system *s);
-    /* Sort, neighbours, what it sees of the boundaries; bodies have their velocities of this step. */
+    /* Optional: sort, neighbours, what it sees of the boundaries; bodies have their velocities of this
+       step. */
     tobi_status (*begin)(tobi_system *s, tobi_error *err);
     /* Gravity, viscosity, tension. Optional. */
     void (*forces)(tobi_system *s);
-    /* Pressure or stress, with the answer of bodies. */
+    /* Pressure or stress, with the answer of bodies. Optional. */
     tobi_status (*solve)(tobi_system *s, tobi_error *err);
     /* The forces on walls and bodies, then the new positions. */
     void (*move)(tobi_system *s);
@@ -121,6 +123,8 @@ typedef struct tobi_method {
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
     /* Optional, after a load: takes such rows over. */
     void (*recall)(tobi_system *s, double *rows, int64_t count);
+    /* Optional: rows have been inserted, arrays may have moved. */
+    void (*inserted)(tobi_system *s);
     /* The world's gravity has changed between two steps, after a refresh if there were steps: what was
        derived from it follows. loaded: the state is a checkpoint's, of that gravity already. NULL: nothing is
        kept. */
@@ -133,5 +137,9 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);
+/* `count` new particles between two steps of a world that has started: the first row into *first, all zero
+   but their ids, which go on from the world's. The caller places them (position, velocity, fluid) and calls
+   method->place. On failure no particle is new. */
+tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, tobi_error *err);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_system_measure(tobi_system *s);

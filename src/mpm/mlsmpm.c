@@ -468,6 +468,14 @@ static void follow_gravity(tobi_system *s, int loaded)
     if (begun) m->memory.start_energy += mpm_energy_find(s, m) - before;
 }
 
+/* The next step sorts all anew. */
+static void bind_inserted(tobi_system *s)
+{
+    mlsmpm *m = s->state;
+    bind_particles(s, m);
+    m->memory.age = SORT_AGE;
+}
+
 static int64_t count_bytes(const tobi_system *s) { return mpm_grid_bytes(&((const mlsmpm *)s->state)->grid); }
 
 static void free_state(void *state)
@@ -483,7 +491,7 @@ static void free_state(void *state)
 const tobi_method tobi_mlsmpm = {
     .name = "mlsmpm",
     .doc = "The material point method (MLS-MPM) for elastic and plastic solids, liquids, snow and sand.",
-    .def_size = sizeof(tobi_mlsmpm_def),
+    .params = &tobi_mlsmpm_table,
     .solids = 1,
     .fields = &mpm_field_list,
     .outputs = mpm_outputs,
@@ -505,6 +513,7 @@ const tobi_method tobi_mlsmpm = {
     .memory = list_memory,
     .keep = keep_rows,
     .recall = recall_rows,
+    .inserted = bind_inserted,
     .follow_gravity = follow_gravity,
     .bytes = count_bytes,
     .free = free_state,

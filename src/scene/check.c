@@ -4,6 +4,7 @@
 #include "scene/suggest.h"
 #include "mpm/damage.h"
 #include "world/methods.h"
+#include "mpm/mlsmpm.h"
 #include "world/params.h"
 #include "world/rules.h"
 #include "world/world.h"

@@ -3,7 +3,8 @@
 #include "scene/parts.h"
 #include "scene/suggest.h"
 #include "scene/write.h"
-#include "world/params_rows.h"
+#include "base/param_rows.h"
+#include "world/params.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

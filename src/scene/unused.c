@@ -3,6 +3,7 @@
    them out. The section of a method that is not chosen plainly waits for another run and is let be. */
 #include "scene/scene.h"
 #include "world/methods.h"
+#include "mpm/mlsmpm.h"
 #include "world/params.h"
 #include "world/world.h"
 #include <string.h>

@@ -506,7 +506,7 @@ static void free_state(void *state)
 const tobi_method tobi_dfsph = {
     .name = "dfsph",
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
-    .def_size = sizeof(tobi_dfsph_def),
+    .params = &tobi_dfsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,
     .needs = sph_needs,

@@ -233,7 +233,7 @@ static void free_state(void *state)
 const tobi_method tobi_isph = {
     .name = "isph",
     .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
-    .def_size = sizeof(tobi_isph_def),
+    .params = &tobi_isph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,
     .needs = sph_needs,

@@ -43,6 +43,11 @@ static int changes(const tobi_system *s, const char *field)
 
 tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
 {
+    for (int k = 0; u->rows < s->particles.count && k < SPH_UNDO_FIELDS; k++) {
+        free(u->field[k]);
+        u->field[k] = NULL;
+    }
+    if (u->rows < s->particles.count) u->rows = s->particles.capacity;
     for (int k = 0; s->sim->stop && k < SPH_UNDO_FIELDS; k++) {
         void *data;
         const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
@@ -51,7 +56,7 @@ tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
             u->field[k] = NULL;
             continue;
         }
-        if (!u->field[k]) u->field[k] = malloc((size_t)(s->particles.capacity + 1)*f->bytes);
+        if (!u->field[k]) u->field[k] = malloc((size_t)(u->rows + 1)*f->bytes);
         if (!u->field[k]) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
         copying c = { u->field[k], data, f->bytes };
         tobi_launch(&s->sim->exec, TOBI_HOST(copy_range, 0, 0), &c, 0, s->particles.count, NULL);

@@ -11,6 +11,7 @@ typedef struct sph_undo {
     tobi_still still;
     tobi_step_info info;
     struct sph_undo_body *body;                 /* [body_count], owned                                  */
+    int64_t rows;                               /* that the copies have room for                        */
     void *field[SPH_UNDO_FIELDS];               /* copies of particle fields, owned; NULL = not changed */
     int kept;                                   /* 1: they are of this step                             */
 } sph_undo;

@@ -253,7 +253,7 @@ static void free_state(void *state)
 const tobi_method tobi_wcsph = {
     .name = "wcsph",
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
-    .def_size = sizeof(tobi_wcsph_def),
+    .params = &tobi_wcsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,
     .needs = sph_needs,

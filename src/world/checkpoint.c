@@ -17,8 +17,8 @@ enum { FORMAT = 8 };
 static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
 {
     int64_t format = 0;
-    tobi_error none;
-    if (tobi_store_get_int(f, "format", &format, &none) == TOBI_OK && format == FORMAT) return TOBI_OK;
+    TOBI_TRY(tobi_store_get_int(f, "format", &format, err));
+    if (format == FORMAT) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED,
                      "%s: a checkpoint of format %lld, written by another version of tobiuo; this one "
                      "goes on from format %d",

@@ -1,15 +1,19 @@
+/* The list of methods. A test adds one of its own by a list that includes this one (TOBI_METHODS). */
 #include "world/methods.h"
-#include "mpm/mlsmpm.h"
-#include "sph/dfsph.h"
-#include "sph/isph.h"
-#include "sph/wcsph.h"
 #include <string.h>
 
+#ifndef TOBI_METHODS
+#define TOBI_METHODS "world/methods.def"
+#endif
+
+#define METHOD(name) extern const tobi_method tobi_##name;
+#include TOBI_METHODS
+#undef METHOD
+
 static const tobi_method *const methods[] = {
-    &tobi_dfsph,
-    &tobi_wcsph,
-    &tobi_isph,
-    &tobi_mlsmpm,
+#define METHOD(name) &tobi_##name,
+#include TOBI_METHODS
+#undef METHOD
 };
 
 const tobi_method *tobi_method_at(int index)

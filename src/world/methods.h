@@ -1,4 +1,4 @@
-/* The list of methods: adding one is a file and a line here. */
+/* The list of methods (methods.def): adding one is a room or a file, and a line there. */
 #pragma once
 #include "core/system.h"
 

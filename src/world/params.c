@@ -1,7 +1,13 @@
 /* The world's parameters, and the list of all tables: one per definition struct. A member that is missing in
    it cannot be set by a scene, has no default and appears in no help text; a unit test checks that the tables
    cover the structs. */
-#include "world/params_rows.h"
+#include "base/param_rows.h"
+#include "mpm/mlsmpm.h"
+#include "sph/dfsph.h"
+#include "sph/isph.h"
+#include "sph/wcsph.h"
+#include "world/methods.h"
+#include "world/params.h"
 #include <string.h>
 
 #define WALL(key_, member_, axis_, doc_)                                              \
@@ -70,31 +76,28 @@ const tobi_param_table tobi_world_table = {
     "world", "The box, the fluid resolution and the clock: keys at the top of a scene.",
     sizeof(tobi_world_def), world_rows };
 
-static const tobi_param_table *const methods[] = { &tobi_dfsph_table, &tobi_wcsph_table,
-                                                 &tobi_isph_table, &tobi_mlsmpm_table };
-enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
-
+/* The world's, the methods', all others. */
 const tobi_param_table *tobi_param_table_at(int index)
 {
-    static const tobi_param_table *const tables[] = {
-        &tobi_world_table, &tobi_dfsph_table,  &tobi_wcsph_table, &tobi_isph_table,
-        &tobi_mlsmpm_table,
-        &tobi_fluid_table, &tobi_solid_table,  &tobi_fill_table,  &tobi_body_table,
-        &tobi_plane_table, &tobi_probe_table,  &tobi_output_table, &tobi_reference_table
+    static const tobi_param_table *const others[] = {
+        &tobi_fluid_table, &tobi_solid_table, &tobi_fill_table,   &tobi_body_table,
+        &tobi_plane_table, &tobi_probe_table, &tobi_output_table, &tobi_reference_table
     };
-    return index >= 0 && index < (int)(sizeof tables / sizeof tables[0]) ? tables[index] : NULL;
+    if (index == 0) return &tobi_world_table;
+    for (int m = 0; index > 0 && tobi_method_at(m); m++)
+        if (--index == 0) return tobi_method_at(m)->params;
+    return index > 0 && index <= (int)(sizeof others/sizeof others[0]) ? others[index - 1] : NULL;
 }
 
 const char *tobi_method_name(int index)
 {
-    return index >= 0 && index < METHOD_COUNT ? methods[index]->name : NULL;
+    return tobi_method_at(index) ? tobi_method_at(index)->name : NULL;
 }
 
 const tobi_param_table *tobi_method_table(const char *method)
 {
-    for (int i = 0; method && i < METHOD_COUNT; i++)
-        if (strcmp(methods[i]->name, method) == 0) return methods[i];
-    return NULL;
+    const tobi_method *m = tobi_method_find(method);
+    return m ? m->params : NULL;
 }
 
 const char *tobi_choice_word(const char *choices, int i, int *length)

@@ -1,6 +1,6 @@
 /* The parameter tables of every definition struct in tobiuo/types.h: the only place that says a
    member's scene key, unit, default, range and sentence. The world's is in params.c, the others are in
-   params_methods.c, params_matter.c, params_bodies.c and params_output.c.
+   params_matter.c, params_bodies.c and params_output.c. Each method brings its own (tobi_method.params).
 
    Conventions of the rows, on top of base/param.h:
    - A key with dots is a key of a nested object in a scene: "domain.min" is domain: { min: ... }.
@@ -17,10 +17,6 @@
 #include "tobiuo/types.h"
 
 extern const tobi_param_table tobi_world_table;
-extern const tobi_param_table tobi_dfsph_table;
-extern const tobi_param_table tobi_wcsph_table;
-extern const tobi_param_table tobi_isph_table;
-extern const tobi_param_table tobi_mlsmpm_table;
 extern const tobi_param_table tobi_fluid_table;
 extern const tobi_param_table tobi_solid_table;
 extern const tobi_param_table tobi_fill_table;

@@ -1,5 +1,6 @@
 /* Parameters of fluids, solids and the regions that they fill. */
-#include "world/params_rows.h"
+#include "base/param_rows.h"
+#include "world/params.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -51,9 +51,9 @@ static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
 static tobi_status step_system(tobi_system *s, tobi_error *err)
 {
     const tobi_method *m = s->method;
-    TOBI_TRY(m->begin(s, err));
+    if (m->begin) TOBI_TRY(m->begin(s, err));
     if (m->forces) m->forces(s);
-    TOBI_TRY(m->solve(s, err));
+    if (m->solve) TOBI_TRY(m->solve(s, err));
     m->move(s);
     s->step++;
     return TOBI_OK;

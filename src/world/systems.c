@@ -70,10 +70,10 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
                                   tobi_error *err)
 {
     const tobi_param_table *table = tobi_method_table(method->name);
-    void *params = calloc(1, method->def_size);
+    void *params = calloc(1, method->params->size);
     if (!params) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a system");
     tobi_param_defaults(table, params);
-    if (method_def) memcpy(params, method_def, method->def_size);
+    if (method_def) memcpy(params, method_def, method->params->size);
     tobi_status status = tobi_param_check(table, params, err);
     if (status == TOBI_OK) status = check_rules(&w->sim.def, method, params, err);
     if (status != TOBI_OK) {

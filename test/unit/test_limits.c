@@ -11,6 +11,9 @@
 #include "calls.h"
 #include "scene/motions.h"
 #include "scene/scene.h"
+#include "mpm/mlsmpm.h"
+#include "sph/dfsph.h"
+#include "sph/wcsph.h"
 #include "world/params.h"
 #include "world/world.h"
 

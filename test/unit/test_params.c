@@ -9,6 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include "tobiuo/tobiuo.h"
+#include "mpm/mlsmpm.h"
+#include "sph/dfsph.h"
+#include "sph/isph.h"
+#include "sph/wcsph.h"
 #include "world/params.h"
 
 static size_t member_size(const tobi_param *row)

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,6 +160,56 @@ static void what_is_not_known_yet(void **state)
     tobi_world_destroy(w);
 }
 
+/* A cube of 4 x 4 x 4 new particles in the air beside what is there. */
+static void insert_cube(tobi_system *s, double x)
+{
+    const double d = s->smoothing.spacing;
+    const tobi_start start = { .volume = d*d*d, .mass = 1000*d*d*d };
+    int64_t first;
+    OK(tobi_system_insert(s, 64, &first, &err));
+    for (int k = 0; k < 64; k++) {
+        s->particles.position[first + k] =
+            (tobi_double3){ x + d*(k%4), 0.1 + d*(k/4%4), 0.1 + d*(k/16) };
+        s->particles.velocity[first + k] = (tobi_float4){ 0.5f, 0, 0, 0 };
+        if (s->method->place) s->method->place(s, first + k, &start);
+    }
+}
+
+/* Rows come while the world runs: nobody's id changes, the new ones fall as everything does, and the result
+   is the same for any number of threads. */
+static void rows_can_be_inserted(void **state)
+{
+    static const char *const methods[] = { "dfsph", "wcsph", "mlsmpm" };
+    uint64_t hash[2];
+    (void)state;
+    for (int m = 0; m < 3; m++) {
+        for (int threads = 1; threads <= 2; threads++) {
+            tobi_world *world = make_world(methods[m], m == 2 ? BLOCK : POOL, threads);
+            tobi_step_info info;
+            for (int k = 0; k < 5; k++) OK(tobi_world_step(world, 0, NULL, &err));
+            const int64_t before = tobi_world_count(world, TOBI_FLUID), after = before + 64;
+            const double start = tobi_world_time(world);
+            insert_cube(&world->system[0], m == 2 ? 0.05 : 0.3);
+            for (int k = 0; k < 20; k++) OK(tobi_world_step(world, 0, &info, &err));
+            assert_int_equal(tobi_world_count(world, TOBI_FLUID), after);
+            assert_int_equal(info.fluid_particles, after);
+            int64_t *ids = malloc((size_t)after*sizeof *ids);
+            OK(tobi_world_read_ids(world, TOBI_FLUID, ids, after, &err));
+            for (int64_t k = 0; k < after; k++) assert_int_equal(ids[k], k);
+            free(ids);
+            double *v = read_rows(world, "velocity", 3, before, 64);
+            const double fallen = -9.81*(tobi_world_time(world) - start);
+            for (int k = 0; k < 64; k++)
+                if (!(fabs(v[3*k + 2] - fallen) < 0.05 && fabs(v[3*k] - 0.5) < 0.05))
+                    fail_msg("%s: %g %g after %g", methods[m], v[3*k], v[3*k + 2], fallen);
+            free(v);
+            hash[threads - 1] = tobi_world_hash(world);
+            tobi_world_destroy(world);
+        }
+        assert_true(hash[0] == hash[1]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +218,7 @@ int main(void)
         cmocka_unit_test(rows_ids_and_materials),
         cmocka_unit_test(a_restart_changes_nothing),
         cmocka_unit_test(what_is_not_known_yet),
+        cmocka_unit_test(rows_can_be_inserted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

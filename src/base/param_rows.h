@@ -1,7 +1,7 @@
 /* How rows of the parameter tables are written, for the files that have them. */
 #pragma once
 #include "tobiuo/tobiuo.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <stddef.h>
 
