@@ -53,8 +53,8 @@ static void open_pool(int dimension, int closed)
 static void close_pool(void)
 {
     void *own[] = {view.pressure, view.trace, view.gate, view.scale, view.filled, view.behind, view.entry,
-                   view.excess, view.inverse_diagonal, view.source, view.out, (void *)view.in, view.inverse, view.lack,
-                   view.change};
+                   view.excess, view.inverse_diagonal, view.source, view.out, (void *)view.in,
+                   view.inverse, view.lack, view.change};
     for (size_t k = 0; k < sizeof own/sizeof *own; k++) free(own[k]);
     poisson_drop(&pool);
 }
