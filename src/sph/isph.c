@@ -54,6 +54,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
             return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
                              "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
     m->def = *(const tobi_isph_def *)s->def;
+    m->common.mirrors = 1;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     isph_solver_begin(&m->solver, s);
     m->solver.view.volume_gain = m->def.volume_gain;

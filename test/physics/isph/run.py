@@ -36,9 +36,14 @@ def late(table, name):
 
 
 iterations = {}
+PROBES = [{"name": "floor", "position": [0.1, 0]}, {"name": "side", "position": [0, 0.3]}]
 for deep in case.pick((10, 30), (10, 30, 100, 300)):
     d, end = 1/deep, case.pick(1, 5 if deep < 300 else 1)
-    out, table = scene(f"column{deep}", "isph", d, end, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 1]}}, end/10)
+    out, table = scene(f"column{deep}", "isph", d, end, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 1]}}, end/10, probes=PROBES)
+    probes = read_table(out / "probes.csv")
+    for name, depth in ("floor", 1), ("side", 0.7):
+        wall = mean(late(probes, f"{name}_pressure"))/(RHO*G*depth) - 1
+        case.figure(f"column, {deep} deep: probe at the {name}, deviation", wall, "within 0.01", abs(wall) <= 0.01)
     floor = mean(late(table, "wall_force_ratio")) - 1
     level = deep*(mean(late(table, "potential_energy"))/(RHO*G*0.5*30*d) - 1)
     energy = table["kinetic_energy"][-1]/table["potential_energy"][-1]
