@@ -18,6 +18,8 @@
 /* MEMORY: numbers that survive a restart; steps in a row that may fail to converge. */
 enum { MEMORY = 3, FAILURES = 50 };
 
+static const double STIR = 0.2, SHIFT_AT_REST = 0.1;
+
 typedef struct isph {
     sph_state common;
     tobi_isph_def def;
@@ -52,10 +54,10 @@ static tobi_status create(tobi_system *s, tobi_error *err)
             return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
                              "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
     m->def = *(const tobi_isph_def *)s->def;
+    m->common.mirrors = 1;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     isph_solver_begin(&m->solver, s);
     m->solver.view.volume_gain = m->def.volume_gain;
-    m->solver.view.shifting = m->def.shifting;
     return TOBI_OK;
 }
 
@@ -77,6 +79,14 @@ static double choose_dt(tobi_system *s)
     return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
 }
 
+/* Still liquid needs less of the shift, which would stir it: all of it where the fastest particle or body
+   goes STIR spacings in a step. */
+static double share_of_shift(const tobi_system *s, const isph *m)
+{
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
+    return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(STIR*s->smoothing.spacing), 1));
+}
+
 static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
@@ -85,6 +95,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     sph_bind_view(s, &m->view, m->memory.vessel);
     m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
+    m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     TOBI_TRY(isph_bodies_see(&m->solver, s, err));

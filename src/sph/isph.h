@@ -1,5 +1,6 @@
 /* Incompressible SPH: a compact Poisson equation for the pressure. */
 #pragma once
+#include "base/param.h"
 #include "core/system.h"
 
 extern const tobi_method tobi_isph;

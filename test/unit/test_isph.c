@@ -32,7 +32,8 @@ static void open_pool(int dimension, int closed)
     view.list = pool.cells.list;
     view.list_start = pool.cells.list_start;
     view.list_groups = pool.cells.list_groups;
-    float **real[FLOATS] = {&view.pressure, &view.trace, &view.gate, &view.scale, &view.filled, &view.behind};
+    float **real[FLOATS] = {&view.pressure, &view.trace, &view.gate, &view.scale, &view.filled,
+                            &view.behind};
     for (int k = 0; k < FLOATS; k++) *real[k] = calloc((size_t)count, sizeof(float));
     view.entry = calloc((size_t)pool.cells.list_used, sizeof(float));
     double **wide[DOUBLES] = {&view.excess, &view.inverse_diagonal, &view.source, &view.out};
@@ -52,9 +53,8 @@ static void open_pool(int dimension, int closed)
 static void close_pool(void)
 {
     void *own[] = {view.pressure, view.trace, view.gate, view.scale, view.filled, view.behind, view.entry,
-                   view.excess, view.inverse_diagonal, view.source, view.out, (void *)view.in, view.inverse,
-                   view.lack,
-                   view.change};
+                   view.excess, view.inverse_diagonal, view.source, view.out, (void *)view.in,
+                   view.inverse, view.lack, view.change};
     for (size_t k = 0; k < sizeof own/sizeof *own; k++) free(own[k]);
     poisson_drop(&pool);
 }

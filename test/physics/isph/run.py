@@ -12,8 +12,8 @@ from harness import Case, fit_line, interpolate, mean, read_series, read_table, 
 case = Case("isph", "Incompressible SPH", """
 `"method": "isph"` with its defaults (support 2.5 d) beside dfsph with its own, where both are named; 2-D, slip.
 Columns, 30 d wide and 10 to 100 d deep, start on a lattice without pressure. Floor: the force on it against the weight,
-mean over the last half. Level: rise of the centre of mass, doubled. Iterations: mean over the run, to a true residual
-of 1e-4, warm. Dam break: a = n2 = 1 in a box 4 a long, inviscid; front Z against T = t sqrt(g/a) of potential flow
+mean over the last half. Level: rise of the centre of mass, doubled. Iterations: of the first step, from no pressure to
+a true residual of 1e-6. Dam break: a = n2 = 1 in a box 4 a long, inviscid; front Z against T = t sqrt(g/a) of potential flow
 (dam_break); energy against that of the start. Patch: a square of 1 m turns at 1 rad/s without gravity (A. Colagrossi,
 PhD thesis, Rome 2005), to t omega = 4. Main body: the largest set of particles linked within 1.8 d. Wave and vortex: as
 in standing_wave, taylor_green. Box: 8 d high, held in a pool; buoyancy over rho g V, mean over the last half.""")
@@ -36,13 +36,21 @@ def late(table, name):
 
 
 iterations = {}
+PROBES = [{"name": "floor", "position": [0.1, 0]}, {"name": "side", "position": [0, 0.3]}]
 for deep in case.pick((10, 30), (10, 30, 100, 300)):
     d, end = 1/deep, case.pick(1, 5 if deep < 300 else 1)
-    out, table = scene(f"column{deep}", "isph", d, end, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 1]}}, end/10)
+    out, table = scene(f"column{deep}", "isph", d, end, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 1]}}, end/10, probes=PROBES)
+    probes = read_table(out / "probes.csv")
+    for name, depth in ("floor", 1), ("side", 0.7):
+        wall = mean(late(probes, f"{name}_pressure"))/(RHO*G*depth) - 1
+        case.figure(f"column, {deep} deep: probe at the {name}, deviation", wall, "within 0.01", abs(wall) <= 0.01)
     floor = mean(late(table, "wall_force_ratio")) - 1
     level = deep*(mean(late(table, "potential_energy"))/(RHO*G*0.5*30*d) - 1)
     energy = table["kinetic_energy"][-1]/table["potential_energy"][-1]
-    iterations[deep] = mean(table["divergence_iterations_mean"][1:])
+    # from no pressure: the solves above start from what is nearly the answer
+    _, first = scene(f"first{deep}", "isph", d, 0.1*d, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 0.9]}}, 0.1*d,
+                     isph={"tolerance": 1e-6})
+    iterations[deep] = first["divergence_iterations"][-1]
     case.figure(f"column, {deep} deep: force on the floor over the weight, deviation", floor, "within 0.005", abs(floor) <= 0.005)
     case.figure(f"column, {deep} deep: level, in spacings", level, f"within {0.1*max(deep/30, 1):.2g}", abs(level) <= 0.1*max(deep/30, 1))
     case.figure(f"column, {deep} deep: kinetic over potential energy at the end", energy, "<= 1e-5", energy <= 1e-5)
@@ -52,9 +60,9 @@ for deep in case.pick((10, 30), (10, 30, 100, 300)):
     case.hold(f"column, {deep} deep: floor within 1.2 % ({floor:.4f})", abs(floor) <= 0.012)
     case.hold(f"column, {deep} deep: kinetic energy below 1e-4 of potential ({energy:.1e})", energy <= 1e-4)
 spread = max(iterations.values())/min(iterations.values()) - 1
-shown = ", ".join(f"{deep}: {count:.1f}" for deep, count in iterations.items())
+shown = ", ".join(f"{deep}: {count:.0f}" for deep, count in iterations.items())
 case.figure(f"column: iterations ({shown}), spread", spread, "<= 0.3", spread <= 0.3)
-case.hold("column: at most 8 iterations", max(iterations.values()) <= 8)
+case.hold("column: at most 15 iterations", max(iterations.values()) <= 15)
 
 
 def break_dam(method, across):
