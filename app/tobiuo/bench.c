@@ -160,15 +160,16 @@ static int measure_tank(const bench_options *o, double spacing, int settle)
     return failed;
 }
 
-static int measure_wcsph(const bench_options *o)
+/* That tank by another method, isph or wcsph. */
+static int measure_method(const bench_options *o, const char *method)
 {
     const double spacing = o->spacing > 0.0 ? o->spacing : 0.008;
     const int settle = o->settle ? o->settle : 100, steps = o->steps ? o->steps : 200;
     bench_run run = { 0 };
-    printf("case                   tank 0.584 x 0.284 x 0.182 m at %g m by wcsph, after %d steps\n", spacing,
-           settle);
+    printf("case                   tank 0.584 x 0.284 x 0.182 m at %g m by %s, after %d steps\n", spacing,
+           method, settle);
     fflush(stdout);
-    tobi_world *world = make_tank(o, "wcsph", spacing, 0);
+    tobi_world *world = make_tank(o, method, spacing, 0);
     int failed = world ? bench_settle(world, settle) : EXIT_ERROR;
     if (!failed) failed = bench_begin(&run, world, steps);
     for (int k = 0; k < steps && !failed; k++) failed = bench_step(&run);
@@ -229,6 +230,7 @@ const struct argp bench_argp = {
            "  small   the settled tank at 8 mm, 55 000 particles, seconds (default)\n"
            "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
            "  wcsph   that tank at 8 mm by wcsph, seconds\n"
+           "  isph    that tank at 8 mm by isph, seconds\n"
            "  fish    the flying fish at --spacing, --steps steps\n"
            "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
            "  cut     a ball that a blade goes through, and the same without, half a minute\n"
@@ -243,17 +245,17 @@ int tobiuo_bench(int argc, char **argv)
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
-    int cut = strcmp(which, "cut") == 0, wcsph = strcmp(which, "wcsph") == 0;
-    if (!tank && !small && !wcsph && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
-        complain("bench: there is no case '%s'; known are small, tank, wcsph, fish, ball, cut and "
-                 "bodies", which);
+    int cut = strcmp(which, "cut") == 0, other = !strcmp(which, "wcsph") || !strcmp(which, "isph");
+    if (!tank && !small && !other && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
+        complain("bench: there is no case '%s'; known are small, tank, wcsph, isph, fish, ball, "
+                 "cut and bodies", which);
         return EXIT_USAGE;
     }
     bench_print_machine(o.threads);
     if (ball) return bench_ball(&o);
     if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);
-    if (wcsph) return measure_wcsph(&o);
+    if (other) return measure_method(&o, which);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);
 }

@@ -34,7 +34,7 @@ typedef enum tobi_seeding { TOBI_SEED_REGULAR, TOBI_SEED_BLUE_NOISE } tobi_seedi
 
 /* The box, the fluid resolution and the clock. */
 typedef struct tobi_world_def {
-    const char *method;          /* name in the method list: "dfsph", "wcsph", "mlsmpm"              */
+    const char *method;          /* name in the method list: "dfsph", "isph", "mlsmpm", ...          */
     int         dimension;       /* 2 or 3; 2-D lives in x-y, masses and forces are per metre depth   */
     double      domain_min[3];   /* m, any sign                                                      */
     double      domain_max[3];   /* m                                                                */
@@ -78,6 +78,16 @@ typedef struct tobi_wcsph_def {
     double damping;                   /* 1, bulk viscosity over density, speed of sound and spacing   */
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */
 } tobi_wcsph_def;
+
+/* Parameters of the ISPH method. */
+typedef struct tobi_isph_def {
+    int    kernel;                    /* tobi_smoothing                                               */
+    int    iterations_max;            /* of the pressure solve                                        */
+    double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
+    double tolerance;                 /* 1, true relative residual of the pressure equation           */
+    double volume_gain;               /* 1, share of the error of volume in the source of pressure    */
+    double shifting;                  /* 1, strength of particle shifting                             */
+} tobi_isph_def;
 
 /* Parameters of the MLS-MPM method. */
 typedef struct tobi_mlsmpm_def {

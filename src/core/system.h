@@ -5,7 +5,7 @@
 #include "core/simulation.h"
 #include "core/smoothing.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RECALL_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
+enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
 typedef struct tobi_fluid {
     char name[64];
@@ -119,10 +119,10 @@ typedef struct tobi_method {
     /* Doubles that must survive a restart besides the particles, TOBI_MEMORY_LIMIT at most; the first is the
        largest speed, m/s. */
     int (*memory)(tobi_system *s, double **values);
-    /* Optional, the same of a size that changes: rows of TOBI_RECALL_ROW numbers, which the caller frees. */
+    /* Optional, the same of a size that changes: rows of TOBI_RESTORED_ROW numbers, the caller's to free. */
     tobi_status (*keep)(const tobi_system *s, double **rows, int64_t *count, tobi_error *err);
     /* Optional, after a load: takes such rows over. */
-    void (*recall)(tobi_system *s, double *rows, int64_t count);
+    void (*restore)(tobi_system *s, double *rows, int64_t count);
     /* Optional: rows have been inserted, arrays may have moved. */
     void (*inserted)(tobi_system *s);
     /* The world's gravity has changed between two steps, after a refresh if there were steps: what was

@@ -117,7 +117,7 @@ int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_b
     return count;
 }
 
-tobi_status tobi_blade_recall(tobi_body *b, int64_t count, tobi_error *err)
+tobi_status tobi_blade_restore(tobi_body *b, int64_t count, tobi_error *err)
 {
     if (count == b->piece_count) return TOBI_OK;
     free(b->edge_share);

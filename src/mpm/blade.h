@@ -34,4 +34,4 @@ void tobi_blade_box(const tobi_body *b, double reach, double low[3], double high
 int64_t tobi_blade_pieces(const tobi_body *b, int dimension, double size, tobi_blade_piece *out,
                           int64_t room);
 /* Makes room for what `count` pieces pushed with, 0 if that was another number before. */
-tobi_status tobi_blade_recall(tobi_body *b, int64_t count, tobi_error *err);
+tobi_status tobi_blade_restore(tobi_body *b, int64_t count, tobi_error *err);

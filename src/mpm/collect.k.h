@@ -3,7 +3,7 @@
 #include "mpm/scatter.k.h"
 
 /* Coulomb contact of a node with a plane, eq. (13); v becomes the velocity after. */
-TOBI_FN void mpm_meet_plane(const mpm_plane *p, float v[3])
+TOBI_FN void mpm_apply_plane(const mpm_plane *p, float v[3])
 {
     float n[3], r[3], along = 0, slide = 0;
     for (int a = 0; a < 3; a++) {
@@ -66,7 +66,7 @@ TOBI_FN int mpm_sum_tiles(const mpm_view *v, const mpm_patch *g, const tobi_floa
 }
 
 /* Planes that node n of a block lies behind change its velocity u. */
-TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float u[3], int dim)
+TOBI_FN void mpm_apply_planes(const mpm_view *v, const mpm_patch *g, int n, float u[3], int dim)
 {
     const int at[3] = {g->corner[0] + (dim == 3 ? n/16 : n/4), g->corner[1] + (dim == 3 ? n/4%4 : n%4),
                        dim == 3 ? g->corner[2] + n%4 : 0};
@@ -74,7 +74,7 @@ TOBI_FN void mpm_meet_planes(const mpm_view *v, const mpm_patch *g, int n, float
         const mpm_plane *plane = &v->plane[p];
         double depth = plane->normal[0]*at[0] + plane->normal[1]*at[1] + plane->normal[2]*at[2] -
                        plane->offset*v->inverse_cell;
-        if (depth < 1e-6) mpm_meet_plane(plane, u);
+        if (depth < 1e-6) mpm_apply_plane(plane, u);
     }
 }
 
@@ -86,19 +86,19 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     const quad fall = {v->fall[0], v->fall[1], v->fall[2], 0};
     tobi_float4 *node = v->node + number*nodes;
-    quad sum[MPM_NODES_3D], calm[MPM_NODES_3D], given = quad_set(0), frame;
+    quad sum[MPM_NODES_3D], unstressed[MPM_NODES_3D], given = quad_set(0), frame;
     if (!mpm_sum_tiles(v, g, v->tile, sum, &frame, dim)) {
         mpm_clear(node, nodes);
         if (v->old) mpm_clear(v->old + number*nodes, nodes);
         if (v->wave) mpm_clear(v->wave + number*nodes, nodes);
         return;
     }
-    if (v->old) mpm_sum_tiles(v, g, v->calm, calm, &frame, dim);
+    if (v->old) mpm_sum_tiles(v, g, v->unstressed, unstressed, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3], divisor = mass > 0 ? mass : INFINITY;
         quad u = sum[n]/quad_set(divisor);
         if (v->old) {
-            quad before = calm[n]/quad_set(divisor);
+            quad before = unstressed[n]/quad_set(divisor);
             if (mass > 0) before = before + frame;
             if (v->wave) quad_store(&v->wave[number*nodes + n], before);
             quad_store(&v->old[number*nodes + n], v->wave ? before*quad_set(1 - v->order) : before);
@@ -106,7 +106,7 @@ TOBI_FN void mpm_collect(const mpm_view *v, int64_t number, double *totals, cons
         if (mass > 0) u = u + frame + fall;
         if (g->planes && mass > 0) {
             float after[3] = {u[0], u[1], u[2]};
-            mpm_meet_planes(v, g, n, after, dim);
+            mpm_apply_planes(v, g, n, after, dim);
             quad change = {u[0] - after[0], u[1] - after[1], u[2] - after[2], 0};
             given = given + change*quad_set(mass);
             u = u - change;

@@ -1,13 +1,13 @@
 /* At a node where cuts cross the particles vote again in each branch of the tree that the cuts so far make;
    what a particle does not know leaves it with the side that outweighs. Pairs of leaves are parted by the
    cut at which their ways part, and by deeper ones that face each other. The drawback is that each node
-   walks over all voters near its block. */
+   walks over all members near its block. */
 #include "mpm/cross.h"
 #include "base/error.h"
 #include "mpm/cuts.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"
-#include "mpm/vote.h"
+#include "mpm/majority.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +50,7 @@ tobi_status mpm_cross_reserve_pairs(mpm_cross *c, tobi_error *err)
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for nodes where cuts cross");
 }
 
-/* A walk over the voters that feel a node. */
+/* A walk over the members that feel a node. */
 typedef struct walk {
     const struct mpm_cut *cut;
     const mpm_grid *grid;
@@ -73,7 +73,7 @@ static walk begin_walk(const struct mpm_cut *c, const mpm_grid *g, const mpm_vie
     return w;
 }
 
-static void look_at_voter(walk *w, const mpm_voter *one)
+static void look_at_member(walk *w, const mpm_member *one)
 {
     const double *x = &w->view->position[one->particle].x;
     double weight = w->view->strain[one->particle].c[2].w;
@@ -88,20 +88,20 @@ static void look_at_voter(walk *w, const mpm_voter *one)
     w->weight = (float)weight;
 }
 
-/* Goes to the next voter; 0 at the end. */
+/* Goes to the next member; 0 at the end. */
 static int walk_on(walk *w)
 {
     for (; w->o < 27; w->o++, w->next = 0) {
         const int32_t block = w->patch->cover[w->o];
         if (block < 0) continue;
-        const mpm_voter *list = w->cut->voter + w->grid->block[block].begin;
-        while (w->next < w->cut->voters[block]) {
-            const mpm_voter *one = &list[w->next++];
+        const mpm_member *list = w->cut->member + w->grid->block[block].begin;
+        while (w->next < w->cut->members[block]) {
+            const mpm_member *one = &list[w->next++];
             int feels = 1;
             for (int a = 0; a < w->grid->dimension; a++)
                 feels &= w->at[a] >= one->base[a] && w->at[a] <= one->base[a] + 2;
             if (!feels) continue;
-            look_at_voter(w, one);
+            look_at_member(w, one);
             return 1;
         }
     }
@@ -124,9 +124,9 @@ static int find_branch(const mpm_crossing *at, int levels, const tobi_columns *c
     int q = 0;
     for (int l = 0; l < levels; l++) {
         const int n = place_of(l, q);
-        int guest = 0;
-        for (int m = 0; m < MPM_GUESTS; m++) guest |= has(cuts, at->guest[m][n]);
-        q |= (has(cuts, -at->mark[n]) || (guest && !has(cuts, at->mark[n]))) << l;
+        int neighbor = 0;
+        for (int m = 0; m < MPM_NEIGHBORS; m++) neighbor |= has(cuts, at->neighbor[m][n]);
+        q |= (has(cuts, -at->mark[n]) || (neighbor && !has(cuts, at->mark[n]))) << l;
     }
     return q;
 }
@@ -134,7 +134,7 @@ static int find_branch(const mpm_crossing *at, int levels, const tobi_columns *c
 /* Particles of one side of a cut that know another cut too: how much of them on either side of that. */
 typedef struct company { float mark, weight[2]; } company;
 
-enum { COMPANIES = 2*MPM_VOTES };
+enum { COMPANIES = 2*MPM_MAJORITIES };
 
 static void join(company list[COMPANIES], float mark, int across, float weight)
 {
@@ -146,22 +146,22 @@ static void join(company list[COMPANIES], float mark, int across, float weight)
 }
 
 /* The marks of most of those that are rather across. */
-static void choose_guests(mpm_crossing *at, int place, const company list[COMPANIES])
+static void choose_neighbors(mpm_crossing *at, int place, const company list[COMPANIES])
 {
     float before = INFINITY;
-    for (int m = 0; m < MPM_GUESTS; m++) {
+    for (int m = 0; m < MPM_NEIGHBORS; m++) {
         const company *best = NULL;
         for (int k = 0; k < COMPANIES && list[k].mark != 0; k++)
             if (list[k].weight[1] > list[k].weight[0] && list[k].weight[1] < before &&
                 (!best || list[k].weight[1] > best->weight[1]))
                 best = &list[k];
-        at->guest[m][place] = best ? best->mark : 0;
+        at->neighbor[m][place] = best ? best->mark : 0;
         before = best ? best->weight[1] : 0;
     }
 }
 
 /* Who does not know the cuts of a level goes with those who share his other sides. */
-static void find_guests(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
+static void find_neighbors(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
                         const mpm_view *v)
 {
     company list[MPM_VELOCITIES/2][COMPANIES];
@@ -175,26 +175,27 @@ static void find_guests(mpm_crossing *at, int level, const struct mpm_cut *c, co
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
             if (fabsf(cuts->c[k].w) != fabsf(mark)) join(list[q], cuts->c[k].w, across, w.weight);
     }
-    for (int q = 0; q < 1 << level; q++) choose_guests(at, place_of(level, q), list[q]);
+    for (int q = 0; q < 1 << level; q++) choose_neighbors(at, place_of(level, q), list[q]);
 }
 
 /* The cuts of one level of the tree; returns whether there are any. */
 static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
                       const mpm_view *v)
 {
-    mpm_vote votes[MPM_VELOCITIES/2][MPM_VOTES];
+    mpm_majority votes[MPM_VELOCITIES/2][MPM_MAJORITIES];
     int any = 0, unused = 0;
     memset(votes, 0, sizeof votes);
     for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
         const tobi_columns *cuts = &v->cuts[w.particle];
         const int q = find_branch(at, level, cuts);
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
-            mpm_vote_add(votes[q], cuts->c[k].w, w.weight, w.place, quad_load(&c->face[w.particle].c[k]), 0);
+            mpm_majority_add(votes[q], cuts->c[k].w, w.weight, w.place,
+                             quad_load(&c->face[w.particle].c[k]), 0);
     }
     for (int q = 0; q < 1 << level; q++) {
-        const mpm_vote *best = mpm_vote_pick(votes[q], &unused);
+        const mpm_majority *best = mpm_majority_pick(votes[q], &unused);
         if (!best) continue;
-        at->mark[place_of(level, q)] = mpm_vote_own(best) ? -best->number : best->number;
+        at->mark[place_of(level, q)] = mpm_majority_own(best) ? -best->number : best->number;
         any = 1;
     }
     return any;
@@ -203,27 +204,27 @@ static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, cons
 static void grow_tree(mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v)
 {
     memset(at->mark, 0, sizeof at->mark);
-    memset(at->guest, 0, sizeof at->guest);
+    memset(at->neighbor, 0, sizeof at->neighbor);
     at->mark[0] = c->side[at->node];
     at->levels = 1;
-    find_guests(at, 0, c, g, v);
+    find_neighbors(at, 0, c, g, v);
     while (at->levels < MPM_LEVELS && grow_level(at, at->levels, c, g, v))
-        find_guests(at, at->levels++, c, g, v);
+        find_neighbors(at, at->levels++, c, g, v);
 }
 
 /* What is heard of each piece: of the cuts that it knows, with its side, 0 = no more. */
 typedef struct piece {
-    mpm_heard face[MPM_VOTES];
-    float mark[MPM_VOTES], weight, friction;
+    mpm_heard face[MPM_MAJORITIES];
+    float mark[MPM_MAJORITIES], weight, friction;
 } piece;
 
 static void hear_face(piece *p, float mark, float w, quad place, quad face)
 {
     int k = 0;
-    while (k < MPM_VOTES && p->mark[k] != 0 && p->mark[k] != mark) k++;
-    if (k == MPM_VOTES) return;
+    while (k < MPM_MAJORITIES && p->mark[k] != 0 && p->mark[k] != mark) k++;
+    if (k == MPM_MAJORITIES) return;
     p->mark[k] = mark;
-    mpm_vote_hear(&p->face[k], w, place, face);
+    mpm_majority_hear(&p->face[k], w, place, face);
 }
 
 static void hear_pieces(const mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v,
@@ -260,7 +261,7 @@ static int find_fork(int a, int b)
 static int find_sides(const piece *p, float mark)
 {
     int sides = 0;
-    for (int k = 0; k < MPM_VOTES; k++) sides |= p->mark[k] == mark ? 1 : p->mark[k] == -mark ? 2 : 0;
+    for (int k = 0; k < MPM_MAJORITIES; k++) sides |= p->mark[k] == mark ? 1 : p->mark[k] == -mark ? 2 : 0;
     return sides;
 }
 
@@ -277,15 +278,15 @@ static int part(const piece *a, int k, const piece *b, int l)
 /* The faces at which two pieces may touch: none if those of the cut at which their ways part are not near. */
 static void fill_pair(const mpm_crossing *at, const piece *pieces, mpm_pair *pair)
 {
-    const int fork = find_fork(pair->seam.first, pair->seam.second);
-    const piece *one = &pieces[pair->seam.first], *two = &pieces[pair->seam.second];
-    const float mark = at->mark[place_of(fork, pair->seam.first)];
+    const int fork = find_fork(pair->cut_face.first, pair->cut_face.second);
+    const piece *one = &pieces[pair->cut_face.first], *two = &pieces[pair->cut_face.second];
+    const float mark = at->mark[place_of(fork, pair->cut_face.first)];
     if (mark == 0 || find_sides(one, mark) != 1 || find_sides(two, -mark) != 1) return;
-    for (int k = 0; k < MPM_VOTES; k++)
-        for (int l = 0; l < MPM_VOTES && pair->count < MPM_LEVELS; l++)
+    for (int k = 0; k < MPM_MAJORITIES; k++)
+        for (int l = 0; l < MPM_MAJORITIES && pair->count < MPM_LEVELS; l++)
             if (part(one, k, two, l))
-                pair->face[pair->count++] = mpm_vote_measure(&one->face[k], &two->face[l]);
-    pair->seam.friction = (one->friction + two->friction)/(one->weight + two->weight);
+                pair->face[pair->count++] = mpm_majority_measure(&one->face[k], &two->face[l]);
+    pair->cut_face.friction = (one->friction + two->friction)/(one->weight + two->weight);
 }
 
 void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at)
@@ -294,7 +295,7 @@ void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at)
     for (int b = 1; b < 1 << at->levels; b++)
         for (int a = 0; a < b; a++) {
             const int swapped = a >> find_fork(a, b) & 1;
-            *pair++ = (mpm_pair){ .seam = { .first = swapped ? b : a, .second = swapped ? a : b } };
+            *pair++ = (mpm_pair){ .cut_face = { .first = swapped ? b : a, .second = swapped ? a : b } };
         }
 }
 
@@ -366,7 +367,7 @@ void mpm_cross_place(mpm_cross *c, const mpm_grid *g)
     for (int64_t k = 0; k < c->count; k++) {
         const int64_t node = c->at[k].node, twin = g->patch[node/nodes].twin;
         for (int64_t n = c->at[k].begin; n < c->at[k].end; n++) {
-            mpm_seam *s = &c->pair[n].seam;
+            mpm_cut_face *s = &c->pair[n].cut_face;
             s->first = (int32_t)(s->first ? (twin + s->first - 1)*nodes + node%nodes : node);
             s->second = (int32_t)(s->second ? (twin + s->second - 1)*nodes + node%nodes : node);
         }

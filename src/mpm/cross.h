@@ -3,7 +3,7 @@
 #pragma once
 #include "core/system.h"
 #include "mpm/grid.h"
-#include "mpm/seam.h"
+#include "mpm/cut_face.h"
 
 struct mpm_cut;
 

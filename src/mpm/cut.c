@@ -5,7 +5,7 @@
 #include "mpm/particle_fields.h"
 #include "exec/rows.h"
 #include "geom/vec3.h"
-#include "mpm/vote.h"
+#include "mpm/majority.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +13,13 @@
 void mpm_cut_free(mpm_cut *c)
 {
     free(c->side);
-    free(c->seam);
+    free(c->cut_face);
     free(c->tile);
     free(c->face);
     for (int l = 0; l < MPM_LEVELS; l++) free(c->hidden[l]);
-    free(c->voter);
-    free(c->voters);
-    free(c->crowd);
+    free(c->member);
+    free(c->members);
+    free(c->extent);
     free(c->rows);
     mpm_cross_free(&c->cross);
     memset(c, 0, sizeof *c);
@@ -32,32 +32,32 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
     int64_t nodes = g->patch_room*nodes_of(g);
     if (nodes > c->node_room) {
         free(c->side);
-        free(c->seam);
+        free(c->cut_face);
         free(c->cross.doubt);
         c->cross.doubt = malloc((size_t)g->patch_room*sizeof *c->cross.doubt);
         c->side = malloc((size_t)nodes*sizeof *c->side);
-        c->seam = malloc((size_t)nodes*sizeof *c->seam);
-        c->node_room = c->side && c->seam && c->cross.doubt ? nodes : 0;
+        c->cut_face = malloc((size_t)nodes*sizeof *c->cut_face);
+        c->node_room = c->side && c->cut_face && c->cross.doubt ? nodes : 0;
     }
     if (particles > c->particle_room) {
         int hidden = 1;
         free(c->face);
-        free(c->voter);
+        free(c->member);
         for (int l = 0; l < MPM_LEVELS; l++) {
             free(c->hidden[l]);
             c->hidden[l] = calloc((size_t)particles, sizeof *c->hidden[l]);
             hidden &= c->hidden[l] != NULL;
         }
-        c->voter = malloc((size_t)particles*sizeof *c->voter);
+        c->member = malloc((size_t)particles*sizeof *c->member);
         c->face = malloc((size_t)particles*sizeof *c->face);
-        c->particle_room = c->face && hidden && c->voter ? particles : 0;
+        c->particle_room = c->face && hidden && c->member ? particles : 0;
     }
     if (g->block_room > c->block_room) {
-        free(c->voters);
-        free(c->crowd);
-        c->voters = malloc((size_t)g->block_room*sizeof *c->voters);
-        c->crowd = malloc((size_t)g->block_room*sizeof *c->crowd);
-        c->block_room = c->voters && c->crowd ? g->block_room : 0;
+        free(c->members);
+        free(c->extent);
+        c->members = malloc((size_t)g->block_room*sizeof *c->members);
+        c->extent = malloc((size_t)g->block_room*sizeof *c->extent);
+        c->block_room = c->members && c->extent ? g->block_room : 0;
     }
     if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
         return TOBI_OK;
@@ -121,7 +121,7 @@ static void mark_particles(const void *view, int64_t begin, int64_t end)
         if (at.beyond > 0.25*v->cell || fabs(at.aside) > m->band || fabs(at.ahead) > v->cell) continue;
         met = 1;
         if (at.ahead > 0) continue;
-        mpm_vote_deformation(v, i, f);
+        mpm_majority_deformation(v, i, f);
         remember(&mpm_fields_of(&m->s->particles)->cuts[i], f, m->mine, &at, least);
     }
     if (met) __atomic_store_n(m->met, 1, __ATOMIC_RELAXED);
@@ -168,10 +168,10 @@ static void copy_sides(const mpm_cut *c, const mpm_block *b, float *tile, int di
 static int count_tiles(int levels)
 {
     const int twins = (1 << levels) - 1;
-    return levels > 1 ? (1 + MPM_GUESTS)*twins : twins;
+    return levels > 1 ? (1 + MPM_NEIGHBORS)*twins : twins;
 }
 
-/* The marks of the deeper levels around a block and the guests, as its other tiles. */
+/* The marks of the deeper levels around a block and the neighbors, as its other tiles. */
 static void copy_marks(const mpm_cut *c, const mpm_block *b, float *tile, int dim)
 {
     const int three = dim == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
@@ -189,8 +189,8 @@ static void copy_marks(const mpm_cut *c, const mpm_block *b, float *tile, int di
             if (x < 0 || y < 0 || z < 0 || x > 7 || y > 7 || z > 7) continue;
             float *to = tile + tile_place(x, y, z, dim);
             for (int m = 1; m < twins; m++) to[m*MPM_SIDES] = at->mark[m];
-            for (int m = 0; m < MPM_GUESTS*twins; m++)
-                to[(twins + m)*MPM_SIDES] = at->guest[m/twins][m%twins];
+            for (int m = 0; m < MPM_NEIGHBORS*twins; m++)
+                to[(twins + m)*MPM_SIDES] = at->neighbor[m/twins][m%twins];
         }
     }
 }
@@ -257,7 +257,7 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
         b->levels = 0;
-        for (int o = 0; o < 27 && (v->apart || c->voters[k] > 0); o++)
+        for (int o = 0; o < 27 && (v->apart || c->members[k] > 0); o++)
             if (b->around[o] >= 0 && g->patch[b->around[o]].levels > b->levels)
                 b->levels = g->patch[b->around[o]].levels;
         b->sides = b->levels > 0 ? (int32_t)c->tile_count : -1;
@@ -337,12 +337,12 @@ static void make_twins(mpm_grid *g)
     }
 }
 
-/* Packs the seams of the nodes with a side at which no cuts cross. */
-static void list_seams(mpm_cut *c, const mpm_grid *g)
+/* Packs the cut faces of the nodes with a side at which no cuts cross. */
+static void list_cut_faces(mpm_cut *c, const mpm_grid *g)
 {
     const int nodes = nodes_of(g);
     int64_t crossing = 0;
-    c->seam_count = 0;
+    c->cut_face_count = 0;
     for (int64_t k = 0; k < g->patch_count; k++)
         for (int n = 0; n < nodes && g->patch[k].twin >= 0; n++) {
             if (c->side[k*nodes + n] == 0) continue;
@@ -350,10 +350,10 @@ static void list_seams(mpm_cut *c, const mpm_grid *g)
                 crossing++;
                 continue;
             }
-            mpm_seam *seam = &c->seam[c->seam_count++];
-            *seam = c->seam[k*nodes + n];
-            seam->first = (int32_t)(k*nodes + n);
-            seam->second = (int32_t)(g->patch[k].twin*(int64_t)nodes + n);
+            mpm_cut_face *cut_face = &c->cut_face[c->cut_face_count++];
+            *cut_face = c->cut_face[k*nodes + n];
+            cut_face->first = (int32_t)(k*nodes + n);
+            cut_face->second = (int32_t)(g->patch[k].twin*(int64_t)nodes + n);
         }
 }
 
@@ -362,8 +362,8 @@ static void list_votes(const void *view, int64_t begin, int64_t end)
     const splitting *s = view;
     const mpm_grid *g = s->g;
     for (int64_t k = begin; k < end; k++) {
-        mpm_vote_list(s->c, s->v, &g->block[k], k, g->dimension);
-        if (s->v->apart) s->c->crowd[k] = mpm_meet_look(s->v, &g->block[k], g->dimension);
+        mpm_majority_list(s->c, s->v, &g->block[k], k, g->dimension);
+        if (s->v->apart) s->c->extent[k] = mpm_solid_contact_look(s->v, &g->block[k], g->dimension);
     }
 }
 
@@ -374,10 +374,10 @@ static void count_votes(const void *view, int64_t begin, int64_t end)
     const mpm_grid *g = s->g;
     const int nodes = nodes_of(g);
     for (int64_t k = begin; k < end; k++) {
-        g->patch[k].levels = mpm_vote_count(s->c, g, s->v, k);
+        g->patch[k].levels = mpm_majority_count(s->c, g, s->v, k);
         if (s->v->apart)
-            g->patch[k].levels |= mpm_meet_find(g, s->v, c->crowd, &g->patch[k], c->side + k*nodes,
-                                                c->seam + k*nodes);
+            g->patch[k].levels |= mpm_solid_contact_find(g, s->v, c->extent, &g->patch[k], c->side + k*nodes,
+                                                c->cut_face + k*nodes);
     }
 }
 
@@ -387,7 +387,7 @@ static tobi_status split_blocks(mpm_cut *c, tobi_system *s, mpm_grid *g, const m
 {
     number_patches(g);
     mpm_cross_place(&c->cross, g);
-    list_seams(c, g);
+    list_cut_faces(c, g);
     TOBI_TRY(find_split(c, g, v, &s->sim->exec, err));
     number_blocks(g);
     TOBI_TRY(mpm_grid_reserve_twins(g, &s->sim->exec, err));
@@ -406,7 +406,7 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view
     return split_blocks(c, s, g, v, err);
 }
 
-tobi_status mpm_cut_recall(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
+tobi_status mpm_cut_restore(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
     const splitting view = { c, g, v };
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
@@ -420,24 +420,25 @@ typedef struct visiting {
     tobi_float4 *node;
     double dt;
     mpm_visit what;
-    double *part;                      /* J, lost in each block of seams */
+    double *part;                      /* J, lost in each block of cut faces */
 } visiting;
 
 static void visit_parts(const void *view, int64_t begin, int64_t end)
 {
     const visiting *v = view;
-    const int64_t count = v->c->seam_count;
+    const int64_t count = v->c->cut_face_count;
     for (int64_t q = begin; q < end; q++) {
         const int64_t last = (q + 1)*TOBI_BLOCK;
-        v->part[q] = mpm_seams_visit(v->c->seam, q*TOBI_BLOCK, last < count ? last : count, v->node, v->dt,
+        v->part[q] = mpm_cut_faces_visit(v->c->cut_face, q*TOBI_BLOCK, last < count ? last : count, v->node,
+                                         v->dt,
                                      v->what);
     }
 }
 
-/* A walk over the seams and over the nodes where cuts cross. */
+/* A walk over the cut faces and over the nodes where cuts cross. */
 static double visit(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, mpm_visit what)
 {
-    const int64_t parts = (c->seam_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    const int64_t parts = (c->cut_face_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     double *part = x->partial, lost = 0;
     const visiting view = { c, g->node, dt, what, part };
     tobi_loop(tobi_team(x, parts, 8), parts, 0, visit_parts, &view);
@@ -445,11 +446,11 @@ static double visit(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, mpm_
     return lost + mpm_cross_visit(&c->cross, x, g->node, dt, what);
 }
 
-void mpm_cut_meet(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit(c, x, g, dt, MPM_BEGIN); }
+void mpm_cut_begin(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit(c, x, g, dt, MPM_BEGIN); }
 
 void mpm_cut_sweep(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt) { visit(c, x, g, dt, MPM_PRESS); }
 
-double mpm_cut_settle(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
+double mpm_cut_finish(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt)
 {
-    return visit(c, x, g, dt, MPM_SETTLE);
+    return visit(c, x, g, dt, MPM_FINISH);
 }

@@ -47,8 +47,8 @@ void mpm_energy_add_transfer(tobi_system *s, mlsmpm *m)
 {
     double came[TOBI_TOTALS], arrived[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch_each(&s->sim->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, came);
-    tobi_launch_each(&s->sim->exec, m->kernels->energy_calm, &m->view, mpm_count_patches(m), arrived);
+    tobi_launch_each(&s->sim->exec, m->kernels->scatter_unstressed, &m->view, m->grid.block_count, came);
+    tobi_launch_each(&s->sim->exec, m->kernels->energy_unstressed, &m->view, mpm_count_patches(m), arrived);
     if (s->step > 0) m->memory.transfer += m->memory.node_energy - came[0];
     m->memory.transfer += came[1] - arrived[0];
 }

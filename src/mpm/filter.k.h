@@ -6,13 +6,13 @@
 TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
-    tobi_float4 tile[MPM_VELOCITIES*(MPM_TILE_3D + 8)], *calm[MPM_VELOCITIES];
+    tobi_float4 tile[MPM_VELOCITIES*(MPM_TILE_3D + 8)], *unstressed[MPM_VELOCITIES];
     const quad zero[3] = {quad_set(0), quad_set(0), quad_set(0)};
     const tobi_float4 frame = v->reach[number].frame;
     row g[9];
     (void)totals;
     for (int r = 0; r < 9; r++) g[r] = row_set(0);
-    mpm_clear_tiles(b, v->calm, number, calm, dim);
+    mpm_clear_tiles(b, v->unstressed, number, unstressed, dim);
     mpm_copy_tiles(v, number, v->wave, quad_load(&frame), tile, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
@@ -25,8 +25,9 @@ TOBI_FN void mpm_filter(const mpm_view *v, int64_t number, double *totals, const
             else mpm_load_rows(tile, s.first[k], g, dim);
             u = row_first(mpm_interpolate(g, &s, k, dim));
             u[3] = 1;
-            if (mpm_is_hidden(&hidden)) mpm_add_split(calm, b->levels, &s, k, &hidden, u*mass, zero, dim);
-            else mpm_add_calm(calm[0], &s, k, u*mass, dim);
+            if (mpm_is_hidden(&hidden))
+                mpm_add_split(unstressed, b->levels, &s, k, &hidden, u*mass, zero, dim);
+            else mpm_add_unstressed(unstressed[0], &s, k, u*mass, dim);
         }
     }
 }
@@ -37,7 +38,7 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     quad sum[MPM_NODES_3D], frame;
     (void)totals;
-    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, &frame, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->unstressed, sum, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         const float mass = sum[n][3];
         const int64_t at = number*nodes + n;
@@ -47,14 +48,14 @@ TOBI_FN void mpm_filter_nodes(const mpm_view *v, int64_t number, double *totals,
     }
 }
 
-/* For measuring what transfers cost: momentum with APIC's affine part, without stress, into the calm tile.
-   totals: kinetic energy of the particles, 0 as they came and 1 after damping. */
-TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+/* For measuring what transfers cost: momentum with APIC's affine part, without stress, into the
+   unstressed tile. totals: kinetic energy of the particles, 0 as they came and 1 after damping. */
+TOBI_FN void mpm_scatter_unstressed(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const mpm_block *b = &v->block[number];
     const quad frame = quad_load(&v->reach[number].frame);
-    tobi_float4 *calm[MPM_VELOCITIES];
-    mpm_clear_tiles(b, v->calm, number, calm, dim);
+    tobi_float4 *unstressed[MPM_VELOCITIES];
+    mpm_clear_tiles(b, v->unstressed, number, unstressed, dim);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -81,16 +82,16 @@ TOBI_FN void mpm_scatter_calm(const mpm_view *v, int64_t number, double *totals,
                 if (c < dim) base = base - column[c]*quad_set(s.offset[c][k]);
             }
             const mpm_hidden hidden = mpm_read_hidden(v, i + k, b->levels);
-            mpm_add_split(calm, b->levels, &s, k, &hidden, base, column, dim);
+            mpm_add_split(unstressed, b->levels, &s, k, &hidden, base, column, dim);
         }
     }
 }
 
-/* Kinetic energy of a block of nodes into totals[0]: of the calm tiles, */
-TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, const int dim)
+/* Kinetic energy of a block of nodes into totals[0]: of the unstressed tiles, */
+TOBI_FN void mpm_energy_unstressed(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     quad sum[MPM_NODES_3D], frame;
-    mpm_sum_tiles(v, &v->patch[number], v->calm, sum, &frame, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->unstressed, sum, &frame, dim);
     for (int n = 0; n < (dim == 3 ? MPM_NODES_3D : MPM_NODES_2D); n++) {
         quad square = sum[n] + quad_set(sum[n][3])*frame;
         square = square*square;
@@ -102,13 +103,13 @@ TOBI_FN void mpm_energy_calm(const mpm_view *v, int64_t number, double *totals, 
 TOBI_FN void mpm_energy_nodes(const mpm_view *v, int64_t number, double *totals, const int dim)
 {
     const int nodes = dim == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    quad pushed[MPM_NODES_3D], calm[MPM_NODES_3D], frame;
+    quad pushed[MPM_NODES_3D], unstressed[MPM_NODES_3D], frame;
     mpm_sum_tiles(v, &v->patch[number], v->tile, pushed, &frame, dim);
-    mpm_sum_tiles(v, &v->patch[number], v->calm, calm, &frame, dim);
+    mpm_sum_tiles(v, &v->patch[number], v->unstressed, unstressed, &frame, dim);
     for (int n = 0; n < nodes; n++) {
         quad u = quad_load(&v->node[number*nodes + n]), square = u*u;
         if (!(u[3] > 0)) continue;
-        quad change = u - frame - calm[n]*quad_set(1/u[3]), stress = u*(pushed[n] - calm[n]);
+        quad change = u - frame - unstressed[n]*quad_set(1/u[3]), stress = u*(pushed[n] - unstressed[n]);
         totals[0] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];
         square = change*change;
         totals[1] += 0.5*(double)(square[0] + square[1] + square[2])*u[3];

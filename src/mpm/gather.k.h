@@ -163,13 +163,13 @@ TOBI_FN void mpm_end_motion(const mpm_motion *m, double dt, double *totals)
 }
 
 /* The rows of nodes that a particle feels, kept for those after it that feel the same. */
-typedef struct mpm_felt {
+typedef struct mpm_gathered {
     row g[9];
     int32_t first;
     mpm_hidden hidden;                 /* from the twins' tiles                                    */
-} mpm_felt;
+} mpm_gathered;
 
-TOBI_FN void mpm_begin_felt(mpm_felt *f)
+TOBI_FN void mpm_begin_gathered(mpm_gathered *f)
 {
     for (int r = 0; r < 9; r++) f->g[r] = row_set(0);
     f->first = -1;
@@ -177,7 +177,7 @@ TOBI_FN void mpm_begin_felt(mpm_felt *f)
 }
 
 TOBI_FN void mpm_find_rows(const tobi_float4 *tile, int levels, int32_t first, const mpm_hidden *hidden,
-                           mpm_felt *f, const int dim)
+                           mpm_gathered *f, const int dim)
 {
     if (f->first == first && mpm_is_same(&f->hidden, hidden)) return;
     f->first = first;
@@ -187,11 +187,11 @@ TOBI_FN void mpm_find_rows(const tobi_float4 *tile, int levels, int32_t first, c
 }
 
 /* Particle i, k of eight: velocity, its gradient, eq. (14), and new position. levels: of the block.
-   plain: no FLIP, no cuts. felt: of `now` and `old`. The w of the velocity: the force
+   plain: no FLIP, no cuts. gathered: of `now` and `old`. The w of the velocity: the force
    of a contact in this step is kept for the next, and only that long. The w of the gradient: where the
    particle is at home, for mpm_grid_restore. */
 TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil *s, int k, int64_t i,
-                      int levels, quad home, mpm_motion *m, mpm_felt felt[2], const int dim,
+                      int levels, quad home, mpm_motion *m, mpm_gathered gathered[2], const int dim,
                       const int plain)
 {
     const float scale = (float)(4*v->inverse_cell);
@@ -203,9 +203,9 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     if (plain) mpm_load_rows(t->now, s->first[k], g, dim);
     else {
         hidden = mpm_read_hidden(v, i, levels);
-        mpm_find_rows(t->now, levels, s->first[k], &hidden, &felt[0], dim);
+        mpm_find_rows(t->now, levels, s->first[k], &hidden, &gathered[0], dim);
     }
-    row all = mpm_interpolate(plain ? g : felt[0].g, s, k, dim);
+    row all = mpm_interpolate(plain ? g : gathered[0].g, s, k, dim);
     quad u = row_first(all);
     all = row_sub(all, row_mul(row_repeat(u), row_spread(quad_load(&m->turn[k]))));
     u = u + quad_load(&t->frame);
@@ -217,8 +217,8 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
     if (!plain && v->old) {
         const quad own = quad_load(velocity)*quad_set(v->material[v->solid[i]].keep*v->own) -
                          quad_load(&t->frame)*quad_set(v->own);
-        mpm_find_rows(t->old, levels, s->first[k], &hidden, &felt[1], dim);
-        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(felt[1].g, s, k, dim)));
+        mpm_find_rows(t->old, levels, s->first[k], &hidden, &gathered[1], dim);
+        u = u + quad_set(v->flip)*(own - row_first(mpm_interpolate(gathered[1].g, s, k, dim)));
     }
     if (!plain) quad_store(&m->speed[k], u);
     u[3] = velocity->w > 0 ? -velocity->w : 0;
@@ -235,8 +235,8 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
                             const int dim, const int plain)
 {
     const quad home = {0, (float)b->corner[0], (float)b->corner[1], (float)b->corner[2]};
-    mpm_felt felt[2];
-    for (int n = 0; n < 2; n++) mpm_begin_felt(&felt[n]);
+    mpm_gathered gathered[2];
+    for (int n = 0; n < 2; n++) mpm_begin_gathered(&gathered[n]);
     for (int64_t i = b->begin; i < b->end; i += MPM_WIDE) {
         const int count = b->end - i < MPM_WIDE ? (int)(b->end - i) : MPM_WIDE;
         mpm_stencil s;
@@ -244,7 +244,7 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
         mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
             if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) mpm_keep_home(v, i + k, home);
-            else mpm_move(v, t, &s, k, i + k, b->levels, home, m, felt, dim, plain);
+            else mpm_move(v, t, &s, k, i + k, b->levels, home, m, gathered, dim, plain);
         }
         mpm_note_speed(m, plain);
     }

@@ -415,5 +415,5 @@ void mpm_grid_bind(const mpm_grid *g, mpm_view *v)
     v->old = g->layers > 1 ? g->old : NULL;
     v->wave = g->layers > 2 ? g->wave : NULL;
     v->tile = (tobi_float4 *)(void *)g->scratch;
-    v->calm = g->layers > 1 ? v->tile + (g->block_count + g->block_twins)*tile_nodes(g) : NULL;
+    v->unstressed = g->layers > 1 ? v->tile + (g->block_count + g->block_twins)*tile_nodes(g) : NULL;
 }

@@ -183,13 +183,13 @@ static int is_stale(const mlsmpm *m)
 
 static tobi_status find_cuts(tobi_system *s, mlsmpm *m, int stale, tobi_error *err)
 {
-    if (stale || m->memory.moved > MPM_MEET_STALE*m->cell) {
+    if (stale || m->memory.moved > MPM_SOLID_CONTACT_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory.cuts);
         m->touch.contacts.marked = 1;
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
         m->memory.moved = 0;
     } else if (m->cut.rows) {
-        TOBI_TRY(mpm_cut_recall(&m->cut, s, &m->grid, &m->view, err));
+        TOBI_TRY(mpm_cut_restore(&m->cut, s, &m->grid, &m->view, err));
     }
     free(m->cut.rows);
     m->cut.rows = NULL;
@@ -280,7 +280,7 @@ static void filter_velocity(tobi_system *s, mlsmpm *m)
         tobi_launch_each(&s->sim->exec, m->kernels->filter_nodes, &m->view, mpm_count_patches(m), NULL);
     }
     if (m->def.measure_transfer)           /* the filter has used the tiles that mpm_energy_add_nodes reads */
-        tobi_launch_each(&s->sim->exec, m->kernels->scatter_calm, &m->view, m->grid.block_count, NULL);
+        tobi_launch_each(&s->sim->exec, m->kernels->scatter_unstressed, &m->view, m->grid.block_count, NULL);
 }
 
 static void solve_grid(tobi_system *s, mlsmpm *m, double *clock)
@@ -289,7 +289,7 @@ static void solve_grid(tobi_system *s, mlsmpm *m, double *clock)
     m->view.order = (float)m->def.xpic_order;
     tobi_launch_each(&s->sim->exec, m->kernels->collect, &m->view, mpm_count_patches(m), t);
     filter_velocity(s, m);
-    if (m->blades) mpm_cut_meet(&m->cut, &s->sim->exec, &m->grid, s->dt);
+    if (m->blades) mpm_cut_begin(&m->cut, &s->sim->exec, &m->grid, s->dt);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = t[a]/s->dt;
     m->memory.sides += t[3];
     tobi_stage_end(&s->sim->stages, "grid", clock);
@@ -327,7 +327,7 @@ static tobi_status touch_bodies(tobi_system *s, mlsmpm *m, double *clock, tobi_e
 }
 
 /* How fast sound is where a liquid is squeezed, for the next step. What moves slower than 0.3 of the speed of
-   sound does not squeeze it that much, so that calm liquids do not pay for the look. */
+   sound does not squeeze it that much, so that unstressed liquids do not pay for the look. */
 static void measure_squeeze(tobi_system *s, mlsmpm *m)
 {
     const double speed = fmax(m->memory.speed, s->sim->body_speed);
@@ -383,7 +383,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     mpm_energy_add_transfer(s, m);
     solve_grid(s, m, &clock);
     TOBI_TRY(touch_bodies(s, m, &clock, err));
-    if (m->blades) m->memory.friction += mpm_cut_settle(&m->cut, &s->sim->exec, &m->grid, s->dt);
+    if (m->blades) m->memory.friction += mpm_cut_finish(&m->cut, &s->sim->exec, &m->grid, s->dt);
     mpm_energy_add_nodes(s, m);
     return TOBI_OK;
 }
@@ -449,7 +449,7 @@ static tobi_status keep_rows(const tobi_system *s, double **rows, int64_t *count
 }
 
 /* After a load the blocks are built anew. */
-static void recall_rows(tobi_system *s, double *rows, int64_t count)
+static void restore_rows(tobi_system *s, double *rows, int64_t count)
 {
     mlsmpm *m = s->state;
     free(m->cut.rows);
@@ -512,7 +512,7 @@ const tobi_method tobi_mlsmpm = {
     .measure = mpm_energy_tell,
     .memory = list_memory,
     .keep = keep_rows,
-    .recall = recall_rows,
+    .restore = restore_rows,
     .inserted = bind_inserted,
     .follow_gravity = follow_gravity,
     .bytes = count_bytes,

@@ -13,7 +13,7 @@ typedef struct mpm_pack {
 } mpm_pack;
 
 /* 1/kg: of a node, and times the sum of the weights there, of each kind. */
-typedef struct mpm_yield { float inverse, crowd[2]; } mpm_yield;
+typedef struct mpm_yield { float inverse, load[2]; } mpm_yield;
 
 typedef struct mpm_pack_view {
     const mpm_pack *TOBI_RESTRICT pack;
@@ -28,7 +28,7 @@ typedef struct mpm_pack_view {
 TOBI_FN quad mpm_pack_size(quad a) { return quad_larger(a, quad_set(0) - a); }
 
 /* Adds the sizes of the weights up at the nodes. */
-TOBI_FN void mpm_pack_crowd(const mpm_pack_view *v, int64_t number)
+TOBI_FN void mpm_pack_load(const mpm_pack_view *v, int64_t number)
 {
     const mpm_pack *p = &v->pack[number];
     const uint32_t *node = v->node + p->node;
@@ -37,9 +37,9 @@ TOBI_FN void mpm_pack_crowd(const mpm_pack_view *v, int64_t number)
     for (int n = 0; n < count; n++, weight += 8) {
         mpm_yield *y = &v->yield[node[n]];
         const quad along = quad_load(weight), across = mpm_pack_size(quad_load(weight + 4));
-        if (y->crowd[0] == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
-        y->crowd[0] += ((along[0] + along[1]) + (along[2] + along[3]))*y->inverse;
-        y->crowd[1] += ((across[0] + across[1]) + (across[2] + across[3]))*y->inverse;
+        if (y->load[0] == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
+        y->load[0] += ((along[0] + along[1]) + (along[2] + along[3]))*y->inverse;
+        y->load[1] += ((across[0] + across[1]) + (across[2] + across[3]))*y->inverse;
     }
 }
 
@@ -54,8 +54,8 @@ TOBI_FN void mpm_pack_answer(const mpm_pack_view *v, int64_t number)
     quad along = quad_set(0), across = quad_set(0);
     for (int n = 0; n < count; n++, weight += 8) {
         const mpm_yield *y = &v->yield[node[n]];
-        along = along + quad_load(weight)*quad_set(y->crowd[0]);
-        across = across + mpm_pack_size(quad_load(weight + 4))*quad_set(y->crowd[1]);
+        along = along + quad_load(weight)*quad_set(y->load[0]);
+        across = across + mpm_pack_size(quad_load(weight + 4))*quad_set(y->load[1]);
     }
     for (int k = 0; k < p->used; k++) {
         v->moving[2*p->contact[k]].w = along[k];
@@ -69,7 +69,7 @@ TOBI_FN void mpm_pack_forget(const mpm_pack_view *v, int64_t number)
     const mpm_pack *p = &v->pack[number];
     const uint32_t *node = v->node + p->node;
     const int count = p->count;
-    for (int n = 0; n < count; n++) v->yield[node[n]].crowd[0] = v->yield[node[n]].crowd[1] = 0;
+    for (int n = 0; n < count; n++) v->yield[node[n]].load[0] = v->yield[node[n]].load[1] = 0;
 }
 
 TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)

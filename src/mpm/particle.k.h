@@ -206,7 +206,7 @@ TOBI_FN void mpm_store_load(const mpm_view *v, const mpm_stencil *at, const lane
         lane_store_float4(load->bend[c], 1, 8, bend[0], bend[1], bend[2], zero);
     }
     lane_store_float4(load->base, 1, 8, base[0], base[1], base[2], momentum[3]);
-    if (v->calm)
+    if (v->unstressed)
         lane_store_float4(load->momentum, 1, 8, momentum[0], momentum[1], momentum[2], momentum[3]);
 }
 

@@ -117,7 +117,7 @@ TOBI_FN void mpm_add_particle(mpm_cell *c, const mpm_stencil *s, const mpm_load 
 }
 
 /* One particle's momentum alone, without stress: FLIP's changes are measured against it. */
-TOBI_FN void mpm_add_calm(tobi_float4 *tile, const mpm_stencil *s, int k, quad momentum, const int dim)
+TOBI_FN void mpm_add_unstressed(tobi_float4 *tile, const mpm_stencil *s, int k, quad momentum, const int dim)
 {
     const int rows = dim == 3 ? 3 : 1;
     const row x = row_mul(row_repeat(momentum), row_spread(quad_load(&s->along[k])));
@@ -140,7 +140,7 @@ TOBI_FN tobi_float4 *mpm_clear_tile(tobi_float4 *tiles, int64_t number, const in
 
 /* Where a block's particles add to: tiles of each velocity. */
 typedef struct mpm_targets {
-    tobi_float4 *tile[MPM_VELOCITIES], *calm[MPM_VELOCITIES];  /* calm: without stress; NULL with APIC */
+    tobi_float4 *tile[MPM_VELOCITIES], *unstressed[MPM_VELOCITIES];      /* without stress; NULL with APIC */
     const float *side;                                         /* sides of the nodes at cuts       */
 } mpm_targets;
 
@@ -160,7 +160,7 @@ TOBI_FN void mpm_find_targets(const mpm_view *v, int64_t number, tobi_float4 *ow
     const int64_t nodes = (dim == 3 ? MPM_TILE_3D : MPM_TILE_2D) + 8;
     t->tile[0] = own;
     for (int q = 1; q < 1 << b->levels; q++) t->tile[q] = v->tile + (b->twin + q - 1)*nodes;
-    mpm_clear_tiles(b, v->old ? v->calm : NULL, number, t->calm, dim);
+    mpm_clear_tiles(b, v->old ? v->unstressed : NULL, number, t->unstressed, dim);
     t->side = b->levels > 0 ? v->sides + (int64_t)b->sides*MPM_SIDES : NULL;
 }
 
@@ -194,8 +194,9 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_ta
             mpm_add_particle(&cell, &s, &load, k, dim, bent);
             if (kind != MPM_CALM) continue;
             const quad momentum = quad_load(&load.momentum[k]);
-            if (mpm_is_hidden(&hidden)) mpm_add_split(t->calm, levels, &s, k, &hidden, momentum, zero, dim);
-            else mpm_add_calm(t->calm[0], &s, k, momentum, dim);
+            if (mpm_is_hidden(&hidden))
+                mpm_add_split(t->unstressed, levels, &s, k, &hidden, momentum, zero, dim);
+            else mpm_add_unstressed(t->unstressed[0], &s, k, momentum, dim);
         }
     }
     mpm_leave_cell(t->tile, levels, &cell, reach, dim, bent);
@@ -205,7 +206,7 @@ TOBI_FN double mpm_add_block(const mpm_view *v, const mpm_block *b, const mpm_ta
 TOBI_FN double mpm_add_kind(const mpm_view *v, const mpm_block *b, const mpm_targets *t, mpm_reach *reach,
                             const int dim, const int bent)
 {
-    if (t->calm[0]) return mpm_add_block(v, b, t, reach, dim, MPM_CALM, bent);
+    if (t->unstressed[0]) return mpm_add_block(v, b, t, reach, dim, MPM_CALM, bent);
     if (b->levels > 0) return mpm_add_block(v, b, t, reach, dim, MPM_SPLIT, bent);
     return mpm_add_block(v, b, t, reach, dim, MPM_PLAIN, bent);
 }

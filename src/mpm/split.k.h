@@ -77,18 +77,18 @@ TOBI_FN uint32_t mpm_match_all(const mpm_view *v, int64_t i, const float *side, 
     return found;
 }
 
-/* The nodes whose cut the particle does not know and at which it is a guest of those across. apart: from the
-   tile of the sides to those of the guests. */
-TOBI_FN uint32_t mpm_match_guests(const mpm_view *v, int64_t i, const float *side, int64_t apart,
+/* The nodes whose cut the particle does not know and at which it is a neighbor of those across. apart:
+   from the tile of the sides to those of the neighbors. */
+TOBI_FN uint32_t mpm_match_neighbors(const mpm_view *v, int64_t i, const float *side, int64_t apart,
                                   int32_t first, int dim)
 {
-    uint32_t own = 0, guest = 0;
+    uint32_t own = 0, neighbor = 0;
     for (int k = 0; v->cuts && k < TOBI_CUTS_EACH && v->cuts[i].c[k].w != 0; k++) {
         own |= mpm_match_sides(side, first, v->cuts[i].c[k].w, dim);
-        for (int n = 1; n <= MPM_GUESTS; n++)
-            guest |= mpm_match_sides(side + n*apart, first, v->cuts[i].c[k].w, dim);
+        for (int n = 1; n <= MPM_NEIGHBORS; n++)
+            neighbor |= mpm_match_sides(side + n*apart, first, v->cuts[i].c[k].w, dim);
     }
-    return guest & ~own;
+    return neighbor & ~own;
 }
 
 /* The nodes across the cuts of every level from a particle, and those whose second velocity is its solid's.
@@ -105,7 +105,8 @@ TOBI_FN mpm_hidden mpm_find_hidden(const mpm_view *v, int64_t i, const float *si
         for (int q = 0; q < 1 << l; q++) {
             const float *at = side + ((1 << l) - 1 + q)*MPM_SIDES;
             uint32_t across = mpm_match_all(v, i, at, first, dim);
-            if (levels > 1) across |= mpm_match_guests(v, i, at, ((1 << levels) - 1)*MPM_SIDES, first, dim);
+            if (levels > 1)
+                across |= mpm_match_neighbors(v, i, at, ((1 << levels) - 1)*MPM_SIDES, first, dim);
             found |= mpm_part(&h, q, l) & across;
         }
         h.level[l] = found;

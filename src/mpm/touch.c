@@ -100,14 +100,14 @@ static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
 
 /* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut,
    which mostly follow one another, share it. */
-typedef struct felt {
+typedef struct gathered {
     const mpm_block *block;            /* NULL = none yet                                          */
     int first[3];                      /* the lowest node, from the node -4 of the block           */
     mpm_hidden hidden;
     const uint32_t *node;
-} felt;
+} gathered;
 
-static void list_nodes(const mpm_grid *g, const felt *f, uint32_t *node)
+static void list_nodes(const mpm_grid *g, const gathered *f, uint32_t *node)
 {
     const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
     for (int n = 0; n < nodes_each(g); n++) {
@@ -121,7 +121,7 @@ static void list_nodes(const mpm_grid *g, const felt *f, uint32_t *node)
     }
 }
 
-static int is_felt(const felt *f, const mpm_block *b, const int first[3], const mpm_hidden *hidden)
+static int is_gathered(const gathered *f, const mpm_block *b, const int first[3], const mpm_hidden *hidden)
 {
     return f->block == b && !memcmp(f->first, first, sizeof f->first) && mpm_is_same(&f->hidden, hidden);
 }
@@ -140,7 +140,7 @@ static void spread_contacts(const void *view, int64_t begin, int64_t end)
     const mpm_grid *g = s->grid;
     const mpm_view *v = s->v;
     const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
-    felt last = { 0 };
+    gathered last = { 0 };
     for (int64_t k = begin; k < end; k++) {
         const tobi_contact *contact = &s->contacts->list[k];
         const int64_t i = contact->particle;
@@ -158,9 +158,9 @@ static void spread_contacts(const void *view, int64_t begin, int64_t end)
             first[a] = base - b->corner[a] + 4;
             for (int n = 0; n < 3; n++) lean[a][n] = (base + n - place)*reach*contact->normal[a];
         }
-        if (is_felt(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
+        if (is_gathered(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
         else {
-            last = (felt){ .block = b, .first = {first[0], first[1], first[2]}, .hidden = hidden };
+            last = (gathered){ .block = b, .first = {first[0], first[1], first[2]}, .hidden = hidden };
             list_nodes(g, &last, node);
         }
         last.node = node;
@@ -284,7 +284,7 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
         if (!t->piece_room) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the edge of '%s'", b->name);
         tobi_blade_pieces(b, g->dimension, size, t->piece, t->piece_room);
     }
-    TOBI_TRY(tobi_blade_recall(b, count, err));
+    TOBI_TRY(tobi_blade_restore(b, count, err));
     region last = { .known = 0 };
     for (int64_t k = 0; k < count; k++) {
         surroundings *s = &t->around[listed];
@@ -336,7 +336,7 @@ static void find_mobility(mpm_touch *t, tobi_contacts *c, const mpm_grid *g, tob
 {
     const mpm_pack_view v = view_packs(t, g);
     const int team = team_of(t, x);
-    mpm_packs_visit(&t->packs, t->kernels->crowd, &v, team);
+    mpm_packs_visit(&t->packs, t->kernels->load, &v, team);
     mpm_packs_visit(&t->packs, t->kernels->answer, &v, team);
     mpm_packs_visit(&t->packs, t->kernels->forget, &v, team);
     for (int64_t k = 0; k < c->count; k++)

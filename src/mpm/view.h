@@ -16,7 +16,7 @@ enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16
        MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
 
 /* Cuts that part one node, one after the other, and the velocities it then has (docs/theory/cutting.md). */
-enum { MPM_LEVELS = 3, MPM_VELOCITIES = 1 << MPM_LEVELS, MPM_GUESTS = 2 };
+enum { MPM_LEVELS = 3, MPM_VELOCITIES = 1 << MPM_LEVELS, MPM_NEIGHBORS = 2 };
 
 typedef struct mpm_material {
     int   model;                       /* tobi_model                                              */
@@ -84,14 +84,14 @@ typedef struct mpm_view {
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity. One for each twin, by level of the
                                           tree and branch: 2^level - 1 + branch; where there are several
-                                          levels, MPM_GUESTS times as many with the sides whose particles
+                                          levels, MPM_NEIGHBORS times as many with the sides whose particles
                                           go across, if they do not know the cut                   */
     uint32_t *hidden[MPM_LEVELS];      /* of particles in blocks with a twin: bits (x*3 + y)*3 + z, 2-D
                                           x*3 + y, for the nodes that feel it: 1 across the cut of this level;
                                           in [0], above MPM_HIDDEN, for which base node that was found, 0 =
                                           never                                                    */
     tobi_float4 *TOBI_RESTRICT tile;   /* [blocks][tile]: momentum and mass of one block's particles */
-    tobi_float4 *TOBI_RESTRICT calm;   /* the same without stress; NULL with APIC                  */
+    tobi_float4 *TOBI_RESTRICT unstressed;   /* the same without stress; NULL with APIC                  */
     mpm_reach *TOBI_RESTRICT reach;    /* [blocks] of their tiles                                  */
     tobi_float4 *TOBI_RESTRICT node;   /* [patches][nodes]: velocity and mass                      */
     tobi_float4 *TOBI_RESTRICT old;    /* what of the particle's own is replaced, m/s; NULL: APIC  */

@@ -130,7 +130,7 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &solids, "is missing or empty: a scene of %s needs at least one solid or "
                             "body", method->name);
     if (!is_empty(scene, "probes"))
-        tobi_source_mistake(source, &probes, "measure fluids of dfsph and wcsph; %s has no probes",
+        tobi_source_mistake(source, &probes, "measure fluids of the SPH methods; %s has no probes",
                             method->name);
 }
 

@@ -114,7 +114,7 @@ static const char head[] =
     "\n"
     "- Nothing moves faster than 1e6 m/s: a body, a side or a start that does is refused, a particle that\n"
     "  gets there has diverged.\n"
-    "- The domain is at most 2e5 spacings long for dfsph and wcsph, 1e8 cells for mlsmpm.\n"
+    "- The domain is at most 2e5 spacings long for the SPH methods, 1e8 cells for mlsmpm.\n"
     "- A run has at most 1e9 steps. One whose steps get so short that its end lies farther away ends with\n"
     "  the outcome \"stalled\" in `summary.json`.\n"
     "\n"

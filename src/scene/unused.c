@@ -26,14 +26,14 @@ static const struct {
     reader reader;
     const char *why;
 } keys[] = {
-    { &tobi_world_table, "cfl", SPH, "is for dfsph and wcsph; mlsmpm has its own, mlsmpm.cfl" },
-    { &tobi_world_table, "domain.contact_angle", SPH, "is for liquids of dfsph and wcsph; mlsmpm has no "
+    { &tobi_world_table, "cfl", SPH, "is for the SPH methods; mlsmpm has its own, mlsmpm.cfl" },
+    { &tobi_world_table, "domain.contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no "
                                                       "surface tension" },
     { &tobi_world_table, "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "
                                                     "domain.walls and their viscosity" },
-    { &tobi_body_table, "friction", SPH, "is for liquids of dfsph and wcsph; solids of mlsmpm rub by its "
+    { &tobi_body_table, "friction", SPH, "is for liquids of the SPH methods; solids of mlsmpm rub by its "
                                          "friction_coefficient" },
-    { &tobi_body_table, "contact_angle", SPH, "is for liquids of dfsph and wcsph; mlsmpm has no surface "
+    { &tobi_body_table, "contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no surface "
                                               "tension" },
 #define MOVED(key) { &tobi_body_table, key, FORCES, UNMOVED }
     MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),

@@ -91,9 +91,9 @@ static void bind_view(tobi_system *s, dfsph *m)
     sph_bind_view(s, v, m->memory.vessel);
     const sph_fields *p = sph_fields_of(&s->particles);
     v->midway = v->exact;
-    v->lean[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
-    v->lean[1] = p->residual;
-    v->lean[2] = p->correction;
+    v->moment[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
+    v->moment[1] = p->residual;
+    v->moment[2] = p->correction;
     sph_still_set(s, m->memory.level);
     v->still = sph_of(s)->still;
 }

@@ -6,18 +6,18 @@
 #include "exec/pairs.h"
 #include "sph/sph.k.h"
 
-typedef struct sph_ripple_acc { sph_laplacian_acc sum; lane x, y, z; } sph_ripple_acc;
+typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z; } sph_filter_acc;
 
-TOBI_FN void sph_ripple_begin(const sph_view *v, int64_t i, sph_ripple_acc *a, const tobi_float4 *field)
+TOBI_FN void sph_filter_begin(const sph_view *v, int64_t i, sph_filter_acc *a, const tobi_float4 *field)
 {
     sph_laplacian_begin(&a->sum, field, i);
-    a->x = lane_set(v->lean[0][i]); a->y = lane_set(v->lean[1][i]); a->z = lane_set(v->lean[2][i]);
+    a->x = lane_set(v->moment[0][i]); a->y = lane_set(v->moment[1][i]); a->z = lane_set(v->moment[2][i]);
 }
-TOBI_FN void sph_ripple_start(const sph_view *v, int64_t i, sph_ripple_acc *a)
+TOBI_FN void sph_filter_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
-    sph_ripple_begin(v, i, a, v->velocity);
+    sph_filter_begin(v, i, a, v->velocity);
 }
-TOBI_FN void sph_ripple_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_ripple_acc *a,
+TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_filter_acc *a,
                              const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -26,7 +26,7 @@ TOBI_FN void sph_ripple_pair(const sph_view *v, int64_t i, const tobi_near *n, s
     lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
     a->sum.ax += f*(x - a->sum.vx); a->sum.ay += f*(y - a->sum.vy); a->sum.az += f*(z - a->sum.vz);
 }
-TOBI_FN void sph_ripple_finish(const sph_view *v, int64_t i, sph_ripple_acc *a, double *totals)
+TOBI_FN void sph_filter_finish(const sph_view *v, int64_t i, sph_filter_acc *a, double *totals)
 {
     sph_laplacian_finish(v, i, &a->sum, totals);
 }
@@ -39,17 +39,17 @@ TOBI_FN lane sph_of_neighbors(const float *from, const int32_t *j)
     return lane_load(to);
 }
 
-typedef sph_ripple_acc sph_calm_acc;
-TOBI_FN void sph_calm_start(const sph_view *v, int64_t i, sph_ripple_acc *a)
+typedef sph_filter_acc sph_filter_kick_acc;
+TOBI_FN void sph_filter_kick_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
-    sph_ripple_begin(v, i, a, v->accel);
+    sph_filter_begin(v, i, a, v->accel);
 }
-TOBI_FN void sph_calm_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_ripple_acc *a,
+TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_filter_acc *a,
                            const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
-    lane cx = sph_of_neighbors(v->lean[0], n->j), cy = sph_of_neighbors(v->lean[1], n->j),
-         cz = sph_of_neighbors(v->lean[2], n->j);
+    lane cx = sph_of_neighbors(v->moment[0], n->j), cy = sph_of_neighbors(v->moment[1], n->j),
+         cz = sph_of_neighbors(v->moment[2], n->j);
     lane own = f*(1 + (a->x*n->dx + a->y*n->dy + a->z*n->dz)),
          other = f*(1 - (cx*n->dx + cy*n->dy + cz*n->dz));
     (void)i;
@@ -58,7 +58,7 @@ TOBI_FN void sph_calm_pair(const sph_view *v, int64_t i, const tobi_near *n, sph
     a->sum.ay += other*y - own*a->sum.vy;
     a->sum.az += other*z - own*a->sum.vz;
 }
-TOBI_FN void sph_calm_finish(const sph_view *v, int64_t i, sph_ripple_acc *a, double *totals)
+TOBI_FN void sph_filter_kick_finish(const sph_view *v, int64_t i, sph_filter_acc *a, double *totals)
 {
     tobi_float4 sum = lane_sum4(a->sum.ax, a->sum.ay, a->sum.az, lane_set(0)), u = v->velocity[i];
     float k = -v->dt*v->filter*v->slope;

@@ -1,6 +1,7 @@
 /* Parameters of the SPH methods. */
 #include "base/param_rows.h"
 #include "sph/dfsph.h"
+#include "sph/isph.h"
 #include "sph/wcsph.h"
 
 /* Of every SPH method. */
@@ -10,7 +11,7 @@
     { .key = "support", REAL, AT(type_, support), RANGE(2, 4), .unit = "spacings",      \
       .text = "automatic",                                                            \
       .doc = "Support radius of the kernel: 2 is fast, 3 to 4 is more accurate. Automatic is 2; dfsph "      \
-             "takes 2.5 where liquid fills the domain and a body or a side moves." }
+             "takes 2.5 where liquid fills the domain and a body or a side moves, isph always." }
 
 static const tobi_param dfsph_rows[] = {
     SMOOTHING(tobi_dfsph_def),
@@ -81,3 +82,27 @@ static const tobi_param wcsph_rows[] = {
 const tobi_param_table tobi_wcsph_table = {
     "wcsph", "Weakly compressible SPH: pressure from density by the Tait equation, no solver.",
     sizeof(tobi_wcsph_def), wcsph_rows };
+
+static const tobi_param isph_rows[] = {
+    SMOOTHING(tobi_isph_def),
+    { .key = "tolerance", REAL, AT(tobi_isph_def, tolerance), .def = { 1e-4 }, RANGE(1e-12, 0.1),
+      .unit = "1",
+      .doc = "Relative residual of the pressure equation, computed afresh from its answer, at which the "
+             "solve may stop." },
+    { .key = "iterations_max", INT, AT(tobi_isph_def, iterations_max), .def = { 200 },
+      RANGE(1, 1000000), .unit = "1",
+      .doc = "Most iterations of the pressure solve; a step that needs more is reported as not converged." },
+    { .key = "volume_gain", REAL, AT(tobi_isph_def, volume_gain), .def = { 0.1 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Share of the error of volume that the pressure takes out in a step. Less is quieter and lets "
+             "the volume drift further." },
+    { .key = "shifting", REAL, AT(tobi_isph_def, shifting), .def = { 0.5 }, RANGE(0, 1), .unit = "1",
+      .text = "off",
+      .doc = "Strength of particle shifting, which keeps particles evenly spaced; at a free surface they "
+             "shift along it only." },
+    { 0 }
+};
+
+const tobi_param_table tobi_isph_table = {
+    "isph", "Incompressible SPH: pressure by one Poisson equation per step, for forces and pressures.",
+    sizeof(tobi_isph_def), isph_rows };

@@ -6,6 +6,7 @@
 
 #define RADIUS 3.0          /* of the fit, spacings */
 #define BULK 0.6            /* relative density that spray does not reach */
+#define DRY 0.1             /* share of the kernel, a place with less before it is dry */
 #define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
 enum { BASIS = 4, VALUES = 4 };
 
@@ -120,13 +121,26 @@ static void substitute(const fit *f, int n, double value[VALUES])
     }
 }
 
-/* A place on a surface and the traction of the fluid there: equations (6) and (8) per area. */
+/* A place on a surface and the traction of the fluid there: equations (6) and (8) per area, or, at mirrors,
+   the pressure (12) of docs/theory/isph.md. */
 typedef struct membrane {
     const tobi_system *s;
     const tobi_bvh *bvh;            /* of the body; NULL on a side of the domain */
     double foot[3], normal[3];      /* box coordinates; out of the wall          */
-    double traction;
+    double traction, weight;        /* weight: share of the kernel that sees particles */
 } membrane;
+
+/* Of isph: as at rest from the particle to the place. */
+static void carry(membrane *m, int64_t i, const double r[3])
+{
+    const tobi_smoothing_constants *c = &m->s->smoothing;
+    const double weight = c->volume*tobi_smoothing_w(c->shape, c->dimension, c->h,
+                                                     sqrt(r[0]*r[0] + r[1]*r[1] + r[2]*r[2]));
+    double p = sph_fields_of(&m->s->particles)->pressure[i];
+    for (int a = 0; a < c->dimension; a++) p -= m->s->fluid[0].density*m->s->gravity[a]*r[a];
+    m->traction += weight*p;
+    m->weight += weight;
+}
 
 static void press(void *user, int64_t i, const double r[3])
 {
@@ -140,6 +154,10 @@ static void press(void *user, int64_t i, const double r[3])
         along += (m->s->gravity[a] - held*w->down[a])*m->normal[a];
     }
     if (!(r2 < c->h*c->h) || !(depth > 0)) return;
+    if (sph_of(m->s)->mirrors) {
+        carry(m, i, r);
+        return;
+    }
     int k = (int)(depth/c->h*TOBI_PLANE_SAMPLES);
     double sigma = c->plane.sigma[k], reach = sigma > 0 ? c->plane.lambda[k]/sigma : 0;
     double weight = c->volume*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
@@ -219,9 +237,10 @@ static double measure_wall(membrane *m)
             if (s->box.dimension == 2) y[2] = 0;
             if (!is_on_wall(m, y)) continue;
             range cells = cells_around(s, y, s->smoothing.h + d);
-            m->traction = 0;
+            m->traction = m->weight = 0;
             visit(s, y, &cells, press, m);
-            sum += m->traction/open_share(m, y);
+            if (!sph_of(s)->mirrors) sum += m->traction/open_share(m, y);
+            else if (m->weight > DRY) sum += m->traction/m->weight;
             used++;
         }
     return used > 0 ? sum/used : 0;

@@ -90,13 +90,13 @@ TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, 
 }
 
 /* c of eq. (13b): M^-1 sum V F x, of size 3/h at most; 0 where M has no inverse. */
-TOBI_FN void sph_lean(const sph_view *v, int64_t i, const sph_matrix *inverse, tobi_float4 g)
+TOBI_FN void sph_find_moment(const sph_view *v, int64_t i, const sph_matrix *inverse, tobi_float4 g)
 {
     tobi_float4 c = sph_matrix_times(inverse, g);
     float size = v->slope*v->h*sqrtf(c.x*c.x + c.y*c.y + c.z*c.z), k = -v->slope*(size > 3 ? 3/size : 1);
-    v->lean[0][i] = k*c.x;
-    v->lean[1][i] = k*c.y;
-    v->lean[2][i] = k*c.z;
+    v->moment[0][i] = k*c.x;
+    v->moment[1][i] = k*c.y;
+    v->moment[2][i] = k*c.z;
 }
 
 /* T of a particle: (7c), or (7b) at walls where that is not asked for or has no answer, as on the rim of a
@@ -112,7 +112,7 @@ TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_densi
         sph_matrix b = {0, 0, 0, 0, 0, 0};
         if (v->dimension == 2) m.zz = 1;
         made = sph_invert(&m, &b) && !open && sph_tilt(&m, &b, v->wall[i], share, &t);
-        if (v->lean[0]) sph_lean(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
+        if (v->moment[0]) sph_find_moment(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
     }
     if (!made && walled) t = sph_along_wall(v->wall[i], sph_wall_density(v, share), v->dimension);
     sph_tensor_store(v, i, &t, walled);

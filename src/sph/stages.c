@@ -207,15 +207,15 @@ static void apply_tension(tobi_system *s, sph_view *v, const sph_kernels *k)
 static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     if (!(v->filter > 0)) return;
-    launch(s, v, k->sph_ripple, NULL);
-    launch(s, v, k->sph_calm, NULL);
+    launch(s, v, k->sph_filter, NULL);
+    launch(s, v, k->sph_filter_kick, NULL);
     v->filter = 0;
 }
 
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     if (v->midway) launch(s, v, k->sph_midway, NULL);
-    if (v->lean[0]) apply_filter(s, v, k);
+    if (v->moment[0]) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->sim->body_count > 0) tobi_near_add_forces(s);

@@ -11,6 +11,7 @@ typedef struct sph_state {
     double still_volume;            /* m3 of fluid times the share of gravity so held                   */
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
     double lowest;                  /* m, drop of the lowest particle at a free surface                 */
+    int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
 } sph_state;
 
 static inline sph_state *sph_of(const tobi_system *s) { return s->state; }

@@ -48,7 +48,7 @@ TOBI_FN void sph_smooth_normal_pair(const sph_view *v, int64_t i, const tobi_nea
 }
 
 /* The normal turned in its plane with the wall's normal w to the angle of contact, eq. (36). */
-TOBI_FN void sph_meet_wall(float n[3], const float w[3], float cosine)
+TOBI_FN void sph_touch_wall(float n[3], const float w[3], float cosine)
 {
     float across = n[0]*w[0] + n[1]*w[1] + n[2]*w[2], t[3], size = 0;
     for (int c = 0; c < 3; c++) {
@@ -71,7 +71,7 @@ TOBI_FN void sph_smooth_normal_finish(const sph_view *v, int64_t i, sph_smooth_n
         if (sph_plane_distance(v, k, i) >= 1.5f*v->spacing) continue;
         float w[3] = {0, 0, 0};
         w[v->plane[k].axis] = v->plane[k].sign;
-        sph_meet_wall(n, w, v->contact_cosine);
+        sph_touch_wall(n, w, v->contact_cosine);
     }
     tobi_float4 out = {n[0], n[1], n[2], g.w};
     v->normal[i] = out;

@@ -22,7 +22,7 @@ typedef struct sph_view {
     const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
     float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
-    float *lean[3];                           /* 1/m, eq. (13b); NULL: the filter is that of (13)   */
+    float *moment[3];                           /* 1/m, eq. (13b); NULL: the filter is that of (13)   */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand */
     uint8_t *TOBI_RESTRICT surface;

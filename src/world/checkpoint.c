@@ -110,7 +110,7 @@ static void take_over(tobi_world *w, loaded *l)
     w->system[0].dt = l->clock[1];
     w->system[0].start_speed = l->clock[3];
     tobi_world_restore_gravity(w, l->gravity);
-    for (int k = 0; k < w->system_count; k++) tobi_system_recall(&w->system[k], &l->system[k]);
+    for (int k = 0; k < w->system_count; k++) tobi_system_restore(&w->system[k], &l->system[k]);
     tobi_step_sum_up(w);
     w->fresh = w->idle_steps = 0;
     w->failure.status = TOBI_OK;

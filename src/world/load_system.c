@@ -26,8 +26,8 @@ static tobi_status put_rows(const tobi_system *s, int number, tobi_store *f, tob
     int64_t count = 0;
     if (!s->method->keep) return TOBI_OK;
     TOBI_TRY(s->method->keep(s, &rows, &count, err));
-    tobi_status status = tobi_store_put(f, name_entry(number, "rows").name, TOBI_F64, count, TOBI_RECALL_ROW,
-                                        rows, err);
+    tobi_status status = tobi_store_put(f, name_entry(number, "rows").name, TOBI_F64, count,
+                                        TOBI_RESTORED_ROW, rows, err);
     free(rows);
     return status;
 }
@@ -120,12 +120,12 @@ static tobi_status read_rows(const tobi_system *s, int number, tobi_store *f, to
                              tobi_error *err)
 {
     const entry e = name_entry(number, "rows");
-    if (!s->method->recall) return TOBI_OK;
+    if (!s->method->restore) return TOBI_OK;
     TOBI_TRY(tobi_store_rows(f, e.name, &l->row_count, err));
-    l->rows = malloc((size_t)(l->row_count + 1)*TOBI_RECALL_ROW*sizeof *l->rows);
+    l->rows = malloc((size_t)(l->row_count + 1)*TOBI_RESTORED_ROW*sizeof *l->rows);
     if (!l->rows)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)l->row_count);
-    return tobi_store_get(f, e.name, TOBI_F64, l->row_count, TOBI_RECALL_ROW, l->rows, err);
+    return tobi_store_get(f, e.name, TOBI_F64, l->row_count, TOBI_RESTORED_ROW, l->rows, err);
 }
 
 static tobi_status read_fields(tobi_system *s, int number, tobi_store *f, const char *path,
@@ -241,8 +241,8 @@ void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
     s->start_speed = l->clock[1];
 }
 
-void tobi_system_recall(tobi_system *s, tobi_loaded_system *l)
+void tobi_system_restore(tobi_system *s, tobi_loaded_system *l)
 {
-    if (s->method->recall) s->method->recall(s, l->rows, l->row_count);
+    if (s->method->restore) s->method->restore(s, l->rows, l->row_count);
     l->rows = NULL;
 }

@@ -22,7 +22,7 @@ tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_erro
 /* Reads and checks; the system stays as it is. *l is to be freed in any case. */
 tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const char *path,
                             tobi_loaded_system *l, tobi_error *err);
-/* Takes over all but the rows, which tobi_system_recall does when the world is whole again. */
+/* Takes over all but the rows, which tobi_system_restore does when the world is whole again. */
 void tobi_system_take(tobi_system *s, const tobi_loaded_system *l);
-void tobi_system_recall(tobi_system *s, tobi_loaded_system *l);
+void tobi_system_restore(tobi_system *s, tobi_loaded_system *l);
 void tobi_loaded_system_free(tobi_loaded_system *l);

@@ -4,6 +4,7 @@
 #include "base/param_rows.h"
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
+#include "sph/isph.h"
 #include "sph/wcsph.h"
 #include "tobiuo/tobiuo.h"
 #include "world/methods.h"
@@ -62,8 +63,8 @@ static const tobi_param world_rows[] = {
       .text = "none", .doc = "Longest step that the adaptive choice may take." },
     { .key = "cfl", REAL, AT(tobi_world_def, cfl), .def = { 0.4 },
       RANGE(1e-4, 1), .unit = "1",
-      .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step of dfsph and "
-             "wcsph; mlsmpm has its own." },
+      .doc = "Largest part of a spacing that the fastest particle moves in one adaptive step of the "
+             "SPH methods; mlsmpm has its own." },
     { .key = "speed_limit", REAL, AT(tobi_world_def, speed_limit),
       RANGE(1e-9, TOBI_SPEED_LIMIT), .unit = "m/s",
       .text = "automatic", .doc = "A particle faster than this stops the run as diverged." },
@@ -128,6 +129,7 @@ int tobi_choice_count(const char *choices)
 DEFAULT(world)
 DEFAULT(dfsph)
 DEFAULT(wcsph)
+DEFAULT(isph)
 DEFAULT(mlsmpm)
 DEFAULT(fluid)
 DEFAULT(solid)

@@ -25,7 +25,7 @@ static const double ORACLE_BLUR = 0.01;
 
 /* bound: what the absolute values of all terms of the momentum sum up to, kg m/s. */
 typedef struct oracle_node {
-    double mass, momentum[3], calm[3], v[3], old[3], wave[3], kept[3], bound;
+    double mass, momentum[3], unstressed[3], v[3], old[3], wave[3], kept[3], bound;
 } oracle_node;
 
 typedef struct oracle_side { int axis, upper, kind; double at, friction, velocity[3]; } oracle_side;
@@ -318,7 +318,7 @@ static void oracle_to_grid(oracle_grid *g, const oracle_solid *solids, oracle_pa
             for (int a = 0; a < 3; a++) {
                 double own = p[i].mass*m->keep*p[i].v[a];
                 n->momentum[a] += w*own;
-                n->calm[a] += w*own;
+                n->unstressed[a] += w*own;
                 n->bound += w*fabs(own);
                 for (int b = 0; b < 3; b++) {
                     double spin = g->affine ? p[i].mass*m->keep*p[i].C[a][b] : 0;
@@ -351,7 +351,7 @@ static void oracle_solve_grid(oracle_grid *g)
         oracle_place(at, place);
         if (!(n->mass > 0)) continue;
         for (int a = 0; a < 3; a++) {
-            n->old[a] = n->calm[a]/n->mass;
+            n->old[a] = n->unstressed[a]/n->mass;
             n->v[a] = n->momentum[a]/n->mass + g->dt*g->gravity[a];
         }
         for (int k = 0; k < g->sides; k++) {
@@ -374,15 +374,16 @@ static void oracle_filter(oracle_grid *g, const oracle_particle *p, long count, 
         }
     for (int k = 2; k <= order; k++) {
         share *= -(order - k + 1.0)/k;
-        for (int at = 0; at < nodes; at++) memset(g->node[at].calm, 0, sizeof g->node[at].calm);
+        for (int at = 0; at < nodes; at++) memset(g->node[at].unstressed, 0, sizeof g->node[at].unstressed);
         for (long i = 0; i < count; i++) {
             double u[3] = {0};
             ORACLE_EACH_NODE(g, &p[i], w, r, n) for (int a = 0; a < 3; a++) u[a] += w*n->wave[a];
-            ORACLE_EACH_NODE(g, &p[i], w, r, n) for (int a = 0; a < 3; a++) n->calm[a] += w*p[i].mass*u[a];
+            ORACLE_EACH_NODE(g, &p[i], w, r, n)
+                for (int a = 0; a < 3; a++) n->unstressed[a] += w*p[i].mass*u[a];
         }
         for (int at = 0; at < nodes; at++)
             for (int a = 0; a < 3 && g->node[at].mass > 0; a++) {
-                g->node[at].wave[a] = g->node[at].calm[a]/g->node[at].mass;
+                g->node[at].wave[a] = g->node[at].unstressed[a]/g->node[at].mass;
                 g->node[at].kept[a] += share*g->node[at].wave[a];
             }
     }

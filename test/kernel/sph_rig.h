@@ -95,7 +95,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
     v->beside = f->beside; v->near = f->near; v->full = v->exact = v->midway = k->along == 1;
-    v->lean[0] = f->precondition; v->lean[1] = f->residual; v->lean[2] = f->correction;
+    v->moment[0] = f->precondition; v->moment[1] = f->residual; v->moment[2] = f->correction;
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);

@@ -46,7 +46,7 @@ static double leaning(const oracle *o, const row *in, int i, const double x[3], 
     return o->volume*o->g_scale*oracle_f(o, r)*(1 + side*(c[0]*x[0] + c[1]*x[1] + c[2]*x[2]));
 }
 
-static void oracle_ripple(const oracle *o, const row *in, row *out, double *t)
+static void oracle_filter(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
@@ -58,7 +58,7 @@ static void oracle_ripple(const oracle *o, const row *in, row *out, double *t)
 }
 
 /* v -= dt k times the transpose of L'. */
-static void oracle_calm(const oracle *o, const row *in, row *out, double *t)
+static void oracle_filter_kick(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++)

@@ -21,8 +21,8 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_laplacian oracle_laplacian
 #define oracle_sph_kick oracle_kick
 #define oracle_sph_midway oracle_midway
-#define oracle_sph_ripple oracle_ripple
-#define oracle_sph_calm oracle_calm
+#define oracle_sph_filter oracle_filter
+#define oracle_sph_filter_kick oracle_filter_kick
 #define oracle_sph_wall_force oracle_wall_force
 #define oracle_sph_advance oracle_advance
 #define oracle_sph_vorticity oracle_vorticity
@@ -369,7 +369,7 @@ static double divergence_error(int dimension, int along, double *ripple)
     }
     tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
     tobi_launch(&g.exec, table->sph_density, &g.view, 0, g.p.count, NULL);
-    tobi_launch(&g.exec, along ? table->sph_ripple : table->sph_laplacian, &g.view, 0, g.p.count, NULL);
+    tobi_launch(&g.exec, along ? table->sph_filter : table->sph_laplacian, &g.view, 0, g.p.count, NULL);
     g.view.midway = 0;
     tobi_launch(&g.exec, table->sph_source, &g.view, 0, g.p.count, NULL);
     *ripple = 0;

@@ -216,7 +216,7 @@ static tobi_status poisson_fill(poisson *q, int dimension, const int n[3], int c
 }
 
 /* The matrix, the hydrostatic source with noise, the memory for a solve. */
-static void poisson_assemble(poisson *q)
+static inline void poisson_assemble(poisson *q)
 {
     const int64_t n = q->p.count;
     double **array[] = {&q->factor, &q->excess, &q->inverse, &q->b, &q->x, &q->scratch};
@@ -231,14 +231,14 @@ static void poisson_assemble(poisson *q)
     for (int64_t i = 0; i < n; i++) if (q->excess[i] != 0) q->system.singular = 0;
 }
 
-static tobi_status poisson_make_grid(poisson *q, tobi_error *err)
+static inline tobi_status poisson_make_grid(poisson *q, tobi_error *err)
 {
     const tobi_cell_points points = tobi_cells_points(&q->cells, &q->box, &q->p);
     return tobi_multigrid_create(&q->grid, &points, 1, 2, err);
 }
 
 /* What a step has to do again after each move. */
-static void poisson_set_grid(poisson *q)
+static inline void poisson_set_grid(poisson *q)
 {
     const tobi_cell_points points = tobi_cells_points(&q->cells, &q->box, &q->p);
     const double d = q->d;
@@ -247,7 +247,7 @@ static void poisson_set_grid(poisson *q)
     tobi_multigrid_set(&q->grid, &q->exec, &points, &w);
 }
 
-static tobi_linear_report poisson_solve(poisson *q, int kind, double tolerance, int max)
+static inline tobi_linear_report poisson_solve(poisson *q, int kind, double tolerance, int max)
 {
     const tobi_linear_settings s = {.tolerance = tolerance, .max = max};
     q->kind = kind;

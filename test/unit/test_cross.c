@@ -403,11 +403,11 @@ static void a_damaged_row_is_refused(void **state)
 {
     (void)state;
     tobi_world *world = make_block(2, TOBI_APIC, 1, 0.3);
-    double *row = calloc(TOBI_RECALL_ROW, sizeof *row);
+    double *row = calloc(TOBI_RESTORED_ROW, sizeof *row);
     assert_non_null(row);
-    row[TOBI_RECALL_ROW - 1] = 4;
+    row[TOBI_RESTORED_ROW - 1] = 4;
     OK(tobi_world_step(world, 0, NULL, &err));
-    world->system[0].method->recall(&world->system[0], row, 1);
+    world->system[0].method->restore(&world->system[0], row, 1);
     REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_DAMAGED, "the checkpoint remembers a cut at node 0");
     tobi_world_destroy(world);
 }

@@ -438,11 +438,11 @@ static void same_bits(void **state)
                         mpm_fields_of(&later->system[0].particles)->cuts,
                         (size_t)count*sizeof(tobi_columns));
     tobi_error why = { 0 };
-    double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);
+    double *nowhere = calloc(TOBI_RESTORED_ROW, sizeof *nowhere);
     assert_non_null(nowhere);
     nowhere[0] = 1e9;
     OK(tobi_world_load(later, path, &err));
-    later->system[0].method->recall(&later->system[0], nowhere, 1);
+    later->system[0].method->restore(&later->system[0], nowhere, 1);
     assert_int_equal(tobi_world_step(later, 0, NULL, &why), TOBI_DAMAGED);
     assert_non_null(strstr(why.text, "the checkpoint remembers a cut at node 1e+09"));
     assert_int_equal(one->sim.bodies[0].piece_count, 1);

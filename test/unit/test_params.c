@@ -11,6 +11,7 @@
 #include "tobiuo/tobiuo.h"
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
+#include "sph/isph.h"
 #include "sph/wcsph.h"
 #include "world/params.h"
 
@@ -50,6 +51,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_world_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_dfsph_table), 0);
     assert_int_equal(count_uncovered(&tobi_wcsph_table), 0);
+    assert_int_equal(count_uncovered(&tobi_isph_table), 0);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), sizeof(tobi_flow_fn) + sizeof(void *));
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control + hole);
@@ -91,7 +93,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 12);
+    assert_int_equal(tables, 13);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }
@@ -220,8 +222,9 @@ static void methods_are_found_by_name(void **state)
     assert_ptr_equal(tobi_method_table("wcsph"), &tobi_wcsph_table);
     assert_string_equal(tobi_method_name(0), "dfsph");
     assert_string_equal(tobi_method_name(1), "wcsph");
-    assert_string_equal(tobi_method_name(2), "mlsmpm");
-    assert_null(tobi_method_name(3));
+    assert_string_equal(tobi_method_name(2), "isph");
+    assert_string_equal(tobi_method_name(3), "mlsmpm");
+    assert_null(tobi_method_name(4));
 }
 
 int main(void)

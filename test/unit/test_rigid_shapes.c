@@ -10,8 +10,8 @@ static tobi_body_def fixed_def(void)
     return def;
 }
 
-/* A ball rolls and a box slides over the seams of a row of tiles as over one floor. */
-static void test_seams(void **state)
+/* A ball rolls and a box slides over the cut_faces of a row of tiles as over one floor. */
+static void test_cut_faces(void **state)
 {
     (void)state;
     rig g;
@@ -156,7 +156,7 @@ static void test_heap(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_seams), cmocka_unit_test(test_torus), cmocka_unit_test(test_speed),
+        cmocka_unit_test(test_cut_faces), cmocka_unit_test(test_torus), cmocka_unit_test(test_speed),
         cmocka_unit_test(test_tower), cmocka_unit_test(test_heap),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

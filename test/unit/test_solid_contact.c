@@ -136,7 +136,7 @@ static double rest_on_plate(double cells, int *told)
 }
 
 /* The side's nodes reach through a thin plate: said, and all of the load from 1.5 cells on. */
-static void a_side_is_felt_through_a_thin_plate(void **state)
+static void a_side_is_gathered_through_a_thin_plate(void **state)
 {
     (void)state;
     const struct { double cells, share; int told; } cases[] = { { 0.5, 0, 1 }, { 1.5, 1, 0 }, { 2, 1, 0 } };
@@ -153,6 +153,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_falling_box_is_caught),
                                         cmocka_unit_test(shortened_steps_tell_the_same_force),
-                                        cmocka_unit_test(a_side_is_felt_through_a_thin_plate) };
+                                        cmocka_unit_test(a_side_is_gathered_through_a_thin_plate) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

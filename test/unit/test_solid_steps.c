@@ -54,7 +54,7 @@ static void a_squeezed_liquid_takes_shorter_steps(void **state)
 }
 
 /* Where nothing is fast the steps are those of eq. (15). */
-static void a_calm_liquid_does_not(void **state)
+static void a_unstressed_liquid_does_not(void **state)
 {
     (void)state;
     tobi_world *world = throw_liquid(0.5, 0);
@@ -125,7 +125,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_squeezed_liquid_takes_shorter_steps),
-        cmocka_unit_test(a_calm_liquid_does_not),
+        cmocka_unit_test(a_unstressed_liquid_does_not),
         cmocka_unit_test(speed_at_the_start_is_told),
         cmocka_unit_test(a_falling_block_gains_what_gravity_gives),
         cmocka_unit_test(no_number_is_no_speed),

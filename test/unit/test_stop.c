@@ -121,6 +121,11 @@ static void stop(const setup *s)
 static void of_a_pool(void **state) { (void)state; stop(&(setup){ "dfsph", 0, TOBI_FREE }); }
 static void of_a_stirred_pool(void **state) { (void)state; stop(&(setup){ "dfsph", 0, TOBI_PRESCRIBED }); }
 static void of_a_full_vessel(void **state) { (void)state; stop(&(setup){ "dfsph", 1, TOBI_PRESCRIBED }); }
+static void of_one_equation(void **state)
+{
+    (void)state;
+    for (int full = 0; full < 2; full++) stop(&(setup){ "isph", full, TOBI_PRESCRIBED });
+}
 static void of_methods_without_solves(void **state)
 {
     (void)state;
@@ -134,6 +139,7 @@ int main(void)
         cmocka_unit_test(of_a_pool),
         cmocka_unit_test(of_a_stirred_pool),
         cmocka_unit_test(of_a_full_vessel),
+        cmocka_unit_test(of_one_equation),
         cmocka_unit_test(of_methods_without_solves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

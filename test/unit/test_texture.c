@@ -16,7 +16,7 @@
 static const double one[3] = { 1, 1, 1 }, up[3] = { 0, 0, 1 };
 
 /* A cube of side 1; face f (-x, +x, -y, +y, -z, +z) has the stripe f/6 .. (f + 1)/6 of the picture, so that
-   every edge is a seam. faces: how many of the six have coordinates. */
+   every edge is a cut_face. faces: how many of the six have coordinates. */
 static void write_cube(const char *path, int faces)
 {
     static const int corner[6][4] = { { 1, 3, 7, 5 }, { 2, 6, 8, 4 }, { 1, 5, 6, 2 },
@@ -64,7 +64,7 @@ static void test_reading(void **state)
     assert_null(mesh.texture);
     tobi_mesh_free(&mesh);
     read_cube(&mesh, 6);
-    assert_int_equal(mesh.vertex_count, 8);      /* welded in spite of the seams */
+    assert_int_equal(mesh.vertex_count, 8);      /* welded in spite of the cut_faces */
     assert_int_equal(mesh.texture->count, 12);
     double mirror[3] = { -2, 2, 2 }, shift[3] = { 5, 0, 0 };
     assert_int_equal(tobi_mesh_transform(&mesh, mirror, up, 0, shift, &err), TOBI_OK);

@@ -1,6 +1,6 @@
-/* Most voters stand where all are of one side. So the sides are looked at first, by base node, and votes
+/* Most members stand where all are of one side. So the sides are looked at first, by base node, and votes
    counted for those nodes alone that see both: the others have one velocity whatever the count. */
-#include "mpm/vote.h"
+#include "mpm/majority.h"
 #include "mpm/cuts.h"
 #include "exec/rows.h"
 #include "geom/vec3.h"
@@ -10,7 +10,7 @@
 
 enum { SPAN = 6, CELLS = SPAN*SPAN*SPAN };     /* base nodes whose particles reach a patch         */
 
-void mpm_vote_deformation(const mpm_view *v, int64_t i, double f[3][3])
+void mpm_majority_deformation(const mpm_view *v, int64_t i, double f[3][3])
 {
     const tobi_columns *e = &v->strain[i], *l = &v->affine[i];
     double was[3][3];
@@ -38,7 +38,7 @@ static void find_faces(mpm_cut *c, const mpm_view *v, int64_t i)
 {
     const tobi_columns *cuts = &v->cuts[i];
     double f[3][3];
-    mpm_vote_deformation(v, i, f);
+    mpm_majority_deformation(v, i, f);
     for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++) {
         double rest[3] = {cuts->c[k].x, cuts->c[k].y, cuts->c[k].z}, now[3];
         double far = vec3_length(rest);
@@ -50,24 +50,24 @@ static void find_faces(mpm_cut *c, const mpm_view *v, int64_t i)
     }
 }
 
-/* The run that begins with voter k of so many in the list. */
-static void join_run(mpm_voter *first, int32_t k, int32_t count)
+/* The run that begins with member k of so many in the list. */
+static void join_run(mpm_member *first, int32_t k, int32_t count)
 {
-    mpm_voter *one = first + 1;
+    mpm_member *one = first + 1;
     for (; one < first + (count - k) && !memcmp(one->base, first->base, sizeof one->base); one++)
         first->sides |= one->sides;
     first->end = k + (int32_t)(one - first);
 }
 
-void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension)
+void mpm_majority_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension)
 {
-    mpm_voter *list = c->voter + b->begin;
+    mpm_member *list = c->member + b->begin;
     int32_t count = 0;
     for (int64_t i = b->begin; i < b->end && v->cuts; i++) {
         if (v->cuts[i].c[0].w == 0) continue;
-        mpm_voter *one = &list[count++];
+        mpm_member *one = &list[count++];
         double unused[3];
-        *one = (mpm_voter){ .base = {0, 0, -1}, .particle = (int32_t)i };
+        *one = (mpm_member){ .base = {0, 0, -1}, .particle = (int32_t)i };
         for (int a = 0; a < dimension; a++)
             one->base[a] = (int32_t)mpm_spline((&v->position[i].x)[a]*v->inverse_cell, unused);
         for (int k = 0; k < TOBI_CUTS_EACH; k++)
@@ -75,10 +75,10 @@ void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t nu
         find_faces(c, v, i);
     }
     for (int32_t k = 0; k < count; k = list[k].end) join_run(&list[k], k, count);
-    c->voters[number] = count;
+    c->members[number] = count;
 }
 
-mpm_face mpm_vote_measure(const mpm_heard *first, const mpm_heard *second)
+mpm_face mpm_majority_measure(const mpm_heard *first, const mpm_heard *second)
 {
     mpm_face f;
     const double weight[2] = {first->place[3], second->place[3]};
@@ -93,35 +93,35 @@ mpm_face mpm_vote_measure(const mpm_heard *first, const mpm_heard *second)
     return f;
 }
 
-/* The node's side and seam by its votes; returns how many cuts have both sides there. */
-static int decide(const mpm_vote votes[MPM_VOTES], float *side, mpm_seam *seam)
+/* The node's side and cut face by its votes; returns how many cuts have both sides there. */
+static int decide(const mpm_majority votes[MPM_MAJORITIES], float *side, mpm_cut_face *cut_face)
 {
     int both = 0;
-    const mpm_vote *best = mpm_vote_pick(votes, &both);
+    const mpm_majority *best = mpm_majority_pick(votes, &both);
     *side = 0;
     if (!best) return 0;
-    const int own = mpm_vote_own(best);
-    const mpm_face face = mpm_vote_measure(&best->side[own], &best->side[!own]);
-    memcpy(seam->normal, face.normal, sizeof seam->normal);
-    seam->gap = face.gap;
-    seam->fixed = 0;
-    seam->friction = (float)(best->friction/((double)best->side[0].place[3] + best->side[1].place[3]));
+    const int own = mpm_majority_own(best);
+    const mpm_face face = mpm_majority_measure(&best->side[own], &best->side[!own]);
+    memcpy(cut_face->normal, face.normal, sizeof cut_face->normal);
+    cut_face->gap = face.gap;
+    cut_face->fixed = 0;
+    cut_face->friction = (float)(best->friction/((double)best->side[0].place[3] + best->side[1].place[3]));
     *side = own ? -best->number : best->number;
     return both;
 }
 
 /* Nodes of a patch and base nodes around it, by place. */
 typedef struct poll {
-    unsigned char sides[CELLS];        /* of the voters with this base node: 1 +, 2 -, 3 both      */
+    unsigned char sides[CELLS];        /* of the members with this base node: 1 +, 2 -, 3 both      */
     unsigned char wanted[CELLS];       /* 1: a node of the patch that sees both                    */
-    unsigned char near[CELLS];         /* 1: voters with this base node reach such a node          */
+    unsigned char near[CELLS];         /* 1: members with this base node reach such a node          */
 } poll;
 
 /* Place of a base node or a node, counted from the patch. */
 static int cell_of(int a, int b, int c) { return ((a + 2)*SPAN + b + 2)*SPAN + c + 2; }
 
-/* Place of the voter's base node; -1 = it does not reach the patch. */
-static int find_cell(const mpm_voter *one, const mpm_patch *p)
+/* Place of the member's base node; -1 = it does not reach the patch. */
+static int find_cell(const mpm_member *one, const mpm_patch *p)
 {
     int at[3], out = 0;
     for (int a = 0; a < 3; a++) {
@@ -150,8 +150,8 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
     memset(q, 0, sizeof *q);
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0) continue;
-        const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
-        for (int32_t k = 0; k < c->voters[p->cover[o]]; k = list[k].end) {
+        const mpm_member *list = c->member + g->block[p->cover[o]].begin;
+        for (int32_t k = 0; k < c->members[p->cover[o]]; k = list[k].end) {
             const int cell = find_cell(&list[k], p);
             if (cell < 0) continue;
             q->sides[cell] |= list[k].sides;
@@ -172,7 +172,7 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
 
 /* Adds the votes of one particle to the wanted nodes of a block that feel it. */
 static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
-                          const poll *q, int64_t i, mpm_vote votes[][MPM_VOTES])
+                          const poll *q, int64_t i, mpm_majority votes[][MPM_MAJORITIES])
 {
     const int dim = g->dimension;
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
@@ -197,17 +197,17 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
                 const double along = mass*w[0][p0]*w[1][p1];
                 for (int p2 = low[2]; p2 <= high[2]; p2++)
                     if (q->wanted[cell_of(first[0] + p0, first[1] + p1, first[2] + p2)])
-                        mpm_vote_add(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark,
+                        mpm_majority_add(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark,
                                      (float)(along*w[2][p2]), place, face, friction);
             }
     }
 }
 
-int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
+int mpm_majority_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch)
 {
     const mpm_patch *p = &g->patch[patch];
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    mpm_vote votes[MPM_NODES_3D][MPM_VOTES];
+    mpm_majority votes[MPM_NODES_3D][MPM_MAJORITIES];
     poll q;
     int two = 0;
     c->cross.doubt[patch] = 0;
@@ -216,15 +216,15 @@ int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t pat
     memset(votes, 0, sizeof votes);
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0) continue;
-        const mpm_voter *list = c->voter + g->block[p->cover[o]].begin;
-        for (int32_t k = 0; k < c->voters[p->cover[o]]; k = list[k].end) {
+        const mpm_member *list = c->member + g->block[p->cover[o]].begin;
+        for (int32_t k = 0; k < c->members[p->cover[o]]; k = list[k].end) {
             const int cell = find_cell(&list[k], p);
             for (int32_t n = k; n < list[k].end && cell >= 0 && q.near[cell]; n++)
                 vote_particle(c, g, v, p, &q, list[n].particle, votes);
         }
     }
     for (int n = 0; n < nodes; n++) {
-        const int cuts = decide(votes[n], &c->side[patch*nodes + n], &c->seam[patch*nodes + n]);
+        const int cuts = decide(votes[n], &c->side[patch*nodes + n], &c->cut_face[patch*nodes + n]);
         two |= cuts > 0;
         if (cuts > 1) c->cross.doubt[patch] |= UINT64_C(1) << n;
     }

@@ -5,7 +5,7 @@
 #include "mpm/cut.h"
 #include <math.h>
 
-enum { MPM_VOTES = 4 };                /* cuts that one node looks at                              */
+enum { MPM_MAJORITIES = 4 };                /* cuts that one node looks at                              */
 
 /* What is heard at a node from the particles on one side of a cut: sums, by mass and weight, of places (m,
    from the corner of the block) with the weights themselves, and of normals with distances from the cut
@@ -13,37 +13,38 @@ enum { MPM_VOTES = 4 };                /* cuts that one node looks at           
 typedef struct mpm_heard { quad place, face; } mpm_heard;
 
 /* Of one cut, side 0 being +. */
-typedef struct mpm_vote {
+typedef struct mpm_majority {
     mpm_heard side[2];
     float number, friction;            /* 0 = none; weighted                                       */
-} mpm_vote;
+} mpm_majority;
 
-static inline void mpm_vote_hear(mpm_heard *to, float w, quad place, quad face)
+static inline void mpm_majority_hear(mpm_heard *to, float w, quad place, quad face)
 {
     to->place = to->place + place*quad_set(w);
     to->face = to->face + face*quad_set(w);
 }
 
 /* mark: of the particle, with its side. */
-static inline void mpm_vote_add(mpm_vote votes[MPM_VOTES], float mark, float w, quad place, quad face,
+static inline void mpm_majority_add(mpm_majority votes[MPM_MAJORITIES], float mark, float w, quad place,
+                                    quad face,
                                 float friction)
 {
     int k = 0;
-    while (k < MPM_VOTES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
-    if (k == MPM_VOTES) return;
+    while (k < MPM_MAJORITIES && votes[k].number != 0 && votes[k].number != fabsf(mark)) k++;
+    if (k == MPM_MAJORITIES) return;
     votes[k].number = fabsf(mark);
     votes[k].friction += w*friction;
-    mpm_vote_hear(&votes[k].side[mark < 0], w, place, face);
+    mpm_majority_hear(&votes[k].side[mark < 0], w, place, face);
 }
 
 /* Of the cuts that have both sides here the one that most know, since who does not know it may be put on
    the wrong side; of those the one whose lesser side weighs more. NULL = there are none. both: how many
    there are. */
-static inline const mpm_vote *mpm_vote_pick(const mpm_vote votes[MPM_VOTES], int *both)
+static inline const mpm_majority *mpm_majority_pick(const mpm_majority votes[MPM_MAJORITIES], int *both)
 {
-    const mpm_vote *best = NULL;
+    const mpm_majority *best = NULL;
     float most = 0;
-    for (int k = 0; k < MPM_VOTES && votes[k].number != 0; k++) {
+    for (int k = 0; k < MPM_MAJORITIES && votes[k].number != 0; k++) {
         const float a = votes[k].side[0].place[3], b = votes[k].side[1].place[3], least = fminf(a, b);
         const float score = least + 100*(a + b);           /* 1 % who do not know outweigh the rest */
         if (!(least > 0)) continue;
@@ -54,15 +55,18 @@ static inline const mpm_vote *mpm_vote_pick(const mpm_vote votes[MPM_VOTES], int
 }
 
 /* The side that outweighs. */
-static inline int mpm_vote_own(const mpm_vote *v) { return v->side[1].place[3] > v->side[0].place[3]; }
+static inline int mpm_majority_own(const mpm_majority *v)
+{
+    return v->side[1].place[3] > v->side[0].place[3];
+}
 
 /* Normal and gap between two faces, both heard. */
-mpm_face mpm_vote_measure(const mpm_heard *first, const mpm_heard *second);
+mpm_face mpm_majority_measure(const mpm_heard *first, const mpm_heard *second);
 
 /* F of a particle now, what the last step left to do included. */
-void mpm_vote_deformation(const mpm_view *v, int64_t i, double f[3][3]);
-/* Lists the voters of a block of particles, and where the faces of their cuts are now. */
-void mpm_vote_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension);
-/* Sides and seams of the nodes of a patch by the listed voters, and where cuts may cross (mpm_cross.doubt);
-   returns whether any has two velocities. */
-int mpm_vote_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch);
+void mpm_majority_deformation(const mpm_view *v, int64_t i, double f[3][3]);
+/* Lists the members of a block of particles, and where the faces of their cuts are now. */
+void mpm_majority_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_t number, int dimension);
+/* Sides and cut faces of the nodes of a patch by the listed members, and where cuts may cross
+   (mpm_cross.doubt); returns whether any has two velocities. */
+int mpm_majority_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t patch);

@@ -1,4 +1,4 @@
-#include "mpm/meet.h"
+#include "mpm/solid_contact.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"
 #include "tobiuo/types.h"
@@ -20,7 +20,7 @@ typedef struct scene {
 } scene;
 
 enum { EMPTY = -2, NORMALS = 4, WELL = 8 };     /* cells: more than any reach               */
-#define MARGIN (2*MPM_MEET_STALE)      /* the step in which it is exceeded included            */
+#define MARGIN (2*MPM_SOLID_CONTACT_STALE)      /* the step in which it is exceeded included            */
 
 /* What the particles of one group say at one node. */
 typedef struct voice {
@@ -78,9 +78,9 @@ static int is_near(const scene *s, const range *r)
     return near;
 }
 
-mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension)
+mpm_extent mpm_solid_contact_look(const mpm_view *v, const mpm_block *b, int dimension)
 {
-    mpm_crowd c = { .group = v->material[v->solid[b->begin]].group, .low = {1 << 30, 1 << 30, 1 << 30},
+    mpm_extent c = { .group = v->material[v->solid[b->begin]].group, .low = {1 << 30, 1 << 30, 1 << 30},
                     .high = {-(1 << 30), -(1 << 30), -(1 << 30)} };
     for (int64_t i = b->begin; i < b->end; i++) {
         if (v->material[v->solid[i]].group != c.group) c.group = MPM_MIXED;
@@ -94,18 +94,18 @@ mpm_crowd mpm_meet_look(const mpm_view *v, const mpm_block *b, int dimension)
 }
 
 /* Lists the blocks whose particles reach the patch; returns whether there is more than one group. */
-static int list_blocks(scene *s, const mpm_crowd *crowd)
+static int list_blocks(scene *s, const mpm_extent *extent)
 {
     int seen = EMPTY, meets = 0;
     s->near_count = 0;
     for (int o = 0; o < 27; o++) {
         int reaches = s->p->cover[o] >= 0;
         for (int a = 0; a < s->g->dimension && reaches; a++) {
-            const mpm_crowd *c = &crowd[s->p->cover[o]];
+            const mpm_extent *c = &extent[s->p->cover[o]];
             reaches = c->low[a] <= s->p->corner[a] + 4 && c->high[a] >= s->p->corner[a] - 3;
         }
         if (!reaches) continue;
-        const int here = crowd[s->p->cover[o]].group;
+        const int here = extent[s->p->cover[o]].group;
         meets |= here == MPM_MIXED || (seen != EMPTY && seen != here);
         seen = here;
         s->near[s->near_count++] = s->p->cover[o];
@@ -247,27 +247,27 @@ static void decide(meeting *m)
 }
 
 /* The normal with the widest gap parts the two best: at the corner of a block on a floor, the floor's. */
-static void write_seam(const meeting *m, double cell, float *side, mpm_seam *seam)
+static void write_cut_face(const meeting *m, double cell, float *side, mpm_cut_face *cut_face)
 {
     const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
     int best = 2;
     for (int k = 0; k < NORMALS; k++)
         if (first->reach[k] + second->reach[k] < first->reach[best] + second->reach[best]) best = k;
     *side = mpm_side_of(second->group);
-    for (int a = 0; a < 3; a++) seam->normal[a] = (float)m->normal[best][a];
-    seam->gap = (float)(2*WELL*cell - first->reach[best] - second->reach[best]);
-    seam->fixed = first->fixed ? 1 : second->fixed ? 2 : 0;
-    seam->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
+    for (int a = 0; a < 3; a++) cut_face->normal[a] = (float)m->normal[best][a];
+    cut_face->gap = (float)(2*WELL*cell - first->reach[best] - second->reach[best]);
+    cut_face->fixed = first->fixed ? 1 : second->fixed ? 2 : 0;
+    cut_face->friction = (float)sqrt(first->friction/first->mass*second->friction/second->mass);
 }
 
-int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, const mpm_patch *p,
-                  float *side, mpm_seam *seam)
+int mpm_solid_contact_find(const mpm_grid *g, const mpm_view *v, const mpm_extent *extent, const mpm_patch *p,
+                  float *side, mpm_cut_face *cut_face)
 {
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
     scene s = { .g = g, .v = v, .p = p };
     meeting meetings[MPM_NODES_3D];
     int any = 0;
-    if (!list_blocks(&s, crowd) || !find_meetings(&s, side)) return 0;
+    if (!list_blocks(&s, extent) || !find_meetings(&s, side)) return 0;
     for (int n = 0; n < nodes; n++) {
         meetings[n] = (meeting){ .first = -1, .second = -1 };
         for (int k = 0; k < GROUPS; k++) meetings[n].voice[k] = (voice){ .group = -1 };
@@ -278,7 +278,7 @@ int mpm_meet_find(const mpm_grid *g, const mpm_view *v, const mpm_crowd *crowd, 
     hear(&s, side, meetings, 1);
     for (int n = 0; n < nodes; n++) {
         if (meetings[n].first < 0) continue;
-        write_seam(&meetings[n], v->cell, &side[n], &seam[n]);
+        write_cut_face(&meetings[n], v->cell, &side[n], &cut_face[n]);
         any = 1;
     }
     return any;

@@ -1,0 +1,257 @@
+/* Incompressible SPH: one Poisson equation per step, with a compact Laplacian, for the pressure that makes
+   the velocity free of divergence (Cummins & Rudman 1999). Walls are mirrors, made pair by pair. Volume is
+   held by a small source of pressure, evenness by a shift of positions; neither gives speed to particles.
+   The step is symplectic: one list, at the positions before it (decision 46). Drawback: what divergence and
+   Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
+#include "sph/isph.h"
+#include "sph/isph_bodies.h"
+#include "sph/isph_passes.h"
+#include "sph/isph_solve.h"
+#include "sph/kernels.h"
+#include "sph/stages.h"
+#include "sph/state.h"
+#include "sph/undo.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* MEMORY: numbers that survive a restart; steps in a row that may fail to converge. */
+enum { MEMORY = 3, FAILURES = 50 };
+
+static const double STIR = 0.2, SHIFT_AT_REST = 0.1;
+
+typedef struct isph {
+    sph_state common;
+    tobi_isph_def def;
+    sph_view view;                   /* of what it shares with the other SPH methods                */
+    const sph_kernels *kernel;
+    isph_solver solver;
+    sph_undo undo;
+    /* survives a restart; vessel: SPH_VESSEL_*; failures: steps in a row that did not converge */
+    struct { double speed, vessel, failures; } memory;
+    double motion_dt;                /* s, the step that motion alone allows                        */
+} isph;
+
+static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
+{
+    tobi_launch(&s->sim->exec, k, &m->solver.view, 0, s->particles.count, totals);
+}
+
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+{
+    const tobi_isph_def *d = def;
+    (void)stirred;
+    *shape = d->kernel;
+    *support = d->support > 0 ? d->support : 2.5;
+}
+
+static tobi_status create(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the isph state");
+    for (int k = 0; k < s->sim->body_count; k++)
+        if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
+                             "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
+    m->def = *(const tobi_isph_def *)s->def;
+    m->common.mirrors = 1;
+    m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
+    isph_solver_begin(&m->solver, s);
+    m->solver.view.volume_gain = m->def.volume_gain;
+    return TOBI_OK;
+}
+
+static int list_memory(tobi_system *s, double **values)
+{
+    isph *m = s->state;
+    *values = &m->memory.speed;
+    return MEMORY;
+}
+
+/* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
+static double choose_dt(tobi_system *s)
+{
+    isph *m = s->state;
+    const double fixed = s->sim->def.time_step, most = s->sim->def.time_step_max;
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
+    m->motion_dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
+    const double dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
+}
+
+/* Still liquid needs less of the shift, which would stir it: all of it where the fastest particle or body
+   goes STIR spacings in a step. */
+static double share_of_shift(const tobi_system *s, const isph *m)
+{
+    const double speed = fmax(m->memory.speed, s->sim->body_speed);
+    return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(STIR*s->smoothing.spacing), 1));
+}
+
+static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
+{
+    TOBI_TRY(sph_find_neighbors(s, clock, err));
+    sph_bind_view(s, &m->view, m->memory.vessel);
+    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    sph_bind_view(s, &m->view, m->memory.vessel);
+    m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
+    m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
+    m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
+    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
+    TOBI_TRY(isph_solver_bind(&m->solver, s, err));
+    TOBI_TRY(isph_bodies_see(&m->solver, s, err));
+    sph_measure_density(s, &m->view, m->kernel, 0, clock);
+    return TOBI_OK;
+}
+
+static tobi_status remember(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    return sph_undo_begin(&m->undo, s, &m->memory.speed, MEMORY, err);
+}
+
+static void take_back(tobi_system *s)
+{
+    isph *m = s->state;
+    sph_undo_restore(&m->undo, s, &m->memory.speed, MEMORY);
+}
+
+static tobi_status begin(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    sph_use_dt(s, &m->view);
+    sph_drive_bodies(s, &clock);
+    TOBI_TRY(find_neighbors(s, m, &clock, err));
+    TOBI_TRY(sph_undo_keep(&m->undo, s, err));
+    launch(s, m, isph_measure_geometry, NULL);
+    tobi_stage_end(&s->sim->stages, "geometry", &clock);
+    return TOBI_OK;
+}
+
+/* Viscosity, friction and tension are those of the other SPH methods, with gravity, and what walls make of
+   it, left out: the images of the pressure equation know that. */
+static void forces(tobi_system *s)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    sph_view without = m->view;
+    for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    sph_apply_forces(s, &without, m->kernel, &clock);
+    isph_bodies_unlift(s);
+    launch(s, m, isph_add_gravity, NULL);
+}
+
+/* One failure is an event, and the best answer so far is used; many in a row are the end of the run. */
+static tobi_status judge(tobi_system *s, isph *m, const tobi_linear_report *report, tobi_error *err)
+{
+    const int good = report->status == TOBI_LINEAR_CONVERGED;
+    s->info.divergence_iterations = report->iterations;
+    s->info.divergence_converged = good;
+    s->info.density_converged = 1;          /* there is no second equation */
+    s->info.pressure_residual = report->residual;
+    m->memory.failures = good ? 0 : m->memory.failures + 1;
+    if (m->memory.failures <= FAILURES) return TOBI_OK;
+    return tobi_fail(err, TOBI_DIVERGED, "the pressure equation did not converge in %d steps in a row; at "
+                     "t = %.9g s its residual is %.3g after %d iterations, isph.tolerance asks for %.3g",
+                     FAILURES + 1, s->sim->time, report->residual, report->iterations, m->def.tolerance);
+}
+
+static tobi_status solve(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    const tobi_linear_settings settings = { .tolerance = m->def.tolerance, .max = m->def.iterations_max };
+    const double count = (double)s->particles.count;
+    double t[TOBI_TOTALS], clock = tobi_clock();
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
+    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    TOBI_TRY(judge(s, m, &report, err));
+    tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
+    launch(s, m, isph_kick, t);
+    s->info.force_sum = t[0]*s->smoothing.volume;
+    launch(s, m, isph_measure_divergence, t);
+    s->info.divergence_mean = t[0]/count;
+    s->info.divergence_max = t[6];
+    tobi_stage_end(&s->sim->stages, "pressure force", &clock);
+    return TOBI_OK;
+}
+
+/* Pressure by the images, friction as it was made. */
+static void measure_forces(tobi_system *s, isph *m, double *clock)
+{
+    double pressure[TOBI_TOTALS], friction[TOBI_TOTALS];
+    sph_view without = m->view;
+    without.pressure = sph_fields_of(&s->particles)->residual;
+    memset(without.pressure, 0, (size_t)s->particles.count*sizeof *without.pressure);
+    for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
+    launch(s, m, isph_press_walls, pressure);
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] = pressure[a] + friction[a];
+    tobi_near_body_forces(s);
+    isph_bodies_press(&m->solver, s);
+    tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
+}
+
+static void move(tobi_system *s)
+{
+    isph *m = s->state;
+    double clock = tobi_clock();
+    measure_forces(s, m, &clock);
+    launch(s, m, isph_find_shift, NULL);
+    launch(s, m, isph_use_change, NULL);
+    tobi_stage_end(&s->sim->stages, "shifting", &clock);
+    m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
+}
+
+static tobi_status refresh(tobi_system *s, tobi_error *err)
+{
+    double clock = tobi_clock();
+    return find_neighbors(s, s->state, &clock, err);
+}
+
+static void derive(tobi_system *s, const char *field)
+{
+    isph *m = s->state;
+    sph_derive(s, &m->view, m->kernel, field);
+}
+
+
+static int64_t count_bytes(const tobi_system *s)
+{
+    const isph *m = s->state;
+    return sph_bytes(s) + isph_solver_bytes(&m->solver);
+}
+
+static void free_state(void *state)
+{
+    isph *m = state;
+    if (m) tobi_near_free(&m->common.near);
+    if (m) isph_solver_free(&m->solver);
+    if (m) sph_undo_free(&m->undo);
+    free(m);
+}
+
+const tobi_method tobi_isph = {
+    .name = "isph",
+    .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
+    .params = &tobi_isph_table,
+    .fields = &sph_field_list,
+    .outputs = sph_outputs,
+    .needs = sph_needs,
+    .smoothing = choose_smoothing,
+    .create = create,
+    .remember = remember,
+    .take_back = take_back,
+    .max_dt = choose_dt,
+    .begin = begin,
+    .forces = forces,
+    .solve = solve,
+    .move = move,
+    .finish = sph_finish,
+    .refresh = refresh,
+    .read = sph_read,
+    .derive = derive,
+    .memory = list_memory,
+    .bytes = count_bytes,
+    .free = free_state,
+};

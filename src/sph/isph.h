@@ -1,0 +1,7 @@
+/* Incompressible SPH: a compact Poisson equation for the pressure. */
+#pragma once
+#include "base/param.h"
+#include "core/system.h"
+
+extern const tobi_method tobi_isph;
+extern const tobi_param_table tobi_isph_table;

@@ -1,0 +1,10 @@
+/* What isph sees of bodies, and what it does to them. */
+#pragma once
+#include "sph/isph_solve.h"
+
+/* A mirror for each entry of s->near; v->behind. After sph_see_walls. */
+tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err);
+/* Takes back what sph_apply_forces gave for the weight of images: those of the pressure equation know it. */
+void isph_bodies_unlift(tobi_system *s);
+/* The pressure's force and torque on each body; friction is there already. */
+void isph_bodies_press(isph_solver *m, tobi_system *s);

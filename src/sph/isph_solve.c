@@ -1,0 +1,153 @@
+/* The pressure equation of isph: entries in float beside the neighbour list, vectors in double, conjugate
+   gradients with a cycle of the cell multigrid (decision 42). Drawback: entries take as much memory as the
+   list, which a product that computes them anew would not. */
+#include "sph/isph_solve.h"
+#include "sph/fields.h"
+#include "sph/isph_passes.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the sweeps on the particles before and after the grid. */
+static const double DAMPING = 0.7;
+
+/* X(type, pointer): arrays of one value per particle. */
+#define ARRAYS(X)                                                                                    \
+    X(double, m->pressure) X(double, m->scratch) X(double, m->view.excess)                           \
+    X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
+    X(tobi_float4, m->view.lack) X(isph_tensor, m->view.inverse) X(float, m->view.trace)             \
+    X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.filled) \
+    X(float, m->view.behind)
+
+static int64_t row_bytes(void)
+{
+    int64_t sum = 0;
+#define X(type, pointer) sum += (int64_t)sizeof(type);
+    ARRAYS(X)
+#undef X
+    return sum;
+}
+
+/* Nothing of it outlives a step. */
+static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_error *err)
+{
+    if (p->capacity <= m->rows) return TOBI_OK;
+    const int64_t n = p->capacity + TOBI_PAD_ROWS;
+    free(m->memory);
+    m->rows = 0;
+    char *at = m->memory = calloc((size_t)n, (size_t)row_bytes());
+    if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the rows of %lld particles", (long long)n);
+#define X(type, pointer) pointer = (void *)at; at += n*(int64_t)sizeof(type);
+    ARRAYS(X)
+#undef X
+    m->view.change = (tobi_double3 *)m->work;      /* free between the solves */
+    m->rows = p->capacity;
+    return TOBI_OK;
+}
+
+void isph_solver_begin(isph_solver *m, tobi_system *s)
+{
+    const tobi_smoothing_constants *c = &s->smoothing;
+    isph_view *v = &m->view;
+    m->exec = &s->sim->exec;
+    m->sim = s->sim;
+    v->dimension = c->dimension;
+    v->shape = c->shape;
+    v->spacing = c->spacing;
+    v->h = c->h;
+    v->volume = c->volume;
+    v->weight = c->weight;
+    v->slope = c->slope;
+    v->full = 2*c->rate;
+    v->density = s->fluid[0].density;
+    memcpy(v->size, s->box.size, sizeof v->size);
+    memcpy(v->periodic, s->box.periodic, sizeof v->periodic);
+}
+
+static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi_error *err)
+{
+    if (cells->list_capacity <= m->entries) return TOBI_OK;
+    float *more = realloc(m->view.entry, (size_t)cells->list_capacity*sizeof *more);
+    if (!more)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a matrix of %lld entries",
+                         (long long)cells->list_capacity);
+    m->view.entry = more;
+    m->entries = cells->list_capacity;
+    return TOBI_OK;
+}
+
+tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
+{
+    const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(p);
+    isph_view *v = &m->view;
+    TOBI_TRY(reserve_rows(m, p, err));
+    if (!m->grid.memory) {
+        const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, p);
+        TOBI_TRY(tobi_multigrid_create(&m->grid, &points, 1, 2, err));
+    }
+    TOBI_TRY(reserve_entries(m, &s->cells, err));
+    v->count = p->count;
+    v->position = p->position;
+    v->velocity = p->velocity;
+    v->accel = f->accel;
+    v->pressure = f->pressure;
+    v->list = s->cells.list;
+    v->list_start = s->cells.list_start;
+    v->list_groups = s->cells.list_groups;
+    v->dt = s->dt;
+    memcpy(v->gravity, s->gravity, sizeof v->gravity);
+    return TOBI_OK;
+}
+
+static void apply(void *user, double *y, const double *x)
+{
+    isph_solver *m = user;
+    m->view.in = x;
+    m->view.out = y;
+    tobi_launch(m->exec, isph_multiply, &m->view, 0, m->view.count, NULL);
+}
+
+static int ask_stop(void *user)
+{
+    isph_solver *m = user;
+    return tobi_simulation_stops(m->sim);
+}
+
+static void precondition(void *user, double *z, const double *r)
+{
+    isph_solver *m = user;
+    const tobi_linear_system system = { .rows = m->view.count, .user = m, .apply = apply };
+    tobi_multigrid_cycle(&m->grid, m->exec, &system, m->view.inverse_diagonal, DAMPING, m->scratch, z, r);
+}
+
+tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_linear_settings *settings)
+{
+    double t[TOBI_TOTALS];
+    const int64_t n = m->view.count;
+    float *p = sph_fields_of(&s->particles)->pressure;
+    tobi_launch(m->exec, isph_assemble_rows, &m->view, 0, n, t);
+    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
+    const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
+    tobi_multigrid_set(&m->grid, m->exec, &points, &w);
+    const tobi_linear_system system = { .rows = n, .singular = !(t[0] > 0), .user = m, .apply = apply,
+                                        .precondition = precondition, .stop = ask_stop };
+    for (int64_t i = 0; i < n; i++) m->pressure[i] = p[i];
+    const tobi_linear_report report =
+        tobi_cg(m->exec, &system, settings, m->view.source, m->pressure, m->work);
+    for (int64_t i = 0; i < n; i++) p[i] = (float)m->pressure[i];
+    return report;
+}
+
+int64_t isph_solver_bytes(const isph_solver *m)
+{
+    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
+           m->mirrors*(int64_t)sizeof *m->mirror;
+}
+
+void isph_solver_free(isph_solver *m)
+{
+    tobi_multigrid_free(&m->grid);
+    free(m->view.entry);
+    free(m->mirror);
+    free(m->memory);
+}

@@ -1,0 +1,28 @@
+/* The pressure equation of isph: memory for its rows, and the solve. */
+#pragma once
+#include "core/system.h"
+#include "linear/multigrid.h"
+#include "sph/isph_pairs.h"
+
+typedef struct isph_solver {
+    isph_view view;
+    tobi_exec *exec;
+    tobi_simulation *sim;            /* asked whether to stop                                       */
+    tobi_multigrid grid;
+    void *memory;                    /* all arrays of the view but the entries, and those below     */
+    double *pressure, *scratch, *work;
+    int64_t rows;                    /* room for particles                                          */
+    int64_t entries;                 /* room for them                                               */
+    isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */
+    int64_t mirrors;                 /* room for them                                               */
+} isph_solver;
+
+/* The constants of the system; memory is made when it is first bound. */
+void isph_solver_begin(isph_solver *m, tobi_system *s);
+/* Points the view at the particles and the list as they are now; makes room where there are more. */
+tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err);
+/* Assembles and solves; particles.pressure is the start and receives the answer. */
+tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_linear_settings *settings);
+/* Bytes allocated. */
+int64_t isph_solver_bytes(const isph_solver *m);
+void isph_solver_free(isph_solver *m);
