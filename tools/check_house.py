@@ -5,7 +5,8 @@ usage: check_house.py [ROOT]
 
 Files of at most 600 lines, functions of at most 80, lines of at most 110 columns, no tabs, no file
 named utils, common or misc, no path of somebody's machine in the sources, no OpenMP in the program outside
-src/exec.
+src/exec. Pages: README of at most 120 lines, prose of at most 100 columns (not code, tables, equations), no
+passage about a program that was not kept; each decision has a number of its own and a status.
 """
 import ast
 import pathlib
@@ -24,6 +25,11 @@ FORBIDDEN = re.compile(r"(^|[_.-])(utils?|common|misc)([_.-]|$)", re.IGNORECASE)
 MACHINE_PATH = re.compile(r"""(?<![\w.$})/-])/(work|root|tmp|home)(/|\b)""")
 OPENMP = re.compile(r"pragma\s+omp|_Pragma\s*\(\s*\"\s*omp|\bomp_|\bomp\.h")
 OPENMP_FOLDERS = ("include", "src", "app", "bench")     # tests may call the library from threads of their own
+README_LINES = 120
+PROSE_COLUMNS = 100
+WIDE_PAGES = ("docs/architecture.md", "docs/adding_a_method.md")      # being rewritten; then this goes
+NOT_PROSE = re.compile(r"\s*\||<!--")      # tables, comments
+NOT_KEPT = re.compile(r"\b(programs?|scenes?|runs?)\b.*\bnot kept\b", re.IGNORECASE)
 TEST_FOLDER = re.compile(r"/tmp/\w*XXXXXX")      # mkdtemp in a test
 
 
@@ -101,12 +107,51 @@ def check_file(root, path, errors, longest):
             errors.append(f"{where}:{number}: function {name} has {length} lines, at most {FUNCTION_LINES}")
 
 
+def prose_lines(text):
+    """(number, line) of what is neither code nor table nor equation."""
+    fence = equation = indented = False
+    before = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        indented = line.startswith("    ") and (indented or not before.strip()) or (indented and not line.strip())
+        if line.strip().startswith("```"):
+            fence = not fence
+        elif not fence and "$$" in line:
+            equation ^= line.count("$$") % 2
+        elif not fence and not equation and not indented and not NOT_PROSE.match(line):
+            yield number, line
+        before = line
+
+
+def check_page(root, path, errors):
+    where = path.relative_to(root)
+    text = path.read_text(encoding="utf-8")
+    if where.name.startswith("README.") and len(where.parts) == 1 and text.count("\n") > README_LINES:
+        errors.append(f"{where}:{README_LINES}: {text.count(chr(10))} lines, at most {README_LINES}")
+    for number, line in prose_lines(text):
+        if len(line) > PROSE_COLUMNS and where.as_posix() not in WIDE_PAGES:
+            errors.append(f"{where}:{number}: {len(line)} columns of prose, at most {PROSE_COLUMNS}")
+        if NOT_KEPT.search(line):
+            errors.append(f"{where}:{number}: tells of a program that was not kept; what nobody can repeat is no fact")
+    if where.parts[:2] == ("docs", "decisions") and not re.search(r"^Status: ", text, re.MULTILINE):
+        errors.append(f"{where}:1: a decision without a line that begins with \"Status: \"")
+
+
+def check_pages(root, errors):
+    pages = sorted(root.glob("*.md")) + [p for f in ("docs", "scenes") for p in sorted((root / f).rglob("*.md"))]
+    for path in pages:
+        check_page(root, path, errors)
+    numbers = [p.name[:4] for p in pages if p.parent.name == "decisions"]
+    for number in sorted({n for n in numbers if numbers.count(n) > 1}):
+        errors.append(f"docs/decisions/{number}:1: two decisions of one number")
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]).resolve()
     errors, longest = [], []
     paths = source_files(root)
     for path in paths:
         check_file(root, path, errors, longest)
+    check_pages(root, errors)
     longest.sort(reverse=True)
     lengths = sorted(length for length, _ in longest)
     if lengths:

@@ -9,6 +9,9 @@
 
 enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
+/* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
+extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, describe_argp, bench_argp,
+                         info_argp, scenes_argp, new_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -17,6 +20,43 @@ int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);
 int tobiuo_bench(int argc, char **argv);
 int tobiuo_info(int argc, char **argv);
+int tobiuo_scenes(int argc, char **argv);
+int tobiuo_new(int argc, char **argv);
+
+typedef struct command {
+    const char *name, *arguments, *doc;
+    int (*run)(int argc, char **argv);
+    const struct argp *argp;
+} command;
+/* main.c: by number, NULL past the end. */
+const command *command_at(int index);
+/* manual.c: made from the commands. */
+void print_man_page(void);
+void print_completion(void);
+
+/* terminal.c */
+#define BOLD  "\033[1m"
+#define RED   "\033[1;31m"
+#define GREEN "\033[32m"
+#define PLAIN "\033[0m"
+int has_colours(FILE *file);
+/* The code where the file shows colours, or else "". */
+const char *colour(FILE *file, const char *code);
+/* Width of a terminal; 0: no terminal. */
+int terminal_columns(FILE *file);
+
+/* near.c: scenes by name. */
+/* Names of scene files and folders with a scene, sorted. */
+char **list_scenes(const char *folder, size_t *count);
+void free_names(char **names, size_t count);
+/* A path seen from the current folder, if it lies below. Owned by the caller. */
+char *relative_path(const char *path);
+/* The scene that a path leading nowhere may mean; NULL if none is near. Owned by the caller. */
+char *near_scene(const char *path);
+/* The same for the folder of a run. */
+char *near_run(const char *path);
+/* Says that there is no run in dir, and which one may be meant. Returns EXIT_ERROR. */
+int complain_run(const char *dir, const char *what);
 
 /* complain.c: "tobiuo: ..." on stderr, one line; returns EXIT_ERROR. */
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -38,6 +78,8 @@ char *scene_path(const char *path);
 tobi_scene *load_scene(const char *path, overrides *set);
 
 /* options.c: parsing of values; a usage error ends the program as argp does. */
+/* argp_parse, which may run out of memory before it has looked at anything: then the program ends. */
+void parse_arguments(const struct argp *argp, int argc, char **argv, void *input);
 double parse_positive(struct argp_state *state, const char *option, const char *text);
 int parse_threads(struct argp_state *state, const char *text);
 /* For all keys that a command does not know itself: takes its one argument, called SCENE or DIR. */
@@ -91,13 +133,14 @@ char *results_path(const tobi_scene *scene, const char *out);
 
 /* progress.c */
 typedef struct progress {
-    int shown, terminal, columns;    /* is there a line; is stderr a terminal; its width       */
+    int shown, columns;              /* is there a line; width of the terminal, 0: none        */
     double begun, start_time;        /* s of wall clock; s of simulated time                   */
     double last;                     /* s of wall clock of the last line                       */
+    double in_steps;                 /* s that the world had spent in steps then               */
     double particle_steps;           /* since the last line                                    */
 } progress;
-void progress_begin(progress *p, double time, int quiet);
-void progress_step(progress *p, const tobi_step_info *info, double end);
+void progress_begin(progress *p, const tobi_world *world, int quiet);
+void progress_step(progress *p, const tobi_world *world, const tobi_step_info *info, double end);
 /* Ends the rewritten line, so that other text can follow. */
 void progress_end(progress *p);
 double wall_clock(void);

@@ -221,26 +221,27 @@ static int measure_fish(const bench_options *o)
     return code;
 }
 
+const struct argp bench_argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "[CASE]",
+    .doc = "Measure the speed of this machine.\v"
+           "CASE is\n"
+           "  small   the settled tank at 8 mm, 55 000 particles, seconds (default)\n"
+           "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
+           "  wcsph   that tank at 8 mm by wcsph, seconds\n"
+           "  isph    that tank at 8 mm by isph, seconds\n"
+           "  fish    the flying fish at --spacing, --steps steps\n"
+           "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
+           "  cut     a ball that a blade goes through, and the same without, half a minute\n"
+           "  bodies  200 rigid boxes fall into a bin, seconds\n"
+           "\nTimes are wall clock; run it on a machine that does nothing else."
+};
+
 int tobiuo_bench(int argc, char **argv)
 {
-    static const struct argp argp = {
-        .options = options,
-        .parser = parse,
-        .args_doc = "[CASE]",
-        .doc = "Measure the speed of this machine.\v"
-               "CASE is\n"
-               "  small   the settled tank at 8 mm, 55 000 particles, seconds (default)\n"
-               "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
-               "  wcsph   that tank at 8 mm by wcsph, seconds\n"
-               "  isph    that tank at 8 mm by isph, seconds\n"
-               "  fish    the flying fish at --spacing, --steps steps\n"
-               "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
-               "  cut     a ball that a blade goes through, and the same without, half a minute\n"
-               "  bodies  200 rigid boxes fall into a bin, seconds\n"
-               "\nTimes are wall clock; run it on a machine that does nothing else."
-    };
     bench_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&bench_argp, argc, argv, &o);
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;

@@ -152,18 +152,19 @@ static int check_world(tobi_scene *scene)
     return code;
 }
 
+const struct argp check_argp = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "SCENE",
+    .doc =
+        "Check a scene without running it: every mistake, particle counts, memory, time step, size of "
+        "the results, time that a run takes."
+};
+
 int tobiuo_check(int argc, char **argv)
 {
-    static const struct argp argp = {
-        .options = options,
-        .parser = parse,
-        .args_doc = "SCENE",
-        .doc =
-            "Check a scene without running it: every mistake, particle counts, memory, time step, size of "
-            "the results, time that a run takes."
-    };
     check_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&check_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? check_world(scene) : EXIT_ERROR;
     tobi_scene_free(scene);

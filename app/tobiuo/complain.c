@@ -2,11 +2,12 @@
 #include "app.h"
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 int complain(const char *format, ...)
 {
     va_list args;
-    fputs("tobiuo: ", stderr);
+    fprintf(stderr, "%stobiuo:%s ", colour(stderr, RED), colour(stderr, PLAIN));
     va_start(args, format);
     vfprintf(stderr, format, args);
     va_end(args);
@@ -23,9 +24,17 @@ void print_notes(const tobi_world *world, FILE *file, const char *head)
 int complain_scene(tobi_report *report, const tobi_error *err)
 {
     int count = tobi_report_count(report);
-    for (int k = 0; k < count; k++) fprintf(stderr, "tobiuo: %s\n", tobi_report_line(report, k));
-    if (count > 1) fprintf(stderr, "tobiuo: %d mistakes\n", count);
+    for (int k = 0; k < count; k++) complain("%s", tobi_report_line(report, k));
+    if (count > 1) complain("%d mistakes", count);
     if (count == 0) complain("%s", err->text);
     tobi_report_free(report);
+    return EXIT_ERROR;
+}
+
+int complain_run(const char *dir, const char *what)
+{
+    char *near = near_run(dir);
+    complain("%s: %s%s%s%s", dir, what, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+    free(near);
     return EXIT_ERROR;
 }

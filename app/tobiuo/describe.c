@@ -1,4 +1,4 @@
-/* tobiuo describe [TOPIC] */
+/* tobiuo describe [WORD] */
 #include "app.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,23 +7,25 @@ static error_t parse(int key, char *value, struct argp_state *state)
 {
     const char **topic = state->input;
     if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
-    if (*topic) argp_error(state, "one TOPIC only");
+    if (*topic) argp_error(state, "one WORD only");
     *topic = value;
     return 0;
 }
 
+const struct argp describe_argp = { .parser = parse, .args_doc = "[WORD]",
+    .doc = "Tell what a WORD means: a topic such as fluid or history, or any key of a scene, field of "
+           "particles or column of a table. Without WORD, the topics." };
+
 int tobiuo_describe(int argc, char **argv)
 {
-    static const struct argp argp = { .parser = parse, .args_doc = "[TOPIC]",
-        .doc = "Parameters of a method or of a part of a scene; without TOPIC, the topics." };
     const char *topic = NULL;
-    argp_parse(&argp, argc, argv, 0, NULL, &topic);
+    parse_arguments(&describe_argp, argc, argv, &topic);
     char *text = tobi_scene_describe(topic);
     if (!text) {
-        complain("there is no topic '%s'", topic ? topic : "");
-        text = tobi_scene_describe(NULL);
-        if (text) fputs(text, stderr);
-        free(text);
+        char *near = tobi_scene_suggest(topic ? topic : "");
+        if (near) complain("nothing is called '%s'; did you mean %s?", topic, near);
+        else complain("nothing is called '%s'; \"tobiuo describe\" lists the topics", topic ? topic : "");
+        free(near);
         return EXIT_ERROR;
     }
     fputs(text, stdout);

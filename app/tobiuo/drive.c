@@ -32,7 +32,7 @@ static tobi_status step_to_end(const tobi_world *world, tobi_run *run, const dri
         if (status == TOBI_STOPPED) break;
         if (status != TOBI_OK) return status;
         watch_step(w, world, &info);
-        progress_step(p, &info, o->end);
+        progress_step(p, world, &info, o->end);
     }
     return TOBI_OK;
 }
@@ -79,7 +79,7 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     catch_signals();
     tobi_world_set_stop(world, is_caught, NULL);
     watch_begin(&w, world);
-    progress_begin(&p, tobi_world_time(world), o->quiet);
+    progress_begin(&p, world, o->quiet);
     tobi_status status = step_to_end(world, run, o, &p, &w, &err);
     progress_end(&p);
     int code = status == TOBI_OK ? end_run(world, run, o, &w, p.begun)

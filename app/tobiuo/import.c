@@ -29,14 +29,15 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
+const struct argp import_argp = { .options = options, .parser = parse, .args_doc = "SCENE",
+    .doc = "Translate a scene of the Taichi program (SPH_Taichi and its relatives), or parameters.py of "
+           "the one that cuts an apple, into a native scene. "
+           "\"run\" and \"check\" take such scenes as they are." };
+
 int tobiuo_import(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "SCENE",
-        .doc = "Translate a scene of the Taichi program (SPH_Taichi and its relatives), or parameters.py of "
-               "the one that cuts an apple, into a native scene. "
-               "\"run\" and \"check\" take such scenes as they are." };
     import_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&import_argp, argc, argv, &o);
     char *table = NULL, *path = scene_path(o.scene);
     tobi_report *report = NULL;
     tobi_error err = { 0 };

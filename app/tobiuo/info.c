@@ -51,10 +51,11 @@ static void print_libraries(void)
            zlibVersion(), LZ4_versionString(), png_get_libpng_ver(NULL));
 }
 
+const struct argp info_argp = { .doc = "Version, machine, libraries, methods." };
+
 int tobiuo_info(int argc, char **argv)
 {
-    static const struct argp argp = { .doc = "Version, machine, libraries, methods." };
-    argp_parse(&argp, argc, argv, 0, NULL, NULL);
+    parse_arguments(&info_argp, argc, argv, NULL);
     printf("tobiuo        %s\n", tobi_version());
 #ifdef __clang__
     printf("compiler      clang %s\n", __clang_version__);
@@ -64,8 +65,12 @@ int tobiuo_info(int argc, char **argv)
     print_processor();
     print_instruction_sets();
     print_libraries();
-    char *topics = tobi_scene_describe(NULL);
-    if (topics) printf("\n%s", topics);
-    free(topics);
+    const char *method;
+    printf("methods      ");
+    for (int k = 0; (method = tobi_method_name(k)); k++) printf(" %s", method);
+    putchar('\n');
+    char *scenes = tobi_scene_shipped(".");
+    printf("scenes        %s\n", scenes ? scenes : "not found");
+    free(scenes);
     return 0;
 }

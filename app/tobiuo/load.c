@@ -14,13 +14,26 @@ char *scene_path(const char *path)
     return file;
 }
 
+/* A path that leads nowhere, with the scene that it may mean. Returns 0 if it leads somewhere. */
+static int complain_nowhere(const char *path, const char *file)
+{
+    struct stat st;
+    if (stat(file, &st) == 0) return 0;
+    char *near = stat(path, &st) == 0 ? NULL : near_scene(path);
+    if (near) complain("%s: there is no such scene; did you mean %s?", path, near);
+    const int told = near != NULL;
+    free(near);
+    return told;
+}
+
 tobi_scene *load_scene(const char *path, overrides *set)
 {
     tobi_scene *scene = NULL;
     tobi_report *report = NULL;
     tobi_error err = { 0 };
     char *file = scene_path(path);
-    if (tobi_scene_load(file, (const char *const *)set->text, &scene, &report, &err) != TOBI_OK)
+    if (complain_nowhere(path, file)) scene = NULL;
+    else if (tobi_scene_load(file, (const char *const *)set->text, &scene, &report, &err) != TOBI_OK)
         complain_scene(report, &err);
     overrides_free(set);
     free(file);

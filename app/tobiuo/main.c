@@ -7,28 +7,73 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct command {
-    const char *name, *arguments, *doc;
-    int (*run)(int argc, char **argv);
-} commands[] = {
-    { "run", "SCENE", "simulate a scene", tobiuo_run },
-    { "resume", "DIR", "go on with a run that was stopped", tobiuo_resume },
-    { "check", "SCENE", "say what a scene would do, and all its mistakes, without running",
-      tobiuo_check },
-    { "import", "SCENE", "translate a scene of the Taichi program into a native one", tobiuo_import },
-    { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot },
-    { "describe", "[TOPIC]", "parameters with units, defaults and ranges", tobiuo_describe },
-    { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench },
-    { "info", "", "version, machine, libraries, methods", tobiuo_info },
+static const command commands[] = {
+    { "run", "SCENE", "simulate a scene", tobiuo_run, &run_argp },
+    { "resume", "DIR", "go on with a run that was stopped", tobiuo_resume, &resume_argp },
+    { "check", "SCENE", "say what a scene would do, and all its mistakes, without running", tobiuo_check,
+      &check_argp },
+    { "scenes", "", "list the shipped scenes", tobiuo_scenes, &scenes_argp },
+    { "new", "NAME [DIR]", "copy a shipped scene, to change it", tobiuo_new, &new_argp },
+    { "import", "SCENE", "translate a scene of the Taichi program into a native one", tobiuo_import,
+      &import_argp },
+    { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot, &plot_argp },
+    { "describe", "[WORD]", "tell any key, field, column or topic: unit, default, range", tobiuo_describe,
+      &describe_argp },
+    { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench, &bench_argp },
+    { "info", "", "version, machine, libraries, methods", tobiuo_info, &info_argp },
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+const command *command_at(int index) { return index < COMMAND_COUNT ? &commands[index] : NULL; }
 
 static void print_usage(FILE *file)
 {
     fprintf(file, "usage: tobiuo COMMAND [ARGUMENTS]\n\n");
     for (int k = 0; k < COMMAND_COUNT; k++)
-        fprintf(file, "  %-8s %-8s %s\n", commands[k].name, commands[k].arguments, commands[k].doc);
-    fprintf(file, "\n\"tobiuo COMMAND --help\" lists the options of a command.\n");
+        fprintf(file, "  %s%-8s%s %-10s %s\n", colour(file, BOLD), commands[k].name, colour(file, PLAIN),
+                commands[k].arguments, commands[k].doc);
+    fprintf(file, "\n\"tobiuo help COMMAND\" lists the options of a command. Begin with:\n"
+                  "  tobiuo new dam_break my_dam && tobiuo run my_dam\n");
+}
+
+static int complain_command(const char *word)
+{
+    const char *names[COMMAND_COUNT];
+    for (int k = 0; k < COMMAND_COUNT; k++) names[k] = commands[k].name;
+    const char *near = tobi_suggest(word, names, COMMAND_COUNT);
+    complain("there is no command '%s'%s%s%s", word, near ? "; did you mean " : "", near ? near : "",
+             near ? "?" : "");
+    if (!near) print_usage(stderr);
+    return EXIT_USAGE;
+}
+
+/* argp knows --help and -? only. */
+static void spell_help(int argc, char **argv)
+{
+    static char help[] = "--help";
+    for (int k = 1; k < argc && strcmp(argv[k], "--") != 0; k++)
+        if (strcmp(argv[k], "-h") == 0) argv[k] = help;
+}
+
+static int run_command(int argc, char **argv)
+{
+    for (int k = 0; k < COMMAND_COUNT; k++) {
+        if (strcmp(argv[0], commands[k].name) != 0) continue;
+        char name[32];
+        snprintf(name, sizeof name, "tobiuo %s", commands[k].name);
+        argv[0] = name;                       /* argp's messages begin with it */
+        spell_help(argc, argv);
+        return commands[k].run(argc, argv);
+    }
+    return complain_command(argv[0]);
+}
+
+static int print_help(int argc, char **argv)
+{
+    static char help[] = "--help";
+    if (argc > 1) return run_command(2, (char *[]){ argv[1], help, NULL });
+    print_usage(stdout);
+    return 0;
 }
 
 /* Threads that spin at a barrier steal the core from the one they wait for wherever cores are shared
@@ -70,23 +115,14 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return EXIT_USAGE;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
-        strcmp(argv[1], "help") == 0) {
-        print_usage(stdout);
-        return 0;
-    }
-    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+    const char *word = argv[1];
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0)
+        return print_help(argc - 1, argv + 1);
+    if (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0) {
         printf("tobiuo %s\n", tobi_version());
         return 0;
     }
-    for (int k = 0; k < COMMAND_COUNT; k++) {
-        if (strcmp(argv[1], commands[k].name) != 0) continue;
-        char name[32];
-        snprintf(name, sizeof name, "tobiuo %s", commands[k].name);
-        argv[1] = name;                       /* argp's messages begin with it */
-        return commands[k].run(argc - 1, argv + 1);
-    }
-    fprintf(stderr, "tobiuo: there is no command '%s'\n", argv[1]);
-    print_usage(stderr);
-    return EXIT_USAGE;
+    if (strcmp(word, "--man") == 0) return print_man_page(), 0;              /* for the installation */
+    if (strcmp(word, "--completion") == 0) return print_completion(), 0;
+    return run_command(argc - 1, argv + 1);
 }

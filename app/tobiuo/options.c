@@ -4,6 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+void parse_arguments(const struct argp *argp, int argc, char **argv, void *input)
+{
+    const error_t code = argp_parse(argp, argc, argv, 0, NULL, input);
+    if (code) exit(complain("the arguments cannot be read: %s", strerror(code)));
+}
+
 double parse_positive(struct argp_state *state, const char *option, const char *text)
 {
     char *end;

@@ -39,8 +39,8 @@ void picture_begin_script(FILE *script, const char *format)
           "set tics nomirror\n"
           "set format y '%g'\n"
           "set lmargin 13\n"
-          "set rmargin 26\n"
-          "set key outside right top Left reverse samplen 2\n", script);
+          "set rmargin 3\n"
+          "set key above left horizontal Left reverse samplen 2\n", script);
 }
 
 static int is_drawn(const picture *p, const curve *c, size_t i, int logarithmic)
@@ -63,18 +63,33 @@ int panel_has_values(const picture *p, const panel *a)
     return 0;
 }
 
-/* The y axis around everything drawn, with some air; gnuplot refuses an axis of no length. */
-static void write_range(FILE *script, const picture *p, const panel *a, int logarithmic)
+typedef struct range { double low, high; } range;
+
+/* Of all that is drawn from the row `first` of each curve on. */
+static range find_range(const picture *p, const panel *a, int logarithmic, size_t first)
 {
-    double low = INFINITY, high = -INFINITY;
+    range r = { INFINITY, -INFINITY };
     for (int k = 0; k < a->curves; k++) {
         const curve *c = &a->curve[k];
-        for (size_t i = 0; i < c->count; i++) {
+        for (size_t i = c->style == CURVE_POINTS ? 0 : first; i < c->count; i++) {
             if (!is_drawn(p, c, i, logarithmic)) continue;
-            low = fmin(low, c->y[i]);
-            high = fmax(high, c->y[i]);
+            r.low = fmin(r.low, c->y[i]);
+            r.high = fmax(r.high, c->y[i]);
         }
     }
+    return r;
+}
+
+/* The y axis around everything drawn, with some air; gnuplot refuses an axis of no length. What the first
+   rows alone would stretch the axis for leaves it: a force at a sudden start is an impulse over a step. */
+static void write_range(FILE *script, const picture *p, const panel *a, int logarithmic)
+{
+    enum { FIRST = 2 };
+    static const double STRETCH = 4;
+    range all = find_range(p, a, logarithmic, 0), later = find_range(p, a, logarithmic, FIRST);
+    const double span = later.high - later.low;
+    const int stretched = !logarithmic && span > 0 && all.high - all.low > STRETCH*span;
+    double low = stretched ? later.low : all.low, high = stretched ? later.high : all.high;
     if (logarithmic) {
         fprintf(script, "set logscale y\nset yrange [%.9g:%.9g]\n", low/1.5,
                 high*1.5);

@@ -423,7 +423,7 @@ static int draw_all(plotter *plot)
 {
     const char *dir = plot->options->dir;
     if (!has_file(dir, "history.csv"))
-        return complain("%s: there is no run to draw (no history.csv)", dir);
+        return complain_run(dir, "there is no run to draw (no history.csv)");
     int code = read_table(&plot->history, dir, "history.csv", "step");
     if (code == 0 && has_file(dir, "bodies.csv"))
         code = read_table(&plot->bodies, dir, "bodies.csv", "name");
@@ -444,12 +444,13 @@ static int draw_all(plotter *plot)
     return code;
 }
 
+const struct argp plot_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Draw the tables of the run in DIR as pictures in DIR/plots, with gnuplot." };
+
 int tobiuo_plot(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
-        .doc = "Draw the tables of the run in DIR as pictures in DIR/plots, with gnuplot." };
     plot_options o = { .format = "svg" };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&plot_argp, argc, argv, &o);
     plotter plot = { .options = &o, .dimension = 3 };
     int code = draw_all(&plot);
     for (int k = 0; k < plot.file_count; k++) free(plot.files[k]);

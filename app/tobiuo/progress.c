@@ -1,14 +1,15 @@
-/* The progress line: rewritten in place on a terminal, a line every few seconds elsewhere. */
+/* The progress line: rewritten in place on a terminal, with a bar; a line every few seconds elsewhere.
+   Drawback: the time that is left follows from the mean of the run so far, and lags behind a flow that gets
+   faster. */
 #include "app.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <time.h>
-#include <unistd.h>
 
 #define TERMINAL_PERIOD 0.2    /* s */
 #define FILE_PERIOD 5.0        /* s */
+enum { BAR = 20 };
 
 double wall_clock(void)
 {
@@ -26,45 +27,80 @@ const char *duration_text(double seconds, char *buffer)
     return buffer;
 }
 
-void progress_begin(progress *p, double time, int quiet)
+/* "3:10 left, ends 14:32", with the day where that is not today. */
+static void write_end(double left, char *buffer, size_t room)
 {
-    struct winsize size;
-    *p = (progress){ .terminal = isatty(STDERR_FILENO), .begun = wall_clock(), .start_time = time };
-    bool known = p->terminal && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col;
-    p->columns = known ? size.ws_col : 120;
+    char duration[32], clock[32] = "";
+    time_t now = time(NULL), end = now + (time_t)(left < 0 ? 0 : left > 1e8 ? 1e8 : left);
+    struct tm today, then;
+    if (localtime_r(&now, &today) && localtime_r(&end, &then))
+        strftime(clock, sizeof clock, today.tm_yday == then.tm_yday && today.tm_year == then.tm_year
+                                          ? "%H:%M" : "%Y-%m-%d %H:%M", &then);
+    snprintf(buffer, room, "%s left, ends %s", duration_text(left, duration), clock);
+}
+
+/* Seconds that the world has spent in steps. */
+static double sum_stages(const tobi_world *world)
+{
+    double sum = 0, seconds;
+    for (int k = 0; tobi_world_stage(world, k, &seconds); k++) sum += seconds;
+    return sum;
+}
+
+void progress_begin(progress *p, const tobi_world *world, int quiet)
+{
+    *p = (progress){ .columns = terminal_columns(stderr), .begun = wall_clock(),
+                     .start_time = tobi_world_time(world), .in_steps = sum_stages(world) };
     p->last = quiet ? -1.0 : p->begun;
 }
 
-static void print_line(progress *p, const tobi_step_info *info, double end, double rate)
+/* What the terminal is wide enough for, the bar in colour. */
+static void rewrite_line(const progress *p, double share, const char *line)
 {
-    char line[256], left[32], solver[80] = "";
-    double done = info->time - p->start_time, elapsed = wall_clock() - p->begun;
-    duration_text(done > 0.0 ? elapsed * (end - info->time) / done : 0.0, left);
+    char bar[BAR + 1];
+    const int full = (int)(share*BAR + 0.5), text = p->columns - 1 - (BAR + 8);
+    for (int k = 0; k < BAR; k++) bar[k] = k < full ? '#' : '-';
+    bar[BAR] = '\0';
+    if (text < 20) fprintf(stderr, "\r%-*.*s", p->columns - 1, p->columns - 1, line);
+    else fprintf(stderr, "\r%s[%s]%s%4.0f %% %-*.*s", colour(stderr, GREEN), bar, colour(stderr, PLAIN),
+                 100*share, text, text, line);
+}
+
+static void print_line(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
+{
+    char line[256], left[96], solver[80] = "", writing[32] = "";
+    const double now = wall_clock(), steps = sum_stages(world), spent = steps - p->in_steps;
+    const double done = info->time - p->start_time, span = end - p->start_time;
+    const double outside = 1 - spent/(now - p->last);
+    write_end(done > 0.0 ? (now - p->begun)*(end - info->time)/done : 0.0, left, sizeof left);
     bool converged = info->density_converged && info->divergence_converged;
     if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
-        snprintf(solver, sizeof solver, "iterations %d+%d%s  ", info->density_iterations,
+        snprintf(solver, sizeof solver, "  iterations %d+%d%s", info->density_iterations,
                  info->divergence_iterations, converged ? "" : " (not converged)");
-    snprintf(line, sizeof line, "t %.5f/%g s  step %lld  dt %.3g s  %s%.2f M particle-steps/s  left %s",
-             info->time, end, (long long)info->step, info->dt, solver, rate*1e-6, left);
-    if (p->terminal) fprintf(stderr, "\r%-*.*s", p->columns - 1, p->columns - 1, line);
+    if (outside > 0.1) snprintf(writing, sizeof writing, ", output %.0f %%", 100*outside);
+    snprintf(line, sizeof line, "t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s",
+             info->time, end, left, (long long)info->step, info->dt, solver,
+             spent > 0 ? p->particle_steps/spent*1e-6 : 0, writing);
+    if (p->columns) rewrite_line(p, span > 0 ? done/span : 1, line);
     else fprintf(stderr, "%s\n", line);
     fflush(stderr);
     p->shown = 1;
+    p->in_steps = steps;
 }
 
-void progress_step(progress *p, const tobi_step_info *info, double end)
+void progress_step(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
 {
     if (p->last < 0.0) return;
     p->particle_steps += (double)info->fluid_particles;
     double now = wall_clock();
-    if (now - p->last < (p->terminal ? TERMINAL_PERIOD : FILE_PERIOD)) return;
-    print_line(p, info, end, p->particle_steps / (now - p->last));
+    if (now - p->last < (p->columns ? TERMINAL_PERIOD : FILE_PERIOD)) return;
+    print_line(p, world, info, end);
     p->last = now;
     p->particle_steps = 0.0;
 }
 
 void progress_end(progress *p)
 {
-    if (p->shown && p->terminal) fputc('\n', stderr);
+    if (p->shown && p->columns) fputc('\n', stderr);
     p->shown = 0;
 }

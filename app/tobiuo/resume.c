@@ -52,17 +52,18 @@ static int resume_scene(tobi_scene *scene, const resume_options *o)
     return code;
 }
 
+const struct argp resume_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Go on with the run in DIR from its last whole checkpoint." };
+
 int tobiuo_resume(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "DIR",
-        .doc = "Go on with the run in DIR from its last whole checkpoint." };
     resume_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&resume_argp, argc, argv, &o);
     char *path = NULL;
     if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
     if (access(path, F_OK) != 0) {
         free(path);
-        return complain("%s: there is no run to resume (no resolved.json)", o.dir);
+        return complain_run(o.dir, "there is no run to resume (no resolved.json)");
     }
     tobi_scene *scene = load_scene(path, &o.set);
     int code = scene ? resume_scene(scene, &o) : EXIT_ERROR;

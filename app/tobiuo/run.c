@@ -97,12 +97,13 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     return code;
 }
 
+const struct argp run_argp = { .options = options, .parser = parse, .args_doc = "SCENE",
+    .doc = "Simulate a scene: a JSON file, or a directory with a scene.json." };
+
 int tobiuo_run(int argc, char **argv)
 {
-    static const struct argp argp = { .options = options, .parser = parse, .args_doc = "SCENE",
-        .doc = "Simulate a scene: a JSON file, or a directory with a scene.json." };
     run_options o = { 0 };
-    argp_parse(&argp, argc, argv, 0, NULL, &o);
+    parse_arguments(&run_argp, argc, argv, &o);
     tobi_scene *scene = load_scene(o.scene, &o.set);
     int code = scene ? run_scene(scene, &o) : EXIT_ERROR;
     tobi_scene_free(scene);

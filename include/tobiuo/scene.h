@@ -72,11 +72,24 @@ TOBI_API tobi_status tobi_scene_import(const char *old_path, const char *new_pat
    Owned by the caller (free()). NULL when out of memory. */
 TOBI_API char *tobi_scene_resolved(const tobi_scene *scene);
 
+/* A file that comes with Tobiuo, "flying_fish/scene.json", or with "." the folder of all scenes, by its
+   absolute path: beside the library (share/tobiuo/scenes of an installation, scenes of the source tree).
+   Owned by the caller (free()); NULL if it cannot be found. */
+TOBI_API char *tobi_scene_shipped(const char *name);
+
 /* Parameters, units, defaults and ranges of a topic, as text: a method ("dfsph"), "world", "fluid",
-   "fill", "body", "motion", "output" or "reference"; "scene" is the page of all of them in Markdown
-   (docs/scene.md), "schema" a JSON Schema (draft-07) for editors; NULL lists the topics. Owned by
-   the caller (free()). NULL if there is no such topic. */
+   "fill", "body", "motion", "output" or "reference"; "history", "bodies" or "probes" are the columns of the
+   tables of a run. "scene" is the page of all keys in Markdown (docs/scene.md), "tables" that of all columns
+   (docs/tables.md), "schema" a JSON Schema (draft-07) for editors; NULL lists the topics. Any other word is
+   looked for in all keys, fields and columns: "camera", "output.camera". Owned by the caller (free()). NULL
+   if there is nothing of this name. */
 TOBI_API char *tobi_scene_describe(const char *topic);
+/* The topic, key, field or column that a misspelt word may mean; owned by the caller (free()), NULL if none
+   is near. */
+TOBI_API char *tobi_scene_suggest(const char *word);
+/* The candidate nearest to word by edit distance, if it is near enough to be a slip of the pen, or else NULL.
+   Case, '-' and '_' do not count. */
+TOBI_API const char *tobi_suggest(const char *word, const char *const *candidates, size_t count);
 
 #ifdef __cplusplus
 }

@@ -31,6 +31,8 @@ extern "C" {
 typedef struct tobi_world tobi_world;
 
 TOBI_API const char *tobi_version(void);
+/* Names of the methods by number ("dfsph"), NULL past the end. */
+TOBI_API const char *tobi_method_name(int index);
 TOBI_API const char *tobi_status_text(tobi_status status);
 
 TOBI_API tobi_world_def  tobi_default_world_def(void);

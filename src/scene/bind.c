@@ -1,6 +1,6 @@
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include "world/params.h"
 #include <math.h>
 #include <stdio.h>

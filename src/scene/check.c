@@ -1,7 +1,7 @@
 /* The checks that need more than one value of a scene, or something outside of it. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include "mpm/damage.h"
 #include "world/methods.h"
 #include "mpm/mlsmpm.h"

@@ -1,7 +1,7 @@
 /* Translating scenes of the Taichi program: what every key means, and the way from file to file. */
 #define _GNU_SOURCE 1
 #include "scene/import.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include "scene/write.h"
 #include "world/params.h"
 #include <float.h>

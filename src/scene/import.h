@@ -114,8 +114,3 @@ void tobi_import_bodies(tobi_import *im);
 char *tobi_import_find_mesh(tobi_import *im, const char *path);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);
-
-/* shipped.c: a file that comes with Tobiuo, "flying_fish/motion.lua", by its absolute path: beside the
-   library (share/tobiuo/scenes of an installation, scenes of the source tree). Owned by the caller; NULL if
-   it cannot be found. */
-char *tobi_shipped_scene_file(const char *name);

@@ -3,6 +3,7 @@
    table. */
 #define _GNU_SOURCE 1
 #include "scene/import.h"
+#include "tobiuo/scene.h"
 #include "geom/massprops.h"
 #include <math.h>
 #include <stdio.h>
@@ -148,7 +149,7 @@ static double find_centre(tobi_import *im, const cut_object *knife, const char *
 
 static void build_control(tobi_import *im, json_t *body, double centre)
 {
-    char *script = tobi_shipped_scene_file("apple_cut_seed/control.lua");
+    char *script = tobi_scene_shipped("apple_cut_seed/control.lua");
     json_t *control = tobi_import_set(im, body, "control", json_object());
     tobi_import_set(im, control, "script", json_string(script ? script : ""));
     json_t *params = tobi_import_set(im, control, "params", json_object());

@@ -1,6 +1,7 @@
 /* Translating the objects of a Taichi scene: blocks of water, blocks and meshes of bodies, the fish. */
 #define _GNU_SOURCE 1
 #include "scene/import.h"
+#include "tobiuo/scene.h"
 #include "geom/mesh.h"
 #include "world/world.h"
 #include <ctype.h>
@@ -248,7 +249,7 @@ static int check_fish(tobi_import *im, uint64_t given, const tobi_place *place)
 static void set_motion(tobi_import *im, json_t *body, const tobi_old_body *b, json_t *object,
                        const tobi_place *place)
 {
-    char *script = tobi_shipped_scene_file("flying_fish/motion.lua");
+    char *script = tobi_scene_shipped("flying_fish/motion.lua");
     json_t *motion = tobi_import_set(im, body, "motion", json_object());
     tobi_import_set(im, motion, "script", json_string(script ? script : ""));
     json_t *params = tobi_import_set(im, motion, "params", json_object());
@@ -299,7 +300,7 @@ static char *choose_mesh(tobi_import *im, const char *given, int fish, const cha
 {
     char *file = tobi_import_find_mesh(im, given);
     *remark = NULL;
-    if (!file && !im->no_memory && fish && (file = tobi_shipped_scene_file(TOBI_STAND_IN)))
+    if (!file && !im->no_memory && fish && (file = tobi_scene_shipped(TOBI_STAND_IN)))
         *remark = "there is no such file, so the fish that comes with Tobiuo is taken: 0.2 m long, "
                   "0.2 m from tip to tip, as in the scene that these keys come from";
     return file;

@@ -1,7 +1,7 @@
 #define _GNU_SOURCE 1
 #include "scene/motions.h"
 #include "scene/parts.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include "scene/write.h"
 #include "base/param_rows.h"
 #include "world/params.h"

@@ -1,7 +1,7 @@
 /* Data that a scene names for comparison. The engine never opens it; `tobiuo plot` does. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include "world/record.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,9 +26,10 @@ static void check_column(tobi_source *source, const tobi_place *entry, tobi_tabl
     const char *names[COLUMNS];
     char near[200];
     int count = 0;
+    const tobi_table_column *c;
     tobi_place place = { entry, "column", 0 };
-    for (; count < COLUMNS && (names[count] = tobi_tables_column(table, count)); count++)
-        if (strcmp(names[count], column) == 0) return;
+    for (; count < COLUMNS && (c = tobi_tables_column(table, count)); count++)
+        if (strcmp(names[count] = c->name, column) == 0) return;
     suggest(column, names, count, near);
     tobi_source_mistake(source, &place, "there is no column \"%s\" in %s%s", column, where[table],
                         near);

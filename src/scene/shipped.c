@@ -1,7 +1,7 @@
 /* Where the shipped scenes are. An installation may be moved, so the search starts where this code itself
    was loaded from and goes up; the source tree of the build is the last resort. */
 #define _GNU_SOURCE 1
-#include "scene/import.h"
+#include "tobiuo/scene.h"
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static char *find_above(const char *file, const char *name)
     return found;
 }
 
-char *tobi_shipped_scene_file(const char *name)
+char *tobi_scene_shipped(const char *name)
 {
     static const char here = 0;
     Dl_info info;

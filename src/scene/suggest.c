@@ -1,4 +1,4 @@
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 #include <ctype.h>
 #include <string.h>
 

@@ -6,6 +6,7 @@
 #include "sph/dfsph.h"
 #include "sph/isph.h"
 #include "sph/wcsph.h"
+#include "tobiuo/tobiuo.h"
 #include "world/methods.h"
 #include "world/params.h"
 #include <string.h>

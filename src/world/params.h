@@ -30,8 +30,6 @@ extern const tobi_param_table tobi_reference_table;
 const tobi_param_table *tobi_param_table_at(int index);
 /* The parameters of a method by its name ("dfsph"), NULL if there is no such method. */
 const tobi_param_table *tobi_method_table(const char *method);
-/* Method names by index, NULL past the end. */
-const char *tobi_method_name(int index);
 
 /* Whether a tobi_model reads a row of the solid table; the material constants that it reads, "a, b". */
 int  tobi_solid_uses(int model, const char *key);

@@ -1,87 +1,12 @@
-/* history.csv, bodies.csv and probes.csv: the columns are lists, so that header and row cannot disagree. */
+/* history.csv, bodies.csv and probes.csv: the columns are lists (record_columns.h), so that header, row and
+   what is said of them cannot disagree. */
 #include "world/record.h"
+#include "world/record_columns.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
 
 #define DIGITS 9
-
-/* H(column, kind, value): one line per column of history.csv. `i` is the last step's info, `s` the
-   sums since the last output. Means are over the steps since the last output; other values are of
-   the last step. wall_force_ratio: force of the fluid on the walls along gravity / its weight; 1 in a
-   settled tank. Work and energies of solids are sums since the
-   start, see tobi_step_info; what is not measured is 0. pieces and fragments: see tobi_pieces. */
-#define HISTORY(H)                                                                  \
-    H("time",                       real, i->time)                                  \
-    H("step",                       int,  i->step)                                  \
-    H("dt",                         real, i->dt)                                    \
-    H("density_iterations",         int,  i->density_iterations)                    \
-    H("density_iterations_mean",    real, mean(s->density_iterations, s))           \
-    H("divergence_iterations",      int,  i->divergence_iterations)                 \
-    H("divergence_iterations_mean", real, mean(s->divergence_iterations, s))        \
-    H("unconverged_steps",          int,  s->unconverged)                           \
-    H("density_error_mean",         real, i->density_error_mean)                    \
-    H("density_error_max",          real, i->density_error_max)                     \
-    H("surface_share",              real, i->surface_share)                         \
-    H("divergence_mean",            real, i->divergence_mean)                       \
-    H("divergence_max",             real, i->divergence_max)                        \
-    H("pressure_residual",          real, i->pressure_residual)                     \
-    H("wall_force_x",               real, i->wall_force[0])                         \
-    H("wall_force_y",               real, i->wall_force[1])                         \
-    H("wall_force_z",               real, i->wall_force[2])                         \
-    H("weight",                     real, i->weight)                                \
-    H("wall_force_ratio",           real, wall_ratio(run, i)) \
-    H("kinetic_energy",             real, i->kinetic_energy)                        \
-    H("potential_energy",           real, i->potential_energy)                      \
-    H("elastic_energy",             real, i->elastic_energy)                        \
-    H("work_bodies",                real, i->work_bodies)                           \
-    H("energy_lost",                real, i->energy_lost)                           \
-    H("transfer_dissipation",       real, i->transfer_dissipation)                  \
-    H("plastic_work",               real, i->plastic_work)                          \
-    H("step_work",                  real, i->step_work)                             \
-    H("damping_work",               real, i->damping_work)                          \
-    H("friction_work",              real, i->friction_work)                         \
-    H("fracture_work",              real, i->fracture_work)                         \
-    H("side_work",                  real, i->side_work)                             \
-    H("momentum_x",                 real, i->momentum[0])                           \
-    H("momentum_y",                 real, i->momentum[1])                           \
-    H("momentum_z",                 real, i->momentum[2])                           \
-    H("force_sum",                  real, i->force_sum)                             \
-    H("speed_max",                  real, i->speed_max)                             \
-    H("fluid_particles",            int,  i->fluid_particles)                       \
-    H("particles_lost",             int,  i->particles_lost)                        \
-    H("put_back",                   int,  i->put_back)                              \
-    H("capped",                     int,  i->capped)                 \
-    H("contacts",                   int,  i->contacts)                              \
-    H("pieces",                     int,  pieces->count)                            \
-    H("fragments",                  int,  pieces->fragments)
-
-/* B(column, value) for bodies.csv, all real; V3 for a vector. Forces and torques are those on the body, of
-   the particles along normals and surfaces, and of bodies and sides that touch it; torques about its position
-   (centre of mass): of the last step, and as means over the time since the last output. */
-#define V3(B, name, v) B(name "_x", v[0]) B(name "_y", v[1]) B(name "_z", v[2])
-#define BODY(B)                                             \
-    V3(B, "position", b.position)                           \
-    B("orientation_w", b.orientation[0])                    \
-    B("orientation_x", b.orientation[1])                    \
-    B("orientation_y", b.orientation[2])                    \
-    B("orientation_z", b.orientation[3])                    \
-    V3(B, "velocity", b.velocity)                           \
-    V3(B, "angular_velocity", b.angular_velocity)           \
-    V3(B, "pressure_force", b.pressure_force)               \
-    V3(B, "viscous_force", b.viscous_force)                 \
-    V3(B, "pressure_torque", b.pressure_torque)             \
-    V3(B, "viscous_torque", b.viscous_torque)               \
-    V3(B, "mean_pressure_force", m.impulse[0])              \
-    V3(B, "mean_viscous_force", m.impulse[1])               \
-    V3(B, "mean_pressure_torque", m.impulse[2])             \
-    V3(B, "mean_viscous_torque", m.impulse[3])              \
-    V3(B, "contact_force", b.contact_force)                 \
-    V3(B, "contact_torque", b.contact_torque)               \
-    V3(B, "mean_contact_force", m.impulse[4])               \
-    V3(B, "mean_contact_torque", m.impulse[5])              \
-    V3(B, "edge_force", b.edge_force)                       \
-    V3(B, "mean_edge_force", m.impulse[6])
 
 static double mean(double sum, const tobi_tally *s)
 {
@@ -143,26 +68,34 @@ static tobi_status open_table(const tobi_run *run, const char *name, bool contin
     return status;
 }
 
-#define H(column, kind, value) { column, NULL },
+#define H(name, unit, kind, value, doc) { name, NULL },
 static const tobi_csv_column history_columns[] = { HISTORY(H) };
 #undef H
-#define B(column, value) { column, NULL },
+#define B(name, unit, value, doc) { name, NULL },
 static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL }, BODY(B) };
 #undef B
-static const tobi_csv_column point_columns[] = {
-    { "pressure", NULL }, { "velocity_x", NULL }, { "velocity_y", NULL }, { "velocity_z", NULL } };
-static const tobi_csv_column level_columns[] = { { "level", NULL } };
 
-static const struct { const tobi_csv_column *columns; int count; } tables[] = {
+#define H(name, unit, kind, value, doc) { name, unit, doc },
+static const tobi_table_column history[] = { HISTORY(H) };
+#undef H
+#define B(name, unit, value, doc) { name, unit, doc },
+static const tobi_table_column body[] = {
+    { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B) };
+#undef B
+#define P(name, unit, doc) { name, unit, doc },
+static const tobi_table_column point[] = { POINT(P) }, level[] = { LEVEL(P) };
+#undef P
+
+static const struct { const tobi_table_column *columns; int count; } tables[] = {
 #define LIST(columns) { columns, (int)(sizeof columns / sizeof *columns) }
-    [TOBI_TABLE_HISTORY] = LIST(history_columns), [TOBI_TABLE_BODIES] = LIST(body_columns),
-    [TOBI_TABLE_POINT] = LIST(point_columns), [TOBI_TABLE_LEVEL] = LIST(level_columns),
+    [TOBI_TABLE_HISTORY] = LIST(history), [TOBI_TABLE_BODIES] = LIST(body),
+    [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level),
 #undef LIST
 };
 
-const char *tobi_tables_column(tobi_table table, int index)
+const tobi_table_column *tobi_tables_column(tobi_table table, int index)
 {
-    return index >= 0 && index < tables[table].count ? tables[table].columns[index].name : NULL;
+    return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
 }
 
 /* Columns of probes.csv: time, then P_pressure, P_velocity_x .. z of a point P, H_level of a level H. */
@@ -176,10 +109,11 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
     if (columns) columns[0].name = "time";
     for (int k = 0; columns && names && k < probes; k++) {
         tobi_probe_kind kind;
-        const char *name = tobi_world_probe_name(run->world, k, &kind), *column;
+        const char *name = tobi_world_probe_name(run->world, k, &kind);
+        const tobi_table_column *column;
         tobi_table table = kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
         for (int v = 0; (column = tobi_tables_column(table, v)); v++, count++) {
-            snprintf(names[count], NAME, "%s_%s", name, column);
+            snprintf(names[count], NAME, "%s_%s", name, column->name);
             columns[count].name = names[count];
         }
     }
@@ -231,7 +165,7 @@ static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *e
         const tobi_body_tally m = mean_of_body(&run->body_since[k]);
         tobi_csv_add_real(run->bodies, tobi_world_time(run->world));
         tobi_csv_add_text(run->bodies, tobi_world_body_name(run->world, k));
-#define B(column, value) tobi_csv_add_real(run->bodies, value);
+#define B(name, unit, value, doc) tobi_csv_add_real(run->bodies, value);
         BODY(B)
 #undef B
         TOBI_TRY(tobi_csv_take_row(run->bodies, rows, err));
@@ -246,7 +180,7 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     const tobi_pieces none = { 0 }, *pieces = &none;
     if (tobi_world_solid_count(run->world) > 0) TOBI_TRY(tobi_world_pieces(run->world, &pieces, err));
     TOBI_TRY(take_bodies(run, &snapshot->bodies, err));
-#define H(column, kind, value) tobi_csv_add_##kind(run->history, value);
+#define H(name, unit, kind, value, doc) tobi_csv_add_##kind(run->history, value);
     HISTORY(H)
 #undef H
     return tobi_csv_take_row(run->history, &snapshot->history, err);

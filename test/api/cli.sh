@@ -52,6 +52,14 @@ expect 2 "usage: tobiuo"
 expect 0 "" --help
 expect 0 "" --version
 expect 2 "no command 'fly'" fly
+expect 2 "no command 'rnu'; did you mean run?" rnu
+expect 0 "" -h
+check "every command is listed" test "$(grep -cE '^  (run|resume|check|scenes|new|import|plot|describe|bench|info) ' out.txt)" = 10
+for word in "help run" "run --help" "run -h"; do
+    expect 0 "" $word
+    check "$word lists the options" grep -q -- "--spacing=M" out.txt
+done
+expect 2 "no command 'rnu'" help rnu
 expect 2 "which SCENE?" run
 expect 2 "--nonsense" run --nonsense tank.json
 expect 2 "not a positive number" run tank.json --until soon
@@ -61,10 +69,52 @@ expect 2 "PATH=VALUE" run tank.json --set spacing
 expect 2 "which DIR?" resume
 expect 0 "" describe dfsph
 check "describe names the unit" grep -q "default" out.txt
-expect 1 "no topic 'magic'" describe magic
+expect 1 "nothing is called 'magic'" describe magic
+expect 1 "nothing is called 'camra'; did you mean camera?" describe camra
+expect 0 "" describe camera
+check "any key is found" grep -q "camera.look_at" out.txt
+expect 0 "" describe mean_pressure_force_z
+check "any column is found" grep -q "bodies.csv, unit N" out.txt
 expect 0 "" info
 check "info names the version" grep -q "^tobiuo " out.txt
+check "info fits on a screen" test "$(wc -l < out.txt)" -le 24
+for command in "" describe info scenes; do
+    "$program" $command > out.txt 2>&1
+    check "no colours in a file: $command" test -z "$(grep $'\033' out.txt)"
+done
+"$program" --completion > complete.bash
+check "the completion is bash" bash -n complete.bash
+# complete WORD...: what bash offers for the last word
+complete() { bash -c '. ./complete.bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tobiuo
+                      echo "${COMPREPLY[@]}"' - tobiuo "$@"; }
+check "commands are completed" test "$(complete re)" = resume
+check "options are completed" test "$(complete run --sp)" = --spacing
+"$program" --man > tobiuo.1
+for word in 'tobiuo resume DIR' 'spacing' 'NO_COLOR'; do check "the man page has $word" grep -q "$word" tobiuo.1; done
+if command -v man > /dev/null; then
+    check "man reads it" test -z "$(man --warnings -l tobiuo.1 2>&1 > /dev/null)"
+fi
 check "nothing was made so far" test ! -e out
+
+# --- shipped scenes ---------------------------------------------------------------------------------
+expect 0 "" scenes
+check "scenes have a sentence" grep -q "^  dam_break  *A column of water collapses" out.txt
+expect 1 "dam_brake: there is no such scene; did you mean" run dam_brake
+expect 1 "dam_break: there is no such scene; did you mean" check dam_break
+expect 1 "tnak.json: there is no such scene; did you mean tank.json?" run tnak.json
+expect 2 "which NAME?" new
+expect 1 "no shipped scene 'dam_brake'; did you mean dam_break?" new dam_brake
+expect 1 "no shipped scene 'elephant'; \"tobiuo scenes\" lists them" new elephant
+expect 0 "" new dam_break
+check "new makes a scene" test -s dam_break/scene.json -a ! -e dam_break/README.md
+expect 1 "dam_break is there already" new dam_break
+for scene in twisted_knife floating_box apple_quarters; do      # with files from other folders
+    expect 0 "" new $scene copy
+    check "a copy of $scene stands alone" test -z "$(grep '"\.\./' copy/scene.json)"
+    expect 0 "" check copy
+    rm -rf copy
+done
+rm -rf dam_break
 
 # --- broken input -----------------------------------------------------------------------------------
 expect 1 "nowhere.json" run nowhere.json
@@ -194,6 +244,19 @@ assert s["outcome"] == "complete" and abs(s["time"] - 0.1) < 1e-12 and s["steps"
 assert s["fluid_particles"] > 100 and s["threads"] >= 1 and s["peak_rss_bytes"] > 1e6
 END
 
+# --- the progress line ------------------------------------------------------------------------------
+on_terminal='import pty, sys; pty.spawn(sys.argv[1:])'
+progress=("$program" run tank.json --force --out progress --until 0.1 --set spacing=0.006)
+"${progress[@]}" > out.txt 2> err.txt
+check "no bar in a file" test -z "$(grep -E $'\033|[[]#' err.txt)"
+TERM=xterm $python -c "$on_terminal" "${progress[@]}" > tty.txt < /dev/null
+check "a bar and the end on a terminal" grep -qaE '\[#*-*\].* left, ends [0-9][0-9]:[0-9][0-9]' tty.txt
+check "in colours" grep -qa $'\033\[32m\[' tty.txt
+NO_COLOR=1 TERM=xterm $python -c "$on_terminal" "${progress[@]}" > tty.txt < /dev/null
+check "NO_COLOR is heeded" test -z "$(grep -a $'\033' tty.txt)"
+check "the bar stays without colours" grep -qa '\[#*-*\]' tty.txt
+rm -rf progress
+
 # --- streams that are closed or full ----------------------------------------------------------------
 sed 's/box\.obj/open.obj/' tank.json > noted.json      # a scene with a note
 expect 0 "1 hole" run noted.json --until 0.02 --out streams
@@ -210,6 +273,9 @@ for command in --help --version "run --help" "describe scene" "check tank.json" 
     check "$command to a full device: said so" grep -q "tobiuo: cannot write to standard output" err.txt
 done
 rm -rf full full.json streams
+
+expect 1 "out/tnak: there is no run to resume (no resolved.json); did you mean out/tank?" resume out/tnak
+expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/tank?" plot out/tnak
 
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)

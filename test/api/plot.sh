@@ -144,6 +144,10 @@ check "one row is enough" has made/plots/energies.svg "kinetic energy, J"
 check "a name is no path" test -e "made/plots/.._a_ _b_ \`touch pwned\` _; system(_touch pwned_); __motion.svg"
 check "nothing above the folder" test -z "$(find . -maxdepth 1 -name '*motion*')"
 check "no name was run as a command either" test ! -e pwned -a ! -e made/plots/pwned
+# The axis is that of the rows after a start that stands far out.
+{ echo "time,step,kinetic_energy"; echo "0,0,0"; echo "0.1,1,900"; for k in 2 3 4 5; do echo "0.$k,$k,$k"; done; } > made/history.csv
+expect 0 "no values for the picture" plot made
+check "an outlier of the first rows does not set the axis" grep -qx 'set yrange \[1.82:5.18\]' made/plots/plots.gnuplot
 # Of solids the sum has the elastic energy: 2 J and 3 J change into 1 J and 2 J, 1.5 J are elastic, 0.5 J are lost.
 printf 'time,step,kinetic_energy,potential_energy,elastic_energy,energy_lost\n0,0,2,3,0,0\n1,1,1,2,1.5,0.5\n' > made/history.csv
 expect 0 "no values for the picture" plot made

@@ -32,6 +32,15 @@ CASES = [
     ("check_house.py", "app/tobiuo/a.c", "int n = omp_get_max_threads();\n", "a.c:1: names OpenMP"),
     ("check_house.py", "src/io/a.c", "#include <omp.h>\n", "a.c:1: names OpenMP"),
     ("check_house.py", "src/exec/a.c", "#pragma omp parallel for\n", None),
+    ("check_house.py", "README.md", "line\n"*121, "README.md:120: 121 lines, at most 120"),
+    ("check_house.py", "README.md", "line\n"*120, None),
+    ("check_house.py", "docs/a.md", "word "*21 + "\n", "docs/a.md:1: 105 columns of prose"),
+    ("check_house.py", "scenes/x/README.md", "- a\n  " + "word "*21 + "\n", "README.md:2: 107 columns of prose"),
+    ("check_house.py", "docs/a.md", "| " + "word "*30 + "|\n```\n" + "word "*30 + "\n```\n$$" + "x "*80 + "$$\n\n    " +
+     "word "*30 + "\n", None),
+    ("check_house.py", "docs/a.md", "Seen with programs that were not kept.\n", "a.md:1: tells of a program"),
+    ("check_house.py", "docs/decisions/0001-a.md", "# 1. A\n", "0001-a.md:1: a decision without a line"),
+    ("check_house.py", "docs/decisions/0001-a.md", "# 1. A\n\nStatus: accepted.\n", None),
     ("check_layers.py", "src/geom/a.c", '#include "exec/exec.h"\n', None),
     ("check_layers.py", "src/exec/a.c", '#include "geom/x.h"\n', "exec includes geom"),
     ("check_layers.py", "src/sph/a.k.h", "#include <math.h>\n", "a.k.h:1: includes a header of the system"),
@@ -47,7 +56,7 @@ def main():
     for tool, name, text, expected in CASES:
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / name
-            path.parent.mkdir(parents=True)
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")
             run = subprocess.run([sys.executable, TOOLS / tool, folder], capture_output=True, text=True)
         right = run.returncode == 0 if expected is None else run.returncode == 1 and expected in run.stdout

@@ -20,6 +20,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 import zlib
 
@@ -168,7 +169,7 @@ class Case:
 
     def write_page(self):
         VALIDATION.mkdir(parents=True, exist_ok=True)
-        lines = [f"# {self.title}", "", self.text.strip(), "", "| figure | value | goal | result |", "|---|---|---|---|"]
+        lines = [f"# {self.title}", "", fill(self.text), "", "| figure | value | goal | result |", "|---|---|---|---|"]
         lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:
             (VALIDATION / f"{self.name}.svg").write_text(plots.draw(self.plots))
@@ -176,10 +177,19 @@ class Case:
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
                   *["    " + c for c in self.commands], "",
-                  *([f"`test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR` leaves the scenes that it writes in DIR.",
-                     ""] if self.writes_scenes else []),
+                  *(["The scenes that it writes are left in DIR by", "",
+                     f"    test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR", ""]
+                    if self.writes_scenes else []),
                   f"Commit: {self.commit}. Machine: {self.machine}."]
         (VALIDATION / f"{self.name}.md").write_text("\n".join(lines) + "\n")
+
+
+def fill(text):
+    """Paragraphs of at most 100 columns; lists and tables stay as they are."""
+    parts = text.strip().split("\n\n")
+    return "\n\n".join(part if re.match(r"\s*([-*|]|\d+\.)", part) else
+                       textwrap.fill(" ".join(part.split()), 100, break_long_words=False, break_on_hyphens=False)
+                       for part in parts)
 
 
 def find_commit():
@@ -212,10 +222,14 @@ def write_index():
         goals = [goals[0] + met, goals[1] + len(rows)]
         cases.append(f"| {link} | {title} | {met} of {len(rows)} | {found[1]} | {found[2]} |")
         misses += [f"| {link} | {row} |" for row, result in rows if result != "met"]
-    lines = ["# Validation", "", "Results at reference size, written by `./test.sh --slow [CASE] [--reference DIR]`, one page per case;",
-             "do not edit. DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository: without it,",
-             "cases use the few values that stand in their run.py. A page has every figure, met, missed or without a goal, what it is",
-             f"compared with, and the commands. Of {goals[1]} goals {goals[0]} are met; the others stand below.", "",
+    lines = ["# Validation", "",
+             "Results at reference size, one page per case. Do not edit: `./test.sh --slow [CASE]",
+             "[--reference DIR]` writes them.", "",
+             "- A page has every figure, met, missed or without a goal, what it is compared with, and the",
+             "  commands.",
+             "- DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository.",
+             "  Without it, cases use the few values that stand in their run.py.",
+             f"- Of {goals[1]} goals {goals[0]} are met. The others stand below.", "",
              "| case | | goals met | commit | machine |", "|---|---|---|---|---|", *cases, "",
              "## Goals that are missed", "", "| case | figure | value | goal |", "|---|---|---|---|", *misses]
     known = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "scene/scene.h"
-#include "scene/suggest.h"
+#include "tobiuo/scene.h"
 
 #define FISH TOBI_SOURCE_DIR "/scenes/flying_fish/scene.json"
 
@@ -366,6 +366,41 @@ static void describe_tells_units_defaults_and_ranges(void **state)
     assert_non_null(strstr(text, "\"additionalProperties\": false"));
     free(text);
     assert_null(tobi_scene_describe("nonsense"));
+    assert_null(tobi_scene_describe(""));
+}
+
+static void expect_description(const char *word, const char *text, const char *not_this)
+{
+    char *told = tobi_scene_describe(word);
+    assert_non_null(told);
+    assert_non_null(strstr(told, text));
+    if (not_this) assert_null(strstr(told, not_this));
+    free(told);
+}
+
+static void describe_finds_any_key_field_or_column(void **state)
+{
+    (void)state;
+    expect_description("camera", "  camera.look_at\n", "interval");
+    expect_description("output.camera", "  camera.look_at\n", NULL);
+    expect_description("viscosity", "fluid: ", "density");
+    expect_description("walls", "  domain.walls.x[0]\n", "domain.min");
+    expect_description("frequency", "Hz", NULL);
+    expect_description("fill", "tobiuo describe flow", NULL);
+    expect_description("vorticity", "3 components, unit 1/s", NULL);
+    expect_description("mean_pressure_force_z", "bodies.csv, unit N\n      Mean of pressure_force", NULL);
+    expect_description("history", "density_error_mean", "orientation_w");
+    expect_description("probes", "level", NULL);
+    expect_description("tables", "# Tables of a run", NULL);
+    const char *slips[][2] = { { "camra", "camera" }, { "histroy", "history" }, { "viscocity", "viscosity" },
+                               { "dfshp", "dfsph" }, { "vorticty", "vorticity" } };
+    for (size_t k = 0; k < sizeof slips/sizeof *slips; k++) {
+        assert_null(tobi_scene_describe(slips[k][0]));
+        char *near = tobi_scene_suggest(slips[k][0]);
+        assert_string_equal(near, slips[k][1]);
+        free(near);
+    }
+    assert_null(tobi_scene_suggest("elephant"));
 }
 
 /* resolved.json is whole or not written: every allocation of jansson fails once. */
@@ -421,6 +456,7 @@ int main(void)
         cmocka_unit_test(a_box_is_a_rectangle_in_2d),
         cmocka_unit_test(builds_a_world),
         cmocka_unit_test(describe_tells_units_defaults_and_ranges),
+        cmocka_unit_test(describe_finds_any_key_field_or_column),
         cmocka_unit_test(suggestions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

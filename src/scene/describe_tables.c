@@ -1,0 +1,152 @@
+/* The columns of the tables that a run writes: as help texts and as docs/tables.md, from the lists that
+   write them (world/record_columns.h). Drawback: only what no list knows, such as when a row is written,
+   stands here and must be kept true by hand. */
+#define _GNU_SOURCE 1
+#include "scene/manual.h"
+#include "world/record.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char head[] =
+    "# Tables of a run\n"
+    "\n"
+    "<!-- Written by `tobiuo describe tables` from the lists that write the tables; do not edit. -->\n"
+    "\n"
+    "[日本語](tables.ja.md)\n"
+    "\n"
+    "## Files of a run\n"
+    "\n"
+    "| file | content |\n"
+    "|---|---|\n"
+    "| `fluid.pvd`, `bodies.pvd` | particles of the fluid (or solids) and of the "
+    "bodies over time; `.vtu` in folders beside |\n"
+    "| `all.pvd` | everything in one list with one time base |\n"
+    "| `grid.pvd` | nodes of the grid of mlsmpm, with `output.grid` |\n"
+    "| `BODY.pvd` | the moving surface of each body: `.vtp` and `.stl` in `surfaces/` |\n"
+    "| `frames/` | a picture per output, with `--frames` |\n"
+    "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
+    "| `history.csv`, `bodies.csv`, `probes.csv` | the tables below |\n"
+    "| `plots/` | the tables as pictures, after `tobiuo plot` |\n"
+    "| `checkpoints/` | what `tobiuo resume` goes on from |\n"
+    "| `resolved.json` | the scene with every default explicit; gives the same bits again |\n"
+    "| `summary.json` | totals; of solids the number of `pieces`, and mass (kg), volume (m3), "
+    "centre (m) of each |\n"
+    "\n"
+    "## The tables\n"
+    "\n"
+    "A run leaves up to three tables in its folder. They are CSV files: a row of names, then numbers\n"
+    "with a decimal point and commas between.\n"
+    "\n"
+    "| file | a row for | in the folder |\n"
+    "|---|---|---|\n"
+    "| `history.csv` | each output | always |\n"
+    "| `bodies.csv` | each output and body | where the scene has bodies |\n"
+    "| `probes.csv` | each step, or each `output.probe_interval` | where the scene has probes |\n"
+    "\n"
+    "- Units are SI. In 2-D masses, forces, torques and energies are per metre of depth.\n"
+    "- Vectors are in axes of the domain. A force is positive towards the higher coordinate.\n"
+    "- Forces and torques in `bodies.csv` act on the body, torques about its centre of mass.\n"
+    "- Columns `mean_...` are means over the time since the last output. Plot these. Other values are of\n"
+    "  the last step, and scatter from step to step.\n"
+    "- Energies and works of solids are of `mlsmpm`; of the other methods they are 0.\n"
+    "- `tobiuo plot DIR` draws the tables; `tobiuo describe COLUMN` tells what a column is.\n";
+
+static const struct { const char *topic, *file, *doc; tobi_table table; } tables[] = {
+    { "history", "history.csv", "The columns of history.csv: a row per output.", TOBI_TABLE_HISTORY },
+    { "bodies", "bodies.csv", "The columns of bodies.csv: a row per output and body.", TOBI_TABLE_BODIES },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind point: NAME_pressure, ...",
+      TOBI_TABLE_POINT },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind level: NAME_level.",
+      TOBI_TABLE_LEVEL },
+};
+enum { TABLES = sizeof tables/sizeof *tables };
+
+/* The meaning of a column stands once for the components of a vector. */
+static const char *find_meaning(tobi_table table, int index)
+{
+    while (index > 0 && !*tobi_tables_column(table, index)->doc) index--;
+    return tobi_tables_column(table, index)->doc;
+}
+
+static int is_above(const tobi_table_column *c) { return !*c->doc; }
+
+static void print_column(FILE *out, tobi_table table, int index)
+{
+    const tobi_table_column *c = tobi_tables_column(table, index);
+    fprintf(out, "  %-27s %-7s %s\n", c->name, c->unit, is_above(c) ? "(as above)" : c->doc);
+}
+
+int tobi_tables_describe(FILE *out, const char *topic)
+{
+    int found = 0;
+    for (int k = 0; k < TABLES; k++) {
+        if (strcmp(tables[k].topic, topic) != 0) continue;
+        fprintf(out, "%s%s\n", found++ ? "\n" : "", tables[k].doc);
+        for (int i = 0; tobi_tables_column(tables[k].table, i); i++) print_column(out, tables[k].table, i);
+    }
+    return found;
+}
+
+int tobi_tables_find(FILE *out, const char *name)
+{
+    const tobi_table_column *c;
+    int found = 0;
+    for (int k = 0; k < TABLES; k++)
+        for (int i = 0; (c = tobi_tables_column(tables[k].table, i)); i++) {
+            if (strcmp(c->name, name) != 0) continue;
+            fprintf(out, "%s: column of %s, unit %s\n      %s\n", name, tables[k].file, c->unit,
+                    find_meaning(tables[k].table, i));
+            found++;
+        }
+    return found;
+}
+
+const char *tobi_tables_topic(int index, const char **doc)
+{
+    static const char *const names[] = { "history", "bodies", "probes", "tables" };
+    static const char *const docs[] = { "The columns of history.csv, with units.", "Those of bodies.csv.",
+                                        "Those of probes.csv.",
+                                        "The page of all columns, in Markdown (docs/tables.md)." };
+    if (index < 0 || index >= 4) return NULL;
+    *doc = docs[index];
+    return names[index];
+}
+
+/* Components of a vector share a row: `position_x`, `_y`, `_z`. */
+static void write_rows(FILE *out, tobi_table table)
+{
+    const tobi_table_column *c, *next;
+    fputs("| column | unit | meaning |\n|---|---|---|\n", out);
+    for (int i = 0; (c = tobi_tables_column(table, i)); i++) {
+        const char *doc = c->doc;
+        fprintf(out, "| `%s`", c->name);
+        while ((next = tobi_tables_column(table, i + 1)) && !*next->doc) {
+            fprintf(out, ", `%s`", strrchr(next->name, '_'));
+            i++;
+        }
+        fprintf(out, " | %s | %s |\n", c->unit, doc);
+    }
+}
+
+char *tobi_tables_manual(void)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    fputs(head, out);
+    fputs("\n## history.csv\n\n", out);
+    write_rows(out, TOBI_TABLE_HISTORY);
+    fputs("\n## bodies.csv\n\n", out);
+    write_rows(out, TOBI_TABLE_BODIES);
+    fputs("\n## probes.csv\n\nThe first column is `time` (s). Then, for each probe P of kind point,\n"
+          "P_pressure and so on:\n\n", out);
+    write_rows(out, TOBI_TABLE_POINT);
+    fputs("\nand for each probe L of kind level L_level:\n\n", out);
+    write_rows(out, TOBI_TABLE_LEVEL);
+    int failed = ferror(out);
+    if (fclose(out) == 0 && !failed) return text;
+    free(text);
+    return NULL;
+}

@@ -1,0 +1,114 @@
+/* The columns of history.csv, bodies.csv and probes.csv: name, unit, value, meaning. One line makes the
+   header, the row, `tobiuo describe history` and docs/tables.md, so that they cannot disagree.
+   Drawback: values are expressions, which mean something only in record_tables.c. */
+#pragma once
+
+/* H(name, unit, kind, value, meaning): history.csv. `i` is the last step's info, `s` the sums since the last
+   output, `pieces` those of the solids. */
+#define HISTORY(H) \
+    H("time", "s", real, i->time, "Simulated time.") \
+    H("step", "1", int, i->step, "Number of the last step, from 1; 0 at the start.") \
+    H("dt", "s", real, i->dt, "Length of the last step.") \
+    H("density_iterations", "1", int, i->density_iterations, \
+      "Iterations of the density solve; 0 of a method without a solver.") \
+    H("density_iterations_mean", "1", real, mean(s->density_iterations, s), \
+      "Their mean over the steps since the last output.") \
+    H("divergence_iterations", "1", int, i->divergence_iterations, "Iterations of the velocity solve.") \
+    H("divergence_iterations_mean", "1", real, mean(s->divergence_iterations, s), \
+      "Their mean over the steps since the last output.") \
+    H("unconverged_steps", "1", int, s->unconverged, \
+      "Steps since the last output in which a solver stopped short of its tolerance; 0 is right.") \
+    H("density_error_mean", "1", real, i->density_error_mean, \
+      "Mean over all fluid of abs(density/rest density - 1); above 0.02 the liquid is none any more.") \
+    H("density_error_max", "1", real, i->density_error_max, "Its largest value at a particle.") \
+    H("surface_share", "1", real, i->surface_share, \
+      "Share of the fluid's particles at a free surface, 0 to 1; above 0.5 all is spray.") \
+    H("divergence_mean", "1/s", real, i->divergence_mean, \
+      "Mean over all fluid of abs(div v) after the velocity solve.") \
+    H("divergence_max", "1/s", real, i->divergence_max, "Its largest value at a particle.") \
+    H("pressure_residual", "1", real, i->pressure_residual, \
+      "Relative residual of the pressure in the density solve.") \
+    H("wall_force_x", "N", real, i->wall_force[0], \
+      "Force of the fluid on the sides of the domain along x; positive pushes towards +x.") \
+    H("wall_force_y", "N", real, i->wall_force[1], "The same along y.") \
+    H("wall_force_z", "N", real, i->wall_force[2], \
+      "The same along z; still water on the floor: negative, the weight.") \
+    H("weight", "N", real, i->weight, "Mass times gravity of all fluid.") \
+    H("wall_force_ratio", "1", real, wall_ratio(run, i), \
+      "Wall force along gravity over the weight; 1 in a tank at rest without bodies.") \
+    H("kinetic_energy", "J", real, i->kinetic_energy, "Of all fluid and solids.") \
+    H("potential_energy", "J", real, i->potential_energy, \
+      "In gravity, against the lower corner of the domain.") \
+    H("elastic_energy", "J", real, i->elastic_energy, "Stored in solids and compressed liquids of mlsmpm.") \
+    H("work_bodies", "J", real, i->work_bodies, \
+      "Done by bodies on the solids since the start; positive: the solids gain.") \
+    H("energy_lost", "J", real, i->energy_lost, \
+      "Lost by the solids since the start; the seven columns that follow are its parts.") \
+    H("transfer_dissipation", "J", real, i->transfer_dissipation, \
+      "Lost on the way to the grid and back; 0 without mlsmpm.measure_transfer.") \
+    H("plastic_work", "J", real, i->plastic_work, \
+      "Lost to plastic flow and viscosity; 0 without mlsmpm.measure_transfer.") \
+    H("step_work", "J", real, i->step_work, \
+      "Lost to the length of time steps, impact included; 0 without mlsmpm.measure_transfer.") \
+    H("damping_work", "J", real, i->damping_work, "Lost to the damping of solids.") \
+    H("friction_work", "J", real, i->friction_work, \
+      "Lost to friction and impact at bodies and at faces of cuts.") \
+    H("fracture_work", "J", real, i->fracture_work, "Lost to new surface, by blades and by cracks.") \
+    H("side_work", "J", real, i->side_work, \
+      "Lost to friction at sides of the domain; negative where sides drive.") \
+    H("momentum_x", "kg m/s", real, i->momentum[0], "Of all fluid and solids, along x.") \
+    H("momentum_y", "kg m/s", real, i->momentum[1], "The same along y.") \
+    H("momentum_z", "kg m/s", real, i->momentum[2], "The same along z.") \
+    H("force_sum", "N", real, i->force_sum, \
+      "Sum over particles of the size of their force: the scale of errors in momentum.") \
+    H("speed_max", "m/s", real, i->speed_max, "Speed of the fastest particle.") \
+    H("fluid_particles", "1", int, i->fluid_particles, "Particles of fluid and solids.") \
+    H("particles_lost", "1", int, i->particles_lost, "Particles that left the domain since the start.") \
+    H("put_back", "1", int, i->put_back, \
+      "Times since the start that a particle of mlsmpm was put back into the domain.") \
+    H("capped", "1", int, i->capped, "Particles that were slowed to the largest speed in the last step.") \
+    H("contacts", "1", int, i->contacts, \
+      "Particles that a surface held back by their position in the last step.") \
+    H("pieces", "1", int, pieces->count, "Connected pieces of the solids.") \
+    H("fragments", "1", int, pieces->fragments, "Pieces of fewer particles than a grid cell holds.")
+
+/* B(name, unit, value, meaning): bodies.csv after time and name, all real; V3 for a vector. An empty meaning:
+   that of the column before. Means are over the time since the last output. */
+#define V3(B, name, unit, v, doc) \
+    B(name "_x", unit, v[0], doc) B(name "_y", unit, v[1], "") B(name "_z", unit, v[2], "")
+#define BODY(B) \
+    V3(B, "position", "m", b.position, "Centre of mass.") \
+    B("orientation_w", "1", b.orientation[0], \
+      "Unit quaternion against the rest pose: cosine of half the turn.") \
+    B("orientation_x", "1", b.orientation[1], "Its axis times the sine of half the turn.") \
+    B("orientation_y", "1", b.orientation[2], "") \
+    B("orientation_z", "1", b.orientation[3], "") \
+    V3(B, "velocity", "m/s", b.velocity, "Of the centre of mass.") \
+    V3(B, "angular_velocity", "rad/s", b.angular_velocity, "By the right-hand rule, in axes of the domain.") \
+    V3(B, "pressure_force", "N", b.pressure_force, \
+       "Of the particles on the body along its normals, in the last step; positive pushes towards +.") \
+    V3(B, "viscous_force", "N", b.viscous_force, "Of the particles along its surface, in the last step.") \
+    V3(B, "pressure_torque", "N m", b.pressure_torque, "About the centre of mass, of pressure_force.") \
+    V3(B, "viscous_torque", "N m", b.viscous_torque, "About the centre of mass, of viscous_force.") \
+    V3(B, "mean_pressure_force", "N", m.impulse[0], \
+       "Mean of pressure_force over the time since the last output: the one to plot.") \
+    V3(B, "mean_viscous_force", "N", m.impulse[1], "Mean of viscous_force over that time.") \
+    V3(B, "mean_pressure_torque", "N m", m.impulse[2], "Mean of pressure_torque over that time.") \
+    V3(B, "mean_viscous_torque", "N m", m.impulse[3], "Mean of viscous_torque over that time.") \
+    V3(B, "contact_force", "N", b.contact_force, "Of bodies and sides that touch it, in the last step.") \
+    V3(B, "contact_torque", "N m", b.contact_torque, "About the centre of mass, of contact_force.") \
+    V3(B, "mean_contact_force", "N", m.impulse[4], "Mean of contact_force over that time.") \
+    V3(B, "mean_contact_torque", "N m", m.impulse[5], "Mean of contact_torque over that time.") \
+    V3(B, "edge_force", "N", b.edge_force, \
+       "The part of pressure_force that the edge of a blade takes to cut, in the last step.") \
+    V3(B, "mean_edge_force", "N", m.impulse[6], "Mean of edge_force over that time.")
+
+/* P(name, unit, meaning): what a point and a level measure. */
+#define POINT(P) \
+    P("pressure", "Pa", "Pressure at the point; 0 where there is no fluid.") \
+    P("velocity_x", "m/s", "Velocity of the fluid at the point.") \
+    P("velocity_y", "m/s", "") \
+    P("velocity_z", "m/s", "")
+#define LEVEL(P) \
+    P("level", "m", \
+      "Coordinate of the free surface on the plumb line of the point: y or z if gravity is along -y or -z.")
