@@ -68,7 +68,7 @@ static void rewrite_line(const progress *p, double share, const char *line)
 
 static void print_line(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
 {
-    char line[256], left[96], solver[80] = "", writing[32] = "";
+    char line[512], left[96], solver[80] = "", writing[32] = "";
     const double now = wall_clock(), steps = sum_stages(world), spent = steps - p->in_steps;
     const double done = info->time - p->start_time, span = end - p->start_time;
     const double outside = 1 - spent/(now - p->last);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Installs the library into an empty folder and builds the programs of this folder against it through pkg-config:
-# by the commands of the README, with the shared and with the static library, and runs all.
+# by the commands of docs/c.md, with the shared and with the static library, and runs all.
 # usage: installed_example.sh CMAKE BUILD_DIR CC
 set -euo pipefail
 cmake=$1 build=$2 cc=$3
@@ -28,16 +28,14 @@ done
 grep "$work/usr/share/tobiuo/scenes/flying_fish/meshes/fish.obj" "$work/check.txt" > /dev/null ||
     { echo "the installed program did not find the installed fish"; exit 1; }
 
-# The README's own commands, with an empty home.
+# The page's own commands, with an empty home.
 mkdir "$work/home"
-for page in README.md README.ja.md; do
-    awk '/^## (Use it from C|Cから使う)$/ { on = 1 } on && /^```$/ { if (inside) exit; inside = 1; next } inside' \
-        "$here/../../$page" | sed "s|build/release|$build|" > "$work/$page.sh"
-    [ "$(wc -l < "$work/$page.sh")" -ge 3 ] || { echo "$page has no commands"; exit 1; }
-    (cd "$here/../.." && HOME=$work/home bash -e "$work/$page.sh" > "$work/$page.txt")
-    tail -n 1 "$work/$page.txt"
-    rm -rf "$work/home/tobiuo"
-done
+page=docs/c.md
+awk '/^```$/ { if (inside) exit; inside = 1; next } inside' "$here/../../$page" |
+    sed "s|build/release|$build|" > "$work/page.sh"
+[ "$(wc -l < "$work/page.sh")" -ge 3 ] || { echo "$page has no commands"; exit 1; }
+(cd "$here/../.." && HOME=$work/home bash -e "$work/page.sh" > "$work/page.txt")
+tail -n 1 "$work/page.txt"
 
 for program in example scene_in_memory; do
     "$work/shared_$program" | tee "$work/shared.txt"
