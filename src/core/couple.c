@@ -13,18 +13,6 @@ static int any_moves(const tobi_system *s)
     return 0;
 }
 
-/* First of the entries, which are sorted by body, of this body or a later one. */
-static int64_t first_entry(const tobi_near_bodies *n, int body)
-{
-    int64_t low = 0, high = n->count;
-    while (low < high) {
-        int64_t middle = (low + high)/2;
-        if (n->entry[middle].body < body) low = middle + 1;
-        else high = middle;
-    }
-    return low;
-}
-
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and
    contact, which the next step knows from the velocities it starts with. */
 static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
@@ -67,15 +55,28 @@ static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
         if (s->particles.near[i] >= 0) s->particles.wall[i].w += (float)answer_at(s, i);
 }
 
+/* Into the answers, which are free until then. */
+static void sum_known_forces(tobi_system *s)
+{
+    for (int viscous = 0; viscous < 2; viscous++) {
+        tobi_near_known_forces(s, viscous);
+        for (int k = 0; k < s->sim->body_count; k++) {
+            tobi_rigid *r = &s->sim->bodies[k].rigid;
+            for (int a = 0; a < 6; a++) r->answer[a] = (viscous ? r->answer[a] : 0) + s->near.total[k][a];
+        }
+    }
+}
+
 void tobi_couple_begin(tobi_system *s)
 {
     if (!any_moves(s)) return;
+    sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         tobi_rigid *r = &b->rigid;
         double f[6];
         if (!moves(b)) continue;
-        tobi_near_known_forces(s, k, f);
+        memcpy(f, r->answer, sizeof f);
         tobi_system_body_hydrostatic(s, k, f);
         foresee(s, b, f);
         vec3_sub(r->answer, r->foreseen, r->velocity);
@@ -84,10 +85,11 @@ void tobi_couple_begin(tobi_system *s)
     tobi_launch(&s->sim->exec, add_flux, s, 0, s->particles.count, NULL);
 }
 
-/* Force and torque of the records' pressures on a body, without the factor of two volumes. */
+/* Force and torque of the records' pressures on one body, without the factor of two volumes. */
 static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
 {
     const tobi_system *s = view;
+    if (!moves(&s->sim->bodies[s->near.entry[begin].body])) return;
     for (int64_t k = begin; k < end; k++) {
         const tobi_near_entry *e = &s->near.entry[k];
         double q = s->particles.record[e->particle].w;
@@ -116,11 +118,11 @@ void tobi_couple_product(tobi_system *s, double *totals)
 {
     double t[TOBI_TOTALS];
     if (!any_moves(s)) return;
+    tobi_near_sum(s, sum_pressure, s, 1);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_rigid *r = &s->sim->bodies[k].rigid;
         if (!moves(&s->sim->bodies[k])) continue;
-        tobi_launch(&s->sim->exec, sum_pressure, s, first_entry(&s->near, k), first_entry(&s->near, k + 1),
-                    t);
+        memcpy(t, s->near.total[k], sizeof t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         for (int a = 0; a < 3; a++) {
             r->answer[a] = r->mobility[a]*t[a];
@@ -144,7 +146,7 @@ void tobi_couple_correct(tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
-        if (!moves(b) || first_entry(&s->near, k) == first_entry(&s->near, k + 1)) continue;
+        if (!moves(b) || s->near.first[k] == s->near.first[k + 1]) continue;
         collect_forces(b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);

@@ -17,7 +17,8 @@ static int faces_side(const tobi_system *s, const double x[3], const double n[3]
 
 static int faces_body(const tobi_system *s, int body, const double x[3], const double n[3])
 {
-    for (int k = 0; k < s->sim->body_count; k++) {
+    tobi_tree_walk walk = {0, 0};
+    for (int k; (k = tobi_body_tree_next(&s->near.tree, x, &walk)) >= 0;) {
         tobi_bvh_hit hit;
         if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
         if (n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return 1;
@@ -25,16 +26,36 @@ static int faces_body(const tobi_system *s, int body, const double x[3], const d
     return 0;
 }
 
+/* The body that the q-th of all points belongs to. */
+static int body_of(const tobi_system *s, int64_t q)
+{
+    int low = 0, high = s->sim->body_count;
+    while (high - low > 1) {
+        const int middle = (low + high)/2;
+        if (s->near.bins[middle].item <= q) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+static void wet_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    int k = body_of(s, begin);
+    (void)totals;
+    for (int64_t all = begin; all < end; all++) {
+        while (all >= s->near.bins[k + 1].item) k++;
+        const tobi_body *b = &s->sim->bodies[k];
+        const int64_t q = all - s->near.bins[k].item;
+        const double *x = b->point[q], *n = b->normal[q];
+        if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;
+        if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
+    }
+}
+
 void tobi_gap_wet(tobi_system *s)
 {
     if (!(s->still.push > 0)) return;
-    for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body *b = &s->sim->bodies[k];
-        #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 256)
-        for (int64_t q = 0; q < b->point_count; q++) {
-            const double *x = b->point[q], *n = b->normal[q];
-            if (b->wet[q] || !(tobi_still_pressure(&s->still, x) > 0)) continue;
-            if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
-        }
-    }
+    tobi_body_tree_build(&s->near.tree, s->sim->bodies, s->sim->body_count, s->smoothing.h, s->box.dimension);
+    tobi_launch(&s->sim->exec, wet_range, s, 0, s->near.bins[s->sim->body_count].item, NULL);
 }

@@ -19,7 +19,7 @@ static double plane_value(const tobi_system *s, const float *table, double dista
     return table[k] + (at - k)*((double)table[k + 1] - table[k]);
 }
 
-static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, tobi_error *err)
+static tobi_status grow_rows(void **p, int64_t *capacity, int64_t need, size_t size, tobi_error *err)
 {
     if (need <= *capacity) return TOBI_OK;
     int64_t more = need + need/2 + 64;
@@ -32,73 +32,102 @@ static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, 
     return TOBI_OK;
 }
 
-static int bin_along(const tobi_near_bodies *n, int a, double x)
+#define grow(array, capacity, need, err) grow_rows((void **)(array), capacity, need, sizeof **(array), err)
+
+static int bin_along(const tobi_near_bins *c, double width, int a, double x)
 {
-    double k = floor((x - n->bin_lower[a])/n->bin_width);
-    return k < 0 ? -1 : k >= n->bins[a] ? n->bins[a] : (int)k;
+    double k = floor((x - c->lower[a])/width);
+    return k < 0 ? -1 : k >= c->n[a] ? c->n[a] : (int)k;
 }
 
-/* Sorts a body's points into cells of width h over its box. */
-static tobi_status fill_bins(tobi_system *s, const tobi_body *b, tobi_error *err)
+/* Lays the bins of all bodies out, cells of width h over the boxes. */
+static tobi_status plan_bins(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
-    double lo[3], hi[3];
-    tobi_bvh_box(b->bvh, lo, hi);
-    int64_t total = 1;
+    const int bodies = s->sim->body_count;
+    int64_t starts = 0, items = 0;
+    TOBI_TRY(grow(&n->bins, &n->bins_capacity, bodies + 1, err));
     n->bin_width = s->smoothing.h;
-    for (int a = 0; a < 3; a++) {
-        n->bin_lower[a] = lo[a];
-        n->bins[a] = a == 2 && s->box.dimension == 2
-                         ? 1
-                         : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);
-        total *= n->bins[a];
+    for (int k = 0; k < bodies; k++) {
+        tobi_near_bins *c = &n->bins[k];
+        double lo[3], hi[3];
+        int64_t total = 1;
+        tobi_bvh_box(s->sim->bodies[k].bvh, lo, hi);
+        for (int a = 0; a < 3; a++) {
+            c->lower[a] = lo[a];
+            c->n[a] = a == 2 && s->box.dimension == 2
+                          ? 1
+                          : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);
+            total *= c->n[a];
+        }
+        if (s->box.dimension == 2) c->lower[2] = -0.5*n->bin_width;
+        c->start = starts;
+        c->item = items;
+        starts += total + 2;
+        items += s->sim->bodies[k].point_count;
     }
-    if (s->box.dimension == 2) n->bin_lower[2] = -0.5*n->bin_width;
-    void *start = n->bin_start, *item = n->bin_item;
-    tobi_status status = grow(&start, &n->bin_capacity, total + 2, sizeof(int32_t), err);
-    n->bin_start = start;
-    TOBI_TRY(status);
-    status = grow(&item, &n->item_capacity, b->point_count, sizeof(int32_t), err);
-    n->bin_item = item;
-    TOBI_TRY(status);
-    memset(n->bin_start, 0, (size_t)(total + 2)*sizeof(int32_t));
+    n->bins[bodies] = (tobi_near_bins){.start = starts, .item = items};
+    TOBI_TRY(grow(&n->bin_start, &n->start_capacity, starts, err));
+    return grow(&n->bin_item, &n->item_capacity, items, err);
+}
+
+/* Sorts a body's points into its bins. */
+static void fill_bins(const tobi_near_bodies *n, int k, const tobi_body *b)
+{
+    const tobi_near_bins *bins = &n->bins[k];
+    int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
+    const int64_t total = bins[1].start - bins->start - 2;
+    memset(start, 0, (size_t)(total + 2)*sizeof *start);
     for (int pass = 0; pass < 2; pass++) {
-        for (int64_t k = 0; k < b->point_count; k++) {
+        for (int64_t q = 0; q < b->point_count; q++) {
             int c[3];
             for (int a = 0; a < 3; a++) {
-                c[a] = bin_along(n, a, b->point[k][a]);
-                c[a] = c[a] < 0 ? 0 : c[a] >= n->bins[a] ? n->bins[a] - 1 : c[a];
+                c[a] = bin_along(bins, n->bin_width, a, b->point[q][a]);
+                c[a] = c[a] < 0 ? 0 : c[a] >= bins->n[a] ? bins->n[a] - 1 : c[a];
             }
-            int64_t bin = ((int64_t)c[2]*n->bins[1] + c[1])*n->bins[0] + c[0];
-            if (pass == 0) n->bin_start[bin + 2]++;
-            else n->bin_item[n->bin_start[bin + 1]++] = (int32_t)k;
+            int64_t bin = ((int64_t)c[2]*bins->n[1] + c[1])*bins->n[0] + c[0];
+            if (pass == 0) start[bin + 2]++;
+            else item[start[bin + 1]++] = (int32_t)q;
         }
         if (pass == 0)
-            for (int64_t c = 1; c <= total; c++) n->bin_start[c + 1] += n->bin_start[c];
+            for (int64_t c = 1; c <= total; c++) start[c + 1] += start[c];
     }
-    return TOBI_OK;
+}
+
+static void prepare_bodies(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        fill_bins(&s->near, (int)k, b);
+        memset(b->wet, 0, (size_t)b->point_count);
+    }
 }
 
 /* Calls visit for every point of the cells around x; stops early when it answers nonzero. */
 typedef int (*visit_fn)(void *user, int32_t point);
-static int visit_points(const tobi_near_bodies *n, const double x[3], visit_fn visit, void *user)
+static int visit_points(const tobi_near_bodies *n, int64_t body, const double x[3], visit_fn visit,
+                        void *user)
 {
+    const tobi_near_bins *bins = &n->bins[body];
+    const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int c[3];
     for (int a = 0; a < 3; a++) {
-        c[a] = bin_along(n, a, x[a]);
-        double beyond = c[a] < 0 ? n->bin_lower[a] - x[a]
-                                 : x[a] - (n->bin_lower[a] + n->bins[a] * n->bin_width);
-        if ((c[a] < 0 || c[a] >= n->bins[a]) && beyond > n->bin_width) return 0;
+        c[a] = bin_along(bins, n->bin_width, a, x[a]);
+        double beyond = c[a] < 0 ? bins->lower[a] - x[a]
+                                 : x[a] - (bins->lower[a] + bins->n[a] * n->bin_width);
+        if ((c[a] < 0 || c[a] >= bins->n[a]) && beyond > n->bin_width) return 0;
     }
     for (int z = c[2] - 1; z <= c[2] + 1; z++)
         for (int y = c[1] - 1; y <= c[1] + 1; y++)
             for (int q = c[0] - 1; q <= c[0] + 1; q++) {
-                if (z < 0 || z >= n->bins[2] || y < 0 || y >= n->bins[1] || q < 0 ||
-                    q >= n->bins[0])
+                if (z < 0 || z >= bins->n[2] || y < 0 || y >= bins->n[1] || q < 0 ||
+                    q >= bins->n[0])
                     continue;
-                int64_t bin = ((int64_t)z*n->bins[1] + y)*n->bins[0] + q;
-                for (int32_t k = n->bin_start[bin]; k < n->bin_start[bin + 1]; k++)
-                    if (visit(user, n->bin_item[k])) return 1;
+                int64_t bin = ((int64_t)z*bins->n[1] + y)*bins->n[0] + q;
+                for (int32_t k = start[bin]; k < start[bin + 1]; k++)
+                    if (visit(user, item[k])) return 1;
             }
     return 0;
 }
@@ -195,7 +224,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    visit_points(&l->s->near, l->x, add_point, l);
+    visit_points(&l->s->near, body, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }
@@ -206,61 +235,127 @@ static void place_look(look *l, int64_t i)
     l->x[0] = q.x; l->x[1] = q.y; l->x[2] = q.z;
 }
 
-/* Marks the particles that see body k in `delta` (free at this time) and counts them per block. */
-static void count_near(tobi_system *s, int k, int64_t blocks)
+static int cell_along(const tobi_cells *c, int axis, double x)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
-    for (int64_t block = 0; block < blocks; block++) {
-        int64_t end = (block + 1)*TOBI_BLOCK, found = 0;
-        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
-            look l = {.s = s, .b = &s->sim->bodies[k]};
+    double k = floor(x*c->inverse[axis]);
+    return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : (int)k;
+}
+
+static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits, tobi_error *err)
+{
+    tobi_near_bodies *n = &s->near;
+    if (begin == end) return TOBI_OK;
+    TOBI_TRY(grow(&n->row, &n->row_capacity, n->row_count + 1, err));
+    n->row[n->row_count++] = (tobi_near_row){body, (int32_t)begin, (int32_t)end, *hits};
+    *hits += end - begin;
+    return TOBI_OK;
+}
+
+/* Adds the rows of cells within h of the body's box, in the order of their particles. */
+static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error *err)
+{
+    const tobi_cells *c = &s->cells;
+    double lo[3], hi[3];
+    int low[3], high[3];
+    tobi_bvh_box(s->sim->bodies[body].bvh, lo, hi);
+    for (int a = 0; a < 3; a++) {
+        low[a] = cell_along(c, a, lo[a] - 1.001*s->smoothing.h);
+        high[a] = cell_along(c, a, hi[a] + 1.001*s->smoothing.h);
+    }
+    for (int k = low[1]/c->strip; k <= high[1]/c->strip; k++)
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = k*c->strip; y < (k + 1)*c->strip && y <= high[1]; y++) {
+                if (y < low[1]) continue;
+                const int32_t *start = c->start + tobi_cells_row(c, y, z);
+                TOBI_TRY(add_row(s, body, start[low[0]], start[high[0] + 1], hits, err));
+            }
+    return TOBI_OK;
+}
+
+/* Finds the particles of rows that see the row's body. */
+static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    (void)totals;
+    for (int64_t r = begin; r < end; r++) {
+        const tobi_near_row *row = &s->near.row[r];
+        int32_t *hit = s->near.hit + row->hit;
+        look l = {.s = s, .b = &s->sim->bodies[row->body]};
+        int64_t found = 0;
+        for (int32_t i = row->begin; i < row->end; i++) {
             place_look(&l, i);
-            int near = visit_points(&s->near, l.x, sees_any, &l);
-            s->particles.delta[i] = (float)near;
-            found += near;
+            if (visit_points(&s->near, row->body, l.x, sees_any, &l)) hit[found++] = i;
         }
-        s->near.block_count[block] = found;
+        s->near.found[r] = found;
     }
 }
 
-static void fill_near(tobi_system *s, int k, int64_t first, int64_t blocks)
+static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 4)
-    for (int64_t block = 0; block < blocks; block++) {
-        int64_t end = (block + 1)*TOBI_BLOCK, at = first + s->near.block_count[block];
-        for (int64_t i = block*TOBI_BLOCK; i < end && i < s->particles.count; i++) {
-            if (s->particles.delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->sim->bodies[k], .entry = &s->near.entry[at]};
-            place_look(&l, i);
-            if (!look_at(&l, (int32_t)i, k)) l.entry->distance = s->smoothing.h;
-            l.entry->previous = s->particles.near[i];
-            s->particles.near[i] = (int32_t)at++;
+    const tobi_system *s = view;
+    const tobi_near_bodies *n = &s->near;
+    (void)totals;
+    for (int64_t r = begin; r < end; r++) {
+        const tobi_near_row *row = &n->row[r];
+        const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
+        const int32_t *hit = n->hit + row->hit;
+        for (int64_t k = n->found[r]; k < stop; k++, hit++) {
+            look l = {.s = s, .b = &s->sim->bodies[row->body], .entry = &n->entry[k]};
+            place_look(&l, *hit);
+            if (!look_at(&l, *hit, row->body)) l.entry->distance = s->smoothing.h;
         }
     }
 }
 
+static void chain_entries(tobi_system *s)
+{
+    memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
+    for (int64_t k = 0; k < s->near.count; k++) {
+        tobi_near_entry *e = &s->near.entry[k];
+        e->previous = s->particles.near[e->particle];
+        s->particles.near[e->particle] = (int32_t)k;
+    }
+}
+
+/* Room for what is done with the entries before the next search. */
+static tobi_status reserve(tobi_system *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &s->near;
+    const int64_t bodies = s->sim->body_count, blocks = s->particles.count/TOBI_BLOCK + 1;
+    const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
+    TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
+    TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
+    return grow(&n->touched, &n->touched_capacity, blocks*(TOBI_BLOCK/64), err);
+}
+
+/* Rows near each body are searched, not all particles for every body. */
 tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
-    int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
-    n->count = 0;
-    void *p = n->block_count;
-    tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
-    n->block_count = p;
-    TOBI_TRY(status);
-    memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
-    for (int k = 0; k < s->sim->body_count; k++) {
-        TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
-        memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
-        count_near(s, k, blocks);
-        int64_t found = tobi_scan(&s->sim->exec, blocks, n->block_count);
-        p = n->entry;
-        status = grow(&p, &n->capacity, n->count + found, sizeof *n->entry, err);
-        n->entry = p;
-        TOBI_TRY(status);
-        fill_near(s, k, n->count, blocks);
-        n->count += found;
+    tobi_exec *x = &s->sim->exec;
+    const int bodies = s->sim->body_count;
+    int64_t hits = 0;
+    n->row_count = 0;
+    TOBI_TRY(plan_bins(s, err));
+    tobi_launch_each(x, prepare_bodies, s, bodies, NULL);
+    TOBI_TRY(grow(&n->first, &n->first_capacity, bodies + 1, err));
+    for (int k = 0; k < bodies; k++) {
+        n->first[k] = n->row_count;
+        TOBI_TRY(list_rows(s, k, &hits, err));
     }
+    TOBI_TRY(grow(&n->found, &n->found_capacity, n->row_count, err));
+    TOBI_TRY(grow(&n->hit, &n->hit_capacity, hits, err));
+    TOBI_TRY(tobi_exec_reserve(x, n->row_count, err));
+    tobi_launch_each(x, find_hits, s, n->row_count, NULL);
+    n->count = tobi_scan(x, n->row_count, n->found);
+    TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
+    for (int k = 0; k < bodies; k++)
+        n->first[k] = n->first[k] < n->row_count ? n->found[n->first[k]] : n->count;
+    n->first[bodies] = n->count;
+    tobi_launch_each(x, fill_entries, s, n->row_count, NULL);
+    chain_entries(s);
+    TOBI_TRY(reserve(s, err));
+    TOBI_TRY(tobi_body_tree_reserve(&n->tree, bodies, err));
     tobi_gap_wet(s);
     return TOBI_OK;
 }
@@ -431,83 +526,28 @@ void tobi_near_contact(tobi_system *s)
     }
 }
 
-/* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
-   second part adds no force to a closed surface, but a torque, eq. (17). */
-static void turning_traction(const tobi_system *s, const tobi_near_entry *e, double force[3])
+int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
-    const tobi_body *b = &s->sim->bodies[e->body];
-    const double *w = b->info.angular_velocity;
-    double share = b->friction == TOBI_NO_SLIP
-                       ? 2*s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].viscosity : 0;
-    for (int a = 0; a < 3; a++) {
-        int p = (a + 1)%3, q = (a + 2)%3;
-        force[a] = share*(w[p]*e->gradient[q] - w[q]*e->gradient[p]);
-    }
-}
-
-/* Sums of the reactions on one body over the entries. */
-typedef struct reaction { const tobi_system *s; int body; int viscous, known; } reaction;
-
-static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const reaction *r = view;
-    const tobi_system *s = r->s;
-    for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
-        if (e->body != r->body) continue;
-        const tobi_body *b = &s->sim->bodies[e->body];
-        double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
-               force[3], arm[3], turning[3] = {0, 0, 0};
-        const double *accel = r->viscous ? e->friction : e->lift;
-        for (int a = 0; a < 3; a++) {
-            force[a] = -mass*accel[a];
-            arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
-        }
-        if (r->viscous) turning_traction(s, e, turning);
-        float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : s->particles.pressure[e->particle];
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
-        for (int a = 0; a < 3; a++) {
-            int p = (a + 1)%3, q = (a + 2)%3;
-            t[a] += force[a] + push*e->gradient[a];
-            t[3 + a] += arm[p]*(force[q] + turning[q]) - arm[q]*(force[p] + turning[p]) +
-                        push*e->torque_arm[a];
-        }
-    }
-}
-
-void tobi_near_known_forces(tobi_system *s, int body, double force[6])
-{
-    memset(force, 0, 6*sizeof *force);
-    for (int viscous = 0; viscous < 2; viscous++) {
-        double t[TOBI_TOTALS];
-        reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
-        for (int a = 0; a < 6; a++) force[a] += t[a];
-    }
-}
-
-void tobi_near_body_forces(tobi_system *s)
-{
-    for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body_info *info = &s->sim->bodies[k].info;
-        double t[TOBI_TOTALS];
-        reaction r = {s, k, 0, 0};
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
-        memcpy(info->pressure_force, t, 3*sizeof *t);
-        memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
-        r.viscous = 1;
-        tobi_launch(&s->sim->exec, sum_reaction, &r, 0, s->near.count, t);
-        memcpy(info->viscous_force, t, 3*sizeof *t);
-        memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
-    }
+    return n->first_capacity*(int64_t)sizeof *n->first + n->total_capacity*(int64_t)sizeof *n->total +
+           n->part_capacity*(int64_t)sizeof *n->part + n->touched_capacity*(int64_t)sizeof *n->touched +
+           n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
+           n->item_capacity*(int64_t)sizeof *n->bin_item + n->row_capacity*(int64_t)sizeof *n->row +
+           n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
 }
 
 void tobi_near_free(tobi_near_bodies *n)
 {
     free(n->entry);
-    free(n->block_count);
+    free(n->first);
+    free(n->total);
+    free(n->part);
+    free(n->touched);
+    free(n->bins);
     free(n->bin_start);
     free(n->bin_item);
+    free(n->row);
+    free(n->found);
+    free(n->hit);
+    tobi_body_tree_free(&n->tree);
     memset(n, 0, sizeof *n);
 }

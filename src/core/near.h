@@ -1,6 +1,7 @@
 /* The fluid particles near bodies and what they see of them. */
 #pragma once
 #include "core/body.h"
+#include "core/body_tree.h"
 #include "core/cells.h"
 
 /* What one fluid particle sees of one body. particles.near names a particle's last entry. */
@@ -24,17 +25,36 @@ typedef struct tobi_near_entry {
     int32_t triangle;
 } tobi_near_entry;
 
+/* Points of one body by cell of width h over its box. */
+typedef struct tobi_near_bins {
+    int n[3];
+    double lower[3];          /* m                                                                */
+    int64_t start, item;      /* where its own begin in bin_start, bin_item                       */
+} tobi_near_bins;
+
+/* Particles of a row of cells near a body. */
+typedef struct tobi_near_row { int32_t body, begin, end; int64_t hit; } tobi_near_row;
+
 typedef struct tobi_near_bodies {
-    tobi_near_entry *entry;
+    tobi_near_entry *entry;   /* by body, then by particle                                        */
     int64_t count, capacity;
     int64_t contacts;         /* particles pushed out in this step                                */
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
-    int64_t *block_count;     /* entries per block of particles, scratch of the search            */
-    int64_t block_capacity;
-    int32_t *bin_start, *bin_item;   /* points of one body by cell of width h                     */
-    int64_t bin_capacity, item_capacity;
-    int bins[3];
-    double bin_lower[3], bin_width;
+    int64_t *first;           /* [bodies + 1] first entry of each body                            */
+    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_near_sum                                 */
+    tobi_block_sum *part;          /* scratch of sums over the particles of each body                  */
+    uint64_t *touched;        /* one bit per particle, scratch of tobi_push_out                   */
+    tobi_body_tree tree;
+    /* scratch of the search */
+    tobi_near_bins *bins;     /* [bodies + 1]                                                     */
+    double bin_width;         /* m                                                                */
+    int32_t *bin_start, *bin_item;
+    tobi_near_row *row;
+    int64_t row_count;
+    int64_t *found;           /* [row_count] particles that see the body, then entries before     */
+    int32_t *hit;             /* those particles                                                  */
+    int64_t first_capacity, total_capacity, part_capacity, touched_capacity, bins_capacity,
+        start_capacity, item_capacity, row_capacity, found_capacity, hit_capacity;
 } tobi_near_bodies;
 
 struct tobi_system;
@@ -54,8 +74,14 @@ void tobi_near_add_forces(struct tobi_system *s);
 void tobi_near_settle(struct tobi_system *s);
 /* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
 void tobi_near_contact(struct tobi_system *s);
-/* Force and torque on one body by lift, friction and surface tension: all that does not wait for pressure. */
-void tobi_near_known_forces(struct tobi_system *s, int body, double force[6]);
+/* Runs kernel over the entries of each body apart; the totals go to near.total. own: blocks begin with each
+ * body, else with the first entry of all: where they are cut decides the last bits. */
+void tobi_near_sum(struct tobi_system *s, tobi_kernel kernel, const void *view, int own);
+/* Forces and torques on all bodies by lift and surface tension, or by friction, all that does not wait for
+ * pressure: into the first six of near.total. */
+void tobi_near_known_forces(struct tobi_system *s, int viscous);
 /* Forces and torques on every body of the pressure and the friction of this step. */
 void tobi_near_body_forces(struct tobi_system *s);
+/* Bytes of all but the entries. */
+int64_t tobi_near_bytes(const tobi_near_bodies *near);
 void tobi_near_free(tobi_near_bodies *near);

@@ -9,6 +9,8 @@
 
 /* Of the spacing: positions nearer to a body are not left. */
 static const double LEAST = 0.2;
+/* Blocks with caught particles that are worth waking threads for. */
+enum { WORTH = 4 };
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
 
@@ -138,22 +140,90 @@ static int push_particle(const pusher *p, int64_t i, double *t)
     return 1;
 }
 
-static void push_range(const void *view, int64_t begin, int64_t end, double *t)
+/* Marks the particles that bodies have caught where they are: no other moves, so no other is caught later. */
+static void mark_caught(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    tobi_system *s = ((const pusher *)view)->s;
+    uint64_t *bit = s->near.touched;
+    (void)totals;
+    for (int64_t w = begin/64; w*64 < end; w++) bit[w] = 0;
+    for (int64_t i = begin; i < end; i++) {
+        const double *x = &s->particles.position[i].x;
+        tobi_tree_walk walk = {0, 0};
+        touch c;
+        double into;
+        for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&s->near.tree, x, &walk)) >= 0;) {
+            const pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k};
+            caught = find_caught(&p, i, &c, &into);
+            if (caught) bit[i/64] |= (uint64_t)1 << i%64;
+        }
+    }
+}
+
+static int is_outside(const pusher *p, int64_t i)
+{
+    const double *x = &p->s->particles.position[i].x;
+    for (int a = 0; a < p->s->box.dimension; a++)
+        if (x[a] < p->lo[a] || x[a] > p->hi[a]) return 1;
+    return 0;
+}
+
+/* The first caught particle at i or after, before end; else end. */
+static int64_t next_caught(const tobi_near_bodies *n, int64_t i, int64_t end)
+{
+    while (i < end) {
+        const uint64_t rest = n->touched[i/64] >> i%64;
+        if (rest) return i + __builtin_ctzll(rest);
+        i = (i/64 + 1)*64;
+    }
+    return end;
+}
+
+static int64_t block_end(const tobi_system *s, int64_t block)
+{
+    const int64_t end = (block + 1)*TOBI_BLOCK;
+    return end < s->particles.count ? end : s->particles.count;
+}
+
+static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
-    for (int64_t i = begin; i < end; i++) {
-        const double *x = &p->s->particles.position[i].x;
-        int outside = 0;
-        for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
-        if (outside || !push_particle(p, i, t)) continue;
-        #pragma omp atomic
-        p->s->near.contacts++;      /* all sums are taken; whole numbers add up the same in any order */
+    tobi_near_bodies *n = &p->s->near;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) {
+        tobi_block_sum *part = &n->part[k];
+        const int64_t last = block_end(p->s, part->block);
+        for (int64_t i = next_caught(n, part->block*TOBI_BLOCK, last); i < last; i = next_caught(n, i + 1, last)) {
+            if (is_outside(p, i) || !push_particle(p, i, part->total)) continue;
+            #pragma omp atomic
+            n->contacts++;      /* all sums are taken; whole numbers add up the same in any order */
+        }
     }
+}
+
+/* The totals of a launch over all particles. */
+static void push_all(const pusher *p, double *t)
+{
+    tobi_system *s = p->s;
+    tobi_near_bodies *n = &s->near;
+    int64_t parts = 0;
+    for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
+        const int64_t last = block_end(s, b);
+        int64_t i = next_caught(n, b*TOBI_BLOCK, last);
+        while (i < last && is_outside(p, i)) i = next_caught(n, i + 1, last);
+        if (i < last) n->part[parts++] = (tobi_block_sum){.block = b};
+    }
+    if (parts < WORTH) push_parts(p, 0, parts, NULL);
+    else tobi_launch_each(&s->sim->exec, push_parts, p, parts, NULL);
+    tobi_combine_sums(n->part, parts, t);
 }
 
 void tobi_push_out(tobi_system *s)
 {
     s->near.contacts = 0;
+    tobi_body_tree_build(&s->near.tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
+                         s->box.dimension);
+    tobi_launch(&s->sim->exec, mark_caught, &(pusher){.s = s}, 0, s->particles.count, NULL);
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
@@ -164,11 +234,11 @@ void tobi_push_out(tobi_system *s)
         }
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
-            tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+            push_all(&p, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
             p.counting = 0;
         }
-        tobi_launch(&s->sim->exec, push_range, &p, 0, s->particles.count, t);
+        push_all(&p, t);
         tobi_body_info *info = &s->sim->bodies[k].info;
         for (int a = 0; a < 3; a++) {
             info->pressure_force[a] += t[a]/s->dt;

@@ -245,7 +245,7 @@ int64_t tobi_world_bytes(const tobi_world *w)
         const tobi_system *s = &w->system[k];
         bytes += s->particles.capacity*(tobi_particles_row_bytes(needed_fields(w, s)) + 4) +
                  s->cells.list_capacity*4 + s->cells.total*4 +
-                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) +
+                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) + tobi_near_bytes(&s->near) +
                  (s->method->bytes && s->state ? s->method->bytes(s) : 0);
     }
     return bytes;
