@@ -49,6 +49,9 @@ TOBI_FN void row_store_others(void *p, row r) { __builtin_memcpy(p, r.v + 4, 12*
 
 #else
 
+#if defined(__SSE2__)
+#  include <immintrin.h>
+#endif
 #pragma GCC diagnostic ignored "-Wpsabi"
 typedef float quad __attribute__((vector_size(16)));
 TOBI_FN quad quad_set(float a) { return (quad){a, a, a, a}; }

@@ -81,7 +81,8 @@ TOBI_FN float grid_share(const tobi_grid_view *v, int64_t i)
 }
 
 /* Adds the points begin to end, which lie in grid cell `at`, to the sums of its corners. */
-TOBI_FN void grid_add_points(const tobi_grid_view *v, int64_t begin, int64_t end, const int at[3], float sum[8])
+TOBI_FN void grid_add_points(const tobi_grid_view *v, int64_t begin, int64_t end, const int at[3],
+                             float sum[8])
 {
     for (int64_t i = begin; i < end; i++) {
         const double *q = &v->points.position[i].x;

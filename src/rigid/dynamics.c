@@ -288,18 +288,25 @@ static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, double dt, tob
     }
 }
 
-/* The threads' contacts in one list, sorted, so that nothing depends on who found which. */
+/* The threads' contacts in one list, sorted, so that nothing depends on who found which. Each list has room
+   for all of them and those not kept: next time one thread may find them all. */
 static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
 {
+    int64_t all = 0;
     int failed = 0;
+    for (int i = 0; i < d->world.threads; i++) all += d->part[i].count;
+    const int64_t room = all > 0 ? 2*all + 64 : 0;
     for (int i = 0; i < d->world.threads; i++) {
+        tobi_touch_reserve(&d->part[i], room);
         for (int64_t k = 0; k < d->part[i].count; k++) {
             tobi_touch *c = tobi_touch_add(&d->contacts);
             if (c) *c = d->part[i].at[k];
         }
         failed |= d->part[i].failed;
     }
-    if (failed || d->contacts.failed) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
+    tobi_touch_reserve(&d->before, room);
+    if (failed || d->contacts.failed || d->before.failed)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
     if (d->contacts.count > 0)
         qsort(d->contacts.at, (size_t)d->contacts.count, sizeof *d->contacts.at, compare_contacts);
     return TOBI_OK;
@@ -578,7 +585,14 @@ tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const dou
         free(read.at);
         return status;
     }
-    free(d->contacts.at);
-    d->contacts = read;
+    tobi_touch_list *kept = &d->contacts;      /* its memory, if that suffices: steps allocate nothing */
+    if (kept->capacity >= read.count) {
+        if (read.count > 0) memcpy(kept->at, read.at, (size_t)read.count*sizeof *read.at);
+        kept->count = read.count;
+        free(read.at);
+    } else {
+        free(kept->at);
+        *kept = read;
+    }
     return TOBI_OK;
 }

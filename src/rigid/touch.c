@@ -52,18 +52,22 @@ static void set_frames(pair *p, const tobi_rigid *a, const tobi_rigid *b)
     memcpy(p->to_world.shift, b->position, sizeof p->to_world.shift);
 }
 
+tobi_touch *tobi_touch_reserve(tobi_touch_list *out, int64_t room)
+{
+    if (room <= out->capacity) return out->at;
+    tobi_touch *more = realloc(out->at, (size_t)room*sizeof *more);
+    if (!more) {
+        out->failed = 1;
+        return NULL;
+    }
+    out->at = more;
+    out->capacity = room;
+    return more;
+}
+
 tobi_touch *tobi_touch_add(tobi_touch_list *out)
 {
-    if (out->count == out->capacity) {
-        int64_t capacity = 2*out->capacity + 64;
-        tobi_touch *more = realloc(out->at, (size_t)capacity*sizeof *more);
-        if (!more) {
-            out->failed = 1;
-            return NULL;
-        }
-        out->at = more;
-        out->capacity = capacity;
-    }
+    if (out->count == out->capacity && !tobi_touch_reserve(out, 2*out->capacity + 64)) return NULL;
     tobi_touch *c = &out->at[out->count++];
     memset(c, 0, sizeof *c);
     return c;

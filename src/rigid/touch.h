@@ -49,6 +49,8 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
 void tobi_touch_plane(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane, int number,
                       double margin, tobi_touch_list *out);
 
+/* Memory for so many in all; NULL and out->failed when it is short. */
+tobi_touch *tobi_touch_reserve(tobi_touch_list *out, int64_t room);
 /* Room for one more; NULL and out->failed when memory is short. */
 tobi_touch *tobi_touch_add(tobi_touch_list *out);
 /* Keeps the deepest and the farthest apart of the contacts from first on. */

@@ -1,7 +1,8 @@
-/* The cost of the compact Laplacian's solve: bench_poisson DIMENSION DEEP WIDE [TOLERANCE [THREADS [JACOBI]]].
-   Prints rows, iterations, products per iteration, milliseconds per iteration, and what the set-up of the grid
-   takes of set-up and solve; with JACOBI = 1 the same with the diagonal alone. OMP_WAIT_POLICY=passive, or
-   waiting threads count as processor time. */
+/* The cost of the compact Laplacian's solve:
+   bench_poisson DIMENSION DEEP WIDE [TOLERANCE [THREADS [JACOBI]]]
+   Prints rows, iterations, products per iteration, milliseconds per iteration, and what the set-up of the
+   grid takes of set-up and solve; with JACOBI = 1 the same with the diagonal alone.
+   OMP_WAIT_POLICY=passive, or waiting threads count as processor time. */
 #include "unit/poisson_rig.h"
 #include <stdio.h>
 #include <time.h>

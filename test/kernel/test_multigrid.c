@@ -35,7 +35,8 @@ static void fill(pool *p, int dimension, int n, int threads)
     tobi_box_init(&s->box, dimension, lower, upper, periodic, s->smoothing.h);
     int64_t count = dimension == 3 ? (int64_t)n*n*n : (int64_t)n*n;
     assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
-    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err), TOBI_OK);
+    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err),
+                     TOBI_OK);
     assert_int_equal(tobi_exec_reserve(&p->sim.exec, count, &err), TOBI_OK);
     seed = 11;
     for (int64_t i = 0; i < count; i++) {

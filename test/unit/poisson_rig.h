@@ -1,6 +1,6 @@
 /* A pool of jittered particles and the compact symmetric Laplacian of incompressible SPH over it, in double:
-   a_ij = V F_ij (k_i + k_j) with mirrored neighbours at walls, (A p)_i = sum_j a_ij (p_i - p_j) + e_i p_i, where
-   e_i is what rows at the free surface lack. F is scaled so that sum V F x^2 = 1 on the lattice. */
+   a_ij = V F_ij (k_i + k_j) with mirrored neighbours at walls, (A p)_i = sum_j a_ij (p_i - p_j) + e_i p_i,
+   where e_i is what rows at the free surface lack. F is scaled so that sum V F x^2 = 1 on the lattice. */
 #pragma once
 #include "core/cells.h"
 #include "linear/multigrid.h"
@@ -106,7 +106,8 @@ static poisson_pair poisson_sum(const poisson *q, int64_t i, int64_t j)
 }
 
 #define POISSON_NEIGHBOURS(q, i, k)                                                                  \
-    for (int64_t k = 8*(int64_t)(q)->p.list_start[i], end_ = k + 8*(int64_t)(q)->p.list_groups[i]; k < end_; k++)
+    for (int64_t k = 8*(int64_t)(q)->p.list_start[i], end_ = k + 8*(int64_t)(q)->p.list_groups[i];  \
+         k < end_; k++)
 
 static void poisson_moments(const void *view, int64_t begin, int64_t end, double *totals)
 {

@@ -141,8 +141,8 @@ typedef struct outcome { tobi_linear_report report; double x[MOST]; } outcome;
 static tobi_linear_report call(int solver, tobi_exec *x, const tobi_linear_system *a,
                                const tobi_linear_settings *s, const double *b, double *p, double *work)
 {
-    return solver == CG ? tobi_cg(x, a, s, b, p, work) : solver == BICGSTAB ? tobi_bicgstab(x, a, s, b, p, work)
-                                                                            : tobi_gmres(x, a, s, b, p, work);
+    if (solver == CG) return tobi_cg(x, a, s, b, p, work);
+    return solver == BICGSTAB ? tobi_bicgstab(x, a, s, b, p, work) : tobi_gmres(x, a, s, b, p, work);
 }
 
 static int64_t work_of(int solver, int64_t n, int restart)
@@ -217,7 +217,7 @@ static void solves_what_elimination_solves(void **state)
         }
 }
 
-/* A start that is far off costs digits: the estimate drifts, is replaced, and the goal is reached in truth. */
+/* A start that is far off costs digits: the estimate drifts and is replaced, and the goal is reached. */
 static void replaces_a_drifted_residual(void **state)
 {
     static dense d;

@@ -1,5 +1,5 @@
-/* Conjugate gradients with the cell multigrid on compact Laplacians over jittered particles: as many iterations
-   for 300 layers as for 10, and the same bits on any number of threads. */
+/* Conjugate gradients with the cell multigrid on compact Laplacians over jittered particles: as many
+   iterations for 300 layers as for 10, and the same bits on any number of threads. */
 #include "unit/poisson_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>
