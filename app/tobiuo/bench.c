@@ -17,9 +17,9 @@ static const struct argp_option options[] = {
     { "spacing", KEY_SPACING, "M", 0, "particle spacing, m", 0 },
     { "scene", KEY_SCENE, "SCENE", 0, "fish: the scene (scenes/flying_fish)", 0 },
     { "project", KEY_PROJECT, "S", 0, "fish: project the wall clock to this time (0.8 s)", 0 },
-    { "bodies", KEY_BODIES, "N", 0, "crowd: how many bodies (1000)", 0 },
-    { "size", KEY_SIZE, "X", 0, "crowd: edge of a body in spacings (2)", 0 },
-    { "fixed", KEY_FIXED, NULL, 0, "crowd: bodies that do not move", 0 },
+    { "bodies", KEY_BODIES, "N", 0, "bodies_in_water: how many bodies (1000)", 0 },
+    { "size", KEY_SIZE, "X", 0, "bodies_in_water: edge of a body in spacings (2)", 0 },
+    { "fixed", KEY_FIXED, NULL, 0, "bodies_in_water: bodies that do not move", 0 },
     { 0 }
 };
 
@@ -242,7 +242,7 @@ int tobiuo_bench(int argc, char **argv)
                "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
                "  cut     a ball that a blade goes through, and the same without, half a minute\n"
                "  bodies  200 rigid boxes fall into a bin, seconds\n"
-               "  crowd   a pool of 100 000 particles with one small body and with 1000\n"
+               "  bodies_in_water   a pool of 100 000 particles with one small body and with 1000\n"
                "\nTimes are wall clock; run it on a machine that does nothing else."
     };
     bench_options o = { 0 };
@@ -250,19 +250,19 @@ int tobiuo_bench(int argc, char **argv)
     const char *which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
-    int crowd = strcmp(which, "crowd") == 0;
+    int in_water = strcmp(which, "bodies_in_water") == 0;
     int cut = strcmp(which, "cut") == 0, wcsph = strcmp(which, "wcsph") == 0;
-    if (!tank && !small && !wcsph && !ball && !cut && !bodies && !crowd &&
+    if (!tank && !small && !wcsph && !ball && !cut && !bodies && !in_water &&
         strcmp(which, "fish") != 0) {
         complain("bench: there is no case '%s'; known are small, tank, wcsph, fish, ball, cut, bodies "
-                 "and crowd", which);
+                 "and bodies_in_water", which);
         return EXIT_USAGE;
     }
     bench_print_machine(o.threads);
     if (ball) return bench_ball(&o);
     if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);
-    if (crowd) return bench_crowd(&o);
+    if (in_water) return bench_bodies_in_water(&o);
     if (wcsph) return measure_wcsph(&o);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);

@@ -85,7 +85,8 @@ static void split(tobi_body_tree *t, int32_t first, int32_t end)
     n->next = t->node_count;
 }
 
-void tobi_body_tree_build(tobi_body_tree *t, const tobi_body *bodies, int count, double margin, int dimension)
+void tobi_body_tree_build(tobi_body_tree *t, const tobi_body *bodies, int count, double margin,
+                          int dimension)
 {
     t->dimension = dimension;
     t->node_count = 0;

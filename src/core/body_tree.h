@@ -22,7 +22,8 @@ typedef struct tobi_body_tree {
 /* Room for so many bodies: then building never allocates. */
 tobi_status tobi_body_tree_reserve(tobi_body_tree *t, int bodies, tobi_error *err);
 /* The present boxes, wider by `margin` (m) on all sides. */
-void tobi_body_tree_build(tobi_body_tree *t, const tobi_body *bodies, int count, double margin, int dimension);
+void tobi_body_tree_build(tobi_body_tree *t, const tobi_body *bodies, int count, double margin,
+                          int dimension);
 void tobi_body_tree_free(tobi_body_tree *t);
 
 typedef struct tobi_tree_walk { int32_t node, item; } tobi_tree_walk;

@@ -135,10 +135,10 @@ void tobi_couple_product(tobi_system *s, double *totals)
     totals[1] += t[1];
 }
 
-static void collect_forces(const tobi_body *b, double f[6])
+static void collect_forces(const tobi_system *s, const tobi_body *b, double f[6])
 {
-    vec3_add_scaled(f, b->info.pressure_force, 1, b->info.viscous_force);
-    vec3_add_scaled(f + 3, b->info.pressure_torque, 1, b->info.viscous_torque);
+    const tobi_body_load *load = &b->load[s->number];
+    for (int a = 0; a < 6; a++) f[a] = load->pressure[a] + load->friction[a];
 }
 
 void tobi_couple_correct(tobi_system *s)
@@ -147,7 +147,7 @@ void tobi_couple_correct(tobi_system *s)
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b) || s->near.first[k] == s->near.first[k + 1]) continue;
-        collect_forces(b, f);
+        collect_forces(s, b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);
         tobi_body_drive(b, b->rigid.foreseen, b->rigid.foreseen_spin);
@@ -160,7 +160,7 @@ void tobi_couple_finish(tobi_system *s)
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b)) continue;
-        collect_forces(b, f);
+        collect_forces(s, b, f);
         vec3_add_scaled(b->rigid.impulse, b->rigid.impulse, s->dt, f);
         vec3_add_scaled(b->rigid.twist, b->rigid.twist, s->dt, f + 3);
     }

@@ -13,10 +13,10 @@ void tobi_couple_begin(struct tobi_system *s);
 /* Adds to particles.product how the bodies answer the pressures in the particles' records. totals (or NULL):
    [0] and [1] receive what this adds to record.w times product and to the sum of products. */
 void tobi_couple_product(struct tobi_system *s, double *totals);
-/* Lets the bodies drift by the velocities that the forces in their `info` make, not by those of the step's
+/* Lets the bodies drift by the velocities that this system's load makes, not by those of the step's
    start: the liquid was solved for these. Bodies that no particle sees fall freely. */
 void tobi_couple_correct(struct tobi_system *s);
-/* Impulse and twist of this step for tobi_rigid_step, from the forces in the bodies' `info`. */
+/* Impulse and twist of this step for tobi_rigid_step, from this system's load on the bodies. */
 void tobi_couple_finish(struct tobi_system *s);
 /* The longest step for the explicit friction between bodies and liquid, s; INFINITY without. */
 double tobi_couple_dt(const struct tobi_system *s);

@@ -241,7 +241,8 @@ static int cell_along(const tobi_cells *c, int axis, double x)
     return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : (int)k;
 }
 
-static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits, tobi_error *err)
+static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits,
+                           tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     if (begin == end) return TOBI_OK;
@@ -272,6 +273,17 @@ static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error
     return TOBI_OK;
 }
 
+/* Whether x is too far from a box for a point in it to be within h. */
+static int is_far(const tobi_system *s, const double lo[3], const double hi[3], const double x[3])
+{
+    double square = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        const double beyond = fmax(fmax(lo[a] - x[a], x[a] - hi[a]), 0);
+        square += beyond*beyond;
+    }
+    return square > 1.001*s->smoothing.h*s->smoothing.h;
+}
+
 /* Finds the particles of rows that see the row's body. */
 static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
 {
@@ -282,8 +294,11 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
         int32_t *hit = s->near.hit + row->hit;
         look l = {.s = s, .b = &s->sim->bodies[row->body]};
         int64_t found = 0;
+        double lo[3], hi[3];
+        tobi_bvh_box(l.b->bvh, lo, hi);
         for (int32_t i = row->begin; i < row->end; i++) {
             place_look(&l, i);
+            if (is_far(s, lo, hi, l.x)) continue;
             if (visit_points(&s->near, row->body, l.x, sees_any, &l)) hit[found++] = i;
         }
         s->near.found[r] = found;
@@ -325,7 +340,9 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
     const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
     TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
     TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
-    return grow(&n->touched, &n->touched_capacity, blocks*(TOBI_BLOCK/64), err);
+    TOBI_TRY(grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
+    TOBI_TRY(grow(&n->nearest, &n->nearest_capacity, blocks*TOBI_BLOCK, err));
+    return grow(&n->caught_count, &n->blocks_capacity, blocks, err);
 }
 
 /* Rows near each body are searched, not all particles for every body. */
@@ -365,76 +382,12 @@ static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_e
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
-/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
-   rounding would let a segment through an edge pass one way only. */
-static int separated(const tobi_system *s, int64_t i, int64_t j)
-{
-    const tobi_particles *p = &s->particles;
-    if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
-    double d[3] = {(int32_t)((uint32_t)p->record[i].x - (uint32_t)p->record[j].x)/s->box.to_fixed[0],
-                   (int32_t)((uint32_t)p->record[i].y - (uint32_t)p->record[j].y)/s->box.to_fixed[1],
-                   (int32_t)((uint32_t)p->record[i].z - (uint32_t)p->record[j].z)/s->box.to_fixed[2]};
-    double length = sqrt(dot(d, d)), x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-    for (; a; a = next_entry(s, a))
-        for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
-            if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
-            double to[3], ra[3], rb[3];
-            for (int c = 0; c < 3; c++) {
-                to[c] = x[c] - d[c];
-                ra[c] = to[c] - a->foot[c];
-                rb[c] = to[c] + d[c] - b->foot[c];
-            }
-            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
-            const tobi_bvh *tree = s->sim->bodies[a->body].bvh;
-            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
-        }
-    return 0;
-}
-
-void tobi_near_cut_pairs(tobi_system *s)
-{
-    const tobi_particles *p = &s->particles;
-    int64_t cut = 0;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
-    for (int64_t k = 0; k < s->near.count; k++) {
-        int64_t i = s->near.entry[k].particle;
-        if (p->near[i] != k) continue;      /* once per particle */
-        int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
-            int32_t j = list[g];
-            if (j == i || p->near[j] < 0 || !separated(s, i, j)) continue;
-            list[g] = (int32_t)i;
-            cut++;
-        }
-    }
-    s->near.cut_pairs = cut/2;
-}
-
 /* Runs over the entries of all particles; one particle's entries are handled together. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     _Pragma("omp parallel for num_threads((s)->sim->exec.threads) schedule(static)")                       \
     for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
-
-void tobi_near_mark_beside(tobi_system *s)
-{
-    const tobi_particles *p = &s->particles;
-    if (!p->beside) return;
-    memset(p->beside, 0, (size_t)p->count);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t k = 0; k < s->near.count; k++) {
-        int64_t i = s->near.entry[k].particle;
-        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
-            #pragma omp atomic write
-            p->beside[list[g]] = 1;
-        }
-        #pragma omp atomic write
-        p->beside[i] = 1;
-    }
-}
 
 void tobi_near_add_gradients(tobi_system *s)
 {
@@ -529,7 +482,9 @@ void tobi_near_contact(tobi_system *s)
 int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
     return n->first_capacity*(int64_t)sizeof *n->first + n->total_capacity*(int64_t)sizeof *n->total +
-           n->part_capacity*(int64_t)sizeof *n->part + n->touched_capacity*(int64_t)sizeof *n->touched +
+           n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
+           n->blocks_capacity*(int64_t)sizeof *n->caught_count +
+           n->nearest_capacity*(int64_t)sizeof *n->nearest +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
            n->item_capacity*(int64_t)sizeof *n->bin_item + n->row_capacity*(int64_t)sizeof *n->row +
            n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
@@ -541,7 +496,9 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->first);
     free(n->total);
     free(n->part);
-    free(n->touched);
+    free(n->caught);
+    free(n->caught_count);
+    free(n->nearest);
     free(n->bins);
     free(n->bin_start);
     free(n->bin_item);

@@ -42,8 +42,10 @@ typedef struct tobi_near_bodies {
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
     int64_t *first;           /* [bodies + 1] first entry of each body                            */
     double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_near_sum                                 */
-    tobi_block_sum *part;          /* scratch of sums over the particles of each body                  */
-    uint64_t *touched;        /* one bit per particle, scratch of tobi_push_out                   */
+    tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
+    int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
+    int32_t *caught_count;    /* [blocks]                                                         */
+    double *nearest;          /* [particles] distance to the nearest body, m, INFINITY without    */
     tobi_body_tree tree;
     /* scratch of the search */
     tobi_near_bins *bins;     /* [bodies + 1]                                                     */
@@ -53,8 +55,8 @@ typedef struct tobi_near_bodies {
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
-    int64_t first_capacity, total_capacity, part_capacity, touched_capacity, bins_capacity,
-        start_capacity, item_capacity, row_capacity, found_capacity, hit_capacity;
+    int64_t first_capacity, total_capacity, part_capacity, caught_capacity, blocks_capacity, nearest_capacity;
+    int64_t bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity, hit_capacity;
 } tobi_near_bodies;
 
 struct tobi_system;
@@ -80,7 +82,7 @@ void tobi_near_sum(struct tobi_system *s, tobi_kernel kernel, const void *view, 
 /* Forces and torques on all bodies by lift and surface tension, or by friction, all that does not wait for
  * pressure: into the first six of near.total. */
 void tobi_near_known_forces(struct tobi_system *s, int viscous);
-/* Forces and torques on every body of the pressure and the friction of this step. */
+/* Adds force and torque of the pressure and the friction of this step to this system's load on each body. */
 void tobi_near_body_forces(struct tobi_system *s);
 /* Bytes of all but the entries. */
 int64_t tobi_near_bytes(const tobi_near_bodies *near);

@@ -3,7 +3,6 @@
    Part g + b of body g and block b is nobody else's, because both ascend with the entries. */
 #include "core/near.h"
 #include "core/system.h"
-#include <string.h>
 
 typedef struct summing { tobi_near_bodies *n; tobi_kernel kernel; const void *view; int own; } summing;
 
@@ -104,10 +103,9 @@ void tobi_near_body_forces(tobi_system *s)
         reaction r = {s, viscous, 0};
         tobi_near_sum(s, sum_reaction, &r, 0);
         for (int k = 0; k < s->sim->body_count; k++) {
-            tobi_body_info *info = &s->sim->bodies[k].info;
-            const double *t = s->near.total[k];
-            memcpy(viscous ? info->viscous_force : info->pressure_force, t, 3*sizeof *t);
-            memcpy(viscous ? info->viscous_torque : info->pressure_torque, t + 3, 3*sizeof *t);
+            tobi_body_load *load = &s->sim->bodies[k].load[s->number];
+            double *sum = viscous ? load->friction : load->pressure;
+            for (int a = 0; a < 6; a++) sum[a] += s->near.total[k][a];
         }
     }
 }

@@ -140,24 +140,26 @@ static int push_particle(const pusher *p, int64_t i, double *t)
     return 1;
 }
 
-/* Marks the particles that bodies have caught where they are: no other moves, so no other is caught later. */
-static void mark_caught(const void *view, int64_t begin, int64_t end, double *totals)
+/* Lists the particles that bodies have caught where they are: no other moves, so no other is caught later. */
+static void list_caught(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    tobi_system *s = ((const pusher *)view)->s;
-    uint64_t *bit = s->near.touched;
+    const tobi_system *s = view;
+    const int64_t block = begin/TOBI_BLOCK;
+    int32_t *list = s->near.caught + begin, count = 0;
     (void)totals;
-    for (int64_t w = begin/64; w*64 < end; w++) bit[w] = 0;
     for (int64_t i = begin; i < end; i++) {
-        const double *x = &s->particles.position[i].x;
+        const tobi_double3 *at = &s->particles.position[i];
+        const double x[3] = {at->x, at->y, at->z};
         tobi_tree_walk walk = {0, 0};
         touch c;
         double into;
         for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&s->near.tree, x, &walk)) >= 0;) {
-            const pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k};
+            const pusher p = {.b = &s->sim->bodies[k], .s = (tobi_system *)s, .body = k};
             caught = find_caught(&p, i, &c, &into);
-            if (caught) bit[i/64] |= (uint64_t)1 << i%64;
+            if (caught) list[count++] = (int32_t)i;
         }
     }
+    s->near.caught_count[block] = count;
 }
 
 static int is_outside(const pusher *p, int64_t i)
@@ -168,23 +170,6 @@ static int is_outside(const pusher *p, int64_t i)
     return 0;
 }
 
-/* The first caught particle at i or after, before end; else end. */
-static int64_t next_caught(const tobi_near_bodies *n, int64_t i, int64_t end)
-{
-    while (i < end) {
-        const uint64_t rest = n->touched[i/64] >> i%64;
-        if (rest) return i + __builtin_ctzll(rest);
-        i = (i/64 + 1)*64;
-    }
-    return end;
-}
-
-static int64_t block_end(const tobi_system *s, int64_t block)
-{
-    const int64_t end = (block + 1)*TOBI_BLOCK;
-    return end < s->particles.count ? end : s->particles.count;
-}
-
 static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
@@ -192,9 +177,9 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         tobi_block_sum *part = &n->part[k];
-        const int64_t last = block_end(p->s, part->block);
-        for (int64_t i = next_caught(n, part->block*TOBI_BLOCK, last); i < last; i = next_caught(n, i + 1, last)) {
-            if (is_outside(p, i) || !push_particle(p, i, part->total)) continue;
+        const int32_t *list = n->caught + part->block*TOBI_BLOCK;
+        for (int32_t c = 0; c < n->caught_count[part->block]; c++) {
+            if (is_outside(p, list[c]) || !push_particle(p, list[c], part->total)) continue;
             #pragma omp atomic
             n->contacts++;      /* all sums are taken; whole numbers add up the same in any order */
         }
@@ -208,10 +193,10 @@ static void push_all(const pusher *p, double *t)
     tobi_near_bodies *n = &s->near;
     int64_t parts = 0;
     for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
-        const int64_t last = block_end(s, b);
-        int64_t i = next_caught(n, b*TOBI_BLOCK, last);
-        while (i < last && is_outside(p, i)) i = next_caught(n, i + 1, last);
-        if (i < last) n->part[parts++] = (tobi_block_sum){.block = b};
+        const int32_t *list = n->caught + b*TOBI_BLOCK;
+        int32_t k = 0;
+        while (k < n->caught_count[b] && is_outside(p, list[k])) k++;
+        if (k < n->caught_count[b]) n->part[parts++] = (tobi_block_sum){.block = b};
     }
     if (parts < WORTH) push_parts(p, 0, parts, NULL);
     else tobi_launch_each(&s->sim->exec, push_parts, p, parts, NULL);
@@ -223,7 +208,7 @@ void tobi_push_out(tobi_system *s)
     s->near.contacts = 0;
     tobi_body_tree_build(&s->near.tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
                          s->box.dimension);
-    tobi_launch(&s->sim->exec, mark_caught, &(pusher){.s = s}, 0, s->particles.count, NULL);
+    tobi_launch(&s->sim->exec, list_caught, s, 0, s->particles.count, NULL);
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
@@ -239,10 +224,7 @@ void tobi_push_out(tobi_system *s)
             p.counting = 0;
         }
         push_all(&p, t);
-        tobi_body_info *info = &s->sim->bodies[k].info;
-        for (int a = 0; a < 3; a++) {
-            info->pressure_force[a] += t[a]/s->dt;
-            info->pressure_torque[a] += t[3 + a]/s->dt;
-        }
+        tobi_body_load *load = &s->sim->bodies[k].load[s->number];
+        for (int a = 0; a < 6; a++) load->pressure[a] += t[a]/s->dt;
     }
 }

@@ -23,6 +23,7 @@ typedef struct tobi_solid {
 
 typedef struct tobi_system {
     tobi_simulation *sim;           /* the world's                                           */
+    int number;                     /* of the world's systems: whose load on a body it adds to */
     const struct tobi_method *method;
     void *def;                      /* owned: the method's parameters                        */
     void *state;                    /* owned: the method's own, from `create` on             */
@@ -128,7 +129,7 @@ double tobi_system_speed_scale(const tobi_system *s);
 void tobi_system_fill_up(tobi_system *s);
 /* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
 double tobi_system_hydrostatic(const tobi_system *s, const double x[3]);
-/* Adds its forces to those on the walls and the bodies of this step. */
+/* Adds its forces to those on the walls and to this system's load on the bodies. */
 void tobi_system_add_hydrostatic(tobi_system *s);
 /* Adds that on one body to force and torque f, N and N m. */
 void tobi_system_body_hydrostatic(const tobi_system *s, int body, double f[6]);

@@ -97,7 +97,7 @@ static void stays_on_its_side(void **state)
             assert_true(fabs(s->particles.velocity[0].x - side*0.003) < 1e-8);   /* the plate's */
             assert_true(fabs(s->particles.velocity[0].y - 0.001) < 1e-8);
             double mass = s->smoothing.volume*1000;
-            assert_true(fabs(s->sim->bodies[0].info.pressure_force[0] + side*mass*0.009) < 1e-6*mass);
+            assert_true(fabs(s->sim->bodies[0].load[0].pressure[0] + side*mass*0.009) < 1e-6*mass);
             tobi_world_destroy(world);
         }
 }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CROWD = 1000 };
+enum { MANY = 1000 };
 /* Spacings: the water, from wall to wall; above it lie 10 of air. */
 static const int SIZE[3] = { 52, 52, 38 };
 
@@ -96,10 +96,10 @@ static void print_pools(const pool *one, const pool *many)
            (unsigned long long)tobi_world_hash(many->world));
 }
 
-int bench_crowd(const bench_options *o)
+int bench_bodies_in_water(const bench_options *o)
 {
     const int settle = o->settle ? o->settle : 5, steps = o->steps ? o->steps : 20;
-    pool p[2] = { { .bodies = 1 }, { .bodies = o->bodies ? o->bodies : CROWD } };
+    pool p[2] = { { .bodies = 1 }, { .bodies = o->bodies ? o->bodies : MANY } };
     int failed = 0;
     printf("case                   pool of %d x %d x %d spacings with boxes of %g, %s, after %d steps\n",
            SIZE[0], SIZE[1], SIZE[2], o->size > 0.0 ? o->size : 2.0, o->fixed ? "fixed" : "free", settle);

@@ -1,0 +1,105 @@
+/* Neighbours near bodies: pairs that a body separates leave the neighbour list, and particles near a body or
+   next to one that is are marked. Most pairs are farther from bodies than from each other, and only the rest
+   asks for the mesh. Drawback: a pair within reach of a mesh costs two walks through it. */
+#include "core/near.h"
+#include "core/system.h"
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
+
+static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
+{
+    return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
+}
+
+/* From j to i, m. */
+static double measure_pair(const tobi_system *s, int64_t i, int64_t j, double d[3])
+{
+    const tobi_record *a = &s->particles.record[i], *b = &s->particles.record[j];
+    d[0] = (int32_t)((uint32_t)a->x - (uint32_t)b->x)/s->box.to_fixed[0];
+    d[1] = (int32_t)((uint32_t)a->y - (uint32_t)b->y)/s->box.to_fixed[1];
+    d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z)/s->box.to_fixed[2];
+    return sqrt(dot(d, d));
+}
+
+/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
+   rounding would let a segment through an edge pass one way only. */
+static int separated(const tobi_system *s, int64_t i, int64_t j)
+{
+    const tobi_particles *p = &s->particles;
+    const double least = s->near.nearest[i] + s->near.nearest[j];
+    if (least > 1.001*s->smoothing.h) return 0;
+    double d[3], length = measure_pair(s, i, j, d);
+    if (least >= length) return 0;
+    if (p->id[i] > p->id[j]) {
+        int64_t swap = i;
+        i = j;
+        j = swap;
+        for (int c = 0; c < 3; c++) d[c] = -d[c];
+    }
+    const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
+    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    for (; a; a = next_entry(s, a))
+        for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
+            if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
+            double to[3], ra[3], rb[3];
+            for (int c = 0; c < 3; c++) {
+                to[c] = x[c] - d[c];
+                ra[c] = to[c] - a->foot[c];
+                rb[c] = to[c] + d[c] - b->foot[c];
+            }
+            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
+            const tobi_bvh *tree = s->sim->bodies[a->body].bvh;
+            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
+        }
+    return 0;
+}
+
+static void find_nearest(tobi_system *s)
+{
+    double *nearest = s->near.nearest;
+    for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
+    for (int64_t k = 0; k < s->near.count; k++) {
+        const tobi_near_entry *e = &s->near.entry[k];
+        nearest[e->particle] = fmin(nearest[e->particle], fabs(e->distance));
+    }
+}
+
+void tobi_near_cut_pairs(tobi_system *s)
+{
+    const tobi_particles *p = &s->particles;
+    int64_t cut = 0;
+    find_nearest(s);
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
+    for (int64_t k = 0; k < s->near.count; k++) {
+        int64_t i = s->near.entry[k].particle;
+        if (p->near[i] != k) continue;      /* once per particle */
+        int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
+        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+            int32_t j = list[g];
+            if (j == i || !separated(s, i, j)) continue;
+            list[g] = (int32_t)i;
+            cut++;
+        }
+    }
+    s->near.cut_pairs = cut/2;
+}
+
+void tobi_near_mark_beside(tobi_system *s)
+{
+    const tobi_particles *p = &s->particles;
+    if (!p->beside) return;
+    memset(p->beside, 0, (size_t)p->count);
+    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
+    for (int64_t k = 0; k < s->near.count; k++) {
+        int64_t i = s->near.entry[k].particle;
+        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
+        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+            #pragma omp atomic write
+            p->beside[list[g]] = 1;
+        }
+        #pragma omp atomic write
+        p->beside[i] = 1;
+    }
+}
