@@ -1,5 +1,5 @@
 /* Bodies that move by forces, inside the pressure equation of a liquid (docs/theory/rigid.md, R.11 to R.14).
-   Order of a step: tobi_near_find, the forces of the particles, tobi_couple_begin, the pressure,
+   Order of a step: tobi_near_measure, the forces of the particles, tobi_couple_begin, the pressure,
    tobi_near_body_forces, tobi_couple_correct, tobi_body_advance, tobi_couple_finish. A solve for the pressure
    has tobi_couple_product after each product; an equation of state has it known from tobi_couple_begin, and
    the step bounded by tobi_couple_softness (docs/theory/wcsph.md, eq. 25). */

@@ -3,5 +3,5 @@
 
 struct tobi_system;
 /* Marks with TOBI_WET_GAP the points of bodies below the level of still water that no particle sees and that
-   face a side of the domain or another body within a support radius. At the poses of tobi_near_find. */
+   face a side of the domain or another body within a support radius. At the poses of tobi_near_measure. */
 void tobi_gap_wet(struct tobi_system *s);

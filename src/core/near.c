@@ -342,11 +342,11 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
     TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
     TOBI_TRY(grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
     TOBI_TRY(grow(&n->nearest, &n->nearest_capacity, blocks*TOBI_BLOCK, err));
-    return grow(&n->caught_count, &n->blocks_capacity, blocks, err);
+    return grow(&n->caught_block, &n->blocks_capacity, blocks, err);
 }
 
 /* Rows near each body are searched, not all particles for every body. */
-tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
+tobi_status tobi_near_search(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     tobi_exec *x = &s->sim->exec;
@@ -365,14 +365,20 @@ tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_exec_reserve(x, n->row_count, err));
     tobi_launch_each(x, find_hits, s, n->row_count, NULL);
     n->count = tobi_scan(x, n->row_count, n->found);
-    TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
     for (int k = 0; k < bodies; k++)
         n->first[k] = n->first[k] < n->row_count ? n->found[n->first[k]] : n->count;
     n->first[bodies] = n->count;
-    tobi_launch_each(x, fill_entries, s, n->row_count, NULL);
+    return TOBI_OK;
+}
+
+tobi_status tobi_near_measure(tobi_system *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &s->near;
+    TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
+    tobi_launch_each(&s->sim->exec, fill_entries, s, n->row_count, NULL);
     chain_entries(s);
     TOBI_TRY(reserve(s, err));
-    TOBI_TRY(tobi_body_tree_reserve(&n->tree, bodies, err));
+    TOBI_TRY(tobi_body_tree_reserve(&n->tree, s->sim->body_count, err));
     tobi_gap_wet(s);
     return TOBI_OK;
 }
@@ -483,7 +489,7 @@ int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
     return n->first_capacity*(int64_t)sizeof *n->first + n->total_capacity*(int64_t)sizeof *n->total +
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
-           n->blocks_capacity*(int64_t)sizeof *n->caught_count +
+           n->blocks_capacity*(int64_t)sizeof *n->caught_block +
            n->nearest_capacity*(int64_t)sizeof *n->nearest +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
            n->item_capacity*(int64_t)sizeof *n->bin_item + n->row_capacity*(int64_t)sizeof *n->row +
@@ -497,7 +503,7 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->total);
     free(n->part);
     free(n->caught);
-    free(n->caught_count);
+    free(n->caught_block);
     free(n->nearest);
     free(n->bins);
     free(n->bin_start);

@@ -35,6 +35,9 @@ typedef struct tobi_near_bins {
 /* Particles of a row of cells near a body. */
 typedef struct tobi_near_row { int32_t body, begin, end; int64_t hit; } tobi_near_row;
 
+/* The caught particles of a block. */
+typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
+
 typedef struct tobi_near_bodies {
     tobi_near_entry *entry;   /* by body, then by particle                                        */
     int64_t count, capacity;
@@ -44,7 +47,7 @@ typedef struct tobi_near_bodies {
     double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_near_sum                                 */
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
-    int32_t *caught_count;    /* [blocks]                                                         */
+    tobi_caught_block *caught_block;
     double *nearest;          /* [particles] distance to the nearest body, m, INFINITY without    */
     tobi_body_tree tree;
     /* scratch of the search */
@@ -60,8 +63,10 @@ typedef struct tobi_near_bodies {
 } tobi_near_bodies;
 
 struct tobi_system;
-/* Finds the entries at the bodies' present pose and velocities, writes particles.near. */
-tobi_status tobi_near_find(struct tobi_system *s, tobi_error *err);
+/* Finds which particles see which body at the bodies' present pose. */
+tobi_status tobi_near_search(struct tobi_system *s, tobi_error *err);
+/* After the search: fills the entries, at the bodies' present velocities, and particles.near. */
+tobi_status tobi_near_measure(struct tobi_system *s, tobi_error *err);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
 void tobi_near_cut_pairs(struct tobi_system *s);
 /* Writes particles.beside, if there is one. After cutting pairs. */

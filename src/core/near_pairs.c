@@ -13,14 +13,28 @@ static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_e
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
-/* From j to i, m. */
-static double measure_pair(const tobi_system *s, int64_t i, int64_t j, double d[3])
+/* From j to i, in fixed point. */
+static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 {
     const tobi_record *a = &s->particles.record[i], *b = &s->particles.record[j];
-    d[0] = (int32_t)((uint32_t)a->x - (uint32_t)b->x)/s->box.to_fixed[0];
-    d[1] = (int32_t)((uint32_t)a->y - (uint32_t)b->y)/s->box.to_fixed[1];
-    d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z)/s->box.to_fixed[2];
-    return sqrt(dot(d, d));
+    d[0] = (int32_t)((uint32_t)a->x - (uint32_t)b->x);
+    d[1] = (int32_t)((uint32_t)a->y - (uint32_t)b->y);
+    d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z);
+}
+
+/* A body between two particles is not farther from both together than they are from each other. */
+static int may_separate(const tobi_system *s, int64_t i, int64_t j)
+{
+    const double least = s->near.nearest[i] + s->near.nearest[j];
+    double square = 0;
+    int32_t fixed[3];
+    if (least > 1.001*s->smoothing.h) return 0;
+    subtract(s, i, j, fixed);
+    for (int a = 0; a < 3; a++) {
+        const double d = fixed[a]*(double)s->box.from_fixed[a];
+        square += d*d;
+    }
+    return least*least < 1.001*square;
 }
 
 /* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
@@ -28,18 +42,14 @@ static double measure_pair(const tobi_system *s, int64_t i, int64_t j, double d[
 static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
-    const double least = s->near.nearest[i] + s->near.nearest[j];
-    if (least > 1.001*s->smoothing.h) return 0;
-    double d[3], length = measure_pair(s, i, j, d);
-    if (least >= length) return 0;
-    if (p->id[i] > p->id[j]) {
-        int64_t swap = i;
-        i = j;
-        j = swap;
-        for (int c = 0; c < 3; c++) d[c] = -d[c];
-    }
+    if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
     const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    int32_t fixed[3];
+    double d[3];
+    subtract(s, i, j, fixed);
+    for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
+    const double length = sqrt(dot(d, d));
     for (; a; a = next_entry(s, a))
         for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
             if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
@@ -78,7 +88,7 @@ void tobi_near_cut_pairs(tobi_system *s)
         int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
         for (int g = 0; g < 8*p->list_groups[i]; g++) {
             int32_t j = list[g];
-            if (j == i || !separated(s, i, j)) continue;
+            if (j == i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
             list[g] = (int32_t)i;
             cut++;
         }

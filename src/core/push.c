@@ -140,12 +140,21 @@ static int push_particle(const pusher *p, int64_t i, double *t)
     return 1;
 }
 
+static void widen(tobi_caught_block *b, const double x[3])
+{
+    for (int a = 0; a < 3; a++) {
+        b->lower[a] = fmin(b->lower[a], x[a]);
+        b->upper[a] = fmax(b->upper[a], x[a]);
+    }
+}
+
 /* Lists the particles that bodies have caught where they are: no other moves, so no other is caught later. */
 static void list_caught(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const int64_t block = begin/TOBI_BLOCK;
-    int32_t *list = s->near.caught + begin, count = 0;
+    int32_t *list = s->near.caught + begin;
+    tobi_caught_block *found = &s->near.caught_block[begin/TOBI_BLOCK];
+    *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const tobi_double3 *at = &s->particles.position[i];
@@ -156,10 +165,11 @@ static void list_caught(const void *view, int64_t begin, int64_t end, double *to
         for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&s->near.tree, x, &walk)) >= 0;) {
             const pusher p = {.b = &s->sim->bodies[k], .s = (tobi_system *)s, .body = k};
             caught = find_caught(&p, i, &c, &into);
-            if (caught) list[count++] = (int32_t)i;
+            if (!caught) continue;
+            widen(found, x);
+            list[found->count++] = (int32_t)i;
         }
     }
-    s->near.caught_count[block] = count;
 }
 
 static int is_outside(const pusher *p, int64_t i)
@@ -170,6 +180,13 @@ static int is_outside(const pusher *p, int64_t i)
     return 0;
 }
 
+static int is_apart(const pusher *p, const tobi_caught_block *b)
+{
+    for (int a = 0; a < p->s->box.dimension; a++)
+        if (b->upper[a] < p->lo[a] || b->lower[a] > p->hi[a]) return 1;
+    return 0;
+}
+
 static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
@@ -177,9 +194,12 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         tobi_block_sum *part = &n->part[k];
+        tobi_caught_block *block = &n->caught_block[part->block];
         const int32_t *list = n->caught + part->block*TOBI_BLOCK;
-        for (int32_t c = 0; c < n->caught_count[part->block]; c++) {
+        for (int32_t c = 0; c < block->count; c++) {
+            const tobi_double3 *at = &p->s->particles.position[list[c]];
             if (is_outside(p, list[c]) || !push_particle(p, list[c], part->total)) continue;
+            widen(block, (double[3]){at->x, at->y, at->z});
             #pragma omp atomic
             n->contacts++;      /* all sums are taken; whole numbers add up the same in any order */
         }
@@ -194,9 +214,9 @@ static void push_all(const pusher *p, double *t)
     int64_t parts = 0;
     for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
         const int32_t *list = n->caught + b*TOBI_BLOCK;
-        int32_t k = 0;
-        while (k < n->caught_count[b] && is_outside(p, list[k])) k++;
-        if (k < n->caught_count[b]) n->part[parts++] = (tobi_block_sum){.block = b};
+        int32_t k = is_apart(p, &n->caught_block[b]) ? n->caught_block[b].count : 0;
+        while (k < n->caught_block[b].count && is_outside(p, list[k])) k++;
+        if (k < n->caught_block[b].count) n->part[parts++] = (tobi_block_sum){.block = b};
     }
     if (parts < WORTH) push_parts(p, 0, parts, NULL);
     else tobi_launch_each(&s->sim->exec, push_parts, p, parts, NULL);

@@ -134,7 +134,10 @@ tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, dou
 {
     launch(s, v, k->sph_walls, NULL);
     if (s->sim->body_count > 0) {
-        TOBI_TRY(tobi_near_find(s, err));
+        tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
+        TOBI_TRY(tobi_near_search(s, err));
+        tobi_stage_end(&s->sim->stages, "body search", clock);
+        TOBI_TRY(tobi_near_measure(s, err));
         tobi_near_cut_pairs(s);
         tobi_near_mark_beside(s);
         tobi_near_add_gradients(s);
