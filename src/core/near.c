@@ -156,6 +156,22 @@ static int sees_any(void *user, int32_t point)
     return faces(user, point, r) > 0;
 }
 
+/* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
+static int sees_body(look *l, int64_t body)
+{
+    const tobi_near_bodies *n = &l->s->near;
+    const tobi_near_bins *bins = &n->bins[body];
+    const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
+    int64_t bin = 0;
+    for (int a = 2; a >= 0; a--) {
+        const int c = bin_along(bins, n->bin_width, a, l->x[a]);
+        bin = bin*bins->n[a] + (c < 0 ? 0 : c >= bins->n[a] ? bins->n[a] - 1 : c);
+    }
+    for (int32_t k = start[bin]; k < start[bin + 1]; k++)
+        if (sees_any(l, item[k])) return 1;
+    return visit_points(n, body, l->x, sees_any, l);
+}
+
 /* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way. */
 static int hidden(const look *l, int32_t point)
 {
@@ -278,7 +294,7 @@ static int is_far(const tobi_system *s, const double lo[3], const double hi[3], 
 {
     double square = 0;
     for (int a = 0; a < s->box.dimension; a++) {
-        const double beyond = fmax(fmax(lo[a] - x[a], x[a] - hi[a]), 0);
+        const double beyond = x[a] < lo[a] ? lo[a] - x[a] : x[a] > hi[a] ? x[a] - hi[a] : 0;
         square += beyond*beyond;
     }
     return square > 1.001*s->smoothing.h*s->smoothing.h;
@@ -299,7 +315,7 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
         for (int32_t i = row->begin; i < row->end; i++) {
             place_look(&l, i);
             if (is_far(s, lo, hi, l.x)) continue;
-            if (visit_points(&s->near, row->body, l.x, sees_any, &l)) hit[found++] = i;
+            if (sees_body(&l, row->body)) hit[found++] = i;
         }
         s->near.found[r] = found;
     }
