@@ -1,4 +1,7 @@
-#include "core/couple.h"
+/* Bodies that move by forces are unknowns of the liquid's pressure: their answer to it is part of its
+   operator, so that a body lighter than the water it displaces is stable. Drawback: contact between bodies
+   is known a step late. */
+#include "core/boundary.h"
 #include "core/system.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -59,7 +62,7 @@ static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
 static void sum_known_forces(tobi_system *s)
 {
     for (int viscous = 0; viscous < 2; viscous++) {
-        tobi_near_known_forces(s, viscous);
+        tobi_boundary_known_forces(s, viscous);
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_rigid *r = &s->sim->bodies[k].rigid;
             for (int a = 0; a < 6; a++) r->answer[a] = (viscous ? r->answer[a] : 0) + s->near.total[k][a];
@@ -118,7 +121,7 @@ void tobi_couple_product(tobi_system *s, double *totals)
 {
     double t[TOBI_TOTALS];
     if (!any_moves(s)) return;
-    tobi_near_sum(s, sum_pressure, s, 1);
+    tobi_boundary_sum(s, sum_pressure, s, 1);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_rigid *r = &s->sim->bodies[k].rigid;
         if (!moves(&s->sim->bodies[k])) continue;

@@ -2,7 +2,7 @@
    sphere 8 spacings across a third of the section. Water would fill it, at the pressure of still water (18).
    So points there are pressed by all the water above them, and only what moves is missing. Drawback: a flat
    body that lies close has its full buoyancy too, as if it stood on grains. */
-#include "core/gap.h"
+#include "core/boundary.h"
 #include "core/system.h"
 
 static int faces_side(const tobi_system *s, const double x[3], const double n[3])
@@ -53,7 +53,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
     }
 }
 
-void tobi_gap_wet(tobi_system *s)
+void tobi_boundary_fill_gaps(tobi_system *s)
 {
     if (!(s->still.push > 0)) return;
     tobi_body_tree_build(&s->near.tree, s->sim->bodies, s->sim->body_count, s->smoothing.h, s->box.dimension);

@@ -2,7 +2,7 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
-#include "core/gap.h"
+#include "core/boundary.h"
 #include "core/system.h"
 #include "core/wall_law.h"
 #include <math.h>
@@ -362,7 +362,7 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
 }
 
 /* Rows near each body are searched, not all particles for every body. */
-tobi_status tobi_near_search(tobi_system *s, tobi_error *err)
+tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     tobi_exec *x = &s->sim->exec;
@@ -387,7 +387,7 @@ tobi_status tobi_near_search(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-tobi_status tobi_near_measure(tobi_system *s, tobi_error *err)
+tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &s->near;
     TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
@@ -395,7 +395,7 @@ tobi_status tobi_near_measure(tobi_system *s, tobi_error *err)
     chain_entries(s);
     TOBI_TRY(reserve(s, err));
     TOBI_TRY(tobi_body_tree_reserve(&n->tree, s->sim->body_count, err));
-    tobi_gap_wet(s);
+    tobi_boundary_fill_gaps(s);
     return TOBI_OK;
 }
 
@@ -411,7 +411,7 @@ static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_e
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
 
-void tobi_near_add_gradients(tobi_system *s)
+void tobi_boundary_add_gradients(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &s->particles.wall[i];
@@ -442,7 +442,7 @@ static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const do
     for (int c = 0; c < 3; c++) drag[c] *= law;
 }
 
-void tobi_near_add_forces(tobi_system *s)
+void tobi_boundary_add_forces(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
@@ -467,7 +467,7 @@ static void keep_away(const tobi_system *s, int64_t i, double least, double way[
     }
 }
 
-void tobi_near_settle(tobi_system *s)
+void tobi_boundary_relax(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
@@ -486,7 +486,7 @@ void tobi_near_settle(tobi_system *s)
     }
 }
 
-void tobi_near_contact(tobi_system *s)
+void tobi_boundary_turn_normals(tobi_system *s)
 {
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &s->particles.normal[i];

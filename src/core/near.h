@@ -1,4 +1,4 @@
-/* The fluid particles near bodies and what they see of them. */
+/* What particles see of bodies, as it is kept; core/boundary.h fills and reads it. */
 #pragma once
 #include "core/body.h"
 #include "core/body_tree.h"
@@ -44,7 +44,7 @@ typedef struct tobi_near_bodies {
     int64_t contacts;         /* particles pushed out in this step                                */
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
     int64_t *first;           /* [bodies + 1] first entry of each body                            */
-    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_near_sum                                 */
+    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_boundary_sum                                 */
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
@@ -62,33 +62,6 @@ typedef struct tobi_near_bodies {
     int64_t bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity, hit_capacity;
 } tobi_near_bodies;
 
-struct tobi_system;
-/* Finds which particles see which body at the bodies' present pose. */
-tobi_status tobi_near_search(struct tobi_system *s, tobi_error *err);
-/* After the search: fills the entries, at the bodies' present velocities, and particles.near. */
-tobi_status tobi_near_measure(struct tobi_system *s, tobi_error *err);
-/* Replaces neighbours that lie behind a body by the particle itself in the list. */
-void tobi_near_cut_pairs(struct tobi_system *s);
-/* Writes particles.beside, if there is one. After cutting pairs. */
-void tobi_near_mark_beside(struct tobi_system *s);
-/* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the
- * planes' part). */
-void tobi_near_add_gradients(struct tobi_system *s);
-/* Adds dt times lift and no-slip friction of the bodies to the velocities. */
-void tobi_near_add_forces(struct tobi_system *s);
-/* Moves the particles with `beside` by dt^2 accel, a tenth of a spacing at most and not into bodies or sides;
- * velocities stay. */
-void tobi_near_settle(struct tobi_system *s);
-/* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
-void tobi_near_contact(struct tobi_system *s);
-/* Runs kernel over the entries of each body apart; the totals go to near.total. own: blocks begin with each
- * body, else with the first entry of all: where they are cut decides the last bits. */
-void tobi_near_sum(struct tobi_system *s, tobi_kernel kernel, const void *view, int own);
-/* Forces and torques on all bodies by lift and surface tension, or by friction, all that does not wait for
- * pressure: into the first six of near.total. */
-void tobi_near_known_forces(struct tobi_system *s, int viscous);
-/* Adds force and torque of the pressure and the friction of this step to this system's load on each body. */
-void tobi_near_body_forces(struct tobi_system *s);
 /* Bytes of all but the entries. */
 int64_t tobi_near_bytes(const tobi_near_bodies *near);
 void tobi_near_free(tobi_near_bodies *near);

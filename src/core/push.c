@@ -2,7 +2,7 @@
    it is inside, but not through which side it came: of a wing thinner than the way of a step the nearest
    side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
    turns within the step is taken to turn about the point nearest to the particle. */
-#include "core/push.h"
+#include "core/boundary.h"
 #include "core/system.h"
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
      iteration. A multigrid cycle preconditions them, so that iterations hardly grow with the depth.
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
 #include "sph/dfsph.h"
-#include "core/couple.h"
+#include "core/boundary.h"
 #include "linear/multigrid.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
@@ -356,7 +356,7 @@ static tobi_status settle(tobi_system *s, dfsph *m, double *clock, tobi_error *e
         if (s->info.density_error_max < SETTLED) return TOBI_OK;
         correct_density(s, m, clock);
         TOBI_TRY(tobi_simulation_heed(s->sim, err));
-        tobi_near_settle(s);
+        tobi_boundary_relax(s);
         TOBI_TRY(find_neighbors(s, m, clock, err));
     }
     return TOBI_OK;

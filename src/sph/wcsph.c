@@ -4,7 +4,7 @@
    own density from drifting away from it (docs/theory/wcsph.md). Operators, walls and bodies are those
    of DFSPH. Drawback: the step is that of sound, and pressure waves of the start ring on for a while. */
 #include "sph/wcsph.h"
-#include "core/couple.h"
+#include "core/boundary.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/still.h"

@@ -1,7 +1,7 @@
 /* How easily water moves a body, and sound: what bounds the steps of an explicit coupling; the loads on a
    body, and their sums over what particles see of it. */
 #include "calls.h"
-#include "core/couple.h"
+#include "core/boundary.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -132,7 +132,7 @@ static void loads_of_two_systems_add_up(void **state)
     assert_true(b->info.pressure_force[2] == b->load[0].pressure[2]);
     tobi_body_clear_loads(b);
     for (s->number = 0; s->number < 2; s->number++) {
-        tobi_near_body_forces(s);
+        tobi_boundary_load(s);
         tobi_system_add_hydrostatic(s);
     }
     tobi_contact_finish(&none, &s->particles, b, &solids, &far, &work, &s->sim->exec);
@@ -208,7 +208,7 @@ static void sums_of_all_bodies_at_once(void **state)
     assert_int_equal(n->first[64], n->count);
     OK(tobi_exec_reserve(&s->sim->exec, n->count, &err));
     for (int own = 0; own < 2; own++) {
-        tobi_near_sum(s, sum_gradients, &(chosen){s, -1}, own);
+        tobi_boundary_sum(s, sum_gradients, &(chosen){s, -1}, own);
         for (int k = 0; k < 64; k++) {
             const chosen one = {s, k};
             tobi_launch(&s->sim->exec, sum_gradients, &one, own ? n->first[k] : 0,

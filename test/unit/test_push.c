@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "core/push.h"
+#include "core/boundary.h"
 #include "world/world.h"
 
 static const double SPACING = 0.01, THICKNESS = 1e-4;
@@ -68,8 +68,8 @@ static void step(tobi_system *s, const double way[3], double x[3])
     s->dt = 1;
     assert_int_equal(tobi_body_predict(&s->sim->bodies[0], 0, s->dt, &speed, &err), TOBI_OK);
     tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->sim->exec);
-    assert_int_equal(tobi_near_search(s, &err), TOBI_OK);
-    assert_int_equal(tobi_near_measure(s, &err), TOBI_OK);
+    assert_int_equal(tobi_boundary_search(s, &err), TOBI_OK);
+    assert_int_equal(tobi_boundary_measure(s, &err), TOBI_OK);
     double *p = &s->particles.position[0].x;
     float *v = &s->particles.velocity[0].x;
     for (int a = 0; a < 3; a++) {

@@ -1,7 +1,7 @@
 /* Neighbours near bodies: pairs that a body separates leave the neighbour list, and particles near a body or
    next to one that is are marked. Most pairs are farther from bodies than from each other, and only the rest
    asks for the mesh. Drawback: a pair within reach of a mesh costs two walks through it. */
-#include "core/near.h"
+#include "core/boundary.h"
 #include "core/system.h"
 #include <math.h>
 #include <string.h>
@@ -76,7 +76,7 @@ static void find_nearest(tobi_system *s)
     }
 }
 
-void tobi_near_cut_pairs(tobi_system *s)
+void tobi_boundary_cut_pairs(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     int64_t cut = 0;
@@ -96,7 +96,7 @@ void tobi_near_cut_pairs(tobi_system *s)
     s->near.cut_pairs = cut/2;
 }
 
-void tobi_near_mark_beside(tobi_system *s)
+void tobi_boundary_mark_beside(tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
     if (!p->beside) return;

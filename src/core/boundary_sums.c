@@ -1,7 +1,7 @@
 /* Sums over what the particles see of each body, for all bodies in one launch: a launch per body costs more
    than small bodies have to add. A block of entries holds those of a few bodies, each of which makes a part.
    Part g + b of body g and block b is nobody else's, because both ascend with the entries. */
-#include "core/near.h"
+#include "core/boundary.h"
 #include "core/system.h"
 
 typedef struct summing { tobi_near_bodies *n; tobi_kernel kernel; const void *view; int own; } summing;
@@ -40,7 +40,7 @@ static void combine_bodies(const void *view, int64_t begin, int64_t end, double 
     }
 }
 
-void tobi_near_sum(tobi_system *s, tobi_kernel kernel, const void *view, int own)
+void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int own)
 {
     summing q = {&s->near, kernel, view, own};
     tobi_launch(&s->sim->exec, sum_block, &q, 0, s->near.count, NULL);
@@ -91,17 +91,17 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
     }
 }
 
-void tobi_near_known_forces(tobi_system *s, int viscous)
+void tobi_boundary_known_forces(tobi_system *s, int viscous)
 {
     const reaction r = {s, viscous, 1};
-    tobi_near_sum(s, sum_reaction, &r, 0);
+    tobi_boundary_sum(s, sum_reaction, &r, 0);
 }
 
-void tobi_near_body_forces(tobi_system *s)
+void tobi_boundary_load(tobi_system *s)
 {
     for (int viscous = 0; viscous < 2; viscous++) {
         reaction r = {s, viscous, 0};
-        tobi_near_sum(s, sum_reaction, &r, 0);
+        tobi_boundary_sum(s, sum_reaction, &r, 0);
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body_load *load = &s->sim->bodies[k].load[s->number];
             double *sum = viscous ? load->friction : load->pressure;
