@@ -4,7 +4,8 @@
 usage: check_house.py [ROOT]
 
 Files of at most 600 lines, functions of at most 80, lines of at most 110 columns, no tabs, no file
-named utils, common or misc, no path of somebody's machine in the sources.
+named utils, common or misc, no path of somebody's machine in the sources, no OpenMP in the program outside
+src/exec.
 """
 import ast
 import pathlib
@@ -21,6 +22,8 @@ CODE_SUFFIXES = C_SUFFIXES | {".py", ".sh", ".lua", ".cmake", ".txt", ".json"}
 SCRIPT_SUFFIXES = {".sh", ".py", ".txt", ".cmake"}
 FORBIDDEN = re.compile(r"(^|[_.-])(utils?|common|misc)([_.-]|$)", re.IGNORECASE)
 MACHINE_PATH = re.compile(r"""(?<![\w.$})/-])/(work|root|tmp|home)(/|\b)""")
+OPENMP = re.compile(r"pragma\s+omp|_Pragma\s*\(\s*\"\s*omp|\bomp_|\bomp\.h")
+OPENMP_FOLDERS = ("include", "src", "app", "bench")     # tests may call the library from threads of their own
 TEST_FOLDER = re.compile(r"/tmp/\w*XXXXXX")      # mkdtemp in a test
 
 
@@ -68,6 +71,8 @@ def check_lines(where, suffix, lines, errors):
         limit = COLUMNS if str(where).endswith((".c", ".h", ".lua")) else WIDE_COLUMNS
         if len(line) > limit:
             errors.append(f"{where}:{number}: {len(line)} columns, at most {limit}")
+        if where.parts[0] in OPENMP_FOLDERS and where.parts[:2] != ("src", "exec") and OPENMP.search(line):
+            errors.append(f"{where}:{number}: names OpenMP; only src/exec may, see tobi_loop in exec/exec.h")
         if suffix not in SCRIPT_SUFFIXES and MACHINE_PATH.search(line) and not TEST_FOLDER.search(line):
             errors.append(f"{where}:{number}: path of a machine: {line.strip()[:60]}")
         if line != line.rstrip() and suffix in C_SUFFIXES:

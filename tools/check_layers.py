@@ -11,8 +11,8 @@ import sys
 # and never include each other.
 RANK = {
     "base": 0,
-    "exec": 1, "comm": 1, "geom": 1,
-    "linear": 2,
+    "exec": 1, "comm": 1,
+    "geom": 2, "linear": 2,
     "core": 3,
     "sph": 4, "mpm": 4, "rigid": 4, "io": 4,
     "world": 5,

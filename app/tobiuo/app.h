@@ -76,6 +76,18 @@ void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info);
 /* Says on stderr what did not go well. */
 void watch_say(const watch *w, const tobi_world *world);
 void watch_end(watch *w);
+/* cost.c */
+/* "123 MB" or "1.2 GB"; buffer of 32. */
+const char *bytes_text(double bytes, char *buffer);
+/* Why results of this size in dir need --force; NULL if they do not. The caller frees. */
+char *size_objection(const tobi_run_size *size, const char *dir);
+/* Steps the world from its start for about a second: wall clock per step and step, both s, without the
+   first. *steps that were taken; below 2 nothing is known. */
+tobi_status measure_steps(tobi_world *world, double end, int *steps, double *wall, double *step,
+                          tobi_error *err);
+
+/* run.c: where the results go without and with --out; the caller frees, NULL without memory. */
+char *results_path(const tobi_scene *scene, const char *out);
 
 /* progress.c */
 typedef struct progress {

@@ -17,7 +17,7 @@ static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
     SCENE_OPTIONS,
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
-    { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR", 0 },
+    { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR, and write however much", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
     { 0 }
@@ -38,6 +38,31 @@ static error_t parse(int key, char *value, struct argp_state *state)
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
     return 0;
+}
+
+char *results_path(const tobi_scene *scene, const char *out)
+{
+    char *dir = NULL;
+    int length = out ? asprintf(&dir, "%s", out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
+    return length < 0 ? NULL : dir;
+}
+
+/* Before anything is made. */
+static int check_size(const tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir)
+{
+    tobi_error err = { 0 };
+    tobi_run_size size;
+    char bytes[32];
+    if (tobi_run_estimate(world, tobi_scene_output_def(scene), tobi_scene_world_def(scene)->end_time, &size,
+                          &err) != TOBI_OK)
+        return complain("%s", err.text);
+    char *objection = o->force ? NULL : size_objection(&size, dir);
+    const int code = objection ? complain("%s", objection) : 0;
+    free(objection);
+    if (!code && !o->quiet)
+        printf("%lld outputs, about %s in %.7g files, go to %s\n", (long long)size.outputs,
+               bytes_text(size.bytes, bytes), size.files, dir);
+    return code;
 }
 
 static int record(tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir)
@@ -61,13 +86,12 @@ static int run_scene(tobi_scene *scene, const run_options *o)
 {
     tobi_error err = { 0 };
     tobi_world *world = NULL;
-    char *dir = NULL;
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
-    int length =
-        o->out ? asprintf(&dir, "%s", o->out) : asprintf(&dir, "out/%s", tobi_scene_name(scene));
+    char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
-    int code = length < 0 ? complain("out of memory") : record(scene, world, o, dir);
+    int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
+    if (code == 0) code = record(scene, world, o, dir);
     free(dir);
     tobi_world_destroy(world);
     return code;

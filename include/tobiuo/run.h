@@ -34,6 +34,18 @@ extern "C" {
 
 typedef struct tobi_run tobi_run;
 
+/* What a run will write: an estimate, right within a factor of 1.5 where there are some thousand
+   particles. */
+typedef struct tobi_run_size {
+    int64_t outputs;                /* from time 0 to the end                                   */
+    double  files, bytes;           /* of all outputs and the last two checkpoints              */
+} tobi_run_size;
+
+/* Estimates a run from time 0 to `end` (s). Nothing is written or stepped; the particles of a world that
+   has started are counted, of others estimated. Fails as tobi_run_create does for this output. */
+TOBI_API tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, double end,
+                                       tobi_run_size *size, tobi_error *err);
+
 /* Starts recording into dir, which is made with its parents if missing. Starts the world (see
    tobi_world_start) and writes the output at time 0. The world stays the caller's and must outlive
    the run; output is copied. resolved_json may be NULL (then no resolved.json and no resume by the

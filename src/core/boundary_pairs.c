@@ -76,13 +76,12 @@ static void find_nearest(tobi_system *s)
     }
 }
 
-void tobi_boundary_cut_pairs(tobi_system *s)
+static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
+    tobi_system *s = (tobi_system *)view;
     const tobi_particles *p = &s->particles;
     int64_t cut = 0;
-    find_nearest(s);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 64) reduction(+ : cut)
-    for (int64_t k = 0; k < s->near.count; k++) {
+    for (int64_t k = begin; k < end; k++) {
         int64_t i = s->near.entry[k].particle;
         if (p->near[i] != k) continue;      /* once per particle */
         int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
@@ -93,23 +92,33 @@ void tobi_boundary_cut_pairs(tobi_system *s)
             cut++;
         }
     }
-    s->near.cut_pairs = cut/2;
+    __atomic_fetch_add(&s->near.cut_pairs, cut, __ATOMIC_RELAXED);      /* whole: any order gives the same */
+}
+
+void tobi_boundary_cut_pairs(tobi_system *s)
+{
+    find_nearest(s);
+    s->near.cut_pairs = 0;
+    tobi_loop(s->sim->exec.threads, s->near.count, 64, cut_pairs, s);
+    s->near.cut_pairs /= 2;      /* each was seen from both sides */
+}
+
+static void mark_beside(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const tobi_particles *p = &s->particles;
+    for (int64_t k = begin; k < end; k++) {
+        int64_t i = s->near.entry[k].particle;
+        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
+        for (int g = 0; g < 8*p->list_groups[i]; g++)
+            __atomic_store_n(&p->beside[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&p->beside[i], 1, __ATOMIC_RELAXED);
+    }
 }
 
 void tobi_boundary_mark_beside(tobi_system *s)
 {
-    const tobi_particles *p = &s->particles;
-    if (!p->beside) return;
-    memset(p->beside, 0, (size_t)p->count);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t k = 0; k < s->near.count; k++) {
-        int64_t i = s->near.entry[k].particle;
-        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
-            #pragma omp atomic write
-            p->beside[list[g]] = 1;
-        }
-        #pragma omp atomic write
-        p->beside[i] = 1;
-    }
+    if (!s->particles.beside) return;
+    memset(s->particles.beside, 0, (size_t)s->particles.count);
+    tobi_loop(s->sim->exec.threads, s->near.count, 0, mark_beside, s);
 }

@@ -108,13 +108,45 @@ static int32_t to_fixed(const tobi_box *box, int axis, double x)
     return (int32_t)(uint32_t)(int64_t)llrint((x - box->centre[axis])*box->to_fixed[axis]);
 }
 
-static void fill_starts(tobi_cells *c, const uint32_t *keys, int64_t n, const tobi_exec *x)
+/* What the loops of a sort read and write. */
+typedef struct sorting {
+    const tobi_cells *cells;
+    const tobi_box *box;
+    tobi_particles *particles;
+    uint32_t *keys;
+} sorting;
+
+static void find_keys(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(x->threads) schedule(static)
-    for (int64_t k = 0; k <= n; k++) {
-        int64_t before = k > 0 ? (int64_t)keys[k - 1] : -1;
-        int64_t here = k < n ? (int64_t)keys[k] : c->total;
-        for (int64_t cell = before + 1; cell <= here; cell++) c->start[cell] = (int32_t)k;
+    const sorting *s = view;
+    const tobi_cells *c = s->cells;
+    for (int64_t i = begin; i < end; i++) {
+        tobi_double3 *x = &s->particles->position[i];
+        wrap(s->box, x);
+        int64_t row = tobi_cells_row(c, cell_along(c, 1, x->y), cell_along(c, 2, x->z));
+        s->keys[i] = (uint32_t)(row + cell_along(c, 0, x->x));
+    }
+}
+
+/* Over the particles and one place behind them. */
+static void fill_starts(const void *view, int64_t begin, int64_t end)
+{
+    const sorting *s = view;
+    for (int64_t k = begin; k < end; k++) {
+        int64_t before = k > 0 ? (int64_t)s->keys[k - 1] : -1;
+        int64_t here = k < s->particles->count ? (int64_t)s->keys[k] : s->cells->total;
+        for (int64_t cell = before + 1; cell <= here; cell++) s->cells->start[cell] = (int32_t)k;
+    }
+}
+
+static void make_records(const void *view, int64_t begin, int64_t end)
+{
+    const sorting *s = view;
+    const tobi_particles *p = s->particles;
+    for (int64_t i = begin; i < end; i++) {
+        tobi_double3 q = p->position[i];
+        p->record[i] = (tobi_record){to_fixed(s->box, 0, q.x), to_fixed(s->box, 1, q.y),
+                                     to_fixed(s->box, 2, q.z), p->pressure[i]};
     }
 }
 
@@ -123,24 +155,14 @@ void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi
     int64_t n = p->count;
     uint32_t *keys = (uint32_t *)c->list, *key_copy = keys + n;
     int32_t *order_copy = (int32_t *)(key_copy + n), *order = order_copy + n;
-    #pragma omp parallel for num_threads(x->threads) schedule(static)
-    for (int64_t i = 0; i < n; i++) {
-        wrap(box, &p->position[i]);
-        int64_t row = tobi_cells_row(c, cell_along(c, 1, p->position[i].y),
-                                     cell_along(c, 2, p->position[i].z));
-        keys[i] = (uint32_t)(row + cell_along(c, 0, p->position[i].x));
-    }
+    const sorting view = {c, box, p, keys};
+    tobi_loop(x->threads, n, 0, find_keys, &view);
     tobi_sort_by_key(x, n, (uint32_t)c->total, keys, order, key_copy, order_copy, c->histogram);
-    fill_starts(c, keys, n, x);
+    tobi_loop(x->threads, n + 1, 0, fill_starts, &view);
     memmove(c->list, order, (size_t)n*sizeof *order);
     char *scratch = (char *)c->list + ((size_t)n*sizeof *order + 63)/64*64;
     tobi_particles_permute(p, c->list, scratch, x->threads);
-    #pragma omp parallel for num_threads(x->threads) schedule(static)
-    for (int64_t i = 0; i < n; i++) {
-        tobi_double3 q = p->position[i];
-        p->record[i] = (tobi_record){to_fixed(box, 0, q.x), to_fixed(box, 1, q.y),
-                                     to_fixed(box, 2, q.z), p->pressure[i]};
-    }
+    tobi_loop(x->threads, n, 0, make_records, &view);
 }
 
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)

@@ -25,18 +25,36 @@ static void find_relative(const tobi_contact *k, const double velocity[3], const
     for (int a = 0; a < 3; a++) out[a] = k->velocity[a] - velocity[a] - turning[a] - k->deforming[a];
 }
 
-void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x)
+/* What the loops over contacts read. */
+typedef struct visiting {
+    tobi_contacts *c;
+    const tobi_rigid *body;
+    const tobi_contact_step *step;
+    double dt;
+    int width;                         /* numbers per contact that are summed     */
+    int first, moves;                  /* the first sweep; a body that moves      */
+    double pace;
+    tobi_particles *particles;
+} visiting;
+
+static void aim_contacts(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK)
-    for (int64_t n = 0; n < c->count; n++) {
-        tobi_contact *k = &c->list[n];
+    const visiting *v = view;
+    for (int64_t n = begin; n < end; n++) {
+        tobi_contact *k = &v->c->list[n];
         double relative[3];
         if (k->particle < 0) continue;
-        find_relative(k, c->velocity, c->spin, relative);
+        find_relative(k, v->c->velocity, v->c->spin, relative);
         double along = vec3_dot(relative, k->normal);
-        int hits = -along > step->rest_speed && k->gap < -along*step->dt;
-        k->bounce = hits ? -along*b->rigid.restitution : 0;
+        int hits = -along > v->step->rest_speed && k->gap < -along*v->step->dt;
+        k->bounce = hits ? -along*v->body->restitution : 0;
     }
+}
+
+void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x)
+{
+    const visiting view = { .c = c, .body = &b->rigid, .step = step };
+    tobi_loop(c->count > TOBI_BLOCK ? x->threads : 1, c->count, 0, aim_contacts, &view);
 }
 
 /* By how much the velocity must change along the normal, if at all. */
@@ -142,26 +160,33 @@ static void eliminate(double a[6][6], double b[6])
     }
 }
 
-/* Sums `width` numbers per contact over the list, in one order for any number of threads. */
-static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, tobi_exec *x)
+static void sum_parts(const void *view, int64_t begin, int64_t end)
 {
-    int64_t parts = count_parts(c);
-    memset(total, 0, (size_t)width*sizeof *total);
-    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (parts > 1)
-    for (int64_t q = 0; q < parts; q++) {
+    const visiting *v = view;
+    const tobi_contacts *c = v->c;
+    for (int64_t q = begin; q < end; q++) {
         double *sum = c->partial + q*SUMS;
-        memset(sum, 0, (size_t)width*sizeof *sum);
+        memset(sum, 0, (size_t)v->width*sizeof *sum);
         for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
             const tobi_contact *k = &c->list[n];
             double twist[3];
-            if (width == SUMS) {
-                add_contact(k, c, dt, sum);
+            if (v->width == SUMS) {
+                add_contact(k, c, v->dt, sum);
                 continue;
             }
             vec3_cross(twist, k->arm, k->change);
             for (int a = 0; a < 3; a++) { sum[a] += k->change[a]; sum[3 + a] += twist[a]; }
         }
     }
+}
+
+/* Sums `width` numbers per contact over the list, in one order for any number of threads. */
+static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, tobi_exec *x)
+{
+    const int64_t parts = count_parts(c);
+    const visiting view = { .c = c, .width = width, .dt = dt };
+    memset(total, 0, (size_t)width*sizeof *total);
+    tobi_loop(x->threads, parts, 1, sum_parts, &view);
     for (int64_t q = 0; q < parts; q++)
         for (int n = 0; n < width; n++) total[n] += c->partial[q*SUMS + n];
 }
@@ -190,6 +215,27 @@ static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec 
     memcpy(c->spin, b + 3, sizeof c->spin);
 }
 
+/* One sweep over parts of the list; of each the largest squares of change and impulse into partial. */
+static void sweep_parts(const void *view, int64_t begin, int64_t end)
+{
+    const visiting *v = view;
+    tobi_contacts *c = v->c;
+    for (int64_t q = begin; q < end; q++) {
+        double most = 0, largest = 0;
+        for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
+            tobi_contact *k = &c->list[n];
+            if (v->first && k->particle >= 0 && !v->moves) find_start(k, c, v->body->friction);
+            if (!v->first && k->particle < 0) find_edge_change(k, c, v->pace);
+            else if (!v->first) find_change(k, c, v->body->friction, v->dt, v->pace);
+            for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
+            most = larger(most, vec3_dot(k->change, k->change));
+            largest = larger(largest, vec3_dot(k->impulse, k->impulse));
+        }
+        c->partial[q*SUMS] = most;
+        c->partial[q*SUMS + 1] = largest;
+    }
+}
+
 double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
                           tobi_exec *x)
 {
@@ -201,15 +247,11 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     memcpy(velocity, c->velocity, sizeof velocity);
     memcpy(spin, c->spin, sizeof spin);
     if (moves && !first) foresee(c, r, step->dt, x);
-    #pragma omp parallel for num_threads(x->threads) if (c->count > TOBI_BLOCK) reduction(max: most, largest)
-    for (int64_t n = 0; n < c->count; n++) {
-        tobi_contact *k = &c->list[n];
-        if (first && k->particle >= 0 && !moves) find_start(k, c, r->friction);
-        if (!first && k->particle < 0) find_edge_change(k, c, pace);
-        else if (!first) find_change(k, c, r->friction, step->dt, pace);
-        for (int a = 0; a < 3; a++) k->impulse[a] += k->change[a];
-        most = larger(most, vec3_dot(k->change, k->change));
-        largest = larger(largest, vec3_dot(k->impulse, k->impulse));
+    const visiting view = { .c = c, .body = r, .dt = step->dt, .first = first, .moves = moves, .pace = pace };
+    tobi_loop(x->threads, count_parts(c), 1, sweep_parts, &view);
+    for (int64_t q = 0; q < count_parts(c); q++) {
+        most = larger(most, c->partial[q*SUMS]);
+        largest = larger(largest, c->partial[q*SUMS + 1]);
     }
     const double moved = most > 0 ? sqrt(most/larger(largest, 1e-300)) : 0;
     if (!moves) return moved;
@@ -274,23 +316,30 @@ static void add_impulse(const tobi_contact *k, const tobi_contacts *c, outcome *
     sum->edge_limit += k->limit;
 }
 
-/* Sums over the list, in one order for any number of threads; particles remember their normal forces. */
-static void sum_impulses(tobi_contacts *c, tobi_particles *p, double dt, outcome *total, tobi_exec *x)
+static void sum_outcomes(const void *view, int64_t begin, int64_t end)
 {
-    const int64_t parts = count_parts(c);
-    memset(total, 0, sizeof *total);
-    #pragma omp parallel for num_threads(x->threads) schedule(dynamic, 1) if (parts > 1)
-    for (int64_t q = 0; q < parts; q++) {
+    const visiting *v = view;
+    const tobi_contacts *c = v->c;
+    for (int64_t q = begin; q < end; q++) {
         outcome sum;
         memset(&sum, 0, sizeof sum);
         for (int64_t n = q*TOBI_BLOCK; n < (q + 1)*TOBI_BLOCK && n < c->count; n++) {
             const tobi_contact *k = &c->list[n];
             add_impulse(k, c, &sum);
             if (k->particle >= 0)
-                p->velocity[k->particle].w = (float)(vec3_dot(k->impulse, k->normal)/dt);
+                v->particles->velocity[k->particle].w = (float)(vec3_dot(k->impulse, k->normal)/v->dt);
         }
         memcpy(c->partial + q*SUMS, sum.all, sizeof sum);
     }
+}
+
+/* Sums over the list, in one order for any number of threads; particles remember their normal forces. */
+static void sum_impulses(tobi_contacts *c, tobi_particles *p, double dt, outcome *total, tobi_exec *x)
+{
+    const int64_t parts = count_parts(c);
+    const visiting view = { .c = c, .dt = dt, .particles = p };
+    memset(total, 0, sizeof *total);
+    tobi_loop(x->threads, parts, 1, sum_outcomes, &view);
     for (int64_t q = 0; q < parts; q++)
         for (size_t n = 0; n < sizeof *total/sizeof *total->all; n++) total->all[n] += c->partial[q*SUMS + n];
 }

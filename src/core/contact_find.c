@@ -47,6 +47,25 @@ void tobi_contact_free(tobi_contacts *c)
 
 static int64_t count_chunks(int64_t n) { return (n + TOBI_BLOCK - 1)/TOBI_BLOCK; }
 
+typedef struct boxing { tobi_contacts *c; const tobi_particles *p; } boxing;
+
+/* The boxes around the particles of each chunk. */
+static void box_chunks(const void *view, int64_t begin, int64_t end)
+{
+    const boxing *v = view;
+    const tobi_particles *p = v->p;
+    for (int64_t k = begin; k < end; k++) {
+        double *box = v->c->chunk_box[k];
+        for (int a = 0; a < 3; a++) { box[a] = INFINITY; box[3 + a] = -INFINITY; }
+        for (int64_t i = k*TOBI_BLOCK; i < (k + 1)*TOBI_BLOCK && i < p->count; i++)
+            for (int a = 0; a < 3; a++) {
+                double x = (&p->position[i].x)[a];
+                if (x < box[a]) box[a] = x;
+                if (x > box[3 + a]) box[3 + a] = x;
+            }
+    }
+}
+
 static tobi_status fail_memory(int64_t contacts, tobi_error *err)
 {
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts of %lld particles", (long long)contacts);
@@ -71,17 +90,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
         if (!c->chunk_room) return fail_memory(p->count, err);
     }
     for (int k = 0; k < c->near_room; k++) c->near[k].body = NULL;
-    #pragma omp parallel for num_threads(tobi_team(x, p->count, 32768))
-    for (int64_t k = 0; k < chunks; k++) {
-        double *box = c->chunk_box[k];
-        for (int a = 0; a < 3; a++) { box[a] = INFINITY; box[3 + a] = -INFINITY; }
-        for (int64_t i = k*TOBI_BLOCK; i < (k + 1)*TOBI_BLOCK && i < p->count; i++)
-            for (int a = 0; a < 3; a++) {
-                double v = (&p->position[i].x)[a];
-                if (v < box[a]) box[a] = v;
-                if (v > box[3 + a]) box[3 + a] = v;
-            }
-    }
+    const boxing view = {c, p};
+    tobi_loop(tobi_team(x, p->count, 32768), chunks, 0, box_chunks, &view);
     return TOBI_OK;
 }
 
@@ -295,15 +305,32 @@ static int boxes_meet(const double box[6], const double low[3], const double hig
     return !apart;
 }
 
+/* What the loops over blocks of particles or candidates need. */
+typedef struct searching {
+    tobi_contacts *c;
+    struct tobi_contact_near *near;
+    const pose *at;
+    const tobi_particles *p;
+    double far, low[3], high[3];       /* m, of candidates, and the box that they lie in */
+} searching;
+
+static void list_chunks(const void *view, int64_t begin, int64_t end)
+{
+    const searching *v = view;
+    for (int64_t k = begin; k < end; k++)
+        v->c->run[k].count = list_chunk(v->at, v->p, v->c->run[k].block, v->far, v->low, v->high,
+                                        v->near->list + k*TOBI_BLOCK);
+}
+
 /* The list of candidates anew: all within `far`. */
 static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
                                    const tobi_particles *p, double far, tobi_exec *x, tobi_error *err)
 {
-    double low[3], high[3];
+    searching view = { .c = c, .near = near, .at = at, .p = p, .far = far };
     int64_t runs = 0;
-    find_box(at, far, low, high);
+    find_box(at, far, view.low, view.high);
     for (int64_t k = 0; k < count_chunks(p->count); k++)
-        if (boxes_meet(c->chunk_box[k], low, high, at->step->dimension, c->drift))
+        if (boxes_meet(c->chunk_box[k], view.low, view.high, at->step->dimension, c->drift))
             c->run[runs++] = (struct tobi_contact_run){k, 0};
     near->way = near->count = 0;
     if (runs*TOBI_BLOCK > near->room) {
@@ -313,9 +340,7 @@ static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *n
         if (!near->list) return fail_memory(runs*TOBI_BLOCK, err);
         near->room = (runs + runs/4 + 1)*TOBI_BLOCK;
     }
-    #pragma omp parallel for num_threads(tobi_team(x, runs, 8)) schedule(dynamic, 1)
-    for (int64_t k = 0; k < runs; k++)
-        c->run[k].count = list_chunk(at, p, c->run[k].block, far, low, high, near->list + k*TOBI_BLOCK);
+    tobi_loop(tobi_team(x, runs, 8), runs, 1, list_chunks, &view);
     for (int64_t k = 0; k < runs; k++) {
         memmove(near->list + near->count, near->list + k*TOBI_BLOCK,
                 (size_t)c->run[k].count*sizeof *near->list);
@@ -441,6 +466,13 @@ static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi
     return n;
 }
 
+static void search_blocks(const void *view, int64_t begin, int64_t end)
+{
+    const searching *v = view;
+    for (int64_t k = begin; k < end; k++)
+        v->c->run[k].count = search_block(v->at, v->p, v->near, k, v->c->list + k*TOBI_BLOCK);
+}
+
 /* Lists the contacts in the order of the particles. */
 static void search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
                    const tobi_particles *p, tobi_exec *x)
@@ -451,9 +483,8 @@ static void search(tobi_contacts *c, struct tobi_contact_near *near, const pose 
     for (int64_t k = 0; k < runs && team == 1; k++)
         c->count += search_block(at, p, near, k, c->list + c->count);
     if (team == 1) return;
-    #pragma omp parallel for num_threads(team) schedule(dynamic, 1)
-    for (int64_t k = 0; k < runs; k++)
-        c->run[k].count = search_block(at, p, near, k, c->list + k*TOBI_BLOCK);
+    const searching view = { .c = c, .near = near, .at = at, .p = p };
+    tobi_loop(team, runs, 1, search_blocks, &view);
     for (int64_t k = 0; k < runs; k++) {
         memmove(c->list + c->count, c->list + k*TOBI_BLOCK, (size_t)c->run[k].count*sizeof *c->list);
         c->count += c->run[k].count;

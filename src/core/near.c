@@ -192,8 +192,7 @@ static int add_point(void *user, int32_t k)
     tobi_near_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
     if (!(s > 0) || hidden(l, k)) return 0;
-    #pragma omp atomic write
-    b->wet[k] = TOBI_WET;
+    __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->gravity;
     double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
     double sigma = plane_value(l->s, c->plane.sigma, s);
@@ -404,15 +403,20 @@ static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_e
     return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
 }
 
-/* Runs over the entries of all particles; one particle's entries are handled together. */
+static void visit_entries(tobi_system *s, tobi_range visit)
+{
+    tobi_loop(s->sim->exec.threads, s->near.count, 0, visit, s);
+}
+
+/* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
-    _Pragma("omp parallel for num_threads((s)->sim->exec.threads) schedule(static)")                       \
-    for (int64_t k = 0; k < (s)->near.count; k++)                                                          \
+    for (int64_t k = begin; k < end; k++)                                                                  \
         for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
             for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
 
-void tobi_boundary_add_gradients(tobi_system *s)
+static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &s->particles.wall[i];
         w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
@@ -420,6 +424,8 @@ void tobi_boundary_add_gradients(tobi_system *s)
         s->particles.density[i] = 1 - (1 - s->particles.density[i])*(1 - (float)e->share);
     }
 }
+
+void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
 static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const double u[3],
@@ -442,8 +448,9 @@ static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const do
     for (int c = 0; c < 3; c++) drag[c] *= law;
 }
 
-void tobi_boundary_add_forces(tobi_system *s)
+static void add_forces(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
@@ -457,6 +464,8 @@ void tobi_boundary_add_forces(tobi_system *s)
     }
 }
 
+void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
+
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
@@ -467,12 +476,12 @@ static void keep_away(const tobi_system *s, int64_t i, double least, double way[
     }
 }
 
-void tobi_boundary_relax(tobi_system *s)
+static void relax_particles(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = view;
     const tobi_particles *p = &s->particles;
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t i = 0; i < p->count; i++) {
+    for (int64_t i = begin; i < end; i++) {
         if (!p->beside[i]) continue;
         double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
                scale = s->dt*s->dt, *x = &p->position[i].x;
@@ -486,8 +495,14 @@ void tobi_boundary_relax(tobi_system *s)
     }
 }
 
-void tobi_boundary_turn_normals(tobi_system *s)
+void tobi_boundary_relax(tobi_system *s)
 {
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, relax_particles, s);
+}
+
+static void turn_normals(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &s->particles.normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -500,6 +515,8 @@ void tobi_boundary_turn_normals(tobi_system *s)
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }
 }
+
+void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals); }
 
 int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {

@@ -1,4 +1,5 @@
 #include "core/particles.h"
+#include "exec/exec.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -95,33 +96,11 @@ int64_t tobi_particles_widest(int owners)
     return owners & TOBI_MPM ? (int64_t)sizeof(tobi_columns) : (int64_t)sizeof(tobi_double3);
 }
 
-#define DEFINE_PERMUTE(type)                                                                   \
-    static void permute_##type(type *data, const int32_t *order, int64_t n, type *to, int threads) \
-    {                                                                                          \
-        _Pragma("omp parallel num_threads(threads)")                                           \
-        {                                                                                      \
-            _Pragma("omp for schedule(static)")                                                \
-            for (int64_t k = 0; k < n; k++) to[k] = data[order[k]];                            \
-            _Pragma("omp for schedule(static)")                                                \
-            for (int64_t k = 0; k < n; k++) data[k] = to[k];                                   \
-        }                                                                                      \
-    }
-DEFINE_PERMUTE(tobi_double3)
-DEFINE_PERMUTE(tobi_float4)
-DEFINE_PERMUTE(tobi_columns)
-DEFINE_PERMUTE(float)
-DEFINE_PERMUTE(int64_t)
-DEFINE_PERMUTE(uint8_t)
-
-#define PERMUTE(field)                                                                                     \
-    _Generic((field), tobi_double3 *: permute_tobi_double3, tobi_float4 *: permute_tobi_float4,            \
-             tobi_columns *: permute_tobi_columns, float *: permute_float, int64_t *: permute_int64_t,      \
-             uint8_t *: permute_uint8_t, default: permute_uint8_t)
-
 void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
 {
 #define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name) PERMUTE(p->name)((void *)p->name, order, p->count, scratch, threads);
+    if ((life) == TOBI_STATE && p->name)                                                                   \
+        tobi_permute(threads, p->name, sizeof(type), order, p->count, scratch);
     TOBI_PARTICLE_FIELDS(X)
 #undef X
 }

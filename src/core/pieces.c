@@ -85,6 +85,29 @@ static void free_search(search *f)
     free(f->parent);
 }
 
+static void find_keys(const void *view, int64_t begin, int64_t end)
+{
+    const search *f = view;
+    for (int64_t i = begin; i < end; i++) {
+        int64_t cell[3];
+        const tobi_double3 place = find_place(f, i);
+        find_cell(f, &place, cell);
+        f->key[i] = find_key(f, cell);
+        f->parent[i] = (int32_t)i;
+    }
+}
+
+/* Over the rows and one place behind them. */
+static void fill_starts(const void *view, int64_t begin, int64_t end)
+{
+    const search *f = view;
+    for (int64_t k = begin; k < end; k++) {
+        if (k < f->particles->count) f->place[k] = find_place(f, f->row[k]);
+        for (uint64_t b = k ? (uint64_t)f->key[k - 1] + 1 : 0; b <= f->key[k]; b++)
+            f->start[b] = (int32_t)k;
+    }
+}
+
 static tobi_status sort_by_cell(search *f, tobi_exec *x, int64_t n, tobi_error *err)
 {
     const size_t rows = (size_t)n + 1;
@@ -98,22 +121,10 @@ static tobi_status sort_by_cell(search *f, tobi_exec *x, int64_t n, tobi_error *
     f->start = malloc(((size_t)f->mask + 2)*sizeof *f->start);
     int whole = spare_key && spare_row && histogram && f->place && f->key && f->row && f->parent && f->start;
     if (whole) {
-        #pragma omp parallel for num_threads(x->threads)
-        for (int64_t i = 0; i < n; i++) {
-            int64_t cell[3];
-            const tobi_double3 place = find_place(f, i);
-            find_cell(f, &place, cell);
-            f->key[i] = find_key(f, cell);
-            f->parent[i] = (int32_t)i;
-        }
+        tobi_loop(x->threads, n, 0, find_keys, f);
         tobi_sort_by_key(x, n, f->mask, f->key, f->row, spare_key, spare_row, histogram);
         f->key[n] = f->mask + 1;
-        #pragma omp parallel for num_threads(x->threads)
-        for (int64_t k = 0; k <= n; k++) {
-            if (k < n) f->place[k] = find_place(f, f->row[k]);
-            for (uint64_t b = k ? (uint64_t)f->key[k - 1] + 1 : 0; b <= f->key[k]; b++)
-                f->start[b] = (int32_t)k;
-        }
+        tobi_loop(x->threads, n + 1, 0, fill_starts, f);
     }
     free(spare_key);
     free(spare_row);
@@ -273,13 +284,15 @@ static void rank_pieces(const tobi_system *s, ranked *found, int64_t count, int3
         if (list->of[i] >= 0) list->of[i] = number[list->of[i]];
 }
 
-static void read_volumes(const tobi_system *s, double *volume)
+typedef struct reading { const tobi_system *s; double *volume; } reading;
+
+static void read_volumes(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads)
-    for (int64_t i = 0; i < s->particles.count; i++) {
+    const reading *r = view;
+    for (int64_t i = begin; i < end; i++) {
         double ratio[9];
-        s->method->read(s, "J", i, ratio);
-        volume[i] = ratio[0]*s->particles.strain[i].c[0].w;
+        r->s->method->read(r->s, "J", i, ratio);
+        r->volume[i] = ratio[0]*r->s->particles.strain[i].c[0].w;
     }
 }
 
@@ -293,7 +306,8 @@ static tobi_status list_pieces(tobi_system *s, const int32_t *row_of, search *f,
     tobi_status status = volume && found && list->piece
         ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld pieces of solids", (long long)count);
     if (status == TOBI_OK) {
-        read_volumes(s, volume);
+        const reading view = {s, volume};
+        tobi_loop(s->sim->exec.threads, n, 0, read_volumes, &view);
         sum_pieces(s, row_of, volume, list->of, found);
         rank_pieces(s, found, count, f->row, list);
     }

@@ -200,8 +200,8 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
             const tobi_double3 *at = &p->s->particles.position[list[c]];
             if (is_outside(p, list[c]) || !push_particle(p, list[c], part->total)) continue;
             widen(block, (double[3]){at->x, at->y, at->z});
-            #pragma omp atomic
-            n->contacts++;      /* all sums are taken; whole numbers add up the same in any order */
+            /* All sums are taken; whole numbers add up the same in any order. */
+            __atomic_fetch_add(&n->contacts, 1, __ATOMIC_RELAXED);
         }
     }
 }

@@ -1,3 +1,6 @@
+/* Loops, sums and sorts on OpenMP threads. Parts of a loop go to the threads in any order; all sums are taken
+   in an order that only the number of items decides. Drawback: a loop without totals is not checked for items
+   that depend on one another. */
 #include "exec/exec.h"
 #include <omp.h>
 #include <stdlib.h>
@@ -120,6 +123,23 @@ void tobi_launch_each(tobi_exec *x, tobi_kernel kernel, const void *view, int64_
     run_blocks(x, kernel, view, 0, count, 1, totals);
 }
 
+void tobi_loop(int threads, int64_t count, int64_t chunk, tobi_range range, const void *view)
+{
+    if (threads <= 0) threads = omp_get_max_threads();
+    const int64_t parts = chunk > 0 ? (count + chunk - 1)/chunk : count < threads ? count : threads;
+    if (count <= 0) return;
+    if (threads == 1 || parts == 1) {
+        range(view, 0, count);
+    } else if (chunk > 0) {
+        #pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+        for (int64_t q = 0; q < parts; q++)
+            range(view, q*chunk, q < parts - 1 ? (q + 1)*chunk : count);
+    } else {
+        #pragma omp parallel for num_threads(threads) schedule(static, 1)
+        for (int64_t q = 0; q < parts; q++) range(view, count*q/parts, count*(q + 1)/parts);
+    }
+}
+
 int64_t tobi_sort_histogram_size(const tobi_exec *x) { return (int64_t)x->threads*RADIX; }
 
 /* One stable pass on RADIX_BITS bits: every thread counts and moves its own contiguous part. */
@@ -161,6 +181,40 @@ void tobi_sort_by_key(tobi_exec *x, int64_t n, uint32_t key_limit, uint32_t *key
     for (int p = 0; p < passes; p += 2) {
         sort_pass(x, n, p*RADIX_BITS, keys, p ? order : NULL, key_scratch, order_scratch, histogram);
         sort_pass(x, n, (p + 1)*RADIX_BITS, key_scratch, order_scratch, keys, order, histogram);
+    }
+}
+
+/* Inlined for each size, so that an entry is a move or two. */
+static inline __attribute__((always_inline)) void gather(const char *from, size_t size, const int32_t *order,
+                                                         int64_t begin, int64_t end, char *to)
+{
+    for (int64_t k = begin; k < end; k++) memcpy(to + (size_t)k*size, from + (size_t)order[k]*size, size);
+}
+
+static void gather_rows(const char *from, size_t size, const int32_t *order, int64_t begin, int64_t end,
+                        char *to)
+{
+    switch (size) {
+    case 1: gather(from, 1, order, begin, end, to); break;
+    case 4: gather(from, 4, order, begin, end, to); break;
+    case 8: gather(from, 8, order, begin, end, to); break;
+    case 16: gather(from, 16, order, begin, end, to); break;
+    case 24: gather(from, 24, order, begin, end, to); break;
+    case 48: gather(from, 48, order, begin, end, to); break;
+    default: gather(from, size, order, begin, end, to);
+    }
+}
+
+void tobi_permute(int threads, void *data, size_t size, const int32_t *order, int64_t n, void *scratch)
+{
+    #pragma omp parallel num_threads(threads)
+    {
+        int t = omp_get_thread_num(), count = omp_get_num_threads();
+        int64_t first = n*t/count, last = n*(t + 1)/count;
+        gather_rows(data, size, order, first, last, scratch);
+        #pragma omp barrier
+        memcpy((char *)data + (size_t)first*size, (char *)scratch + (size_t)first*size,
+               (size_t)(last - first)*size);
     }
 }
 

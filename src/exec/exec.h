@@ -1,6 +1,7 @@
-/* Where loops run. A kernel is a function over a range of particles; exec cuts [begin, end) into
-   blocks of fixed size, runs them on threads in any order and combines the totals of the blocks in
-   one fixed order: the result does not depend on the number of threads. */
+/* Where loops run: the only room that names OpenMP (tools/check_house.py). A kernel is a function over a
+   range of particles; exec cuts [begin, end) into blocks of fixed size, runs them on threads in any order and
+   combines the totals of the blocks in one fixed order: the result does not depend on the number of threads.
+   A loop without totals goes to tobi_loop. */
 #pragma once
 #include "base/error.h"
 #include "exec/portable.h"
@@ -24,15 +25,27 @@ void tobi_exec_free(tobi_exec *x);
 /* Makes room for sums over n items, so that launches never allocate. */
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 
-/* Threads for a loop that launch does not run: waking one costs some 10 us, so each gets at least `worth`
-   items. The result must not depend on them. */
+/* Threads for a loop (tobi_loop): waking one costs some 10 us, so each gets at least `worth` items.
+   The result must not depend on them. */
 static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)
 {
     return items/worth >= x->threads ? x->threads : items < 2*worth ? 1 : (int)(items/worth);
 }
 
-/* Parallel loops of the calling thread that name no number of threads (those of io) take so many. */
+/* Loops that the calling thread starts with 0 threads (those of io and geom) take so many. */
 void tobi_exec_set_default(int threads);
+
+/* Runs over [begin, end), one part of a loop. No item writes what another one reads; what all write (a mark,
+   a count) is atomic and the same in any order. */
+typedef void (*tobi_range)(const void *view, int64_t begin, int64_t end);
+
+/* Runs over [0, count). chunk > 0: parts of so many items, each for the next thread that is free, for items
+   of uneven work; chunk 0: one part per thread. threads 0: see above. One part, or one thread, runs in the
+   caller. */
+void tobi_loop(int threads, int64_t count, int64_t chunk, tobi_range range, const void *view);
+
+/* Before a plain loop over floats whose items do not depend on one another: eight at once. */
+#define TOBI_SIMD _Pragma("omp simd")
 
 /* Runs kernel over [begin, end); totals (TOBI_TOTALS doubles) may be NULL. */
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,
@@ -54,6 +67,9 @@ void tobi_sort_by_key(tobi_exec *x, int64_t n, uint32_t key_limit, uint32_t *key
                       uint32_t *key_scratch, int32_t *order_scratch, int64_t *histogram);
 /* Entries of `histogram` for the above. */
 int64_t tobi_sort_histogram_size(const tobi_exec *x);
+
+/* Brings n entries of `size` bytes into an order: entry k was entry order[k]. `scratch` holds n entries. */
+void tobi_permute(int threads, void *data, size_t size, const int32_t *order, int64_t n, void *scratch);
 
 /* Exclusive prefix sum in place over n counts; returns the total. */
 int64_t tobi_scan(tobi_exec *x, int64_t n, int64_t *counts);

@@ -1,6 +1,7 @@
 /* Queries and refitting. Boxes are tested four at a time in float, triangles one at a time in
    double: the boxes only decide what is looked at, so float loses nothing but a few extra looks. */
 #include "geom/bvh_tree.h"
+#include "exec/exec.h"
 #include "geom/vec3.h"
 #include <string.h>
 
@@ -12,10 +13,15 @@ typedef int32_t int4 __attribute__((vector_size(16)));
 
 /* --- refitting ---------------------------------------------------------------------------- */
 
-static void measure_faces(tobi_bvh *b, const double (*vertices)[3])
+enum { FEW = 4096 };     /* triangles or vertices that one thread measures sooner than several wake */
+
+typedef struct measuring { tobi_bvh *b; const double (*vertices)[3]; } measuring;
+
+static void measure_faces(const void *view, int64_t begin, int64_t end)
 {
-#pragma omp parallel for schedule(static) if (b->triangle_count > 4096)
-    for (int64_t t = 0; t < b->triangle_count; t++) {
+    tobi_bvh *b = ((const measuring *)view)->b;
+    const double (*vertices)[3] = ((const measuring *)view)->vertices;
+    for (int64_t t = begin; t < end; t++) {
         double e[3][3], n[3];    /* edges 01, 12, 20 */
         for (int k = 0; k < 3; k++)
             vec3_sub(e[k], vertices[b->triangles[t][(k + 1) % 3]], vertices[b->triangles[t][k]]);
@@ -32,10 +38,10 @@ static void measure_faces(tobi_bvh *b, const double (*vertices)[3])
     }
 }
 
-static void measure_edges_and_vertices(tobi_bvh *b)
+static void measure_edges(const void *view, int64_t begin, int64_t end)
 {
-#pragma omp parallel for schedule(static) if (b->triangle_count > 4096)
-    for (int64_t t = 0; t < b->triangle_count; t++)
+    tobi_bvh *b = ((const measuring *)view)->b;
+    for (int64_t t = begin; t < end; t++)
         for (int k = 0; k < 3; k++) {
             static const double none[3] = {0, 0, 0};
             int32_t twin = b->opposite[t][k];
@@ -43,8 +49,12 @@ static void measure_edges_and_vertices(tobi_bvh *b)
             vec3_add_scaled(b->edge_normal[t][k], b->face_normal[t], 1, other);
             vec3_normalize(b->edge_normal[t][k]);
         }
-#pragma omp parallel for schedule(static) if (b->vertex_count > 4096)
-    for (int64_t v = 0; v < b->vertex_count; v++) {
+}
+
+static void measure_vertices(const void *view, int64_t begin, int64_t end)
+{
+    tobi_bvh *b = ((const measuring *)view)->b;
+    for (int64_t v = begin; v < end; v++) {
         double n[3] = {0, 0, 0};
         for (int64_t i = b->corner_start[v]; i < b->corner_start[v + 1]; i++) {
             int32_t corner = b->corner_list[i];
@@ -95,8 +105,11 @@ void tobi_bvh_refit(tobi_bvh *b, const double (*vertices)[3])
 {
     double box[6], size = 0;
     place_corners(b, vertices);
-    measure_faces(b, vertices);
-    measure_edges_and_vertices(b);
+    const measuring view = {b, vertices};
+    const int threads = b->triangle_count > FEW ? 0 : 1;
+    tobi_loop(threads, b->triangle_count, 0, measure_faces, &view);
+    tobi_loop(threads, b->triangle_count, 0, measure_edges, &view);
+    tobi_loop(b->vertex_count > FEW ? 0 : 1, b->vertex_count, 0, measure_vertices, &view);
     box_leaf(b, 0, (int32_t)b->triangle_count, box);
     for (int k = 0; k < 3; k++) {
         b->min[k] = box[k];

@@ -1,6 +1,7 @@
 /* Scattered points that relax by soft repulsion. A surface repels like the point's own image behind it, so
    that the outermost points lie half a spacing inside, as those of a lattice do. */
 #include "geom/seed.h"
+#include "exec/exec.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@ typedef struct relaxing {
     const tobi_seed_shape *shape;
     double spacing, cell;
     int64_t size[3], count;
+    uint64_t seed;
     double (*x)[3], (*next)[3];
     int64_t *start, *order;            /* of the cells, and the points in them */
 } relaxing;
@@ -58,15 +60,14 @@ static double find_depth(const tobi_seed_shape *s, const double x[3], double far
     return depth;
 }
 
-static void jitter(const relaxing *r, uint64_t number, int threads)
+static void jitter_points(const void *view, int64_t begin, int64_t end)
 {
-    const uint64_t seed = scramble(number);
-    #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int64_t i = 0; i < r->count; i++) {
+    const relaxing *r = view;
+    for (int64_t i = begin; i < end; i++) {
         double moved[3], away[3];
         memcpy(moved, r->x[i], sizeof moved);
         for (int a = 0; a < r->shape->dimension; a++) {
-            uint64_t bits = scramble(seed ^ scramble((uint64_t)i*3 + (uint64_t)a));
+            uint64_t bits = scramble(r->seed ^ scramble((uint64_t)i*3 + (uint64_t)a));
             moved[a] += 2*JITTER*r->spacing*((double)(bits >> 11)*0x1p-53 - 0.5);
         }
         if (find_depth(r->shape, moved, r->spacing, away) > 0) memcpy(r->x[i], moved, sizeof moved);
@@ -130,6 +131,11 @@ static void move_point(const relaxing *r, int64_t i)
     if (!(find_depth(s, r->next[i], r->spacing, away) > 0)) memcpy(r->next[i], r->x[i], sizeof r->x[i]);
 }
 
+static void move_points(const void *view, int64_t begin, int64_t end)
+{
+    for (int64_t i = begin; i < end; i++) move_point(view, i);
+}
+
 static tobi_status relax(relaxing *r, int threads, tobi_error *err)
 {
     double cells = 1;
@@ -147,8 +153,7 @@ static tobi_status relax(relaxing *r, int threads, tobi_error *err)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory to scatter %lld particles", (long long)r->count);
     for (int pass = 0; pass < PASSES; pass++) {
         sort_cells(r);
-        #pragma omp parallel for num_threads(threads) schedule(static)
-        for (int64_t i = 0; i < r->count; i++) move_point(r, i);
+        tobi_loop(threads, r->count, 0, move_points, r);
         memcpy(r->x, r->next, (size_t)r->count*sizeof *r->x);
     }
     return TOBI_OK;
@@ -157,9 +162,10 @@ static tobi_status relax(relaxing *r, int threads, tobi_error *err)
 tobi_status tobi_seed_scatter(const tobi_seed_shape *shape, double spacing, uint64_t number, int64_t count,
                               double (*points)[3], int threads, tobi_error *err)
 {
-    relaxing r = { .shape = shape, .spacing = spacing, .count = count, .x = points };
+    relaxing r = { .shape = shape, .spacing = spacing, .count = count, .seed = scramble(number),
+                   .x = points };
     if (count < 1) return TOBI_OK;
-    jitter(&r, number, threads);
+    tobi_loop(threads, count, 0, jitter_points, &r);
     tobi_status status = relax(&r, threads, err);
     free(r.next);
     free(r.order);

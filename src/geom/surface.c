@@ -1,6 +1,7 @@
 /* Surface pieces. Halving the longest edge keeps the pieces of a sliver few and their areas powers
    of two of the triangle's. */
 #include "geom/surface.h"
+#include "exec/exec.h"
 #include "geom/section.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
@@ -183,34 +184,57 @@ static void update_line(const tobi_surface *s, int64_t i, const double *const x[
     middle[2] = 0;
 }
 
-void tobi_surface_update(const tobi_surface *s, const double (*vertices)[3], const int32_t (*triangles)[3],
-                         double (*position)[3], double (*normal)[3], double *area)
+enum { FEW = 4096 };           /* parts that one thread updates sooner than several wake */
+
+typedef struct moving {
+    const tobi_surface *s;
+    const double (*vertices)[3];       /* their places, or values to interpolate */
+    const int32_t (*triangles)[3];
+    double (*position)[3], (*normal)[3], *area;
+} moving;
+
+static void update_points(const void *view, int64_t begin, int64_t end)
 {
-#pragma omp parallel for schedule(static) if (s->count > 4096)
-    for (int64_t i = 0; i < s->count; i++) {
-        const int32_t *t = triangles[s->triangle[i]];
-        const double *x[3] = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    const moving *m = view;
+    const tobi_surface *s = m->s;
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t *t = m->triangles[s->triangle[i]];
+        const double *x[3] = {m->vertices[t[0]], m->vertices[t[1]], m->vertices[t[2]]};
         double middle[3], n[3], weight;
         if (s->dimension == 2) update_line(s, i, x, middle, n, &weight);
         else update_part(s, i, x, middle, n, &weight);
-        if (position) memcpy(position[i], middle, sizeof middle);
-        if (normal) memcpy(normal[i], n, sizeof n);
-        if (area) area[i] = weight;
+        if (m->position) memcpy(m->position[i], middle, sizeof middle);
+        if (m->normal) memcpy(m->normal[i], n, sizeof n);
+        if (m->area) m->area[i] = weight;
+    }
+}
+
+void tobi_surface_update(const tobi_surface *s, const double (*vertices)[3], const int32_t (*triangles)[3],
+                         double (*position)[3], double (*normal)[3], double *area)
+{
+    const moving view = {s, vertices, triangles, position, normal, area};
+    tobi_loop(s->count > FEW ? 0 : 1, s->count, 0, update_points, &view);
+}
+
+static void interpolate_points(const void *view, int64_t begin, int64_t end)
+{
+    const moving *m = view;
+    const tobi_surface *s = m->s;
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t *t = m->triangles[s->triangle[i]];
+        const double *x[3] = {m->vertices[t[0]], m->vertices[t[1]], m->vertices[t[2]]};
+        double *out = m->position[i], last[3];
+        place_point(out, s->a[i], x);
+        if (s->dimension == 3) continue;
+        place_point(last, s->b[i], x);
+        for (int k = 0; k < 2; k++) out[k] = 0.5*(out[k] + last[k]);
+        out[2] = 0;
     }
 }
 
 void tobi_surface_interpolate(const tobi_surface *s, const int32_t (*triangles)[3],
                               const double (*vertex_values)[3], double (*out)[3])
 {
-#pragma omp parallel for schedule(static) if (s->count > 4096)
-    for (int64_t i = 0; i < s->count; i++) {
-        const int32_t *t = triangles[s->triangle[i]];
-        const double *x[3] = {vertex_values[t[0]], vertex_values[t[1]], vertex_values[t[2]]};
-        place_point(out[i], s->a[i], x);
-        if (s->dimension == 3) continue;
-        double end[3];
-        place_point(end, s->b[i], x);
-        for (int k = 0; k < 2; k++) out[i][k] = 0.5*(out[i][k] + end[k]);
-        out[i][2] = 0;
-    }
+    const moving view = {s, vertex_values, triangles, out, NULL, NULL};
+    tobi_loop(s->count > FEW ? 0 : 1, s->count, 0, interpolate_points, &view);
 }

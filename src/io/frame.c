@@ -188,6 +188,22 @@ static void free_canvas(canvas *c)
     free(c->shadow.range);
 }
 
+/* What the loops over the rows of a canvas or of the picture need. */
+typedef struct row_view { const canvas *c; vec top, bottom; int samples; image *out; } row_view;
+
+static void clear_rows(const void *view, int64_t begin, int64_t end)
+{
+    const row_view *v = view;
+    const canvas *c = v->c;
+    for (int y = (int)begin; y < end; y++)
+        for (int x = 0; x < c->width; x++) {
+            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+            c->color[k] = vec_mix(v->top, v->bottom, (float)y/(float)c->height);
+            c->depth[k] = INFINITY;
+            if (c->surface) c->surface[k] = INFINITY;
+        }
+}
+
 static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
 {
     *c = (canvas){ .width = f->width*f->samples, .height = f->height*f->samples,
@@ -207,16 +223,28 @@ static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d samples", c->width,
                          c->height);
     }
-    vec top = linear_color(f->background_top), bottom = linear_color(f->background_bottom);
-    #pragma omp parallel for
-    for (int y = 0; y < c->height; y++)
-        for (int x = 0; x < c->width; x++) {
-            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
-            c->color[k] = vec_mix(top, bottom, (float)y/(float)c->height);
-            c->depth[k] = INFINITY;
-            if (water) c->surface[k] = INFINITY;
-        }
+    const row_view view = { .c = c, .top = linear_color(f->background_top),
+                            .bottom = linear_color(f->background_bottom) };
+    tobi_loop(0, c->height, 0, clear_rows, &view);
     return TOBI_OK;
+}
+
+static void average_rows(const void *view, int64_t begin, int64_t end)
+{
+    const row_view *v = view;
+    const canvas *c = v->c;
+    const int s = v->samples, width = v->out->width;
+    for (int y = (int)begin; y < end; y++)
+        for (int x = 0; x < width; x++) {
+            vec sum = { 0, 0, 0 };
+            for (int j = 0; j < s; j++)
+                for (int i = 0; i < s; i++) {
+                    vec one = c->color[(size_t)(y*s + j)*(size_t)c->width + (size_t)(x*s + i)];
+                    /* A sample brighter than white must not spread over its pixel's edge. */
+                    sum = vec_add(sum, (vec){ fminf(one.x, 1), fminf(one.y, 1), fminf(one.z, 1) });
+                }
+            v->out->color[(size_t)y*(size_t)width + (size_t)x] = vec_scale(1/(float)(s*s), sum);
+        }
 }
 
 /* Averages the samples of each pixel. */
@@ -224,19 +252,8 @@ static tobi_status develop(const canvas *c, const tobi_frame *f, image *out, tob
 {
     *out = (image){ f->width, f->height, malloc((size_t)f->width*(size_t)f->height*sizeof(vec)) };
     if (!out->color) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
-    int s = f->samples;
-    #pragma omp parallel for
-    for (int y = 0; y < f->height; y++)
-        for (int x = 0; x < f->width; x++) {
-            vec sum = { 0, 0, 0 };
-            for (int j = 0; j < s; j++)
-                for (int i = 0; i < s; i++) {
-                    vec v = c->color[(size_t)(y*s + j)*(size_t)c->width + (size_t)(x*s + i)];
-                    /* A sample brighter than white must not spread over its pixel's edge. */
-                    sum = vec_add(sum, (vec){ fminf(v.x, 1), fminf(v.y, 1), fminf(v.z, 1) });
-                }
-            out->color[(size_t)y*(size_t)f->width + (size_t)x] = vec_scale(1/(float)(s*s), sum);
-        }
+    const row_view view = { .c = c, .samples = f->samples, .out = out };
+    tobi_loop(0, f->height, 0, average_rows, &view);
     return TOBI_OK;
 }
 

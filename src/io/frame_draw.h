@@ -2,6 +2,7 @@
    the right, y up and z away from the eye; colours are linear RGB. */
 #pragma once
 #include "io/frame.h"
+#include "exec/exec.h"
 #include <math.h>
 #include <stdbool.h>
 
@@ -115,6 +116,13 @@ typedef bool (*tile_rect)(const void *items, int64_t i, int rect[4]);
 tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
                         tobi_error *err);
 void tiles_free(tiles *t);
+/* The samples of tile k: {x0, y0, x1, y1}, both ends included. */
+static inline void tiles_rect(const tiles *t, const canvas *c, int64_t k, int rect[4])
+{
+    rect[0] = (int)(k%t->across)*TILE, rect[1] = (int)(k/t->across)*TILE;
+    rect[2] = rect[0] + TILE <= c->width ? rect[0] + TILE - 1 : c->width - 1;
+    rect[3] = rect[1] + TILE <= c->height ? rect[1] + TILE - 1 : c->height - 1;
+}
 
 /* frame_solid.c */
 tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err);

@@ -155,6 +155,20 @@ static bool add_mesh(const canvas *c, triangle_list *list, const tobi_frame_mesh
     return normal != NULL;
 }
 
+typedef struct filling { canvas *c; const tiles *t; const triangle_list *list; } filling;
+
+static void fill_tiles(const void *view, int64_t begin, int64_t end)
+{
+    const filling *f = view;
+    const tiles *t = f->t;
+    for (int64_t k = begin; k < end; k++) {
+        int rect[4];
+        tiles_rect(t, f->c, k, rect);
+        for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
+            fill_triangle(f->c, &f->list->item[t->item[i]], rect);
+    }
+}
+
 tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err)
 {
     triangle_list list = { 0 };
@@ -166,14 +180,8 @@ tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err)
     tobi_status status = enough ? tiles_build(&t, c, list.count, list.item, triangle_rect, err)
                                 : tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
     if (status == TOBI_OK) {
-        #pragma omp parallel for schedule(dynamic)
-        for (int k = 0; k < t.across*t.down; k++) {
-            int x = k%t.across*TILE, y = k/t.across*TILE;
-            int rect[4] = { x, y, x + TILE <= c->width ? x + TILE - 1 : c->width - 1,
-                            y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
-            for (int64_t i = t.first[k]; i < t.first[k + 1]; i++)
-                fill_triangle(c, &list.item[t.item[i]], rect);
-        }
+        const filling view = { c, &t, &list };
+        tobi_loop(0, (int64_t)t.across*t.down, 1, fill_tiles, &view);
         tiles_free(&t);
     }
     free(list.item);
@@ -249,23 +257,31 @@ static vec floor_tint(const canvas *c, float x, float y, const corner *plane)
     return vec_scale(0.45f + 0.55f*lit_at(c, vec_scale(t, ray)), tint);
 }
 
-/* Fills the quadrangle of the four view points. */
-static void fill_floor(canvas *c, const vec p[4])
+typedef struct flooring { canvas *c; spot s[4]; corner plane; } flooring;
+
+static void fill_floor_rows(const void *view, int64_t begin, int64_t end)
 {
-    spot s[4];
-    for (int i = 0; i < 4; i++) s[i] = project(&c->camera, p[i]);
-    corner plane = { p[0], vec_unit(vec_cross(vec_sub(p[1], p[0]), vec_sub(p[3], p[0]))) };
-    #pragma omp parallel for
-    for (int y = 0; y < c->height; y++)
+    const flooring *f = view;
+    canvas *c = f->c;
+    for (int y = (int)begin; y < end; y++)
         for (int x = 0; x < c->width; x++) {
             float px = (float)x + 0.5f, py = (float)y + 0.5f;
             int left = 0;
             for (int i = 0; i < 4; i++) {
-                const spot *a = &s[i], *b = &s[(i + 1)%4];
+                const spot *a = &f->s[i], *b = &f->s[(i + 1)%4];
                 left += (b->x - a->x)*(py - a->y) - (b->y - a->y)*(px - a->x) > 0;
             }
-            if (left == 0 || left == 4) blend(c, x, y, -INFINITY, floor_tint(c, px, py, &plane), 0.6f);
+            if (left == 0 || left == 4) blend(c, x, y, -INFINITY, floor_tint(c, px, py, &f->plane), 0.6f);
         }
+}
+
+/* Fills the quadrangle of the four view points. */
+static void fill_floor(canvas *c, const vec p[4])
+{
+    flooring view = { .c = c,
+                      .plane = { p[0], vec_unit(vec_cross(vec_sub(p[1], p[0]), vec_sub(p[3], p[0]))) } };
+    for (int i = 0; i < 4; i++) view.s[i] = project(&c->camera, p[i]);
+    tobi_loop(0, c->height, 0, fill_floor_rows, &view);
 }
 
 /* Lines on the floor at round coordinates: across[0] and across[1] are its axes. */

@@ -57,13 +57,35 @@ static bool is_placed(const double p[3], double size)
     return fabs(p[0]) < 1e15*size && fabs(p[1]) < 1e15*size && fabs(p[2]) < 1e15*size;     /* also NaN */
 }
 
+typedef struct shrinking {
+    const tobi_frame *f;
+    splat *splats;
+    const uint16_t *count;   /* particles in each cell */
+    double size;             /* m, of a cell */
+} shrinking;
+
+static void shrink_splats(const void *view, int64_t begin, int64_t end)
+{
+    const shrinking *s = view;
+    const float enough = 24, least = 0.5f;       /* a straight edge of water has 24 or more */
+    for (int64_t i = begin; i < end; i++) {
+        if (!(s->splats[i].radius > 0)) continue;
+        float company = 0;
+        for (int k = 0; k < 27 && company < enough; k++) {
+            int n = (k + 13)%27;      /* the own cell first: inside the water the search ends early */
+            int shift[3] = { n%3 - 1, n/3%3 - 1, n/9 - 1 };
+            company += s->count[cell_of(s->f->positions[i], s->size, shift)];
+        }
+        s->splats[i].radius *= clampf(0.45f + 0.55f*company/enough, least, 1);
+    }
+}
+
 /* Drops of spray would look like balls of the size of the smoothed water's spheres: a particle with
    little company within three cells of four radii is drawn smaller. Cells are hashed; a clash only
    adds company. */
 static void shrink_spray(const tobi_frame *f, splat *splats)
 {
     const double size = 4*f->radius;
-    const float enough = 24, least = 0.5f;       /* a straight edge of water has 24 or more */
     uint16_t *count = calloc(CELLS, sizeof *count);
     if (!count) return;
     for (int64_t i = 0; i < f->particle_count; i++) {
@@ -71,41 +93,49 @@ static void shrink_spray(const tobi_frame *f, splat *splats)
         uint16_t *cell = &count[cell_of(f->positions[i], size, (int[3]){ 0, 0, 0 })];
         *cell += *cell < UINT16_MAX;
     }
-    #pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < f->particle_count; i++) {
-        if (!(splats[i].radius > 0)) continue;
-        float company = 0;
-        for (int k = 0; k < 27 && company < enough; k++) {
-            int n = (k + 13)%27;      /* the own cell first: inside the water the search ends early */
-            company += count[cell_of(f->positions[i], size, (int[3]){ n%3 - 1, n/3%3 - 1, n/9 - 1 })];
-        }
-        splats[i].radius *= clampf(0.45f + 0.55f*company/enough, least, 1);
-    }
+    const shrinking view = { f, splats, count, size };
+    tobi_loop(0, f->particle_count, 0, shrink_splats, &view);
     free(count);
+}
+
+typedef struct placing {
+    const canvas *c;
+    const tobi_frame *f;
+    splat *splats;
+    float radius;            /* m */
+    double low, high;        /* of the values */
+    look what;
+} placing;
+
+static void place_splats(const void *view, int64_t begin, int64_t end)
+{
+    const placing *v = view;
+    const canvas *c = v->c;
+    const tobi_frame *f = v->f;
+    for (int64_t i = begin; i < end; i++) {
+        vec p = view_point(&c->camera, f->positions[i]);
+        splat s = { 0 };
+        bool left_out = f->opaque && v->what != DISCS && (v->what == GRAINS) != (f->opaque[i] != 0);
+        bool near = is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
+        if (near && !left_out && p.z > c->camera.near + v->radius) {
+            spot at = project(&c->camera, p);
+            float value = f->values ? (float)((f->values[i] - v->low)/(v->high - v->low)) : 0;
+            value = value == value ? clampf(value, 0, 1) : 1;
+            s = (splat){ at.x, at.y, at.z, v->radius*scale_at(&c->camera, at.z), value };
+            if (!(fabsf(at.x) < 1e6f && fabsf(at.y) < 1e6f && s.radius < 1e4f)) s.radius = 0;
+        }
+        v->splats[i] = s;
+    }
 }
 
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
 static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, const double range[2],
                           look what)
 {
-    double low = range[0], high = range[1];
     splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
     if (!splats) return NULL;
-    #pragma omp parallel for
-    for (int64_t i = 0; i < f->particle_count; i++) {
-        vec p = view_point(&c->camera, f->positions[i]);
-        splat s = { 0 };
-        bool left_out = f->opaque && what != DISCS && (what == GRAINS) != (f->opaque[i] != 0);
-        bool near = is_placed(f->positions[i], f->radius) && fabsf(p.x) < 1e9f && fabsf(p.y) < 1e9f;
-        if (near && !left_out && p.z > c->camera.near + radius) {
-            spot at = project(&c->camera, p);
-            float value = f->values ? (float)((f->values[i] - low)/(high - low)) : 0;
-            value = value == value ? clampf(value, 0, 1) : 1;
-            s = (splat){ at.x, at.y, at.z, radius*scale_at(&c->camera, at.z), value };
-            if (!(fabsf(at.x) < 1e6f && fabsf(at.y) < 1e6f && s.radius < 1e4f)) s.radius = 0;
-        }
-        splats[i] = s;
-    }
+    const placing view = { c, f, splats, radius, range[0], range[1], what };
+    tobi_loop(0, f->particle_count, 0, place_splats, &view);
     return splats;
 }
 
@@ -150,7 +180,7 @@ static void splat_depth(const brush *b, const splat *s, const int tile[4])
         float *surface = c->surface + row, *thickness = c->thickness + row;
         float dy = (float)y + 0.5f - s->y, sx = s->x - 0.5f, z = s->z;
         float high = s->radius/scale_at(&c->camera, z), weight = 2*high*b->weight;
-        #pragma omp simd
+        TOBI_SIMD
         for (int x = x0; x < x1; x++) {
             float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
             float h = sqrtf(q > 0 ? q : 0), front = z - high*h;
@@ -193,7 +223,7 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
         const float *surface = c->surface + row;
         float *value = c->value + row, *sum = c->scratch + row;
         float dy = (float)y + 0.5f - s->y, z = s->z, own = s->value, sx = s->x - 0.5f;
-        #pragma omp simd
+        TOBI_SIMD
         for (int x = x0; x < x1; x++) {
             float dx = (float)x - sx, q = 1 - (dx*dx + dy*dy)*inverse;
             float behind = (z - surface[x])/reach, w = q*q*(1 - behind);
@@ -216,23 +246,25 @@ static void splat_disc(const brush *b, const splat *s, const int tile[4])
     }
 }
 
+typedef struct painting { const brush *b; const tiles *t; const splat *splats; } painting;
+
 /* Every tile: all its splats in their order. */
-static void paint(const brush *b, const tiles *t, const splat *splats)
+static void paint_tiles(const void *view, int64_t begin, int64_t end)
 {
-    canvas *c = b->c;
-    #pragma omp parallel for schedule(dynamic)
-    for (int k = 0; k < t->across*t->down; k++) {
-        int x = k%t->across*TILE, y = k/t->across*TILE;
-        int rect[4] = { x, y, x + TILE <= c->width ? x + TILE - 1 : c->width - 1,
-                        y + TILE <= c->height ? y + TILE - 1 : c->height - 1 };
+    const painting *p = view;
+    const brush *b = p->b;
+    const tiles *t = p->t;
+    for (int64_t k = begin; k < end; k++) {
+        int rect[4];
+        tiles_rect(t, b->c, k, rect);
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
-            const splat *s = &splats[t->item[i]];
+            const splat *s = &p->splats[t->item[i]];
             if (b->what == DISCS) splat_disc(b, s, rect);
             else splat_depth(b, s, rect);
         }
         for (int64_t i = t->first[k]; i < t->first[k + 1] && b->what != DISCS; i++) {
-            if (b->what == GRAINS && c->palette) splat_front(b, &splats[t->item[i]], rect);
-            else splat_value(b, &splats[t->item[i]], rect);
+            if (b->what == GRAINS && b->c->palette) splat_front(b, &p->splats[t->item[i]], rect);
+            else splat_value(b, &p->splats[t->item[i]], rect);
         }
     }
 }
@@ -251,7 +283,8 @@ static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius,
         /* Chords of spheres of radius R at one per (2 r)^3 add up to this much per metre of water. */
         float r = (float)f->radius, per_meter = 4.0f/3*(float)3.14159265*radius*radius*radius/(8*r*r*r);
         brush b = { c, what, radius, 1/per_meter, bright };
-        paint(&b, &t, splats);
+        const painting view = { &b, &t, splats };
+        tobi_loop(0, (int64_t)t.across*t.down, 1, paint_tiles, &view);
         tiles_free(&t);
     }
     free(splats);
@@ -334,27 +367,36 @@ static vec shade_water(const canvas *c, const vec *back, int x, int y, float cla
     return vec_add(color, vec_scale(0.55f*shine, (vec){ 1, 1, 1 }));
 }
 
+typedef struct lighting { canvas *c; const vec *back; float clarity; } lighting;
+
+static void light_rows(const void *view, int64_t begin, int64_t end)
+{
+    const lighting *l = view;
+    canvas *c = l->c;
+    for (int y = (int)begin; y < end; y++)
+        for (int x = 0; x < c->width; x++) {
+            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
+            if (c->surface[k] < INFINITY)
+                c->color[k] = shade_water(c, l->back, x, y, l->clarity, &c->value[k]);
+        }
+}
+
 static tobi_status light_water(canvas *c, float clarity, tobi_error *err)
 {
     size_t n = (size_t)c->width*(size_t)c->height;
     vec *back = malloc(n*sizeof *back);
     if (!back) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
     memcpy(back, c->color, n*sizeof *back);
-    #pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < c->height; y++)
-        for (int x = 0; x < c->width; x++) {
-            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
-            if (c->surface[k] < INFINITY) c->color[k] = shade_water(c, back, x, y, clarity, &c->value[k]);
-        }
+    const lighting view = { c, back, clarity };
+    tobi_loop(0, c->height, 8, light_rows, &view);
     free(back);
     return TOBI_OK;
 }
 
-/* The surface of the grains becomes opaque, and the planes are empty for the water. */
-static void light_grains(canvas *c)
+static void light_grain_rows(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < c->height; y++)
+    canvas *c = ((const lighting *)view)->c;
+    for (int y = (int)begin; y < end; y++)
         for (int x = 0; x < c->width; x++) {
             size_t k = (size_t)y*(size_t)c->width + (size_t)x;
             if (!(c->surface[k] < INFINITY)) continue;
@@ -362,12 +404,24 @@ static void light_grains(canvas *c)
             vec n = surface_normal(c, x, y, to_eye(&c->camera, p));
             c->color[k] = shade_solid(c, p, n, water_color(c, c->value[k]));
         }
-    #pragma omp parallel for
-    for (int64_t k = 0; k < (int64_t)c->width*c->height; k++) {
+}
+
+static void harden_samples(const void *view, int64_t begin, int64_t end)
+{
+    canvas *c = ((const lighting *)view)->c;
+    for (int64_t k = begin; k < end; k++) {
         if (c->surface[k] < INFINITY) c->depth[k] = c->surface[k];
         c->surface[k] = INFINITY;
         c->thickness[k] = c->value[k] = c->scratch[k] = 0;
     }
+}
+
+/* The surface of the grains becomes opaque, and the planes are empty for the water. */
+static void light_grains(canvas *c)
+{
+    const lighting view = { .c = c };
+    tobi_loop(0, c->height, 8, light_grain_rows, &view);
+    tobi_loop(0, (int64_t)c->width*c->height, 0, harden_samples, &view);
 }
 
 tobi_status draw_grains(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)

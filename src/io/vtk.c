@@ -3,6 +3,7 @@
    Index arrays of vertex cells are made block by block instead of being stored. */
 #define _GNU_SOURCE 1
 #include "io/vtk.h"
+#include "exec/exec.h"
 #include "io/file.h"
 #include "io/xml.h"
 #include <inttypes.h>
@@ -85,6 +86,27 @@ static void write_raw(tobi_file *file, const source *s)
     }
 }
 
+/* Blocks from `begin` on, each into a slot of its own. */
+typedef struct packing {
+    const document *doc;
+    const source *s;
+    size_t begin, bytes, room;
+    uint64_t *header;
+    char *packed, *scratch;
+    int *failed;
+} packing;
+
+static void pack_blocks(const void *view, int64_t begin, int64_t end)
+{
+    const packing *p = view;
+    for (size_t slot = (size_t)begin; slot < (size_t)end; slot++) {
+        size_t b = p->begin + slot, size = p->bytes - b*BLOCK < BLOCK ? p->bytes - b*BLOCK : BLOCK;
+        const void *in = read_source(p->s, b*BLOCK, size, p->scratch + slot*BLOCK);
+        p->header[3 + b] = compress_block(p->doc, p->s, in, size, p->packed + slot*p->room, p->room);
+        if (p->header[3 + b] == 0) __atomic_store_n(p->failed, 1, __ATOMIC_RELAXED);
+    }
+}
+
 /* Header {blocks, block size, size of a partial last block, compressed sizes...}, then the blocks. */
 static tobi_status write_compressed(document *doc, const source *s, tobi_error *err)
 {
@@ -103,13 +125,8 @@ static tobi_status write_compressed(document *doc, const source *s, tobi_error *
         tobi_file_write(&doc->file, header, (blocks + 3)*sizeof *header);
         for (size_t begin = 0; begin < blocks && !doc->file.error; begin += BATCH) {
             size_t end = blocks - begin < BATCH ? blocks : begin + BATCH;
-            #pragma omp parallel for schedule(dynamic) reduction(|:failed)
-            for (size_t b = begin; b < end; b++) {
-                size_t slot = b - begin, size = bytes - b*BLOCK < BLOCK ? bytes - b*BLOCK : BLOCK;
-                const void *in = read_source(s, b*BLOCK, size, scratch + slot*BLOCK);
-                header[3 + b] = compress_block(doc, s, in, size, packed + slot*room, room);
-                failed |= header[3 + b] == 0;
-            }
+            const packing view = { doc, s, begin, bytes, room, header, packed, scratch, &failed };
+            tobi_loop(0, (int64_t)(end - begin), 1, pack_blocks, &view);
             for (size_t b = begin; b < end; b++)
                 tobi_file_write(&doc->file, packed + (b - begin)*room, header[3 + b]);
         }

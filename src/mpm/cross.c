@@ -306,6 +306,25 @@ static void fill_pairs(const mpm_crossing *at, struct mpm_cut *c, const mpm_grid
     for (int64_t n = at->begin; n < at->end; n++) fill_pair(at, pieces, &c->cross.pair[n]);
 }
 
+/* What the loops over the nodes in doubt need. */
+typedef struct crossing_view {
+    struct mpm_cut *cut;
+    mpm_grid *grid;
+    const mpm_view *v;
+} crossing_view;
+
+static void grow_trees(const void *view, int64_t begin, int64_t end)
+{
+    const crossing_view *c = view;
+    for (int64_t k = begin; k < end; k++) grow_tree(&c->cut->cross.at[k], c->cut, c->grid, c->v);
+}
+
+static void fill_crossings(const void *view, int64_t begin, int64_t end)
+{
+    const crossing_view *c = view;
+    for (int64_t k = begin; k < end; k++) fill_pairs(&c->cut->cross.at[k], c->cut, c->grid, c->v);
+}
+
 /* Lists the nodes in doubt. */
 static tobi_status list_doubts(mpm_cross *c, const mpm_grid *g, tobi_error *err)
 {
@@ -327,8 +346,8 @@ tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, c
     int64_t kept = 0;
     all->count = 0;
     TOBI_TRY(list_doubts(all, g, err));
-    #pragma omp parallel for num_threads(tobi_team(x, all->count, 8)) schedule(dynamic, 4)
-    for (int64_t k = 0; k < all->count; k++) grow_tree(&all->at[k], c, g, v);
+    const crossing_view view = { c, g, v };
+    tobi_loop(tobi_team(x, all->count, 8), all->count, 4, grow_trees, &view);
     for (int64_t k = 0; k < all->count; k++) {
         mpm_patch *p = &g->patch[all->at[k].node/nodes];
         if (all->at[k].levels < 2) continue;
@@ -337,8 +356,7 @@ tobi_status mpm_cross_find(struct mpm_cut *c, const tobi_exec *x, mpm_grid *g, c
     }
     all->count = kept;
     TOBI_TRY(mpm_cross_reserve_pairs(all, err));
-    #pragma omp parallel for num_threads(tobi_team(x, all->count, 8)) schedule(dynamic, 4)
-    for (int64_t k = 0; k < all->count; k++) fill_pairs(&all->at[k], c, g, v);
+    tobi_loop(tobi_team(x, all->count, 8), all->count, 4, fill_crossings, &view);
     return TOBI_OK;
 }
 
@@ -366,15 +384,24 @@ int64_t mpm_cross_first(const mpm_cross *c, int64_t node)
     return low;
 }
 
+typedef struct visiting { mpm_cross *cross; tobi_float4 *node; double dt; mpm_visit what; } visiting;
+
+static void visit_crossings(const void *view, int64_t begin, int64_t end)
+{
+    const visiting *v = view;
+    for (int64_t k = begin; k < end; k++) {
+        mpm_crossing *at = &v->cross->at[k];
+        mpm_pair *pair = v->cross->pair + at->begin;
+        at->lost = mpm_pairs_visit(pair, at->end - at->begin, v->node, v->dt, v->what);
+        if (v->what == MPM_BEGIN) mpm_pairs_visit(pair, at->end - at->begin, v->node, v->dt, MPM_PRESS);
+    }
+}
+
 double mpm_cross_visit(mpm_cross *c, tobi_exec *x, tobi_float4 *node, double dt, mpm_visit what)
 {
+    const visiting view = { c, node, dt, what };
     double lost = 0;
-    #pragma omp parallel for num_threads(tobi_team(x, c->count, 64))
-    for (int64_t k = 0; k < c->count; k++) {
-        mpm_crossing *at = &c->at[k];
-        at->lost = mpm_pairs_visit(c->pair + at->begin, at->end - at->begin, node, dt, what);
-        if (what == MPM_BEGIN) mpm_pairs_visit(c->pair + at->begin, at->end - at->begin, node, dt, MPM_PRESS);
-    }
+    tobi_loop(tobi_team(x, c->count, 64), c->count, 0, visit_crossings, &view);
     for (int64_t k = 0; k < c->count; k++) lost += c->at[k].lost;
     return lost;
 }

@@ -95,30 +95,46 @@ static void remember(tobi_columns *cuts, const double f[3][3], double number, co
 
 static int can_be_cut(int model) { return model != TOBI_LIQUID && model != TOBI_SAND; }
 
-/* One blade. A blade that meets no material ends its cut; the next one it makes has a new number. */
-static void mark_blade(tobi_system *s, tobi_body *b, const mpm_view *v, double *number)
+typedef struct marking {
+    tobi_system *s;
+    const tobi_body *b;
+    const mpm_view *v;
+    double band, mine, low[3], high[3];
+    int *met;
+} marking;
+
+static void mark_particles(const void *view, int64_t begin, int64_t end)
 {
-    const double cell = v->cell, band = find_band(s->box.dimension, cell), least = 1e-3*s->smoothing.spacing;
-    const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
-    double low[3], high[3];
-    int met = 0, dim = s->box.dimension;
-    tobi_blade_bring(b, dim);
-    tobi_blade_box(b, band, low, high);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) reduction(|: met)
-    for (int64_t i = 0; i < s->particles.count; i++) {
+    const marking *m = view;
+    const mpm_view *v = m->v;
+    const int dim = m->s->box.dimension;
+    const double least = 1e-3*m->s->smoothing.spacing;
+    int met = 0;
+    for (int64_t i = begin; i < end; i++) {
         const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
         tobi_blade_place at;
         double f[3][3];
         int out = !can_be_cut(v->material[v->solid[i]].model);
-        for (int a = 0; a < dim; a++) out |= x[a] < low[a] || x[a] > high[a];
-        if (out || !tobi_blade_locate_world(b, dim, x, &at)) continue;
-        if (at.beyond > 0.25*cell || fabs(at.aside) > band || fabs(at.ahead) > cell)
-            continue;
+        for (int a = 0; a < dim; a++) out |= x[a] < m->low[a] || x[a] > m->high[a];
+        if (out || !tobi_blade_locate_world(m->b, dim, x, &at)) continue;
+        if (at.beyond > 0.25*v->cell || fabs(at.aside) > m->band || fabs(at.ahead) > v->cell) continue;
         met = 1;
         if (at.ahead > 0) continue;
         mpm_vote_deformation(v, i, f);
-        remember(&s->particles.cuts[i], f, mine, &at, least);
+        remember(&m->s->particles.cuts[i], f, m->mine, &at, least);
     }
+    if (met) __atomic_store_n(m->met, 1, __ATOMIC_RELAXED);
+}
+
+/* One blade. A blade that meets no material ends its cut; the next one it makes has a new number. */
+static void mark_blade(tobi_system *s, tobi_body *b, const mpm_view *v, double *number)
+{
+    const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
+    int met = 0, dim = s->box.dimension;
+    marking view = { .s = s, .b = b, .v = v, .band = find_band(dim, v->cell), .mine = mine, .met = &met };
+    tobi_blade_bring(b, dim);
+    tobi_blade_box(b, view.band, view.low, view.high);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, mark_particles, &view);
     b->rigid.cut = met ? mine : 0;
     if (met) *number = fmax(*number, mine);
 }
@@ -214,10 +230,28 @@ static int hides(const mpm_view *v, const mpm_block *b, const float *tile, int n
     return found;
 }
 
+/* What the loops over blocks need. */
+typedef struct splitting { mpm_cut *c; mpm_grid *g; const mpm_view *v; } splitting;
+
+static void fill_tiles(const void *view, int64_t begin, int64_t end)
+{
+    const splitting *s = view;
+    const mpm_grid *g = s->g;
+    const int nodes = g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    for (int64_t k = begin; k < end; k++) {
+        mpm_block *b = &g->block[k];
+        if (b->levels == 0) continue;
+        float *tile = s->c->tile + (int64_t)b->sides*MPM_SIDES;
+        copy_sides(s->c, b, tile, g->dimension);
+        if (b->levels > 1) copy_marks(s->c, b, tile, g->dimension);
+        else b->levels = hides(s->v, b, tile, nodes);
+    }
+}
+
 /* Finds the levels of the particle blocks, and gives those that have any tiles of sides. */
 static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const tobi_exec *x, tobi_error *err)
 {
-    const int nodes = g->dimension == 3 ? MPM_TILE_3D : MPM_TILE_2D;
+    const splitting view = { c, g, v };
     c->tile_count = 0;
     for (int64_t k = 0; k < g->block_count; k++) {
         mpm_block *b = &g->block[k];
@@ -238,15 +272,7 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
                              (long long)c->tile_count);
         }
     }
-    #pragma omp parallel for num_threads(tobi_team(x, c->tile_count, 4)) schedule(dynamic, 4)
-    for (int64_t k = 0; k < g->block_count; k++) {
-        mpm_block *b = &g->block[k];
-        if (b->levels == 0) continue;
-        float *tile = c->tile + (int64_t)b->sides*MPM_SIDES;
-        copy_sides(c, b, tile, g->dimension);
-        if (b->levels > 1) copy_marks(c, b, tile, g->dimension);
-        else b->levels = hides(v, b, tile, nodes);
-    }
+    tobi_loop(tobi_team(x, c->tile_count, 4), g->block_count, 4, fill_tiles, &view);
     return TOBI_OK;
 }
 
@@ -330,12 +356,27 @@ static void list_seams(mpm_cut *c, const mpm_grid *g)
         }
 }
 
-static void look_at_blocks(mpm_cut *c, const tobi_system *s, const mpm_grid *g, const mpm_view *v)
+static void list_votes(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(s->sim->exec.threads)
-    for (int64_t k = 0; k < g->block_count; k++) {
-        mpm_vote_list(c, v, &g->block[k], k, g->dimension);
-        if (v->apart) c->crowd[k] = mpm_meet_look(v, &g->block[k], g->dimension);
+    const splitting *s = view;
+    const mpm_grid *g = s->g;
+    for (int64_t k = begin; k < end; k++) {
+        mpm_vote_list(s->c, s->v, &g->block[k], k, g->dimension);
+        if (s->v->apart) s->c->crowd[k] = mpm_meet_look(s->v, &g->block[k], g->dimension);
+    }
+}
+
+static void count_votes(const void *view, int64_t begin, int64_t end)
+{
+    const splitting *s = view;
+    const mpm_cut *c = s->c;
+    const mpm_grid *g = s->g;
+    const int nodes = nodes_of(g);
+    for (int64_t k = begin; k < end; k++) {
+        g->patch[k].levels = mpm_vote_count(s->c, g, s->v, k);
+        if (s->v->apart)
+            g->patch[k].levels |= mpm_meet_find(g, s->v, c->crowd, &g->patch[k], c->side + k*nodes,
+                                                c->seam + k*nodes);
     }
 }
 
@@ -356,26 +397,40 @@ static tobi_status split_blocks(mpm_cut *c, tobi_system *s, mpm_grid *g, const m
 
 tobi_status mpm_cut_find(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
-    const int nodes = nodes_of(g);
+    const splitting view = { c, g, v };
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    look_at_blocks(c, s, g, v);
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(dynamic, 8)
-    for (int64_t k = 0; k < g->patch_count; k++) {
-        g->patch[k].levels = mpm_vote_count(c, g, v, k);
-        if (v->apart)
-            g->patch[k].levels |= mpm_meet_find(g, v, c->crowd, &g->patch[k], c->side + k*nodes,
-                                                c->seam + k*nodes);
-    }
+    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_votes, &view);
+    tobi_loop(s->sim->exec.threads, g->patch_count, 8, count_votes, &view);
     TOBI_TRY(mpm_cross_find(c, &s->sim->exec, g, v, err));
     return split_blocks(c, s, g, v, err);
 }
 
 tobi_status mpm_cut_recall(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view *v, tobi_error *err)
 {
+    const splitting view = { c, g, v };
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     TOBI_TRY(mpm_cut_read(c, g, err));
-    look_at_blocks(c, s, g, v);
+    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_votes, &view);
     return split_blocks(c, s, g, v, err);
+}
+
+typedef struct visiting {
+    const mpm_cut *c;
+    tobi_float4 *node;
+    double dt;
+    mpm_visit what;
+    double *part;                      /* J, lost in each block of seams */
+} visiting;
+
+static void visit_parts(const void *view, int64_t begin, int64_t end)
+{
+    const visiting *v = view;
+    const int64_t count = v->c->seam_count;
+    for (int64_t q = begin; q < end; q++) {
+        const int64_t last = (q + 1)*TOBI_BLOCK;
+        v->part[q] = mpm_seams_visit(v->c->seam, q*TOBI_BLOCK, last < count ? last : count, v->node, v->dt,
+                                     v->what);
+    }
 }
 
 /* A walk over the seams and over the nodes where cuts cross. */
@@ -383,10 +438,8 @@ static double visit(mpm_cut *c, tobi_exec *x, const mpm_grid *g, double dt, mpm_
 {
     const int64_t parts = (c->seam_count + TOBI_BLOCK - 1)/TOBI_BLOCK;
     double *part = x->partial, lost = 0;
-    #pragma omp parallel for num_threads(tobi_team(x, parts, 8))
-    for (int64_t q = 0; q < parts; q++)
-        part[q] = mpm_seams_visit(c->seam, q*TOBI_BLOCK, q < parts - 1 ? (q + 1)*TOBI_BLOCK : c->seam_count,
-                                  g->node, dt, what);
+    const visiting view = { c, g->node, dt, what, part };
+    tobi_loop(tobi_team(x, parts, 8), parts, 0, visit_parts, &view);
     for (int64_t q = 0; q < parts; q++) lost += part[q];
     return lost + mpm_cross_visit(&c->cross, x, g->node, dt, what);
 }

@@ -1,7 +1,6 @@
 #include "mpm/grid.h"
 #include "base/error.h"
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,28 +150,56 @@ static void find_block(const tobi_particles *p, int64_t i, double inverse_cell, 
     }
 }
 
+/* What the loops over particles, their blocks and the blocks of nodes need. */
+typedef struct sorting {
+    mpm_grid *grid;
+    const tobi_particles *particles;
+    double inverse_cell;
+    int home;
+    uint32_t *keys;
+    int64_t around;                    /* blocks around one */
+    int (*low)[3], (*high)[3];         /* of each part of the particles */
+} sorting;
+
+enum { BOX_PARTS = 64 };
+
+/* The blocks of parts of the particles. */
+static void box_parts(const void *view, int64_t begin, int64_t end)
+{
+    const sorting *s = view;
+    const int64_t n = s->particles->count;
+    for (int64_t q = begin; q < end; q++) {
+        int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {0, 0, 0};
+        for (int64_t i = n*q/BOX_PARTS; i < n*(q + 1)/BOX_PARTS; i++) {
+            int b[3];
+            find_block(s->particles, i, s->inverse_cell, s->home, s->grid->dimension, b);
+            for (int a = 0; a < 3; a++) {
+                if (b[a] < low[a]) low[a] = b[a];
+                if (b[a] > high[a]) high[a] = b[a];
+            }
+        }
+        memcpy(s->low[q], low, sizeof low);
+        memcpy(s->high[q], high, sizeof high);
+    }
+}
+
 /* The box of blocks around all particles, with a layer more. */
 static tobi_status find_box(mpm_grid *g, const tobi_particles *p, double inverse_cell, int home, tobi_exec *x,
                             tobi_error *err)
 {
-    int lo0 = 1 << 30, lo1 = 1 << 30, lo2 = 1 << 30, hi0 = 0, hi1 = 0, hi2 = 0;
-    #pragma omp parallel for num_threads(x->threads) reduction(min: lo0, lo1, lo2) \
-        reduction(max: hi0, hi1, hi2)
-    for (int64_t i = 0; i < p->count; i++) {
-        int b[3];
-        find_block(p, i, inverse_cell, home, g->dimension, b);
-        if (b[0] < lo0) lo0 = b[0];
-        if (b[1] < lo1) lo1 = b[1];
-        if (b[2] < lo2) lo2 = b[2];
-        if (b[0] > hi0) hi0 = b[0];
-        if (b[1] > hi1) hi1 = b[1];
-        if (b[2] > hi2) hi2 = b[2];
-    }
-    const int lo[3] = {lo0, lo1, lo2}, hi[3] = {hi0, hi1, hi2};
+    int low[BOX_PARTS][3], high[BOX_PARTS][3];
+    const sorting view = { .grid = g, .particles = p, .inverse_cell = inverse_cell, .home = home, .low = low,
+                           .high = high };
     double total = 1;
+    tobi_loop(x->threads, BOX_PARTS, 0, box_parts, &view);
     for (int a = 0; a < 3; a++) {
-        g->low[a] = lo[a] - 1;
-        g->count[a] = hi[a] - lo[a] + 3;
+        int first = low[0][a], last = high[0][a];
+        for (int q = 1; q < BOX_PARTS; q++) {
+            if (low[q][a] < first) first = low[q][a];
+            if (high[q][a] > last) last = high[q][a];
+        }
+        g->low[a] = first - 1;
+        g->count[a] = last - first + 3;
         total *= g->count[a];
     }
     if (total < most_blocks(p)) return TOBI_OK;
@@ -196,38 +223,52 @@ static void corner_of(const mpm_grid *g, uint32_t key, int32_t corner[3])
     for (int a = 0; a < 3; a++) corner[a] = a < g->dimension ? BLOCK*(b[a] - 1) : 0;
 }
 
-static void find_keys(const mpm_grid *g, const tobi_particles *p, double inverse_cell, int home, tobi_exec *x,
-                      uint32_t *keys)
+static void key_particles(const void *view, int64_t begin, int64_t end)
 {
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t i = 0; i < p->count; i++) {
+    const sorting *s = view;
+    const tobi_particles *p = s->particles;
+    for (int64_t i = begin; i < end; i++) {
         int b[3];
         uint32_t cell = 0;
-        find_block(p, i, inverse_cell, home, g->dimension, b);
-        for (int a = 0; a < g->dimension && !home; a++)
-            cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], inverse_cell)%BLOCK;
-        if (p->cuts && !home) cell = cell*2 + (p->cuts[i].c[0].w < 0);
-        keys[i] = block_key(g, b) << key_bits(p) | cell;
+        find_block(p, i, s->inverse_cell, s->home, s->grid->dimension, b);
+        for (int a = 0; a < s->grid->dimension && !s->home; a++)
+            cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], s->inverse_cell)%BLOCK;
+        if (p->cuts && !s->home) cell = cell*2 + (p->cuts[i].c[0].w < 0);
+        s->keys[i] = block_key(s->grid, b) << key_bits(p) | cell;
     }
 }
 
-/* Blocks of particles from their sorted keys. */
-static tobi_status make_blocks(mpm_grid *g, const uint32_t *keys, const tobi_particles *p, tobi_exec *x,
-                               tobi_error *err)
+static void find_keys(mpm_grid *g, const tobi_particles *p, double inverse_cell, int home, tobi_exec *x,
+                      uint32_t *keys)
 {
-    const int bits = key_bits(p);
-    int64_t count;
-    TOBI_TRY(list_runs(g, keys, p->count, bits, &count, x, err));
-    TOBI_TRY(reserve_blocks(g, count, err));
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < count; k++) {
-        g->block_key[k] = keys[g->begin[k]] >> bits;
+    const sorting view = { .grid = g, .particles = p, .inverse_cell = inverse_cell, .home = home,
+                           .keys = keys };
+    tobi_loop(x->threads, p->count, 0, key_particles, &view);
+}
+
+static void fill_blocks(const void *view, int64_t begin, int64_t end)
+{
+    const sorting *s = view;
+    const mpm_grid *g = s->grid;
+    for (int64_t k = begin; k < end; k++) {
+        g->block_key[k] = s->keys[g->begin[k]] >> key_bits(s->particles);
         g->block[k].begin = g->begin[k];
         g->block[k].end = g->begin[k + 1];
         g->block[k].twin = -1;
         g->block[k].levels = 0;
         corner_of(g, g->block_key[k], g->block[k].corner);
     }
+}
+
+/* Blocks of particles from their sorted keys. */
+static tobi_status make_blocks(mpm_grid *g, uint32_t *keys, const tobi_particles *p, tobi_exec *x,
+                               tobi_error *err)
+{
+    const sorting view = { .grid = g, .particles = p, .keys = keys };
+    int64_t count;
+    TOBI_TRY(list_runs(g, keys, p->count, key_bits(p), &count, x, err));
+    TOBI_TRY(reserve_blocks(g, count, err));
+    tobi_loop(x->threads, count, 0, fill_blocks, &view);
     return TOBI_OK;
 }
 
@@ -251,26 +292,25 @@ static uint32_t beside(const mpm_grid *g, uint32_t key, int o)
 
 static int is_offset(const mpm_grid *g, int o) { return g->dimension == 3 || o%3 == 1; }
 
-/* Blocks of nodes: those around any block of particles. */
-static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
+static void key_around(const void *view, int64_t begin, int64_t end)
 {
-    int64_t around = g->dimension == 3 ? 27 : 9, n = g->block_count*around;
-    TOBI_TRY(reserve_scratch(g, 4*n*(int64_t)sizeof(uint32_t), err));
-    uint32_t *keys = (uint32_t *)(void *)g->scratch, *key_scratch = keys + n;
-    int32_t *order = (int32_t *)(void *)(keys + 2*n), *order_scratch = order + n;
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < g->block_count; k++)
+    const sorting *s = view;
+    for (int64_t k = begin; k < end; k++)
         for (int o = 0, at = 0; o < 27; o++)
-            if (is_offset(g, o)) keys[k*around + at++] = beside(g, g->block_key[k], o);
-    uint32_t limit = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
-    tobi_sort_by_key(x, n, limit, keys, order, key_scratch, order_scratch, g->histogram);
-    int64_t count;
-    TOBI_TRY(list_runs(g, keys, n, 0, &count, x, err));
-    TOBI_TRY(reserve_patches(g, count, err));
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < count; k++) g->patch_key[k] = keys[g->begin[k]];
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < count; k++) {
+            if (is_offset(s->grid, o))
+                s->keys[k*s->around + at++] = beside(s->grid, s->grid->block_key[k], o);
+}
+
+static void key_patches(const void *view, int64_t begin, int64_t end)
+{
+    const sorting *s = view;
+    for (int64_t k = begin; k < end; k++) s->grid->patch_key[k] = s->keys[s->grid->begin[k]];
+}
+
+static void fill_patches(const void *view, int64_t begin, int64_t end)
+{
+    const mpm_grid *g = ((const sorting *)view)->grid;
+    for (int64_t k = begin; k < end; k++) {
         mpm_patch *p = &g->patch[k];
         corner_of(g, g->patch_key[k], p->corner);
         p->twin = -1;
@@ -279,11 +319,34 @@ static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
             p->cover[o] = is_offset(g, o) ? find_key(g->block_key, g->block_count,
                                                      beside(g, g->patch_key[k], o)) : -1;
     }
-    #pragma omp parallel for num_threads(x->threads)
-    for (int64_t k = 0; k < g->block_count; k++)
+}
+
+static void find_around(const void *view, int64_t begin, int64_t end)
+{
+    const mpm_grid *g = ((const sorting *)view)->grid;
+    for (int64_t k = begin; k < end; k++)
         for (int o = 0; o < 27; o++)
             g->block[k].around[o] =
-                is_offset(g, o) ? find_key(g->patch_key, count, beside(g, g->block_key[k], o)) : -1;
+                is_offset(g, o) ? find_key(g->patch_key, g->patch_count, beside(g, g->block_key[k], o)) : -1;
+}
+
+/* Blocks of nodes: those around any block of particles. */
+static tobi_status make_patches(mpm_grid *g, tobi_exec *x, tobi_error *err)
+{
+    int64_t around = g->dimension == 3 ? 27 : 9, n = g->block_count*around;
+    TOBI_TRY(reserve_scratch(g, 4*n*(int64_t)sizeof(uint32_t), err));
+    uint32_t *keys = (uint32_t *)(void *)g->scratch, *key_scratch = keys + n;
+    int32_t *order = (int32_t *)(void *)(keys + 2*n), *order_scratch = order + n;
+    const sorting view = { .grid = g, .keys = keys, .around = around };
+    tobi_loop(x->threads, g->block_count, 0, key_around, &view);
+    uint32_t limit = (uint32_t)g->count[0]*(uint32_t)g->count[1]*(uint32_t)g->count[2];
+    tobi_sort_by_key(x, n, limit, keys, order, key_scratch, order_scratch, g->histogram);
+    int64_t count;
+    TOBI_TRY(list_runs(g, keys, n, 0, &count, x, err));
+    TOBI_TRY(reserve_patches(g, count, err));
+    tobi_loop(x->threads, count, 0, key_patches, &view);
+    tobi_loop(x->threads, count, 0, fill_patches, &view);
+    tobi_loop(x->threads, g->block_count, 0, find_around, &view);
     return TOBI_OK;
 }
 

@@ -124,6 +124,14 @@ tobi_status mpm_packs_make(mpm_packs *p, const mpm_pack_entries *e, const int32_
     return TOBI_OK;
 }
 
+typedef struct visiting { const mpm_pack_run *run; tobi_kernel kernel; const mpm_pack_view *view; } visiting;
+
+static void visit_runs(const void *view, int64_t begin, int64_t end)
+{
+    const visiting *v = view;
+    for (int64_t r = begin; r < end; r++) v->kernel(v->view, v->run[r].begin, v->run[r].last, NULL);
+}
+
 void mpm_packs_visit(const mpm_packs *p, tobi_kernel kernel, const mpm_pack_view *view, int threads)
 {
     if (threads == 1) {
@@ -131,8 +139,7 @@ void mpm_packs_visit(const mpm_packs *p, tobi_kernel kernel, const mpm_pack_view
         return;
     }
     for (int c = 0; c < MPM_PACK_COLOURS; c++) {
-        #pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-        for (int64_t r = p->colour[c]; r < p->colour[c + 1]; r++)
-            kernel(view, p->run[r].begin, p->run[r].last, NULL);
+        const visiting runs = { p->run + p->colour[c], kernel, view };
+        tobi_loop(threads, p->colour[c + 1] - p->colour[c], 1, visit_runs, &runs);
     }
 }

@@ -125,22 +125,30 @@ static int is_felt(const felt *f, const mpm_block *b, const int first[3], const 
     return f->block == b && !memcmp(f->first, first, sizeof f->first) && mpm_is_same(&f->hidden, hidden);
 }
 
+typedef struct spreading {
+    mpm_touch *touch;
+    const tobi_contacts *contacts;
+    const mpm_grid *grid;
+    const mpm_view *v;
+} spreading;
+
 /* Eq. (2b), (2c). */
-static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
-                       tobi_exec *x)
+static void spread_contacts(const void *view, int64_t begin, int64_t end)
 {
+    const spreading *s = view;
+    const mpm_grid *g = s->grid;
+    const mpm_view *v = s->v;
     const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
     felt last = { 0 };
-    #pragma omp parallel for num_threads(tobi_team(x, t->edge_first, 256)) firstprivate(last)
-    for (int64_t k = 0; k < t->edge_first; k++) {
-        const tobi_contact *contact = &c->list[k];
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_contact *contact = &s->contacts->list[k];
         const int64_t i = contact->particle;
         const mpm_block *b = last.block;
         if (!b || i < b->begin || i >= b->end) b = block_of(g, i);
         const mpm_hidden hidden = mpm_read_hidden(v, i, b->levels);
         const double reach = -4*contact->depth*v->inverse_cell;
-        uint32_t *node = t->node + k*each;
-        float *weight = t->weight + 2*k*each;
+        uint32_t *node = s->touch->node + k*each;
+        float *weight = s->touch->weight + 2*k*each;
         double w[3][3] = {{1}, {1}, {1}}, lean[3][3] = {{0}};
         int first[3] = {0, 0, 0};
         for (int a = 0; a < dim; a++) {
@@ -163,6 +171,13 @@ static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, 
                 to[1] = (float)(all*(1 + lean[0][m/3] + lean[1][m%3] + lean[2][l]));
             }
     }
+}
+
+static void find_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, const mpm_view *v,
+                       tobi_exec *x)
+{
+    const spreading view = { t, c, g, v };
+    tobi_loop(tobi_team(x, t->edge_first, 256), t->edge_first, 0, spread_contacts, &view);
 }
 
 /* The nodes around a place: of all velocities, with their weights. */

@@ -2,7 +2,6 @@
 #include "geom/vec3.h"
 #include "rigid/broad.h"
 #include "rigid/overlap.h"
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,36 +23,6 @@ struct tobi_dynamics_state {
 };
 
 /* --- start ------------------------------------------------------------------------------------- */
-
-/* In 2-D a body stands for its section, which must be the same at every height. */
-static tobi_status check_prism(const tobi_body *b, tobi_error *err)
-{
-    for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
-        double u[3], w[3], n[3];
-        const int32_t *c = b->mesh.triangles[t];
-        vec3_sub(u, b->mesh.vertices[c[1]], b->mesh.vertices[c[0]]);
-        vec3_sub(w, b->mesh.vertices[c[2]], b->mesh.vertices[c[0]]);
-        vec3_cross(n, u, w);
-        vec3_normalize(n);
-        if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
-        return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism "
-                         "or cylinder along z", b->name);
-    }
-    return TOBI_OK;
-}
-
-static tobi_status make_shape(tobi_body *b, tobi_shape *s, int dimension, tobi_error *err)
-{
-    memset(s, 0, sizeof *s);
-    s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
-    s->solid = !b->deforms;
-    if (!s->solid) return TOBI_OK;
-    if (dimension == 2) TOBI_TRY(check_prism(b, err));
-    TOBI_TRY(tobi_body_need_rest(b, err));
-    return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
-                             err);
-}
 
 /* Adds a line to the notes; lines that do not fit are left out. */
 static void note(char *notes, size_t room, const char *line)
@@ -312,6 +281,27 @@ static tobi_status gather_contacts(tobi_dynamics_state *d, tobi_error *err)
     return TOBI_OK;
 }
 
+/* What the parts of the search share. An item is a body with the planes, or a pair. */
+typedef struct touching {
+    tobi_dynamics_state *d;
+    double dt;
+    int64_t *next;               /* the first item that nobody has taken */
+} touching;
+
+/* Each part takes four items at a time, as long as there are any, and has a list of its own. */
+static void touch_parts(const void *view, int64_t begin, int64_t end)
+{
+    const touching *v = view;
+    const tobi_dynamics_state *d = v->d;
+    const int64_t all = d->count + d->broad.pair_count;
+    int64_t first;
+    for (int64_t t = begin; t < end; t++)
+        while ((first = __atomic_fetch_add(v->next, 4, __ATOMIC_RELAXED)) < all)
+            for (int64_t k = first; k < first + 4 && k < all; k++)
+                if (k < d->count) touch_planes(d, (int)k, tobi_broad_margin(&d->broad, (int)k), &d->part[t]);
+                else touch_pair(d, d->broad.pairs[k - d->count], v->dt, &d->part[t]);
+}
+
 static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *err)
 {
     tobi_touch_list swap = d->before;
@@ -319,15 +309,10 @@ static tobi_status find_contacts(tobi_dynamics_state *d, double dt, tobi_error *
     d->contacts = swap;
     d->contacts.count = 0;
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, dt, err));
-#pragma omp parallel num_threads(d->world.threads)
-    {
-        tobi_touch_list *out = &d->part[omp_get_thread_num()];
-        out->count = 0;
-#pragma omp for schedule(dynamic, 4) nowait
-        for (int k = 0; k < d->count; k++) touch_planes(d, k, tobi_broad_margin(&d->broad, k), out);
-#pragma omp for schedule(dynamic, 4)
-        for (int64_t p = 0; p < d->broad.pair_count; p++) touch_pair(d, d->broad.pairs[p], dt, out);
-    }
+    int64_t next = 0;
+    const touching view = { d, dt, &next };
+    for (int t = 0; t < d->world.threads; t++) d->part[t].count = 0;
+    tobi_loop(d->world.threads, d->world.threads, 0, touch_parts, &view);
     return gather_contacts(d, err);
 }
 
@@ -470,7 +455,7 @@ tobi_status tobi_rigid_start(tobi_body *bodies, int count, const tobi_rigid_worl
     d->thinnest = INFINITY;
     tobi_status status = TOBI_OK;
     for (int k = 0; k < count && status == TOBI_OK; k++)
-        status = make_shape(&bodies[k], &d->shapes[k], world->dimension, err);
+        status = tobi_shape_make(&d->shapes[k], &bodies[k], world->dimension, err);
     for (int k = 0; k < count; k++)
         if (d->shapes[k].solid) d->thinnest = fmin(d->thinnest, d->shapes[k].thickness);
     if (status == TOBI_OK) note_shapes(d, notes, room);

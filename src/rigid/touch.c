@@ -16,6 +16,36 @@
 
 enum { CORNER_FACE = 1, FACE_CORNER = 2, EDGE_EDGE = 3, BALL = 4, SIDE = 5, KIND_SHIFT = 60, HALF = 30 };
 
+/* In 2-D a body stands for its section, which must be the same at every height. */
+static tobi_status check_prism(const tobi_body *b, tobi_error *err)
+{
+    for (int64_t t = 0; t < b->mesh.triangle_count; t++) {
+        double u[3], w[3], n[3];
+        const int32_t *c = b->mesh.triangles[t];
+        vec3_sub(u, b->mesh.vertices[c[1]], b->mesh.vertices[c[0]]);
+        vec3_sub(w, b->mesh.vertices[c[2]], b->mesh.vertices[c[0]]);
+        vec3_cross(n, u, w);
+        vec3_normalize(n);
+        if (fabs(n[2]) < 1e-4 || fabs(n[2]) > 1 - 1e-4) continue;
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "body '%s': in a 2-D scene with bodies that move by forces, a mesh must be a prism "
+                         "or cylinder along z", b->name);
+    }
+    return TOBI_OK;
+}
+
+tobi_status tobi_shape_make(tobi_shape *s, tobi_body *b, int dimension, tobi_error *err)
+{
+    memset(s, 0, sizeof *s);
+    s->thickness = 2*fabs(b->rest.volume)/b->rest.area;
+    s->solid = !b->deforms;
+    if (!s->solid) return TOBI_OK;
+    if (dimension == 2) TOBI_TRY(check_prism(b, err));
+    TOBI_TRY(tobi_body_need_rest(b, err));
+    return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
+                             err);
+}
+
 /* Rigid change of axes: y = turn x + shift. */
 typedef struct frame { double turn[3][3], shift[3]; } frame;
 

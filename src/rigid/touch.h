@@ -31,6 +31,9 @@ typedef struct tobi_shape {
     int solid;                   /* 0: nothing touches it, since it deforms                             */
 } tobi_shape;
 
+/* Of a body at rest; its facets are the caller's, with an error too. */
+tobi_status tobi_shape_make(tobi_shape *s, tobi_body *b, int dimension, tobi_error *err);
+
 #define TOBI_TOUCH_DEEPEST 0.3   /* of the lesser thickness: overlaps beyond this are seen as none     */
 
 /* Sides: 0 lower x, 1 upper x, 2 lower y, ...; then the planes of the scene. */

@@ -53,7 +53,7 @@ static const tobi_old_key configuration_keys[] = {
     { K("gravitation"), C(gravitation), VEC3, UNIT("m/s2"), BECOMES("gravity"), NEEDED,
       SAY("gravity, [0, -9.81, 0] where y is up, [0, 0, -9.81] where z is up") },
     { K("timeStepSize"), C(time_step), POSITIVE, UNIT("s"), BECOMES("time_step"),
-      SAY("a fixed step, as before; --set time_step=adaptive chooses each step by itself"),
+      SAY("a fixed step, as before; --set time_step=adaptive chooses each step by itself and takes fewer"),
       .absent = "the step is adaptive" },
     { K("stiffness"), C(stiffness), POSITIVE, UNIT("Pa"), BECOMES("wcsph.stiffness"),
       SAY("of the Tait equation of WCSPH; DFSPH has no use for it") },

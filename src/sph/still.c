@@ -25,15 +25,25 @@ void sph_still_set(tobi_system *s, double low)
     w->push = low > 0 ? s->fluid[0].density*sqrt(g2) : 0;
 }
 
+typedef struct counting { const float *drop; double scale; int64_t *n; } counting;
+
+static void count_drops(const void *view, int64_t begin, int64_t end)
+{
+    const counting *c = view;
+    int64_t n[DROPS] = {0};
+    for (int64_t i = begin; i < end; i++)
+        if (c->drop[i] > 0) n[(int)(c->drop[i]*c->scale)]++;
+    for (int k = 0; k < DROPS; k++)
+        if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
+}
+
 double sph_still_low(tobi_system *s)
 {
-    const float *drop = s->particles.delta;
     int64_t n[DROPS] = {0}, count = s->particles.count;
     double scale = DROPS/(1.0001*s->lowest);
+    const counting view = { s->particles.delta, scale, n };
     if (!(s->lowest > 0)) return 0;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static) reduction(+ : n[:DROPS])
-    for (int64_t i = 0; i < count; i++)
-        if (drop[i] > 0) n[(int)(drop[i]*scale)]++;
+    tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
     for (int64_t deeper = n[k]; k > 0 && (double)deeper <= few; deeper += n[k]) k--;

@@ -149,18 +149,32 @@ static double find_depth(const tobi_region *r, const tobi_bvh *tree, const doubl
     return r->radius > 0 ? fmin(most, r->radius - sqrt(square)) : depth;
 }
 
+typedef struct marking {
+    const tobi_system *s;
+    const tobi_region *region;
+    const tobi_bvh *tree;
+    int64_t first;
+} marking;
+
+static void mark_range(const void *view, int64_t begin, int64_t end)
+{
+    const marking *m = view;
+    const tobi_system *s = m->s;
+    const tobi_particles *p = &s->particles;
+    const double skin = SKIN*s->smoothing.spacing;
+    for (int64_t i = m->first + begin; i < m->first + end; i++) {
+        double x[3];
+        for (int a = 0; a < 3; a++) x[a] = (&p->position[i].x)[a] + s->box.lower[a];
+        p->rest[i].w = find_depth(m->region, m->tree, x, s->box.dimension, 2*skin) > skin;
+    }
+}
+
 /* Marks the particles below the skin, of solids that show them in pictures. */
 static void mark_core(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, int64_t first)
 {
-    tobi_particles *p = &s->particles;
-    const double skin = SKIN*s->smoothing.spacing;
-    if (!p->rest || s->solids[r->owner].def.core_color[0] < 0) return;
-    #pragma omp parallel for num_threads(s->sim->exec.threads) schedule(static)
-    for (int64_t i = first; i < p->count; i++) {
-        double x[3];
-        for (int a = 0; a < 3; a++) x[a] = (&p->position[i].x)[a] + s->box.lower[a];
-        p->rest[i].w = find_depth(r, tree, x, s->box.dimension, 2*skin) > skin;
-    }
+    const marking view = { s, r, tree, first };
+    if (!s->particles.rest || s->solids[r->owner].def.core_color[0] < 0) return;
+    tobi_loop(s->sim->exec.threads, s->particles.count - first, 0, mark_range, &view);
 }
 
 static int inside_region(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension)

@@ -203,13 +203,26 @@ static void read_particle(const tobi_world *w, const tobi_system *s, const known
     else read_fluid(s, f->name, i, out);
 }
 
+typedef struct reading {
+    const tobi_world *w;
+    const tobi_system *s;
+    const known_field *field;
+    double *buffer;
+} reading;
+
+static void read_rows(const void *view, int64_t begin, int64_t end)
+{
+    const reading *r = view;
+    for (int64_t k = begin; k < end; k++)
+        read_particle(r->w, r->s, r->field, r->s->row_of[k], r->buffer + k*r->field->components);
+}
+
 static void read_system(const tobi_world *w, tobi_system *s, const known_field *f, double *buffer)
 {
     const int derived = !strcmp(f->name, "acceleration") || !strcmp(f->name, "vorticity");
     if (w->failure.status != TOBI_DIVERGED && derived && s->method->derive) s->method->derive(s, f->name);
-    #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t r = 0; r < s->particles.count; r++)
-        read_particle(w, s, f, s->row_of[r], buffer + r*f->components);
+    const reading view = { w, s, f, buffer };
+    tobi_loop(w->sim.exec.threads, s->particles.count, 0, read_rows, &view);
 }
 
 /* Finds a field by its name and checks that there is room for it. Then the rows are in order. */

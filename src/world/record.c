@@ -12,8 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step of any
-   run that ends. */
+/* What times may be off by, as a part of the time: far more than rounding, far less than the mean step
+   of any run that ends. */
 #define ROUNDING 1e-12
 
 double tobi_record_clock(void)
@@ -27,6 +27,11 @@ static double next_checkpoint_after(const tobi_run *run, double t)
 {
     double every = run->output.checkpoint_interval;
     return every > 0.0 ? (floor(t / every * (1.0 + ROUNDING)) + 1.0) * every : INFINITY;
+}
+
+int64_t tobi_record_count(double interval, double end)
+{
+    return (int64_t)fmin(fmax(floor(end / interval * (1.0 + ROUNDING)), 0.0), 1e18) + 1;
 }
 
 /* What create and resume share: a run with its directory locked and the world started. */

@@ -165,6 +165,9 @@ tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err);
 /* record_summary.c */
 tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err);
 
+/* record.c */
+/* Outputs from time 0 to end. */
+int64_t tobi_record_count(double interval, double end);
 /* Seconds of a clock that never jumps. */
 double tobi_record_clock(void);
 /* Time of output k. */

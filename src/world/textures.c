@@ -32,6 +32,14 @@ static void look(const tobi_world *w, const tobi_system *s, int64_t i, float uv[
     }
 }
 
+typedef struct looking { const tobi_world *w; const tobi_system *s; } looking;
+
+static void look_range(const void *view, int64_t begin, int64_t end)
+{
+    const looking *l = view;
+    for (int64_t i = begin; i < end; i++) look(l->w, l->s, i, l->w->texture[l->s->particles.id[i]]);
+}
+
 tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
 {
     if (w->texture || !tobi_world_has_textures(w)) return TOBI_OK;
@@ -42,7 +50,7 @@ tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
     w->texture = calloc((size_t)p->capacity + 1, sizeof *w->texture);
     if (!w->texture)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)p->count);
-    #pragma omp parallel for num_threads(w->sim.exec.threads)
-    for (int64_t i = 0; i < p->count; i++) look(w, s, i, w->texture[p->id[i]]);
+    const looking view = { w, s };
+    tobi_loop(w->sim.exec.threads, p->count, 0, look_range, &view);
     return TOBI_OK;
 }

@@ -88,7 +88,8 @@ for command in check run; do expect 1 "bad.lua: is a pipe; only plain files are 
 sed 's/"fill": .*/"fill": [] }],/' tank.json > dry.json
 expect 1 "fill" run dry.json
 expect 1 "particles" check tank.json --set spacing=1e-5 --set 'bodies=[]'
-expect 1 "particles" run tank.json --set spacing=1e-5 --set 'bodies=[]'
+expect 1 "make spacing or output.interval larger" run tank.json --set spacing=1e-5 --set 'bodies=[]'
+expect 1 "particles" run tank.json --set spacing=1e-5 --set 'bodies=[]' --force
 expect 1 "viscosity" run tank.json --set 'fluids[0].viscosity=thick'
 check "nothing was made by runs that cannot start" test ! -e out/tank/fluid
 rm -rf out
@@ -119,6 +120,28 @@ rm -rf failing
 expect 1 "bad.lua:1: endless loop" run bad_control.json --quiet -o failing
 check "nor is a control program without an end" test "$(value failing/summary.json outcome)" = failed
 rm -rf failing
+
+# --- size and time ----------------------------------------------------------------------------------
+expect 0 "" check tank.json
+check "check tells bytes and files" grep -qE "^outputs +11, every 0.01 s: about [0-9.]+ MB in 56 files" out.txt
+check "check tells the time of a run" grep -qE "^wall clock +about .* on this machine" out.txt
+check "nothing is dear here" test -z "$(grep -e '--force' -e '"adaptive"' out.txt)"
+expect 0 "" check tank.json --set time_step=1e-5
+check "check tells what a fixed step costs" \
+    grep -qE '^time step +fixed, 1e-05 s, about 10000 steps to 0.1 s: up to [0-9.e+]+ times .*"adaptive"' out.txt
+huge=(--set output.interval=1e-5 --until 9 --out huge)     # 6 million files
+expect 0 "" check tank.json "${huge[@]:0:4}"
+check "check says that a run will ask" grep -q "^note .* output.interval larger.* --force" out.txt
+expect 1 "make spacing or output.interval larger, output.fields fewer or output.compression zlib, or run with --force" \
+    run tank.json "${huge[@]}"
+check "nothing was made without --force" test ! -e huge
+"$program" run tank.json "${huge[@]}" --force --quiet 2> /dev/null &
+pid=$!
+while [ ! -e huge/fluid/fluid_000002.vtu ] && kill -0 $pid 2> /dev/null; do sleep 0.01; done
+kill -KILL $pid 2> /dev/null
+wait $pid 2> /dev/null
+check "with --force it runs" test -e huge/fluid/fluid_000002.vtu
+rm -rf huge
 
 # --- keyframes --------------------------------------------------------------------------------------
 printf 'time,x,yaw\n0,0,0\n0.01,0.0002,1\n0.02,0.0008,2\n' > rows.csv

@@ -27,6 +27,13 @@ CASES = [
     ("check_house.py", "src/base/a.c", "// " + "x"*110 + "\n", "113 columns"),
     ("check_house.py", "src/base/a.c", f'const char *p = "{BAD}";\n', "path of a machine"),
     ("check_house.py", "src/base/a.c", "int f(void)\n{\n    return 1/2;\n}\n", None),
+    ("check_house.py", "src/geom/a.c", "#pragma omp parallel for\n", "a.c:1: names OpenMP"),
+    ("check_house.py", "src/core/a.h", '#define F \\\n  _Pragma("omp for")\n', "a.h:2: names OpenMP"),
+    ("check_house.py", "app/tobiuo/a.c", "int n = omp_get_max_threads();\n", "a.c:1: names OpenMP"),
+    ("check_house.py", "src/io/a.c", "#include <omp.h>\n", "a.c:1: names OpenMP"),
+    ("check_house.py", "src/exec/a.c", "#pragma omp parallel for\n", None),
+    ("check_layers.py", "src/geom/a.c", '#include "exec/exec.h"\n', None),
+    ("check_layers.py", "src/exec/a.c", '#include "geom/x.h"\n', "exec includes geom"),
 ]
 
 

@@ -96,7 +96,8 @@ class Checker:
         arguments = [command, "old.json"] + (["--out", str(new), "--quiet"] if command == "import" else [])
         done = subprocess.run([str(self.options.tobiuo), *arguments], cwd=self.folder, env=environment,
                               timeout=100, capture_output=True, stdin=subprocess.DEVNULL)
-        result = new.read_bytes() if new.is_file() else done.stdout if command == "check" else b""
+        said = re.sub(rb"(?m)^wall clock .*$", b"wall clock", done.stdout)         # no two are equal
+        result = new.read_bytes() if new.is_file() else said if command == "check" else b""
         if not fault and (done.returncode or not result):
             sys.exit(f"without a fault: {command} ended with {done.returncode}: {done.stderr}")
         return done.returncode, result, done.stderr.decode(errors="replace")

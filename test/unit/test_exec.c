@@ -139,6 +139,53 @@ static void ranges_are_half_open(void **state)
     tobi_exec_free(&x);
 }
 
+typedef struct visits { int64_t count, chunk; int *times, *parts, *wrong; } visits;
+
+static void note_visits(const void *view, int64_t begin, int64_t end)
+{
+    const visits *v = view;
+    __atomic_fetch_add(v->parts, 1, __ATOMIC_RELAXED);
+    if (begin >= end || begin < 0 || end > v->count) __atomic_store_n(v->wrong, 1, __ATOMIC_RELAXED);
+    for (int64_t i = begin; i < end; i++) __atomic_fetch_add(&v->times[i], 1, __ATOMIC_RELAXED);
+}
+
+/* Each item once, in no empty part, and in as many parts as were asked for. */
+static void loops_visit_each_item_once(void **state)
+{
+    static const int64_t count[] = {0, 1, 2, 3, 255, 256, 257, 5003}, chunk[] = {0, 1, 4, 256};
+    (void)state;
+    for (int threads = 0; threads <= 5; threads++)
+        for (size_t c = 0; c < sizeof count/sizeof *count; c++)
+            for (size_t k = 0; k < sizeof chunk/sizeof *chunk; k++) {
+                int times[5003] = {0}, parts = 0, wrong = 0;
+                const int64_t n = count[c], size = chunk[k], cut = size ? (n + size - 1)/size : threads;
+                const visits view = {n, size, times, &parts, &wrong};
+                tobi_loop(threads, n, size, note_visits, &view);
+                assert_false(wrong);
+                for (int64_t i = 0; i < n; i++) assert_int_equal(times[i], 1);
+                if (threads == 0) continue;
+                const int64_t most = cut < n ? cut : n;
+                assert_int_equal(parts, threads == 1 ? n > 0 : most);
+            }
+}
+
+static void permute_brings_into_order(void **state)
+{
+    static const size_t size[] = {1, 4, 8, 16, 24, 48, 12};
+    enum { N = 1009 };
+    (void)state;
+    int32_t order[N];
+    for (int k = 0; k < N; k++) order[k] = (int32_t)(k*(int64_t)37%N);
+    for (int threads = 1; threads <= 4; threads++)
+        for (size_t s = 0; s < sizeof size/sizeof *size; s++) {
+            unsigned char data[48*N], was[48*N], scratch[48*N];
+            for (size_t b = 0; b < size[s]*N; b++) data[b] = was[b] = (unsigned char)random_bits();
+            tobi_permute(threads, data, size[s], order, N, scratch);
+            for (int k = 0; k < N; k++)
+                assert_memory_equal(data + (size_t)k*size[s], was + (size_t)order[k]*size[s], size[s]);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +193,8 @@ int main(void)
         cmocka_unit_test(scan_is_the_running_sum),
         cmocka_unit_test(sums_do_not_depend_on_threads),
         cmocka_unit_test(ranges_are_half_open),
+        cmocka_unit_test(loops_visit_each_item_once),
+        cmocka_unit_test(permute_brings_into_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
