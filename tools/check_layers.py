@@ -2,6 +2,9 @@
 """Checks that include arrows point downward only. Prints file:line of each that does not; exit 1.
 
 usage: check_layers.py [ROOT]
+
+A header that a kernel (*.k.h) reads, itself or through others, is for devices too: it declares no function and
+no function pointer, and only src/exec includes headers of the system.
 """
 import pathlib
 import re
@@ -20,6 +23,12 @@ RANK = {
 }
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
+COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+HOST_ONLY = [
+    (re.compile(r"^[ \t]*#[ \t]*include[ \t]*<", re.MULTILINE), "includes a header of the system"),
+    (re.compile(r"^(?!typedef|static|TOBI_)[a-z][\w \t*]*\([^;{}]*\)\s*;", re.MULTILINE), "declares a function"),
+    (re.compile(r"\(\s*\*\s*\w+\s*\)\s*\("), "declares a function pointer"),
+]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
 
 
@@ -52,6 +61,31 @@ def check_room_file(root, path, errors):
             errors.append(f"{where}:{number}: {room} includes its sibling {other}")
 
 
+def kernel_headers(root):
+    """All headers that kernels read, each with one that includes it."""
+    found, waiting = {}, [(path, path) for path in files(root / "src") if path.name.endswith(".k.h")]
+    while waiting:
+        path, reader = waiting.pop()
+        if path in found or not path.is_file():
+            continue
+        found[path] = reader
+        for _, target in includes(path):
+            waiting.append((root / ("include" if target.startswith(PUBLIC + "/") else "src") / target, path))
+    return sorted(found.items())
+
+
+def check_kernel_header(root, path, reader, errors):
+    text = COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), path.read_text(encoding="utf-8"))
+    inside_exec = path.relative_to(root).parts[:2] == ("src", "exec")
+    for pattern, what in HOST_ONLY:
+        for match in pattern.finditer(text):
+            if inside_exec and what == "includes a header of the system":
+                continue
+            line = text.count("\n", 0, match.start()) + 1
+            errors.append(f"{path.relative_to(root)}:{line}: {what}, but kernels read it "
+                          f"({reader.relative_to(root)})")
+
+
 def check_outside_file(root, path, errors):
     """app and bench are users of the library: public headers and their own files only."""
     where = path.relative_to(root)
@@ -67,6 +101,8 @@ def main():
     room_files = files(root / "src")
     for path in room_files:
         check_room_file(root, path, errors)
+    for path, reader in kernel_headers(root):
+        check_kernel_header(root, path, reader, errors)
     outside = files(root / "app") + files(root / "bench")
     for path in outside:
         check_outside_file(root, path, errors)

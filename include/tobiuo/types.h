@@ -6,6 +6,7 @@
 #ifndef TOBIUO_TYPES_H
 #define TOBIUO_TYPES_H
 #include "tobiuo/base.h"
+#include "tobiuo/kinds.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,16 +16,6 @@ extern "C" {
    becomes faster has diverged. */
 #define TOBI_SPEED_LIMIT 1e6
 
-/* Slip holds solids on the wall, separate lets them leave it with the domain's Coulomb friction; liquids of
-   the SPH methods slip along both. Sticky and no-slip are the same. Nothing is at an open side: particles of
-   mlsmpm and bodies pass it; the SPH methods refuse it. */
-typedef enum tobi_wall {
-    TOBI_WALL_SLIP,
-    TOBI_WALL_NO_SLIP,
-    TOBI_WALL_PERIODIC,
-    TOBI_WALL_SEPARATE,
-    TOBI_WALL_OPEN
-} tobi_wall;
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
 typedef enum tobi_compression {
@@ -34,16 +25,6 @@ typedef enum tobi_compression {
     TOBI_ASCII
 } tobi_compression;
 
-/* What a solid's stress depends on; docs/theory/mlsmpm.md. */
-typedef enum tobi_model {
-    TOBI_NEO_HOOKEAN,
-    TOBI_COROTATED,
-    TOBI_LIQUID,
-    TOBI_VON_MISES,
-    TOBI_SNOW,
-    TOBI_SAND,
-    TOBI_STATIONARY
-} tobi_model;
 typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
 /* Of the weights, where stress pushes the grid; automatic: spline where nothing is cut or breaks. */
 typedef enum tobi_gradient { TOBI_GRADIENT_AUTOMATIC, TOBI_GRADIENT_SPLINE, TOBI_GRADIENT_MLS } tobi_gradient;

@@ -1,4 +1,6 @@
 #include "core/cells.h"
+#include "core/cells.k.h"
+#include "core/kernels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,14 +50,43 @@ static void choose_cells(tobi_cells *c, const tobi_box *box, double h, int64_t p
 }
 
 /* The list doubles as scratch of the sort: keys, order and their copies, or one widest state field. */
-static int64_t scratch_entries(int64_t particles)
+static int64_t scratch_entries(int64_t particles, int64_t widest)
 {
-    int64_t sort = 4*particles, widest = tobi_particles_widest(TOBI_ALL | TOBI_SPH);
+    int64_t sort = 4*particles;
     int64_t permute = particles + particles*widest/4 + 64;
     return sort > permute ? sort : permute;
 }
 
-tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int64_t particles,
+static tobi_status give_up(tobi_cells *c, tobi_error *err)
+{
+    const long long total = (long long)c->total;
+    tobi_cells_free(c);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list", total);
+}
+
+/* Nothing is kept: all is made anew after the next sort. */
+tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err)
+{
+    const int64_t n = p->capacity, sort = scratch_entries(n, tobi_particles_widest(p)) + 16;
+    const int64_t guess = n*36 + 4096, entries = sort > guess ? sort : guess;
+    if (!c->record || c->rows < n) {
+        free(c->record);
+        free(c->list_start);
+        free(c->list_groups);
+        c->rows = n;
+        c->record = tobi_particles_rows(n, sizeof *c->record);
+        c->list_start = tobi_particles_rows(n, sizeof *c->list_start);
+        c->list_groups = tobi_particles_rows(n, sizeof *c->list_groups);
+    }
+    if (!c->list || c->list_capacity < entries) {
+        free(c->list);
+        c->list_capacity = entries;
+        c->list = aligned_alloc(64, (size_t)(entries*4 + 63)/64*64);
+    }
+    return c->record && c->list_start && c->list_groups && c->list ? TOBI_OK : give_up(c, err);
+}
+
+tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
                               const tobi_exec *x, tobi_error *err)
 {
     memset(c, 0, sizeof *c);
@@ -65,17 +96,11 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int6
                              "the periodic domain is %g m along %c, allowed is at least three "
                              "support radii (%g m)",
                              box->size[a], "xyz"[a], 3 * h);
-    choose_cells(c, box, h, particles);
-    c->list_capacity = scratch_entries(particles) + 16;
-    int64_t guess = particles*36 + 4096;
-    if (guess > c->list_capacity) c->list_capacity = guess;
+    choose_cells(c, box, h, p->capacity);
     c->start = malloc((size_t)(c->total + 1)*sizeof *c->start);
     c->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *c->histogram);
-    c->list = aligned_alloc(64, (size_t)(c->list_capacity*4 + 63)/64*64);
-    if (c->start && c->histogram && c->list) return TOBI_OK;
-    tobi_cells_free(c);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld cells and the neighbour list",
-                     (long long)c->total);
+    if (!c->start || !c->histogram) return give_up(c, err);
+    return tobi_cells_grow(c, p, err);
 }
 
 void tobi_cells_free(tobi_cells *c)
@@ -83,86 +108,45 @@ void tobi_cells_free(tobi_cells *c)
     free(c->start);
     free(c->histogram);
     free(c->list);
+    free(c->record);
+    free(c->list_start);
+    free(c->list_groups);
     memset(c, 0, sizeof *c);
 }
 
-static int cell_along(const tobi_cells *c, int axis, double x)
+static tobi_cells_view see_cells(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)
 {
-    int k = (int)floor(x*c->inverse[axis]);
-    return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : k;
+    tobi_cells_view v = {
+        .count = p->count, .strip = c->strip, .total = c->total, .start = c->start,
+        .keys = (uint32_t *)c->list, .position = p->position, .record = c->record,
+        .list_start = c->list_start, .list_groups = c->list_groups,
+    };
+    memcpy(v.n, c->n, sizeof v.n);
+    memcpy(v.periodic, c->periodic, sizeof v.periodic);
+    memcpy(v.inverse, c->inverse, sizeof v.inverse);
+    memcpy(v.size, box->size, sizeof v.size);
+    memcpy(v.centre, box->centre, sizeof v.centre);
+    memcpy(v.to_fixed, box->to_fixed, sizeof v.to_fixed);
+    memcpy(v.from_fixed, box->from_fixed, sizeof v.from_fixed);
+    return v;
 }
 
-static void wrap(const tobi_box *box, tobi_double3 *x)
-{
-    double *v = &x->x;
-    for (int a = 0; a < 3; a++)
-        if (box->periodic[a]) {
-            if (v[a] < 0) v[a] += box->size[a];
-            if (v[a] >= box->size[a]) v[a] -= box->size[a];
-            if (v[a] < 0 || v[a] >= box->size[a]) v[a] -= box->size[a]*floor(v[a]/box->size[a]);
-        }
-}
-
-static int32_t to_fixed(const tobi_box *box, int axis, double x)
-{
-    return (int32_t)(uint32_t)(int64_t)llrint((x - box->centre[axis])*box->to_fixed[axis]);
-}
-
-/* What the loops of a sort read and write. */
-typedef struct sorting {
-    const tobi_cells *cells;
-    const tobi_box *box;
-    tobi_particles *particles;
-    uint32_t *keys;
-} sorting;
-
-static void find_keys(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    const tobi_cells *c = s->cells;
-    for (int64_t i = begin; i < end; i++) {
-        tobi_double3 *x = &s->particles->position[i];
-        wrap(s->box, x);
-        int64_t row = tobi_cells_row(c, cell_along(c, 1, x->y), cell_along(c, 2, x->z));
-        s->keys[i] = (uint32_t)(row + cell_along(c, 0, x->x));
-    }
-}
-
-/* Over the particles and one place behind them. */
-static void fill_starts(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    for (int64_t k = begin; k < end; k++) {
-        int64_t before = k > 0 ? (int64_t)s->keys[k - 1] : -1;
-        int64_t here = k < s->particles->count ? (int64_t)s->keys[k] : s->cells->total;
-        for (int64_t cell = before + 1; cell <= here; cell++) s->cells->start[cell] = (int32_t)k;
-    }
-}
-
-static void make_records(const void *view, int64_t begin, int64_t end)
-{
-    const sorting *s = view;
-    const tobi_particles *p = s->particles;
-    for (int64_t i = begin; i < end; i++) {
-        tobi_double3 q = p->position[i];
-        p->record[i] = (tobi_record){to_fixed(s->box, 0, q.x), to_fixed(s->box, 1, q.y),
-                                     to_fixed(s->box, 2, q.z), p->pressure[i]};
-    }
-}
-
-void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi_exec *x)
+void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, const float *payload,
+                     tobi_exec *x)
 {
     int64_t n = p->count;
-    uint32_t *keys = (uint32_t *)c->list, *key_copy = keys + n;
+    const tobi_core_kernels *k = tobi_core_kernels_for(x->isa);
+    tobi_cells_view v = see_cells(c, box, p);
+    v.payload = payload;
+    uint32_t *keys = v.keys, *key_copy = keys + n;
     int32_t *order_copy = (int32_t *)(key_copy + n), *order = order_copy + n;
-    const sorting view = {c, box, p, keys};
-    tobi_loop(x->threads, n, 0, find_keys, &view);
+    tobi_launch(x, k->cells_key, &v, 0, n, NULL);
     tobi_sort_by_key(x, n, (uint32_t)c->total, keys, order, key_copy, order_copy, c->histogram);
-    tobi_loop(x->threads, n + 1, 0, fill_starts, &view);
+    tobi_launch(x, k->cells_start, &v, 0, n + 1, NULL);
     memmove(c->list, order, (size_t)n*sizeof *order);
     char *scratch = (char *)c->list + ((size_t)n*sizeof *order + 63)/64*64;
     tobi_particles_permute(p, c->list, scratch, x->threads);
-    tobi_loop(x->threads, n, 0, make_records, &view);
+    tobi_launch(x, k->cells_record, &v, 0, n, NULL);
 }
 
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p)
@@ -189,17 +173,17 @@ static tobi_status grow_list(tobi_cells *c, tobi_error *err)
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
                             tobi_error *err)
 {
-    static const tobi_kernel search[] = {tobi_neighbors_v2, tobi_neighbors_v3, tobi_neighbors_v4};
+    tobi_cells_view v = see_cells(c, box, p);
+    int overflow;
+    v.h2 = (float)(h*h);
+    v.used = &c->list_used;
+    v.overflow = &overflow;
     for (;;) {
-        int overflow = 0;
+        overflow = 0;
         c->list_used = 0;
-        tobi_list_view v = {
-            .cells = c, .record = p->record, .position = p->position, .list = c->list,
-            .list_start = p->list_start, .list_groups = p->list_groups,
-            .capacity = c->list_capacity, .used = &c->list_used, .overflow = &overflow,
-            .from_fixed = {box->from_fixed[0], box->from_fixed[1], box->from_fixed[2]}, .h2 = (float)(h*h),
-        };
-        tobi_launch(x, search[x->isa - 2], &v, 0, p->count, NULL);
+        v.list = c->list;
+        v.capacity = c->list_capacity;
+        tobi_launch(x, tobi_core_kernels_for(x->isa)->cells_search, &v, 0, p->count, NULL);
         if (overflow == 2)
             return tobi_fail(err, TOBI_DIVERGED,
                              "more than 1000 particles crowd into one support radius");

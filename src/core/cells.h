@@ -33,15 +33,26 @@ typedef struct tobi_cells {
     int32_t *list;          /* neighbour indices, groups of 8 padded with the own index */
     int64_t  list_capacity; /* in int32                                               */
     int64_t  list_used;
+    /* by particle */
+    tobi_record *record;    /* fixed-point position; w: a number that neighbours read  */
+    uint32_t *list_start;   /* first neighbour, in groups of 8                        */
+    uint16_t *list_groups;  /* groups of 8 neighbours                                 */
+    int64_t  rows;          /* that there is memory for                               */
 } tobi_cells;
 
-tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, int64_t particles,
+/* For as many particles as p has memory for. */
+tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
                               const tobi_exec *x, tobi_error *err);
+/* The same after p has grown: to be called before the next sort. */
+tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *err);
 void tobi_cells_free(tobi_cells *c);
+/* Bytes per particle, without the neighbours. */
+enum { TOBI_CELLS_ROW = sizeof(tobi_record) + sizeof(uint32_t) + sizeof(uint16_t) };
 
-/* Wraps periodic positions, sorts all state fields by cell, fills start and the records. */
-void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, tobi_exec *x);
-
+/* Wraps periodic positions, sorts all state fields by cell, fills start and the records, their w from
+   `payload`, a field of p; NULL = 0. */
+void tobi_cells_sort(tobi_cells *c, const tobi_box *box, tobi_particles *p, const float *payload,
+                     tobi_exec *x);
 /* Index of the first cell of the row (y, z). */
 static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 {
@@ -51,26 +62,6 @@ static inline int64_t tobi_cells_row(const tobi_cells *c, int y, int z)
 /* The particles of the last sort as unknowns of a grid. */
 tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, const tobi_particles *p);
 
-/* What the neighbour search reads and writes. */
-typedef struct tobi_list_view {
-    const tobi_cells *cells;
-    const tobi_record *record;
-    const tobi_double3 *position;
-    int32_t  *list;
-    uint32_t *list_start;
-    uint16_t *list_groups;
-    int64_t   capacity;
-    int64_t  *used;         /* atomic counter, int32 entries                          */
-    int *overflow; /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
-    float     from_fixed[3];
-    float     h2;
-} tobi_list_view;
-
 /* Builds the list of all pairs nearer than h. TOBI_DIVERGED when particles crowd beyond sense. */
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
                             tobi_error *err);
-
-/* The search kernel per instruction set (isa_neighbors.c). */
-void tobi_neighbors_v2(const void *view, int64_t begin, int64_t end, double *totals);
-void tobi_neighbors_v3(const void *view, int64_t begin, int64_t end, double *totals);
-void tobi_neighbors_v4(const void *view, int64_t begin, int64_t end, double *totals);

@@ -1,125 +1,206 @@
+/* One struct of pointers for all methods and one of each method's own; both are reached through the lists
+   that they are made from. Drawback: a walk over fields finds its pointers by their offset, unseen by the
+   compiler. */
 #include "core/particles.h"
 #include "exec/exec.h"
 #include <stdlib.h>
 #include <string.h>
 
-enum { PAD_ROWS = 16 };
+enum { DIGIT = 11 };
 
-static size_t bytes_of(int64_t rows, size_t row) { return (((size_t)rows + PAD_ROWS)*row + 63)/64*64; }
+#define ROW(...) TOBI_FIELD_ROW(tobi_particles, __VA_ARGS__)
+static const tobi_field common[] = { TOBI_COMMON_FIELDS(ROW) };
+enum { COMMON = sizeof common/sizeof *common };
 
-static void *make_zero(int64_t rows, size_t row)
+/* Field k of those that are there, and where its pointer is kept; NULL past the last. */
+static const tobi_field *find_field(const tobi_particles *p, int k, char **slot)
+{
+    *slot = (char *)p + (k < COMMON ? common[k].offset : 0);
+    if (k < COMMON) return &common[k];
+    for (int j = 0, at = COMMON; p->list && j < p->list->count; j++) {
+        const tobi_field *f = &p->list->field[j];
+        if (f->need && !(f->need & p->needs)) continue;
+        *slot = (char *)p->own + f->offset;
+        if (at++ == k) return f;
+    }
+    return NULL;
+}
+
+static void *get_array(const char *slot)
+{
+    void *data;
+    memcpy(&data, slot, sizeof data);
+    return data;
+}
+
+static void set_array(char *slot, void *data) { memcpy(slot, &data, sizeof data); }
+
+static size_t bytes_of(int64_t rows, size_t row) { return (((size_t)rows + TOBI_PAD_ROWS)*row + 63)/64*64; }
+
+void *tobi_particles_rows(int64_t rows, size_t row)
 {
     void *data = aligned_alloc(64, bytes_of(rows, row));
     if (data) memset(data, 0, bytes_of(rows, row));
     return data;
 }
 
-static tobi_status give_up(tobi_particles *p, int64_t rows, int owners, tobi_error *err)
+/* All arrays for so many rows, what was in them kept; one after the other, so that no more than one is there
+   twice. On failure each has at least the rows that it had. */
+static int resize(tobi_particles *p, int64_t rows)
 {
-    tobi_particles_free(p);
-    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)", (long long)rows,
-                     (long long)tobi_particles_row_bytes(owners));
+    char *slot;
+    for (int k = 0;; k++) {
+        const tobi_field *f = find_field(p, k, &slot);
+        if (!f) break;
+        void *made = tobi_particles_rows(rows, f->bytes), *old = get_array(slot);
+        if (!made) return 0;
+        if (old) memcpy(made, old, (size_t)p->count*f->bytes);
+        free(old);
+        set_array(slot, made);
+    }
+    p->capacity = rows;
+    return 1;
 }
 
-tobi_status tobi_particles_create(tobi_particles *p, int64_t capacity, int owners, tobi_error *err)
+/* No arrays yet. */
+static int begin(tobi_particles *p, const tobi_field_list *list, unsigned needs)
 {
-    int failed = 0;
-    memset(p, 0, sizeof *p);
-    p->capacity = capacity;
-#define X(type, name, life, owner, unit, doc)                                          \
-    if ((owner) & owners) failed |= !(p->name = make_zero(capacity, sizeof(type)));
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
-    return failed ? give_up(p, capacity, owners, err) : TOBI_OK;
+    *p = (tobi_particles){ .list = list, .needs = needs };
+    if (list) p->own = calloc(1, list->size);
+    return !list || p->own;
+}
+
+static tobi_status give_up(tobi_particles *p, int64_t rows, tobi_error *err)
+{
+    const int64_t each = tobi_particles_row_bytes(p->list, p->needs);
+    tobi_particles_free(p);
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles (%lld bytes each)", (long long)rows,
+                     (long long)each);
+}
+
+tobi_status tobi_particles_create(tobi_particles *p, const tobi_field_list *list, unsigned needs,
+                                  int64_t capacity, tobi_error *err)
+{
+    return begin(p, list, needs) && resize(p, capacity) ? TOBI_OK : give_up(p, capacity, err);
 }
 
 void tobi_particles_free(tobi_particles *p)
 {
-#define X(type, name, life, owner, unit, doc) free(p->name);
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
+    char *slot;
+    for (int k = 0; (k < COMMON || p->own) && find_field(p, k, &slot); k++) free(get_array(slot));
+    free(p->own);
     memset(p, 0, sizeof *p);
 }
 
-tobi_status tobi_particles_reserve(tobi_particles *p, int64_t capacity, int owners, tobi_error *err)
+tobi_status tobi_particles_reserve(tobi_particles *p, const tobi_field_list *list, unsigned needs,
+                                   int64_t capacity, tobi_error *err)
 {
-    int failed = 0;
-    memset(p, 0, sizeof *p);
+    char *slot;
+    int good = begin(p, list, needs);
+    for (int k = 0; good; k++) {
+        const tobi_field *f = find_field(p, k, &slot);
+        if (!f) break;
+        if (f->life != TOBI_STATE) continue;
+        void *made = aligned_alloc(64, bytes_of(capacity, f->bytes));
+        set_array(slot, made);
+        good = made != NULL;
+    }
     p->capacity = capacity;
-#define X(type, name, life, owner, unit, doc)                                          \
-    if ((owner) & owners && (life) == TOBI_STATE)                                      \
-        failed |= !(p->name = aligned_alloc(64, bytes_of(capacity, sizeof(type))));
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
-    return failed ? give_up(p, capacity, owners, err) : TOBI_OK;
+    return good ? TOBI_OK : give_up(p, capacity, err);
 }
 
 int64_t tobi_particles_add(tobi_particles *p)
 {
-    int64_t i = p->count++;
-#define X(type, name, life, owner, unit, doc)                                          \
-    if (p->name) memset(&p->name[i], 0, sizeof(type));
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
+    const int64_t i = p->count++;
+    char *slot;
+    for (int k = 0;; k++) {
+        const tobi_field *f = find_field(p, k, &slot);
+        if (!f) break;
+        char *data = get_array(slot);
+        if (data) memset(data + (size_t)i*f->bytes, 0, f->bytes);
+    }
+    p->id[i] = p->next_id++;
     return i;
 }
 
-/* One field after the other, so that no more than one is there twice. */
-tobi_status tobi_particles_fit(tobi_particles *p, int owners, tobi_error *err)
+tobi_status tobi_particles_fit(tobi_particles *p, tobi_error *err)
 {
-    int failed = 0;
-#define X(type, name, life, owner, unit, doc)                                          \
-    if ((owner) & owners) {                                                            \
-        type *made = make_zero(p->count, sizeof(type));                                \
-        if (made && p->name) memcpy(made, p->name, (size_t)p->count*sizeof(type));     \
-        free(p->name);                                                                 \
-        p->name = made;                                                                \
-        failed |= !made;                                                               \
-    }
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
-    p->capacity = p->count;
-    return failed ? give_up(p, p->count, owners, err) : TOBI_OK;
+    return resize(p, p->count) ? TOBI_OK : give_up(p, p->count, err);
 }
 
-int64_t tobi_particles_row_bytes(int owners)
+tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err)
 {
-    int64_t bytes = 0;
-#define X(type, name, life, owner, unit, doc) bytes += (owner) & owners ? (int64_t)sizeof(type) : 0;
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
-    return bytes;
-}
-
-int64_t tobi_particles_widest(int owners)
-{
-    return owners & TOBI_MPM ? (int64_t)sizeof(tobi_columns) : (int64_t)sizeof(tobi_double3);
-}
-
-void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
-{
-#define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name)                                                                   \
-        tobi_permute(threads, p->name, sizeof(type), order, p->count, scratch);
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
+    const int64_t rows = p->count + count;
+    if (rows > p->capacity && !resize(p, rows + rows/8))
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld more particles", (long long)count);
+    *first = p->count;
+    for (int64_t k = 0; k < count; k++) tobi_particles_add(p);
+    return TOBI_OK;
 }
 
 void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to)
 {
-#define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name) p->name[to] = p->name[from];
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
+    void *data;
+    for (int k = 0;; k++) {
+        const tobi_field *f = tobi_particles_state(p, k, &data);
+        if (!f) return;
+        memcpy((char *)data + (size_t)to*f->bytes, (char *)data + (size_t)from*f->bytes, f->bytes);
+    }
 }
 
-tobi_field_ref tobi_particles_state(tobi_particles *p, int index)
+int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs)
 {
-    int k = 0;
-#define X(type, name, life, owner, unit, doc) \
-    if ((life) == TOBI_STATE && p->name && k++ == index)                                                   \
-        return (tobi_field_ref){#name, p->name, sizeof(type)};
-    TOBI_PARTICLE_FIELDS(X)
-#undef X
-    return (tobi_field_ref){NULL, NULL, 0};
+    size_t bytes = 0;
+    for (int k = 0; k < COMMON; k++) bytes += common[k].bytes;
+    for (int k = 0; list && k < list->count; k++)
+        if (!list->field[k].need || list->field[k].need & needs) bytes += list->field[k].bytes;
+    return (int64_t)bytes;
+}
+
+int64_t tobi_particles_widest(const tobi_particles *p)
+{
+    size_t widest = 0;
+    void *data;
+    const tobi_field *f;
+    for (int k = 0; (f = tobi_particles_state(p, k, &data)); k++)
+        if (f->bytes > widest) widest = f->bytes;
+    return (int64_t)widest;
+}
+
+void tobi_particles_permute(tobi_particles *p, const int32_t *order, void *scratch, int threads)
+{
+    void *data;
+    const tobi_field *f;
+    for (int k = 0; (f = tobi_particles_state(p, k, &data)); k++)
+        tobi_permute(threads, data, f->bytes, order, p->count, scratch);
+}
+
+/* By digits from the lowest, as many as the ids have. */
+void tobi_particles_order(const tobi_particles *p, int32_t *rows, int32_t *spare)
+{
+    const int64_t n = p->count;
+    int32_t *from = rows, *to = spare;
+    for (int64_t k = 0; k < n; k++) rows[k] = (int32_t)k;
+    for (int shift = 0; p->next_id >> shift > 0; shift += DIGIT) {
+        int32_t start[(1 << DIGIT) + 1] = { 0 };
+        for (int64_t k = 0; k < n; k++) start[(p->id[k] >> shift & ((1 << DIGIT) - 1)) + 1]++;
+        for (int d = 0; d < 1 << DIGIT; d++) start[d + 1] += start[d];
+        for (int64_t k = 0; k < n; k++) to[start[p->id[from[k]] >> shift & ((1 << DIGIT) - 1)]++] = from[k];
+        int32_t *swap = from;
+        from = to;
+        to = swap;
+    }
+    if (from != rows) memcpy(rows, from, (size_t)n*sizeof *rows);
+}
+
+const tobi_field *tobi_particles_state(const tobi_particles *p, int number, void **data)
+{
+    char *slot;
+    for (int k = 0, at = 0;; k++) {
+        const tobi_field *f = find_field(p, k, &slot);
+        if (!f || (f->life == TOBI_STATE && at++ == number)) {
+            *data = f ? get_array(slot) : NULL;
+            return f;
+        }
+    }
 }

@@ -23,6 +23,8 @@ typedef struct tobi_simulation {
     int plane_count;
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
+    int64_t body_first_id;          /* of the particles of bodies                            */
+    int64_t next_id;                /* ids given so far to particles of all systems and bodies are below */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
     tobi_step_info info;            /* of the last step, of all systems                      */

@@ -1,16 +1,6 @@
 /* Constants of a smoothing kernel at one spacing: lattice normalisation and what a plane wall sees. */
 #pragma once
-#include "base/error.h"
-
-enum { TOBI_PLANE_SAMPLES = 512 };
-
-/* Functions of the distance s to a plane wall, tabulated over 0 <= s <= h.
-     lambda(s)  kernel integral over the half space behind the plane
-     sigma(s)   kernel integral over the plane = -dlambda/ds, 1/m */
-typedef struct tobi_wall_table {
-    float lambda[TOBI_PLANE_SAMPLES + 2];
-    float sigma[TOBI_PLANE_SAMPLES + 2];
-} tobi_wall_table;
+#include "core/wall_table.h"
 
 typedef struct tobi_smoothing_constants {
     int    shape;          /* TOBI_SHAPE_*                                                       */

@@ -1,11 +1,8 @@
 /* A system: particles that one method computes, in the world that all systems share. */
 #pragma once
-#include "core/contact.h"
-#include "core/near.h"
 #include "core/particles.h"
 #include "core/simulation.h"
 #include "core/smoothing.h"
-#include "core/still.h"
 
 enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RECALL_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
@@ -35,22 +32,32 @@ typedef struct tobi_system {
     int fluid_count;
     tobi_solid *solids;             /* of the material point method; then there are no fluids */
     int solid_count;
-    tobi_near_bodies near;          /* fluid particles that see a body                       */
-    tobi_contacts contacts;         /* particles of solids that touch bodies                 */
     double dt;                      /* s, of the step at hand, or of the last one            */
     int64_t step;                   /* its own steps                                         */
-    double gravity[3];              /* m/s2, what particles feel: see tobi_system_fill_up    */
-    tobi_still still;               /* less what still water holds                           */
-    double open;                    /* particles at a surface beyond doubt, in full vessels as well */
-    double lowest;                  /* m, drop of the lowest particle at a free surface      */
-    double still_volume;            /* m3 of fluid times the share of gravity so held        */
+    double gravity[3];              /* m/s2, what particles feel, see sph/hydrostatic.h       */
     double start_speed;             /* m/s, fastest particle or free body at the start       */
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
+    int64_t first_id;               /* of the world's ids; particles.id count from there     */
     int32_t *row_of;                /* owned: rows in id order, for reading; see world/read.c */
+    int64_t row_capacity;
 } tobi_system;
 
 enum { TOBI_LIQUIDS = -1 };            /* in place of the number of a solid                      */
+
+/* What a particle starts with, besides its position and velocity. */
+typedef struct tobi_start {
+    double volume, mass;                 /* m3, kg: its share of its region                         */
+    double spin[3];                      /* 1/s, of the region                                      */
+    int core;                            /* 1: below the skin of a solid                            */
+} tobi_start;
+
+/* A field for results that a method computes. */
+typedef struct tobi_output {
+    const char *name;
+    int components;                      /* of 6: xx, yy, zz, xy, yz, zx, as in ParaView; of 9: by rows */
+    const char *unit;
+} tobi_output;
 
 /* A particle method: one const struct in one file, listed in world/methods.c. The verbs of a step in their
    order: remember, max_dt, begin, forces, solve, move, finish. None moves bodies or the clock: world/step.c
@@ -59,14 +66,20 @@ typedef struct tobi_method {
     const char *name;
     const char *doc;
     size_t def_size;                                             /* of the parameter struct        */
-    int fields;                                                  /* particle fields besides TOBI_ALL */
-    int body_fields;                                             /* and where there are bodies, or
-                                                                    liquid fills the domain         */
+    int solids;                                                  /* 1: computes solids, 0: fluids  */
+    const tobi_field_list *fields;                               /* of particles, NULL = no others */
+    const tobi_output *outputs;                                  /* ends with a NULL name          */
+    /* The bits of the optional fields that this system needs. full: liquid fills the domain. NULL: 0. */
+    unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
     /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a
        vessel full of liquid. */
     void (*smoothing)(const void *def, int stirred, int *shape, double *support);
     tobi_status (*create)(tobi_system *s, tobi_error *err);
+    /* Optional: the method's own state fields of a new particle. */
+    void (*place)(tobi_system *s, int64_t i, const tobi_start *start);
+    /* kg, of a particle. NULL: a cell of its fluid. */
+    double (*mass)(const tobi_system *s, int64_t i);
 
     /* Optional: keeps what a step changes until it moves, and takes back a step that was stopped by then:
        TOBI_STOPPED from `begin` or `solve`. */
@@ -85,11 +98,10 @@ typedef struct tobi_method {
     /* Optional: after the bodies have moved, too. */
     void (*finish)(tobi_system *s);
 
-    /* Brings density, averaged pressure (`product`), lists and walls up to the present positions. NULL:
+    /* Brings outputs, lists and walls up to the present positions. NULL:
        nothing is kept that could be stale. */
     tobi_status (*refresh)(tobi_system *s, tobi_error *err);
-    /* Value of a field (world/read.c) of one particle, up to 9 components, after a refresh; changes nothing.
-       NULL: the fields of the SPH methods, from the particle arrays. */
+    /* One of `outputs`, of one particle, after a refresh; changes nothing. */
     void (*read)(const tobi_system *s, const char *field, int64_t i, double *out);
     /* Refuses, in words, a solid that it cannot compute at this spacing, or leaves a note for the user; NULL:
        it takes all. Before `create`, as is the next. */
@@ -101,8 +113,7 @@ typedef struct tobi_method {
     tobi_status (*nodes)(const tobi_system *s, tobi_grid *grid, tobi_error *err);
     /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */
     void (*measure)(tobi_system *s);
-    /* Writes a derived field into particles.accel after a refresh: "acceleration" or "vorticity". NULL: the
-       method has neither. */
+    /* Prepares the outputs "acceleration" and "vorticity" after a refresh. NULL: the method has neither. */
     void (*derive)(tobi_system *s, const char *field);
     /* Doubles that must survive a restart besides the particles, TOBI_MEMORY_LIMIT at most; the first is the
        largest speed, m/s. */
@@ -123,15 +134,5 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);
-/* A vessel without a free surface: gravity along axes with walls only makes a hydrostatic pressure there. It
-   is taken from what the particles feel (s->gravity), which pressures that pull would have to hold, and
-   added exactly where pressures and forces leave: the two functions below. Fluids have one density. */
-void tobi_system_fill_up(tobi_system *s);
-/* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
-double tobi_system_hydrostatic(const tobi_system *s, const double x[3]);
-/* Adds its forces to those on the walls and to this system's load on the bodies. */
-void tobi_system_add_hydrostatic(tobi_system *s);
-/* Adds that on one body to force and torque f, N and N m. */
-void tobi_system_body_hydrostatic(const tobi_system *s, int body, double f[6]);
 /* Energies, momentum and weight of the fluid into s->info. */
 void tobi_system_measure(tobi_system *s);

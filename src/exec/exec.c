@@ -2,6 +2,7 @@
    in an order that only the number of items decides. Drawback: a loop without totals is not checked for items
    that depend on one another. */
 #include "exec/exec.h"
+#include <assert.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,18 +60,18 @@ tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err)
     return TOBI_OK;
 }
 
-static void add_totals(double *a, const double *c)
+static void add_totals(int sums, int maxima, double *a, const double *c)
 {
-    for (int k = 0; k < TOBI_SUMS; k++) a[k] += c[k];
-    for (int k = TOBI_SUMS; k < TOBI_TOTALS; k++) if (c[k] > a[k]) a[k] = c[k];
+    for (int k = 0; k < sums; k++) a[k] += c[k];
+    for (int k = TOBI_SUMS; k < TOBI_SUMS + maxima; k++) if (c[k] > a[k]) a[k] = c[k];
 }
 
 /* Pairwise over blocks: error grows with log n, order fixed by n alone. */
-static void combine(double *p, int64_t blocks, double *totals)
+static void combine(tobi_kernel kernel, double *p, int64_t blocks, double *totals)
 {
     for (int64_t step = 1; step < blocks; step *= 2)
         for (int64_t b = 0; b + step < blocks; b += 2*step)
-            add_totals(p + b*TOBI_TOTALS, p + (b + step)*TOBI_TOTALS);
+            add_totals(kernel.sums, kernel.maxima, p + b*TOBI_TOTALS, p + (b + step)*TOBI_TOTALS);
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
 }
 
@@ -83,7 +84,7 @@ void tobi_combine_sums(tobi_block_sum *p, int64_t count, double *totals)
         for (int64_t k = 0; k < count; k++) {
             const int64_t pair = p[k].block/2;
             if (kept > 0 && p[kept - 1].block == pair) {
-                add_totals(p[kept - 1].total, p[k].total);
+                add_totals(TOBI_SUMS, TOBI_TOTALS - TOBI_SUMS, p[kept - 1].total, p[k].total);
                 continue;
             }
             p[kept] = p[k];
@@ -106,10 +107,11 @@ static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64
     for (int64_t b = 0; b < blocks; b++) {
         double sums[TOBI_TOTALS] = {0};
         int64_t first = begin + b*grain, last = first + grain;
-        kernel(view, first, last < end ? last : end, sums);
+        kernel.run(view, first, last < end ? last : end, sums);
+        assert(tobi_kernel_keeps(kernel, sums));
         if (totals) memcpy(partial + b*TOBI_TOTALS, sums, sizeof sums);
     }
-    if (totals) combine(partial, blocks, totals);
+    if (totals) combine(kernel, partial, blocks, totals);
 }
 
 void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t begin, int64_t end,

@@ -8,9 +8,25 @@
 
 enum { TOBI_BLOCK = 512 };
 
-/* Runs over [begin, end) of one block. totals[0..5] are summed over all blocks, totals[6..7] are
-   maxima (start at 0); all eight are zero on entry. */
-typedef void (*tobi_kernel)(const void *view, int64_t begin, int64_t end, double *totals);
+/* A kernel: runs over [begin, end) of one block. totals[0] to [sums - 1] are summed over all blocks,
+   totals[6] to [5 + maxima] are maxima (start at 0); all eight are zero on entry, and a kernel writes no
+   others. The kernels.def of a room lists its kernels; its kernels.h has them by name, for one instruction
+   set. */
+typedef struct tobi_kernel {
+    void (*run)(const void *view, int64_t begin, int64_t end, double *totals);
+    int sums, maxima;
+} tobi_kernel;
+
+/* 1 if totals that were zero before the kernel are zero still, but for those that it makes. */
+static inline int tobi_kernel_keeps(tobi_kernel kernel, const double *totals)
+{
+    for (int k = 0; k < TOBI_TOTALS; k++)
+        if (totals[k] != 0 && (k < TOBI_SUMS ? k >= kernel.sums : k >= TOBI_SUMS + kernel.maxima)) return 0;
+    return 1;
+}
+
+/* A loop with totals that stays on the host, as one of no list. */
+#define TOBI_HOST(RUN, SUMS, MAXIMA) ((tobi_kernel){RUN, SUMS, MAXIMA})
 
 typedef struct tobi_exec {
     int threads;             /* OpenMP threads of every launch          */

@@ -64,7 +64,7 @@ static tobi_status fail_hdf5(tobi_error *err, tobi_status status, const tobi_sto
 }
 
 /* On disk everything is little-endian. */
-static hid_t file_type(tobi_vtk_type type)
+static hid_t file_type(tobi_type type)
 {
     switch (type) {
     case TOBI_F32: return H5T_IEEE_F32LE;
@@ -76,7 +76,7 @@ static hid_t file_type(tobi_vtk_type type)
     return -1;
 }
 
-static hid_t memory_type(tobi_vtk_type type)
+static hid_t memory_type(tobi_type type)
 {
     switch (type) {
     case TOBI_F32: return H5T_NATIVE_FLOAT;
@@ -279,7 +279,7 @@ static int make_groups(tobi_store *store, const char *name)
 }
 
 /* Chunks of a quarter megabyte with a fletcher32 sum each; an empty array has no chunks. */
-static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+static hid_t create_dataset(tobi_store *store, const char *name, tobi_type type, int64_t n,
                             int components)
 {
     size_t row = tobi_type_size(type)*(size_t)components;
@@ -299,7 +299,7 @@ static hid_t create_dataset(tobi_store *store, const char *name, tobi_vtk_type t
     return set;
 }
 
-tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_type type, int64_t n,
                            int components, const void *data, tobi_error *err)
 {
     size_t row = tobi_type_size(type)*(size_t)(components > 0 ? components : 0);
@@ -421,7 +421,7 @@ tobi_status tobi_store_rows(tobi_store *store, const char *name, int64_t *n, tob
     return status;
 }
 
-static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+static tobi_status read_array(tobi_store *store, const char *name, tobi_type type, int64_t n,
                               int components,
                               void *data, tobi_error *err)
 {
@@ -445,7 +445,7 @@ static tobi_status read_array(tobi_store *store, const char *name, tobi_vtk_type
     return status;
 }
 
-tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_type type, int64_t n,
                            int components, void *data, tobi_error *err)
 {
     quiet q = begin_quiet();

@@ -10,7 +10,7 @@
    Source of the format: HDF5 file format specification 3.0, "user block", "filter pipeline". */
 #pragma once
 #include "base/error.h"
-#include "io/type.h"
+#include "base/type.h"
 
 typedef struct tobi_store tobi_store;
 
@@ -28,7 +28,7 @@ tobi_status tobi_store_commit(tobi_store *store, tobi_error *err);
 void tobi_store_close(tobi_store *store);
 
 /* Adds an array of n rows (0 is fine) by components, row-major. A '/' in the name makes groups. TOBI_IO. */
-tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+tobi_status tobi_store_put(tobi_store *store, const char *name, tobi_type type, int64_t n,
                            int components, const void *data, tobi_error *err);
 tobi_status tobi_store_put_real(tobi_store *store, const char *name, double value, tobi_error *err);
 tobi_status tobi_store_put_int(tobi_store *store, const char *name, int64_t value, tobi_error *err);
@@ -40,7 +40,7 @@ int tobi_store_has(tobi_store *store, const char *name);
 tobi_status tobi_store_rows(tobi_store *store, const char *name, int64_t *n, tobi_error *err);
 /* Reads an array that must have exactly this type and size; TOBI_DAMAGED with both if not, or if
  * missing. */
-tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_vtk_type type, int64_t n,
+tobi_status tobi_store_get(tobi_store *store, const char *name, tobi_type type, int64_t n,
                            int components, void *data, tobi_error *err);
 tobi_status tobi_store_get_real(tobi_store *store, const char *name, double *value, tobi_error *err);
 tobi_status tobi_store_get_int(tobi_store *store, const char *name, int64_t *value, tobi_error *err);

@@ -18,7 +18,7 @@ enum { BLOCK = 65536, BATCH = 64, OFFSET_ROOM = 20, LINE = 9 };
 /* Where an array's numbers come from: memory, a + b i, or (U8 and VTK_VERTEX) a constant. */
 typedef struct source {
     const char   *name;
-    tobi_vtk_type type;
+    tobi_type type;
     int           components;
     int64_t       rows;
     const void   *data;          /* NULL: first + step * index */

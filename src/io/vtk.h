@@ -8,12 +8,12 @@
 #pragma once
 #include "tobiuo/types.h"
 #include "base/error.h"
-#include "io/type.h"
+#include "base/type.h"
 
 /* Point data of 2 components named "texture_coordinates" are marked as those that pictures are put on by. */
 typedef struct tobi_vtk_array {
     const char   *name;
-    tobi_vtk_type type;
+    tobi_type type;
     int           components;   /* 1 = scalar, 3 = vector                      */
     const void   *data;         /* rows x components, row-major; may be NULL if there are no rows */
 } tobi_vtk_array;

@@ -16,15 +16,15 @@
         for (int64_t i = begin; i < end; i++) K(&v, i, t);                                          \
         for (int k = 0; k < TOBI_TOTALS; k++) totals[k] = t[k];                                     \
     }
-#define VECTOR(K) LOOP(K, tobi_vectors_view)
-#define GRID(K) LOOP(K, tobi_grid_view)
+#define VECTOR(K, SUMS, MAXIMA, DOC) LOOP(K, tobi_vectors_view)
+#define GRID(K, SUMS, MAXIMA, DOC) LOOP(K, tobi_grid_view)
 #include "linear/kernels.def"
 #undef VECTOR
 #undef GRID
 
 const tobi_linear_kernels JOIN(tobi_linear_kernels, TOBI_ISA) = {
-#define VECTOR(K) .K = run_##K,
-#define GRID(K) .K = run_##K,
+#define VECTOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
+#define GRID(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
 #include "linear/kernels.def"
 #undef VECTOR
 #undef GRID

@@ -3,8 +3,8 @@
 #include "exec/exec.h"
 
 typedef struct tobi_linear_kernels {
-#define VECTOR(K) tobi_kernel K;
-#define GRID(K) tobi_kernel K;
+#define VECTOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+#define GRID(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #include "linear/kernels.def"
 #undef VECTOR
 #undef GRID

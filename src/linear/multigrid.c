@@ -74,7 +74,7 @@ static void launch_rows(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view *
 {
     double unused[TOBI_TOTALS];
     if (nodes >= THREADED) tobi_launch_each(x, kernel, v, rows, NULL);
-    else kernel(v, 0, rows, unused);
+    else kernel.run(v, 0, rows, unused);
 }
 
 static void launch_nodes(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view *v)

@@ -4,7 +4,7 @@
    walks over all voters near its block. */
 #include "mpm/cross.h"
 #include "base/error.h"
-#include "core/cuts.h"
+#include "mpm/cuts.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"
 #include "mpm/vote.h"

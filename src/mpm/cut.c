@@ -1,7 +1,8 @@
 #include "mpm/cut.h"
 #include "base/error.h"
-#include "core/blade.h"
-#include "core/cuts.h"
+#include "mpm/blade.h"
+#include "mpm/cuts.h"
+#include "mpm/particle_fields.h"
 #include "exec/rows.h"
 #include "geom/vec3.h"
 #include "mpm/vote.h"
@@ -121,7 +122,7 @@ static void mark_particles(const void *view, int64_t begin, int64_t end)
         met = 1;
         if (at.ahead > 0) continue;
         mpm_vote_deformation(v, i, f);
-        remember(&m->s->particles.cuts[i], f, m->mine, &at, least);
+        remember(&mpm_fields_of(&m->s->particles)->cuts[i], f, m->mine, &at, least);
     }
     if (met) __atomic_store_n(m->met, 1, __ATOMIC_RELAXED);
 }

@@ -21,7 +21,7 @@ static void sum_energy(const void *view, int64_t begin, int64_t end, double *tot
 static double find_energy(tobi_system *s, const mlsmpm *m, double t[TOBI_TOTALS])
 {
     const mpm_view v = mpm_look_back(m);
-    tobi_launch(&s->sim->exec, sum_energy, &v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, TOBI_HOST(sum_energy, 4, 0), &v, 0, s->particles.count, t);
     return t[0] + t[1] + t[2];
 }
 
@@ -67,7 +67,7 @@ void mpm_energy_add_flow(tobi_system *s, mlsmpm *m)
     const mpm_view v = mpm_look_back(m);
     double t[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
-    tobi_launch(&s->sim->exec, mpm_sum_flow, &v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, TOBI_HOST(mpm_sum_flow, 1, 0), &v, 0, s->particles.count, t);
     m->memory.flow += t[0];
 }
 

@@ -1,4 +1,5 @@
 #include "mpm/grid.h"
+#include "mpm/particle_fields.h"
 #include "base/error.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@ enum { BLOCK = 4, CELL_BITS = 6 };
 /* Bits of a key below its block: the cell and, where there may be cuts, the side of the first that the
    particle remembers. Particles of one cell and side see the same nodes, and are added up together as long as
    they follow one another. */
-static int key_bits(const tobi_particles *p) { return CELL_BITS + (p->cuts != NULL); }
+static int key_bits(const tobi_particles *p) { return CELL_BITS + (mpm_fields_of(p)->cuts != NULL); }
 
 static double most_blocks(const tobi_particles *p) { return (double)(UINT64_C(1) << (32 - key_bits(p))); }
 
@@ -145,7 +146,7 @@ static void find_block(const tobi_particles *p, int64_t i, double inverse_cell, 
     const double *x = &p->position[i].x;
     for (int a = 0; a < 3; a++) {
         if (a >= dimension) b[a] = 0;
-        else if (home) b[a] = (int)p->affine[i].c[a].w/BLOCK + 1;
+        else if (home) b[a] = (int)mpm_fields_of(p)->affine[i].c[a].w/BLOCK + 1;
         else b[a] = base_node(x[a], inverse_cell)/BLOCK;
     }
 }
@@ -227,13 +228,14 @@ static void key_particles(const void *view, int64_t begin, int64_t end)
 {
     const sorting *s = view;
     const tobi_particles *p = s->particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = begin; i < end; i++) {
         int b[3];
         uint32_t cell = 0;
         find_block(p, i, s->inverse_cell, s->home, s->grid->dimension, b);
         for (int a = 0; a < s->grid->dimension && !s->home; a++)
             cell = cell*BLOCK + (uint32_t)base_node((&p->position[i].x)[a], s->inverse_cell)%BLOCK;
-        if (p->cuts && !s->home) cell = cell*2 + (p->cuts[i].c[0].w < 0);
+        if (f->cuts && !s->home) cell = cell*2 + (f->cuts[i].c[0].w < 0);
         s->keys[i] = block_key(s->grid, b) << key_bits(p) | cell;
     }
 }

@@ -2,6 +2,7 @@
    follows the material, not the domain. */
 #pragma once
 #include "exec/exec.h"
+#include "core/particles.h"
 #include "mpm/view.h"
 
 typedef struct mpm_grid {

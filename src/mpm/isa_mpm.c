@@ -1,47 +1,42 @@
-/* Turns the transfers into loops, compiled once per instruction set. */
+/* Turns kernels.def into loops, compiled once per instruction set. */
 #include "mpm/kernels.h"
 #include "mpm/filter.k.h"
 #include "mpm/pack.k.h"
 
-/* Kernels over blocks, as tobi_launch wants them. */
-#define MPM_KERNEL(NAME, BODY, DIM)                                                                 \
-    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
-    {                                                                                               \
-        for (int64_t n = begin; n < end; n++) BODY((const mpm_view *)view, n, totals, DIM);         \
-    }
-
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
 
-MPM_KERNEL(scatter_2d, mpm_scatter, 2)
-MPM_KERNEL(collect_2d, mpm_collect, 2)
-MPM_KERNEL(gather_2d, mpm_gather, 2)
-MPM_KERNEL(filter_2d, mpm_filter, 2)
-MPM_KERNEL(filter_nodes_2d, mpm_filter_nodes, 2)
-MPM_KERNEL(scatter_calm_2d, mpm_scatter_calm, 2)
-MPM_KERNEL(energy_calm_2d, mpm_energy_calm, 2)
-MPM_KERNEL(energy_nodes_2d, mpm_energy_nodes, 2)
-MPM_KERNEL(scatter_3d, mpm_scatter, 3)
-MPM_KERNEL(collect_3d, mpm_collect, 3)
-MPM_KERNEL(gather_3d, mpm_gather, 3)
-MPM_KERNEL(filter_3d, mpm_filter, 3)
-MPM_KERNEL(filter_nodes_3d, mpm_filter_nodes, 3)
-MPM_KERNEL(scatter_calm_3d, mpm_scatter_calm, 3)
-MPM_KERNEL(energy_calm_3d, mpm_energy_calm, 3)
-MPM_KERNEL(energy_nodes_3d, mpm_energy_nodes, 3)
+#define LOOP(NAME, ITEM)                                                                            \
+    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
+    {                                                                                               \
+        (void)totals;                                                                               \
+        for (int64_t n = begin; n < end; n++) ITEM;                                                 \
+    }
+#define BLOCK(K, SUMS, MAXIMA, DOC)                                                                 \
+    LOOP(K##_2d, mpm_##K((const mpm_view *)view, n, totals, 2))                                     \
+    LOOP(K##_3d, mpm_##K((const mpm_view *)view, n, totals, 3))
+#define PACK(K, SUMS, MAXIMA, DOC) LOOP(pack_##K, mpm_pack_##K((const mpm_pack_view *)view, n))
+#include "mpm/kernels.def"
+#undef BLOCK
+#undef PACK
 
+#define PACK(K, SUMS, MAXIMA, DOC)
 const mpm_kernels JOIN(mpm_kernels, TOBI_ISA)[2] = {
-    {scatter_2d, collect_2d, gather_2d, filter_2d, filter_nodes_2d,
-     scatter_calm_2d, energy_calm_2d, energy_nodes_2d},
-    {scatter_3d, collect_3d, gather_3d, filter_3d, filter_nodes_3d,
-     scatter_calm_3d, energy_calm_3d, energy_nodes_3d},
+    {
+#define BLOCK(K, SUMS, MAXIMA, DOC) .K = {K##_2d, SUMS, MAXIMA},
+#include "mpm/kernels.def"
+#undef BLOCK
+    },
+    {
+#define BLOCK(K, SUMS, MAXIMA, DOC) .K = {K##_3d, SUMS, MAXIMA},
+#include "mpm/kernels.def"
+#undef BLOCK
+    },
 };
+#undef PACK
 
-MPM_PACK_KERNEL(pack_crowd, mpm_pack_crowd)
-MPM_PACK_KERNEL(pack_answer, mpm_pack_answer)
-MPM_PACK_KERNEL(pack_forget, mpm_pack_forget)
-MPM_PACK_KERNEL(pack_read, mpm_pack_read)
-MPM_PACK_KERNEL(pack_push, mpm_pack_push)
-
-const mpm_pack_kernels JOIN(mpm_pack_kernels, TOBI_ISA) = {pack_crowd, pack_answer, pack_forget, pack_read,
-                                                           pack_push};
+#define BLOCK(K, SUMS, MAXIMA, DOC)
+#define PACK(K, SUMS, MAXIMA, DOC) .K = {pack_##K, SUMS, MAXIMA},
+const mpm_pack_kernels JOIN(mpm_pack_kernels, TOBI_ISA) = {
+#include "mpm/kernels.def"
+};

@@ -3,18 +3,22 @@
 #include "exec/exec.h"
 #include "mpm/view.h"
 
+#define BLOCK(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+#define PACK(K, SUMS, MAXIMA, DOC)
 typedef struct mpm_kernels {
-    tobi_kernel scatter;               /* over particle blocks                                    */
-    tobi_kernel collect;               /* over node blocks                                        */
-    tobi_kernel gather;                /* over particle blocks                                    */
-    tobi_kernel filter;                /* over particle blocks, XPIC                              */
-    tobi_kernel filter_nodes;          /* over node blocks                                        */
-    tobi_kernel scatter_calm;          /* over particle blocks; these three to measure transfers  */
-    tobi_kernel energy_calm, energy_nodes;   /* over node blocks                                  */
+#include "mpm/kernels.def"
 } mpm_kernels;
+#undef BLOCK
+#undef PACK
 
 /* Over packs of contacts (mpm/pack.k.h). */
-typedef struct mpm_pack_kernels { tobi_kernel crowd, answer, forget, read, push; } mpm_pack_kernels;
+#define BLOCK(K, SUMS, MAXIMA, DOC)
+#define PACK(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+typedef struct mpm_pack_kernels {
+#include "mpm/kernels.def"
+} mpm_pack_kernels;
+#undef BLOCK
+#undef PACK
 
 /* isa: exec's level. Static data, never NULL. */
 const mpm_kernels *mpm_kernels_for(int isa, int dimension);

@@ -1,4 +1,5 @@
 #include "mpm/material.h"
+#include "mpm/particle_fields.h"
 #include "tobiuo/types.h"
 #include <math.h>
 
@@ -75,7 +76,7 @@ static void find_squeezed(const void *view, int64_t begin, int64_t end, double *
 double mpm_material_squeezed_sound(tobi_system *s, const mpm_view *v)
 {
     double t[TOBI_TOTALS];
-    tobi_launch(&s->sim->exec, find_squeezed, v, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, TOBI_HOST(find_squeezed, 0, 1), v, 0, s->particles.count, t);
     return t[6];
 }
 
@@ -83,7 +84,7 @@ double mpm_material_squeezed_sound(tobi_system *s, const mpm_view *v)
    only mls leaves no wild velocity. */
 int mpm_takes_spline(const tobi_system *s, int gradient)
 {
-    int measured = s->particles.cuts != NULL;
+    int measured = mpm_fields_of(&s->particles)->cuts != NULL;
     for (int k = 0; k < s->solid_count; k++) measured |= s->solids[k].def.strength > 0;
     return gradient == TOBI_GRADIENT_SPLINE || (gradient == TOBI_GRADIENT_AUTOMATIC && !measured);
 }

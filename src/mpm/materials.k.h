@@ -5,7 +5,6 @@
 #pragma once
 #include "exec/portable.h"
 #include "mpm/view.h"
-#include "tobiuo/types.h"
 
 /* Symmetric tensors: xx, yy, zz, xy, yz, zx. */
 enum { MPM_XX, MPM_YY, MPM_ZZ, MPM_XY, MPM_YZ, MPM_ZX };

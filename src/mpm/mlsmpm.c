@@ -9,6 +9,8 @@
 #include "mpm/material.h"
 #include "mpm/nodes.h"
 #include "mpm/state.h"
+#include "mpm/cuts.h"
+#include "mpm/particle_fields.h"
 #include "tobiuo/types.h"
 #include <math.h>
 #include <stdlib.h>
@@ -69,14 +71,15 @@ static void bind_gravity(const tobi_system *s, mpm_view *v)
 static void bind_particles(const tobi_system *s, mlsmpm *m)
 {
     const tobi_particles *p = &s->particles;
+    const mpm_fields *f = mpm_fields_of(p);
     mpm_view *v = &m->view;
     v->position = p->position;
     v->velocity = p->velocity;
-    v->strain = p->strain;
-    v->affine = p->affine;
+    v->strain = f->strain;
+    v->affine = f->affine;
     v->solid = p->fluid;
-    v->cuts = p->cuts;
-    m->blades = p->cuts != NULL || m->view.apart;
+    v->cuts = f->cuts;
+    m->blades = f->cuts != NULL || m->view.apart;
     v->material = m->material;
     v->cell = (float)m->cell;
     v->inverse_cell = 1/m->cell;
@@ -182,7 +185,7 @@ static tobi_status find_cuts(tobi_system *s, mlsmpm *m, int stale, tobi_error *e
 {
     if (stale || m->memory.moved > MPM_MEET_STALE*m->cell) {
         mpm_cut_mark(s, &m->view, &m->memory.cuts);
-        s->contacts.marked = 1;
+        m->touch.contacts.marked = 1;
         TOBI_TRY(mpm_cut_find(&m->cut, s, &m->grid, &m->view, err));
         m->memory.moved = 0;
     } else if (m->cut.rows) {
@@ -394,8 +397,17 @@ static void move(tobi_system *s)
     grid_to_particles(s, m, &clock);
     mpm_energy_add_flow(s, m);
     measure_squeeze(s, m);
-    tobi_contact_shift(&s->contacts, &s->particles);
+    tobi_contact_shift(&m->touch.contacts, &s->particles);
     m->memory.age++;
+}
+
+/* The latest cut that a particle remembers, with the sign of its side. */
+static double latest_cut(const tobi_particles *p, int64_t i)
+{
+    const tobi_columns *cuts = mpm_fields_of(p)->cuts;
+    double cut = 0;
+    for (int k = 0; cuts && k < TOBI_CUTS_EACH && cuts[i].c[k].w != 0; k++) cut = cuts[i].c[k].w;
+    return cut;
 }
 
 static void read_field(const tobi_system *s, const char *field, int64_t i, double *out)
@@ -407,8 +419,12 @@ static void read_field(const tobi_system *s, const char *field, int64_t i, doubl
         return;
     }
     if (!strcmp(field, "rest_position")) {
-        const double rest[3] = {p->rest[i].x, p->rest[i].y, p->rest[i].z};
-        for (int a = 0; a < 3; a++) out[a] = rest[a] + s->box.lower[a];
+        const float *rest = &mpm_fields_of(p)->rest[i].x;
+        for (int a = 0; a < 3; a++) out[a] = (double)rest[a] + s->box.lower[a];
+        return;
+    }
+    if (!strcmp(field, "cut_side")) {
+        out[0] = latest_cut(p, i);
         return;
     }
     mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
@@ -469,7 +485,12 @@ const tobi_method tobi_mlsmpm = {
     .name = "mlsmpm",
     .doc = "The material point method (MLS-MPM) for elastic and plastic solids, liquids, snow and sand.",
     .def_size = sizeof(tobi_mlsmpm_def),
-    .fields = TOBI_MPM,
+    .solids = 1,
+    .fields = &mpm_field_list,
+    .outputs = mpm_outputs,
+    .needs = mpm_needs,
+    .place = mpm_place,
+    .mass = mpm_mass,
     .planes = 1,
     .smoothing = choose_smoothing,
     .create = create,

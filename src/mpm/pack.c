@@ -129,13 +129,13 @@ typedef struct visiting { const mpm_pack_run *run; tobi_kernel kernel; const mpm
 static void visit_runs(const void *view, int64_t begin, int64_t end)
 {
     const visiting *v = view;
-    for (int64_t r = begin; r < end; r++) v->kernel(v->view, v->run[r].begin, v->run[r].last, NULL);
+    for (int64_t r = begin; r < end; r++) v->kernel.run(v->view, v->run[r].begin, v->run[r].last, NULL);
 }
 
 void mpm_packs_visit(const mpm_packs *p, tobi_kernel kernel, const mpm_pack_view *view, int threads)
 {
     if (threads == 1) {
-        kernel(view, 0, p->count, NULL);
+        kernel.run(view, 0, p->count, NULL);
         return;
     }
     for (int c = 0; c < MPM_PACK_COLOURS; c++) {

@@ -109,10 +109,3 @@ TOBI_FN void mpm_pack_push(const mpm_pack_view *v, int64_t number)
         quad_store(to, quad_load(to) + sum*quad_set(v->yield[node[n]].inverse));
     }
 }
-
-#define MPM_PACK_KERNEL(NAME, BODY)                                                                 \
-    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
-    {                                                                                               \
-        (void)totals;                                                                               \
-        for (int64_t n = begin; n < end; n++) BODY((const mpm_pack_view *)view, n);                 \
-    }

@@ -2,7 +2,7 @@
    nodes that lie across a cut from it, where cuts cross with that of its own piece, and with the first of all
    others. */
 #pragma once
-#include "core/cuts.h"
+#include "mpm/cuts.h"
 #include "exec/rows.h"
 #include "mpm/particle.k.h"
 

@@ -13,6 +13,7 @@ static const double ENOUGH = 4e-3;     /* of the largest impulse may still chang
 void mpm_touch_free(mpm_touch *t)
 {
     mpm_packs_free(&t->packs);
+    tobi_contact_free(&t->contacts);
     free(t->node);
     free(t->weight);
     free(t->yield);
@@ -373,7 +374,7 @@ static void add_impulses(const mpm_touch *t, const tobi_contacts *c, const mpm_g
 static tobi_status touch_body(mpm_touch *t, tobi_system *s, tobi_body *b, const mpm_grid *g,
                               const mpm_view *v, const tobi_contact_step *step, tobi_error *err)
 {
-    tobi_contacts *c = &s->contacts;
+    tobi_contacts *c = &t->contacts;
     TOBI_TRY(tobi_contact_find(c, &s->particles, b, step, &s->sim->exec, err));
     t->edge_first = c->count;
     t->ways = g->levels > 1 ? 1 << g->levels : 2;
@@ -404,10 +405,10 @@ tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, co
     t->work = (tobi_contact_work){ 0 };
     s->info.contacts = 0;
     if (s->sim->body_count == 0) return TOBI_OK;
-    TOBI_TRY(tobi_contact_begin(&s->contacts, &s->particles, drift, &s->sim->exec, err));
+    TOBI_TRY(tobi_contact_begin(&t->contacts, &s->particles, drift, &s->sim->exec, err));
     for (int k = 0; k < s->sim->body_count; k++) {
         TOBI_TRY(touch_body(t, s, &s->sim->bodies[k], g, v, step, err));
-        s->info.contacts += tobi_contact_finish(&s->contacts, &s->particles, &s->sim->bodies[k], step,
+        s->info.contacts += tobi_contact_finish(&t->contacts, &s->particles, &s->sim->bodies[k], step,
                                                 &t->far, &t->work, &s->sim->exec);
     }
     return TOBI_OK;

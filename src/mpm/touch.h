@@ -1,11 +1,13 @@
-/* Contact of the material with bodies, on the grid: core/contact.h says what a contact asks for, this puts
+/* Contact of the material with bodies, on the grid: mpm/contact.h says what a contact asks for, this puts
    the impulses on the nodes that each particle feels, so that stress and motion know of them. */
 #pragma once
 #include "core/system.h"
+#include "mpm/contact.h"
 #include "mpm/cut.h"
 #include "mpm/pack.h"
 
 typedef struct mpm_touch {
+    tobi_contacts contacts;            /* particles of solids that touch bodies                   */
     mpm_cut *cut;                      /* whose faces push at the same time, NULL = no blades: the caller's */
     int64_t count;                     /* entries: contacts times nodes each feels                */
     uint32_t *node;                    /* place in the nodes' array                               */

@@ -9,7 +9,8 @@
      affine   columns of the velocity gradient, 1/s
    F lags behind: the gradient of the last step is put into it by the next one (docs/theory/mlsmpm.md). */
 #pragma once
-#include "core/particles.h"
+#include "exec/portable.h"
+#include "tobiuo/kinds.h"
 
 enum { MPM_TILE_3D = 512, MPM_TILE_2D = 64, MPM_NODES_3D = 64, MPM_NODES_2D = 16, MPM_PLANES = 32,
        MPM_SIDES = MPM_TILE_3D + 8, MPM_HIDDEN = (1 << 27) - 1 };
@@ -78,7 +79,7 @@ typedef struct mpm_view {
     const mpm_material *TOBI_RESTRICT material;
     const mpm_block *TOBI_RESTRICT block;
     const mpm_patch *TOBI_RESTRICT patch;
-    const tobi_columns *TOBI_RESTRICT cuts;   /* core/cuts.h; NULL in scenes without blades        */
+    const tobi_columns *TOBI_RESTRICT cuts;   /* mpm/cuts.h; NULL in scenes without blades        */
     const float *TOBI_RESTRICT sides;  /* tiles of MPM_SIDES, around blocks with a twin: number of the cut at
                                           a node, with the sign of the side its first velocity belongs to;
                                           mpm_side_of; 0 = one velocity. One for each twin, by level of the

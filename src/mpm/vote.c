@@ -1,7 +1,7 @@
 /* Most voters stand where all are of one side. So the sides are looked at first, by base node, and votes
    counted for those nodes alone that see both: the others have one velocity whatever the count. */
 #include "mpm/vote.h"
-#include "core/cuts.h"
+#include "mpm/cuts.h"
 #include "exec/rows.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"

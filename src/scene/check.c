@@ -114,7 +114,7 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
     if (!method->planes && !is_empty(scene, "planes"))
         tobi_source_mistake(source, &planes, "are for solids and bodies of mlsmpm; %s knows sides of the "
                             "domain and bodies", method->name);
-    if (method->fields & TOBI_SPH) {
+    if (!method->solids) {
         if (!is_empty(scene, "solids"))
             tobi_source_mistake(source, &solids, "%s takes fluids; solids need \"method\": \"mlsmpm\"",
                                 method->name);
@@ -143,7 +143,7 @@ static void check_material(const tobi_scene *scene, tobi_source *source, const t
         { "viscosity", "Pa s", fluid->def.viscosity, first->def.viscosity },
         { "surface_tension", "N/m", fluid->def.surface_tension, first->def.surface_tension },
     };
-    if (!method || !(method->fields & TOBI_SPH) || fluid->bound.good != fluid->bound.given ||
+    if (!method || method->solids || fluid->bound.good != fluid->bound.given ||
         first->bound.good != first->bound.given) return;
     for (size_t k = 0; k < sizeof values/sizeof *values; k++) {
         tobi_place place = { entry, values[k].key, 0 };

@@ -284,7 +284,7 @@ static void require_matter(json_t *schema)
     json_t *names = json_array();
     json_t *none = json_pack("{s:i}", "maxItems", 0), *some = json_pack("{s:i}", "minItems", 1);
     for (int i = 0; tobi_method_name(i); i++)
-        if (tobi_method_at(i)->fields & TOBI_MPM)
+        if (tobi_method_at(i)->solids)
             json_array_append_new(names, json_string(tobi_method_at(i)->name));
     json_object_set_new(schema, "if", json_pack("{s:[s],s:{s:{s:o}}}", "required", "method", "properties",
                                                 "method", "enum", names));

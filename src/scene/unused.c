@@ -58,8 +58,8 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     const tobi_method *method = tobi_method_find(scene->world.method);
     const tobi_mlsmpm_def *solids = scene->method == &tobi_mlsmpm_table ? scene->method_def : NULL;
     switch (who) {
-    case SPH: return (method->fields & TOBI_SPH) != 0;
-    case SOLIDS: return (method->fields & TOBI_MPM) != 0;
+    case SPH: return !method->solids;
+    case SOLIDS: return method->solids;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;

@@ -6,8 +6,10 @@
    - Conjugate gradients with warm start replace the Jacobi sweeps: the same two pair passes per
      iteration. A multigrid cycle preconditions them, so that iterations hardly grow with the depth.
    Drawback: a free surface is an active set chosen at the start of a solve, not during it. */
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
 #include "sph/dfsph.h"
-#include "core/boundary.h"
+#include "sph/boundary.h"
 #include "linear/multigrid.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
@@ -34,6 +36,7 @@ static const double PULL_TOLERANCE = 1e-3;
 static const double SHIFTING_SUPPORT = 2.5;
 
 typedef struct dfsph {
+    sph_state common;                            /* comes first */
     tobi_dfsph_def def;
     sph_view view;
     const sph_kernels *kernel;
@@ -86,13 +89,13 @@ static void bind_view(tobi_system *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
-    tobi_particles *p = &s->particles;
+    const sph_fields *p = sph_fields_of(&s->particles);
     v->midway = v->exact;
     v->lean[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
     v->lean[1] = p->residual;
     v->lean[2] = p->correction;
     sph_still_set(s, m->memory.level);
-    v->still = s->still;
+    v->still = sph_of(s)->still;
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err)
@@ -155,7 +158,7 @@ static double relative_residual(const tobi_system *s, const dfsph *m, const line
 /* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
 static double precondition(tobi_system *s, dfsph *m, const linear_solve *q, double jacobi)
 {
-    const tobi_particles *p = &s->particles;
+    const sph_fields *p = sph_fields_of(&s->particles);
     if (!q->grid) return jacobi;
     return jacobi + tobi_multigrid_apply(&m->grid, &s->sim->exec, p->residual, p->precondition);
 }
@@ -235,7 +238,7 @@ static tobi_status look_into_vessel(tobi_system *s, dfsph *m, double *clock, tob
 {
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     if (m->memory.vessel == SPH_VESSEL_OPEN) return TOBI_OK;
-    tobi_system_fill_up(s);
+    sph_fill_up(s);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -260,12 +263,13 @@ static void apply_forces(tobi_system *s, dfsph *m, double *clock)
 /* A surface particle has pressure 0 about a spacing outside, over its share of the surface. */
 static void set_grid(tobi_system *s, dfsph *m)
 {
+    const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     const double d = s->smoothing.spacing, strength = m->view.inverse_density[0];
     const tobi_grid_weights w = {.strength = strength,
                                  .volume = s->smoothing.volume,
-                                 .active = s->particles.precondition,
-                                 .marked = s->particles.surface,
+                                 .active = f->precondition,
+                                 .marked = f->surface,
                                  .hold = strength/(d*d)};
     tobi_multigrid_set(&m->grid, &s->sim->exec, &points, &w);
 }
@@ -275,7 +279,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS];
-    m->view.pressure = s->particles.pressure;
+    m->view.pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_pressure_accel, NULL);
     launch(s, m, k->sph_source, t);
@@ -315,7 +319,7 @@ static void shift_positions(tobi_system *s, dfsph *m)
    in 1e5 as well. */
 static int has_void(const tobi_system *s)
 {
-    return s->open > (s->box.dimension == 3 ? 20 : 6) + 1e-5*(double)s->particles.count;
+    return sph_of(s)->open > (s->box.dimension == 3 ? 20 : 6) + 1e-5*(double)s->particles.count;
 }
 
 /* Shift of positions that takes out the density error; left in accel. A cavity in a full vessel shows as
@@ -325,7 +329,7 @@ static int has_void(const tobi_system *s)
 static void correct_density(tobi_system *s, dfsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
-    m->view.pressure = s->particles.correction;
+    m->view.pressure = sph_fields_of(&s->particles)->correction;
     launch(s, m, m->kernel->sph_density_residual, t);
     double mean = t[2]*s->dt*s->dt/(double)s->particles.count;
     int full = m->memory.vessel == SPH_VESSEL_FULL, closes = has_void(s) && mean > m->def.density_tolerance;
@@ -460,7 +464,7 @@ static void move(tobi_system *s)
     dfsph *m = s->state;
     double clock = tobi_clock();
     sph_measure_forces(s, &m->view, m->kernel, &clock);
-    tobi_system_add_hydrostatic(s);
+    sph_add_hydrostatic(s);
     tobi_couple_correct(s);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
 }
@@ -493,6 +497,7 @@ static void follow_gravity(tobi_system *s, int loaded)
 static void free_state(void *state)
 {
     dfsph *m = state;
+    if (m) tobi_near_free(&m->common.near);
     if (m) tobi_multigrid_free(&m->grid);
     if (m) sph_undo_free(&m->undo);
     free(m);
@@ -502,8 +507,9 @@ const tobi_method tobi_dfsph = {
     .name = "dfsph",
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
     .def_size = sizeof(tobi_dfsph_def),
-    .fields = TOBI_SPH,
-    .body_fields = TOBI_WETTED,
+    .fields = &sph_field_list,
+    .outputs = sph_outputs,
+    .needs = sph_needs,
     .smoothing = choose_smoothing,
     .create = create,
     .max_dt = choose_dt,
@@ -515,8 +521,10 @@ const tobi_method tobi_dfsph = {
     .move = move,
     .finish = sph_finish,
     .refresh = refresh,
+    .read = sph_read,
     .derive = derive,
     .memory = list_memory,
     .follow_gravity = follow_gravity,
+    .bytes = sph_bytes,
     .free = free_state,
 };

@@ -1,5 +1,6 @@
 /* Turns kernels.def into loops, compiled once per instruction set. */
 #include "sph/kernels.h"
+#include "sph/couple.k.h"
 #include "sph/filter.k.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
@@ -10,7 +11,7 @@
 #define JOIN(a, b) JOIN_(a, b)
 
 /* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one. */
-#define PAIR(K)                                                                                     \
+#define PAIR(K, SUMS, MAXIMA, DOC)                                                                  \
     typedef K##_acc K##_wendland_acc, K##_cubic_acc;                                                \
     TOBI_FN void K##_wendland_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \
     TOBI_FN void K##_cubic_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); }  \
@@ -24,22 +25,26 @@
     { K##_finish(v, i, a, t); }                                                                     \
     TOBI_PAIR_LOOP(K##_wendland, sph_view, run_##K##_wendland)                                      \
     TOBI_PAIR_LOOP(K##_cubic, sph_view, run_##K##_cubic)
-#define FOR(K) TOBI_FOR_LOOP(K, sph_view, run_##K)
+#define FOR(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, sph_view, run_##K)
+#define COUPLE(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_couple_view, run_##K)
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
+#undef COUPLE
 
 const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
     {
-#define PAIR(K) .K = run_##K##_wendland,
-#define FOR(K) .K = run_##K,
+#define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_wendland, SUMS, MAXIMA},
+#define FOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
+#define COUPLE FOR
 #include "sph/kernels.def"
 #undef PAIR
     },
     {
-#define PAIR(K) .K = run_##K##_cubic,
+#define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_cubic, SUMS, MAXIMA},
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
+#undef COUPLE
     },
 };

@@ -4,11 +4,13 @@
 #include "sph/view.h"
 
 typedef struct sph_kernels {
-#define PAIR(K) tobi_kernel K;
-#define FOR(K) tobi_kernel K;
+#define PAIR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+#define FOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
+#define COUPLE FOR
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
+#undef COUPLE
 } sph_kernels;
 
 /* shape: TOBI_SHAPE_*; isa: exec's level. Static data, never NULL. */

@@ -3,7 +3,7 @@
    V grad W = -slope falloff x_ij (core/smoothing). Equation numbers: docs/theory/dfsph.md. */
 #pragma once
 #include "core/smoothing.k.h"
-#include "core/wall_law.h"
+#include "sph/wall_law.h"
 #include "exec/pairs.h"
 #include "sph/tensor.k.h"
 #include "sph/view.h"

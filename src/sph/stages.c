@@ -1,5 +1,6 @@
+#include "sph/state.h"
 #include "sph/stages.h"
-#include "core/boundary.h"
+#include "sph/boundary.h"
 #include <math.h>
 #include <string.h>
 
@@ -45,20 +46,21 @@ static double band_depth(const tobi_smoothing_constants *c)
 void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_smoothing_constants *c = &s->smoothing;
     v->count = p->count;
-    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->stretch = p->stretch; v->shear = p->shear; v->beside = p->beside;
-    v->wall = p->wall; v->normal = p->normal; v->capillary = p->capillary;
-    v->density = p->density;
-    v->diagonal = p->diagonal;
-    v->precondition = p->precondition;
-    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
+    v->position = p->position; v->record = s->cells.record; v->velocity = p->velocity; v->accel = f->accel;
+    v->stretch = f->stretch; v->shear = f->shear; v->beside = f->beside;
+    v->wall = f->wall; v->normal = f->normal; v->capillary = f->capillary;
+    v->density = f->density;
+    v->diagonal = f->diagonal;
+    v->precondition = f->precondition;
+    v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
     v->full = vessel == SPH_VESSEL_FULL;
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
-    v->near = s->sim->body_count > 0 ? p->near : NULL;
-    v->fluid = p->fluid; v->list_start = p->list_start; v->list_groups = p->list_groups;
+    v->near = s->sim->body_count > 0 ? f->near : NULL;
+    v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
     v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
@@ -121,7 +123,8 @@ void sph_use_dt(const tobi_system *s, sph_view *v)
 
 tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 {
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &s->sim->exec);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, f->pressure, &s->sim->exec);
     tobi_stage_end(&s->sim->stages, "sort", clock);
     TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->sim->exec, err));
     tobi_stage_end(&s->sim->stages, "neighbours", clock);
@@ -151,10 +154,10 @@ tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels 
     double t[TOBI_TOTALS], count = (double)s->particles.count;
     if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
     TOBI_TRY(sph_see_walls(s, v, k, clock, err));
-    v->pressure = s->particles.pressure;
+    v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
-    s->lowest = t[7];
+    sph_of(s)->lowest = t[7];
     int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
     *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
     return TOBI_OK;
@@ -163,15 +166,16 @@ tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels 
 double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, double smooth,
                            double *clock)
 {
+    sph_state *state = sph_of(s);
     double t[TOBI_TOTALS], count = (double)s->particles.count;
-    v->pressure = s->particles.pressure;
+    v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = (float)smooth;
     launch(s, v, k->sph_density, t);
     s->info.density_error_mean = t[0]/count;
     s->info.density_error_max = t[6];
     s->info.surface_share = t[1]/count;
-    s->lowest = t[7];
-    s->open = t[3];
+    state->lowest = t[7];
+    state->open = t[3];
     double diagonal = t[2]/count;
     v->isolated = (float)(ISOLATED*diagonal);
     tobi_stage_end(&s->sim->stages, "density", clock);
@@ -224,10 +228,10 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
 void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     double t[TOBI_TOTALS];
-    v->pressure = s->particles.pressure;
+    v->pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
-    s->still_volume = t[3]*s->smoothing.volume;
+    sph_of(s)->still_volume = t[3]*s->smoothing.volume;
     if (s->sim->body_count > 0) tobi_boundary_load(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
@@ -254,7 +258,7 @@ void sph_finish(tobi_system *s)
     }
     if (s->sim->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
-    s->info.contacts += s->near.contacts;
+    s->info.contacts += sph_of(s)->near.contacts;
     tobi_stage_end(&s->sim->stages, "motion", &clock);
 }
 
@@ -263,7 +267,8 @@ void sph_finish(tobi_system *s)
 static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     tobi_particles *p = &s->particles;
-    float *kept[3] = {p->residual, p->delta, p->correction}, dt = v->dt;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    float *kept[3] = {f->residual, f->delta, f->correction}, dt = v->dt;
     double step = s->dt;
     for (int64_t i = 0; i < p->count; i++)
         for (int a = 0; a < 3; a++) kept[a][i] = (&p->velocity[i].x)[a];
@@ -280,11 +285,11 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
             float kick = (&p->velocity[i].x)[a] - kept[a][i];
             (&p->velocity[i].x)[a] = kept[a][i];
             kept[a][i] = kick;
-            p->record[i].w = p->pressure[i];
+            s->cells.record[i].w = f->pressure[i];
         }
     launch(s, v, k->sph_pressure_accel, NULL);
     for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) (&p->accel[i].x)[a] += kept[a][i];
+        for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += kept[a][i];
 }
 
 void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field)

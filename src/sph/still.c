@@ -1,3 +1,5 @@
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
 #include "sph/still.h"
 #include <math.h>
 
@@ -8,7 +10,7 @@ enum { DROPS = 1024 };
 
 void sph_still_set(tobi_system *s, double low)
 {
-    tobi_still *w = &s->still;
+    tobi_still *w = &sph_of(s)->still;
     double g2 = 0, h = s->smoothing.h;
     *w = (tobi_still){.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
     w->level = low - 0.5*s->smoothing.spacing;
@@ -39,10 +41,11 @@ static void count_drops(const void *view, int64_t begin, int64_t end)
 
 double sph_still_low(tobi_system *s)
 {
+    sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
-    double scale = DROPS/(1.0001*s->lowest);
-    const counting view = { s->particles.delta, scale, n };
-    if (!(s->lowest > 0)) return 0;
+    double scale = DROPS/(1.0001*state->lowest);
+    const counting view = { sph_fields_of(&s->particles)->delta, scale, n };
+    if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
@@ -56,7 +59,7 @@ static double follow(const tobi_system *s, double before, double low, double spe
 {
     double g = 0;
     if (!(low > 0) || !(before > 0)) return low;
-    for (int a = 0; a < 3; a++) g += s->still.down[a]*s->gravity[a];
+    for (int a = 0; a < 3; a++) g += sph_of(s)->still.down[a]*s->gravity[a];
     double rise = 0.1*sqrt(g*s->smoothing.spacing)*s->dt;
     return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
@@ -64,7 +67,7 @@ static double follow(const tobi_system *s, double before, double low, double spe
 void sph_still_move(tobi_system *s, tobi_still *before, double low, double speed, double *level)
 {
     sph_still_set(s, *level);
-    *before = s->still;
+    *before = sph_of(s)->still;
     *level = follow(s, *level, low, speed);
 }
 
@@ -74,10 +77,11 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
 {
     const referring *r = view;
     const tobi_particles *p = &r->s->particles;
+    const sph_fields *f = sph_fields_of(&r->s->particles);
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
-        p->pressure[i] += (float)(r->sign*tobi_still_pressure(&r->s->still, x));
+        f->pressure[i] += (float)(r->sign*tobi_still_pressure(&sph_of(r->s)->still, x));
     }
 }
 
@@ -85,14 +89,15 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
 static void add_reference(tobi_system *s, int sign)
 {
     const referring r = { s, sign };
-    if (s->still.push > 0) tobi_launch(&s->sim->exec, add_range, &r, 0, s->particles.count, NULL);
+    if (sph_of(s)->still.push > 0)
+        tobi_launch(&s->sim->exec, TOBI_HOST(add_range, 0, 0), &r, 0, s->particles.count, NULL);
 }
 
 static void bind(tobi_system *s, sph_view *v, const sph_surface *f)
 {
     sph_bind_view(s, v, *f->vessel);
     sph_still_set(s, *f->level);
-    v->still = s->still;
+    v->still = sph_of(s)->still;
 }
 
 void sph_still_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f)
@@ -102,7 +107,7 @@ void sph_still_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const s
     if (s->step > 0) add_reference(s, 1);
     *f->low = *f->level = 0;
     if (s->step == 0) *f->vessel = SPH_VESSEL_UNKNOWN;
-    if (*f->vessel == SPH_VESSEL_FULL) tobi_system_fill_up(s);
+    if (*f->vessel == SPH_VESSEL_FULL) sph_fill_up(s);
     if (*f->vessel != SPH_VESSEL_OPEN) return;
     bind(s, v, f);
     sph_measure_density(s, v, k, 0, &clock);

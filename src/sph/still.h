@@ -1,4 +1,4 @@
-/* Where the reference pressure of still water begins (core/still.h), step by step. */
+/* Where the reference pressure of still water begins (sph/still_water.h), step by step. */
 #pragma once
 #include "core/system.h"
 #include "sph/stages.h"

@@ -2,6 +2,7 @@
    copied, and in the first step, which may settle the lattice around bodies, every field of the state. What a
    step finds anew each time is not kept. Drawback: 20 bytes per particle, copied in each step, for callers
    who may stop one. */
+#include "sph/state.h"
 #include "sph/undo.h"
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@ tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memo
     memcpy(u->gravity, s->gravity, sizeof u->gravity);
     u->dt = s->dt;
     u->body_speed = s->sim->body_speed;
-    u->still = s->still;
+    u->still = sph_of(s)->still;
     u->info = s->info;
     u->kept = 0;
     for (int k = 0; k < s->sim->body_count; k++)
@@ -43,16 +44,17 @@ static int changes(const tobi_system *s, const char *field)
 tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
 {
     for (int k = 0; s->sim->stop && k < SPH_UNDO_FIELDS; k++) {
-        const tobi_field_ref f = tobi_particles_state(&s->particles, k);
-        if (!f.name || !changes(s, f.name)) {
+        void *data;
+        const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
+        if (!f || !changes(s, f->name)) {
             free(u->field[k]);
             u->field[k] = NULL;
             continue;
         }
-        if (!u->field[k]) u->field[k] = malloc((size_t)(s->particles.capacity + 1)*f.bytes);
+        if (!u->field[k]) u->field[k] = malloc((size_t)(s->particles.capacity + 1)*f->bytes);
         if (!u->field[k]) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
-        copying c = { u->field[k], f.data, f.bytes };
-        tobi_launch(&s->sim->exec, copy_range, &c, 0, s->particles.count, NULL);
+        copying c = { u->field[k], data, f->bytes };
+        tobi_launch(&s->sim->exec, TOBI_HOST(copy_range, 0, 0), &c, 0, s->particles.count, NULL);
     }
     u->kept = 1;
     return TOBI_OK;
@@ -64,15 +66,16 @@ void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
     memcpy(s->gravity, u->gravity, sizeof u->gravity);
     s->dt = u->dt;
     s->sim->body_speed = u->body_speed;
-    s->still = u->still;
+    sph_of(s)->still = u->still;
     s->info = u->info;
     for (int k = 0; k < s->sim->body_count; k++) {
         s->sim->bodies[k].rigid = u->body[k].rigid;
         s->sim->bodies[k].info = u->body[k].info;
     }
     for (int k = 0; k < SPH_UNDO_FIELDS; k++) {
-        const tobi_field_ref f = tobi_particles_state(&s->particles, k);
-        if (u->kept && u->field[k]) memcpy(f.data, u->field[k], (size_t)s->particles.count*f.bytes);
+        void *data;
+        const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
+        if (f && u->kept && u->field[k]) memcpy(data, u->field[k], (size_t)s->particles.count*f->bytes);
     }
 }
 

@@ -1,6 +1,7 @@
 /* Taking back a step that the caller stops within: what it may have changed by then, as it was before. */
 #pragma once
 #include "core/system.h"
+#include "sph/still_water.h"
 
 enum { SPH_UNDO_MEMORY = 8, SPH_UNDO_FIELDS = 8 };
 

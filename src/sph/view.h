@@ -1,9 +1,9 @@
 /* Everything an SPH kernel may read or write, as plain pointers and constants. */
 #pragma once
-#include "core/smoothing.h"
-#include "core/still.h"
+#include "core/wall_table.h"
 #include "exec/portable.h"
 #include "linear/grid.h"
+#include "sph/still_water.h"
 
 enum { TOBI_MAX_FLUIDS = 8 };
 

@@ -3,8 +3,10 @@
    at a surface and the kernel's share of walls are no compression; a position shift keeps the particles'
    own density from drifting away from it (docs/theory/wcsph.md). Operators, walls and bodies are those
    of DFSPH. Drawback: the step is that of sound, and pressure waves of the start ring on for a while. */
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
 #include "sph/wcsph.h"
-#include "core/boundary.h"
+#include "sph/boundary.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/still.h"
@@ -17,6 +19,7 @@ static const double PRESSURE_SMOOTHING = 0.25;
 static const double RELAXATION = 0.05;
 
 typedef struct wcsph {
+    sph_state common;                            /* comes first */
     tobi_wcsph_def def;
     sph_view view;
     const sph_kernels *kernel;
@@ -74,7 +77,7 @@ static void bind_view(tobi_system *s, wcsph *m)
     double d = s->smoothing.spacing;
     sph_bind_view(s, v, m->memory.vessel);
     sph_still_set(s, m->memory.level);
-    v->still = s->still;
+    v->still = sph_of(s)->still;
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
@@ -103,7 +106,9 @@ static double choose_dt(tobi_system *s)
    count. */
 static double find_surface(tobi_system *s)
 {
-    for (int64_t k = 0; k < s->near.count; k++) s->particles.delta[s->near.entry[k].particle] = 0;
+    sph_state *state = sph_of(s);
+    const sph_fields *f = sph_fields_of(&s->particles);
+    for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.entry[k].particle] = 0;
     return sph_still_low(s);
 }
 
@@ -112,7 +117,7 @@ static void start_at_rest(tobi_system *s, wcsph *m)
 {
     if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
-    m->view.still_before = s->still;
+    m->view.still_before = sph_of(s)->still;
     launch(s, m, m->kernel->sph_rest, NULL);
 }
 
@@ -122,7 +127,7 @@ static tobi_status find_neighbors(tobi_system *s, wcsph *m, double *clock, tobi_
     bind_view(s, m);
     int new = m->memory.vessel == SPH_VESSEL_UNKNOWN;
     TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
-    if (m->memory.vessel == SPH_VESSEL_FULL) tobi_system_fill_up(s);
+    if (m->memory.vessel == SPH_VESSEL_FULL) sph_fill_up(s);
     if (new) start_at_rest(s, m);
     bind_view(s, m);
     return TOBI_OK;
@@ -158,10 +163,11 @@ static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
 /* Walls feel the pressure with its damping, which stands in delta. */
 static void measure_forces(tobi_system *s, wcsph *m, double *clock)
 {
-    float *state = s->particles.pressure;
-    s->particles.pressure = s->particles.delta;
+    sph_fields *f = sph_fields_of(&s->particles);
+    float *state = f->pressure;
+    f->pressure = f->delta;
     sph_measure_forces(s, &m->view, m->kernel, clock);
-    m->view.pressure = s->particles.pressure = state;
+    m->view.pressure = f->pressure = state;
 }
 
 static void shift_positions(tobi_system *s, wcsph *m, double *clock)
@@ -208,7 +214,7 @@ static void move(tobi_system *s)
     wcsph *m = s->state;
     double clock = tobi_clock();
     measure_forces(s, m, &clock);
-    tobi_system_add_hydrostatic(s);
+    sph_add_hydrostatic(s);
     tobi_couple_correct(s);
     shift_positions(s, m, &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
@@ -238,14 +244,19 @@ static void follow_gravity(tobi_system *s, int loaded)
     if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
 }
 
-static void free_state(void *state) { free(state); }
+static void free_state(void *state)
+{
+    if (state) tobi_near_free(&((wcsph *)state)->common.near);
+    free(state);
+}
 
 const tobi_method tobi_wcsph = {
     .name = "wcsph",
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
     .def_size = sizeof(tobi_wcsph_def),
-    .fields = TOBI_SPH,
-    .body_fields = TOBI_WETTED,
+    .fields = &sph_field_list,
+    .outputs = sph_outputs,
+    .needs = sph_needs,
     .smoothing = choose_smoothing,
     .create = create,
     .max_dt = choose_dt,
@@ -256,8 +267,10 @@ const tobi_method tobi_wcsph = {
     .finish = sph_finish,
     .stable_dt = limit_dt,
     .refresh = refresh,
+    .read = sph_read,
     .derive = derive,
     .memory = list_memory,
     .follow_gravity = follow_gravity,
+    .bytes = sph_bytes,
     .free = free_state,
 };

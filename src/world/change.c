@@ -125,7 +125,7 @@ tobi_status tobi_world_set_body_motion(tobi_world *w, int body, tobi_motion_fn m
                                        tobi_error *err)
 {
     tobi_body *b;
-    double jump;
+    double jump = 0;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(motion, "the motion");
     TOBI_TRY(find_body(w, body, &b, err));

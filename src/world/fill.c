@@ -80,9 +80,6 @@ static void add_particle(tobi_system *s, const tobi_region *r, const double x[3]
     p->position[i] = (tobi_double3){x[0], x[1], x[2]};
     p->velocity[i] = (tobi_float4){(float)v[0], (float)v[1], s->box.dimension == 3 ? (float)v[2] : 0, 0};
     p->fluid[i] = (uint8_t)r->owner;
-    p->id[i] = i;
-    if (p->pressure) p->pressure[i] = 0;
-    if (p->rest) p->rest[i] = (tobi_float4){(float)x[0], (float)x[1], (float)x[2], 0};
 }
 
 /* What the region's flow adds to the velocities of its particles. */
@@ -114,23 +111,6 @@ static tobi_status add_flow(tobi_system *s, tobi_region *r, int64_t first, tobi_
     return status;
 }
 
-/* Solids: the particles of a region share its exact volume, those that were cut off included. */
-static void set_volumes(tobi_system *s, const tobi_region *r, int64_t first, int64_t whole)
-{
-    tobi_particles *p = &s->particles;
-    if (!p->strain) return;
-    double volume = r->volume/(double)whole, density = s->solids[r->owner].def.density;
-    float w[3] = {(float)r->spin[0], (float)r->spin[1], (float)r->spin[2]};
-    tobi_columns turning = {{{0, w[2], -w[1], 0}, {-w[2], 0, w[0], 0}, {w[1], -w[0], 0, 0}}};
-    if (s->box.dimension == 2) turning.c[0].z = turning.c[1].z = turning.c[2].x = turning.c[2].y = 0;
-    for (int64_t i = first; i < p->count; i++) {
-        p->strain[i] = (tobi_columns){0};
-        p->affine[i] = turning;
-        p->strain[i].c[0].w = (float)volume;
-        p->strain[i].c[2].w = (float)(density*volume);
-    }
-}
-
 /* Spacings: three layers of a lattice that is cut across its diagonal. With less the core shows through. */
 #define SKIN 1.75
 
@@ -149,32 +129,38 @@ static double find_depth(const tobi_region *r, const tobi_bvh *tree, const doubl
     return r->radius > 0 ? fmin(most, r->radius - sqrt(square)) : depth;
 }
 
-typedef struct marking {
-    const tobi_system *s;
+typedef struct starting {
+    tobi_system *s;
     const tobi_region *region;
     const tobi_bvh *tree;
-    int64_t first;
-} marking;
+    int64_t first, whole;
+} starting;
 
-static void mark_range(const void *view, int64_t begin, int64_t end)
+static void start_range(const void *view, int64_t begin, int64_t end)
 {
-    const marking *m = view;
-    const tobi_system *s = m->s;
-    const tobi_particles *p = &s->particles;
-    const double skin = SKIN*s->smoothing.spacing;
+    const starting *m = view;
+    tobi_system *s = m->s;
+    const tobi_region *r = m->region;
+    const tobi_solid_def *def = &s->solids[r->owner].def;
+    const double skin = SKIN*s->smoothing.spacing, volume = r->volume/(double)m->whole;
+    tobi_start start = { .volume = volume, .mass = def->density*volume };
+    memcpy(start.spin, r->spin, sizeof start.spin);
     for (int64_t i = m->first + begin; i < m->first + end; i++) {
         double x[3];
-        for (int a = 0; a < 3; a++) x[a] = (&p->position[i].x)[a] + s->box.lower[a];
-        p->rest[i].w = find_depth(m->region, m->tree, x, s->box.dimension, 2*skin) > skin;
+        for (int a = 0; a < 3; a++) x[a] = (&s->particles.position[i].x)[a] + s->box.lower[a];
+        start.core = def->core_color[0] >= 0 && find_depth(r, m->tree, x, s->box.dimension, 2*skin) > skin;
+        s->method->place(s, i, &start);
     }
 }
 
-/* Marks the particles below the skin, of solids that show them in pictures. */
-static void mark_core(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, int64_t first)
+/* Solids: the particles of a region share its exact volume, those that were cut off included (`whole`). Those
+   below the skin are the core, of solids that show it in pictures. */
+static void start_solids(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, int64_t first,
+                         int64_t whole)
 {
-    const marking view = { s, r, tree, first };
-    if (!s->particles.rest || s->solids[r->owner].def.core_color[0] < 0) return;
-    tobi_loop(s->sim->exec.threads, s->particles.count - first, 0, mark_range, &view);
+    const starting view = { s, r, tree, first, whole };
+    if (s->method->solids && s->method->place)
+        tobi_loop(s->sim->exec.threads, s->particles.count - first, 0, start_range, &view);
 }
 
 static int inside_region(const tobi_region *r, const tobi_bvh *tree, const double x[3], int dimension)
@@ -243,8 +229,7 @@ static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, do
     }
     r->placed = s->particles.count - first;
     TOBI_TRY(add_flow(s, r, first, err));
-    set_volumes(s, r, first, count);
-    mark_core(s, r, tree, first);
+    start_solids(s, r, tree, first, count);
     return TOBI_OK;
 }
 

@@ -19,19 +19,6 @@ static entry name_entry(int number, const char *what)
     return e;
 }
 
-/* A state field as columns of a basic type. */
-static void shape_of(const tobi_field_ref *f, tobi_vtk_type *type, int *components)
-{
-    *components = f->bytes == sizeof(tobi_double3)   ? 3
-                  : f->bytes == sizeof(tobi_columns) ? 12
-                  : f->bytes == sizeof(tobi_float4)  ? 4
-                                                     : 1;
-    *type = f->bytes == sizeof(tobi_double3) ? TOBI_F64
-            : f->bytes % 16 == 0 || f->bytes == 4 ? TOBI_F32
-            : f->bytes == 8                   ? TOBI_I64
-                                              : TOBI_U8;
-}
-
 /* What the method keeps besides. */
 static tobi_status put_rows(const tobi_system *s, int number, tobi_store *f, tobi_error *err)
 {
@@ -65,14 +52,13 @@ tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_erro
                             err));
     TOBI_TRY(tobi_store_put(f, name_entry(number, "memory").name, TOBI_F64, n, 1, memory, err));
     TOBI_TRY(put_rows(s, number, f, err));
+    TOBI_TRY(tobi_store_put_int(f, name_entry(number, "next_id").name, s->particles.next_id, err));
     for (int k = 0;; k++) {
-        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
-        tobi_vtk_type type;
-        int components;
-        if (!r.name) return TOBI_OK;
-        shape_of(&r, &type, &components);
-        TOBI_TRY(tobi_store_put(f, name_entry(number, r.name).name, type, s->particles.count, components,
-                                r.data, err));
+        void *data;
+        const tobi_field *r = tobi_particles_state(&s->particles, k, &data);
+        if (!r) return TOBI_OK;
+        TOBI_TRY(tobi_store_put(f, name_entry(number, r->name).name, r->type, s->particles.count,
+                                r->components, data, err));
     }
 }
 
@@ -146,17 +132,15 @@ static tobi_status read_fields(tobi_system *s, int number, tobi_store *f, const 
                                tobi_loaded_system *l, tobi_error *err)
 {
     for (int k = 0; k < TOBI_LOADED_FIELDS; k++) {
-        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
-        tobi_vtk_type type;
-        int components;
-        if (!r.name) break;
-        shape_of(&r, &type, &components);
-        l->field[k] = malloc((size_t)(l->count + 1)*r.bytes);
+        void *data;
+        const tobi_field *r = tobi_particles_state(&s->particles, k, &data);
+        if (!r) break;
+        l->field[k] = malloc((size_t)(l->count + 1)*r->bytes);
         if (!l->field[k])
             return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld particles of %s", (long long)l->count,
                              path);
-        TOBI_TRY(tobi_store_get(f, name_entry(number, r.name).name, type, l->count, components, l->field[k],
-                                err));
+        TOBI_TRY(tobi_store_get(f, name_entry(number, r->name).name, r->type, l->count, r->components,
+                                l->field[k], err));
     }
     return TOBI_OK;
 }
@@ -172,44 +156,65 @@ static int is_astray(const tobi_system *s, const double *x)
     return 0;
 }
 
-/* A row that would lead outside the arrays, or is no number. seen: one byte for each id, all 0. */
-static int is_bad_row(const tobi_system *s, const tobi_field_ref *f, const void *data, int64_t i,
-                      char *seen)
+/* A row that would lead outside the arrays, or is no number. */
+static int is_bad_row(const tobi_system *s, const tobi_field *f, const void *data, int64_t i,
+                      int64_t next_id)
 {
     const float *number = (const float *)((const char *)data + (size_t)i*f->bytes);
     if (strcmp(f->name, "id") == 0) {
         const int64_t id = ((const int64_t *)data)[i];
-        return id < 0 || id >= s->particles.capacity || seen[id]++;
+        return id < 0 || id >= next_id;
     }
     if (strcmp(f->name, "fluid") == 0)
         return ((const uint8_t *)data)[i] >= (s->solid_count ? s->solid_count : s->fluid_count);
     if (strcmp(f->name, "position") == 0) return is_astray(s, &((const tobi_double3 *)data)[i].x);
     int good = 1;
-    for (size_t k = 0; k < f->bytes/sizeof *number; k++) good &= isfinite(number[k]) != 0;
+    for (int k = 0; f->type == TOBI_F32 && k < f->components; k++) good &= isfinite(number[k]) != 0;
     return !good;
+}
+
+static int compare_ids(const void *p, const void *q)
+{
+    const int64_t x = *(const int64_t *)p, y = *(const int64_t *)q;
+    return (x > y) - (x < y);
+}
+
+/* The row whose id another one has, too, -1 = none. Without memory none is found. */
+static int64_t find_twin(const int64_t *id, int64_t count)
+{
+    int64_t *sorted = malloc((size_t)(count + 1)*sizeof *sorted), twin = -1;
+    if (!sorted) return -1;
+    memcpy(sorted, id, (size_t)count*sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_ids);
+    for (int64_t k = 1; k < count && twin < 0; k++)
+        for (int64_t i = 0; sorted[k] == sorted[k - 1] && i < count; i++)
+            if (id[i] == sorted[k]) twin = i;
+    free(sorted);
+    return twin;
 }
 
 static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loaded_system *l,
                                 tobi_error *err)
 {
-    char *seen = calloc((size_t)s->particles.capacity + 1, 1);
-    if (!seen) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to check %s", path);
-    tobi_status status = TOBI_OK;
     for (int k = 0; k < TOBI_LOADED_FIELDS && l->field[k]; k++) {
-        const tobi_field_ref field = tobi_particles_state(&s->particles, k);
-        for (int64_t i = 0; i < l->count && status == TOBI_OK; i++)
-            if (is_bad_row(s, &field, l->field[k], i, seen))
-                status = tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can "
-                                   "have", path, (long long)i, field.name);
+        void *data;
+        const tobi_field *field = tobi_particles_state(&s->particles, k, &data);
+        int64_t bad = -1;
+        for (int64_t i = 0; i < l->count && bad < 0; i++)
+            if (is_bad_row(s, field, l->field[k], i, l->next_id)) bad = i;
+        if (bad < 0 && strcmp(field->name, "id") == 0) bad = find_twin(l->field[k], l->count);
+        if (bad >= 0)
+            return tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can have", path,
+                             (long long)bad, field->name);
     }
-    free(seen);
-    return status;
+    return TOBI_OK;
 }
 
 tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const char *path,
                             tobi_loaded_system *l, tobi_error *err)
 {
     TOBI_TRY(tobi_store_rows(f, name_entry(number, "id").name, &l->count, err));
+    TOBI_TRY(tobi_store_get_int(f, name_entry(number, "next_id").name, &l->next_id, err));
     TOBI_TRY(check_scene(s, number, f, path, l, err));
     TOBI_TRY(read_clock(number, f, l, err));
     TOBI_TRY(read_memory(s, number, f, path, l, err));
@@ -222,10 +227,12 @@ void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
 {
     double *memory;
     for (int k = 0; k < TOBI_LOADED_FIELDS && l->field[k]; k++) {
-        const tobi_field_ref r = tobi_particles_state(&s->particles, k);
-        memcpy(r.data, l->field[k], (size_t)l->count*r.bytes);
+        void *data;
+        const tobi_field *r = tobi_particles_state(&s->particles, k, &data);
+        memcpy(data, l->field[k], (size_t)l->count*r->bytes);
     }
     s->particles.count = l->count;
+    s->particles.next_id = l->next_id;
     s->method->memory(s, &memory);
     memcpy(memory, l->memory, (size_t)l->memory_count*sizeof *memory);
     s->info = l->info;

@@ -7,7 +7,7 @@ enum { TOBI_LOADED_FIELDS = 16 };
 
 /* As read, before the system takes it over. */
 typedef struct tobi_loaded_system {
-    int64_t count, step;                  /* particles; its own steps                    */
+    int64_t count, step, next_id;         /* particles; its own steps; ids are below     */
     double clock[2];                      /* s, m/s: its last step, its start speed      */
     tobi_step_info info;
     double *memory;                       /* of the method, owned                        */

@@ -110,7 +110,7 @@ static int try_spacing(tobi_exec *x, trial *t, double *points)
     int32_t *parent = malloc(((size_t)count + 1)*sizeof *parent);
     int pieces = 0;
     if (t->inside && parent) {
-        tobi_launch(x, look, t, 0, (int64_t)count, NULL);
+        tobi_launch(x, TOBI_HOST(look, 0, 0), t, 0, (int64_t)count, NULL);
         pieces = count_linked(t, parent);
     }
     free(t->inside);

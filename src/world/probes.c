@@ -1,6 +1,6 @@
 /* The world's probes: added by definition, read by number. */
 #include "base/error.h"
-#include "core/probe.h"
+#include "sph/probe.h"
 #include "world/params.h"
 #include "world/world.h"
 #include <stdio.h>

@@ -1,53 +1,73 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
-#include "core/cuts.h"
 #include "world/step.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* owner: which methods have it; bodies: whether their particles have it too. Of 6: xx, yy, zz, xy, yz, zx, as
-   ParaView names them; of 9: by rows. */
-typedef struct known_field {
-    const char *name;
-    int components;
-    const char *unit;
-    int owner, bodies;
-} known_field;
-
-static const known_field fields[] = {
-    {"position", 3, "m", TOBI_ALL, 1},        {"velocity", 3, "m/s", TOBI_ALL, 1},
-    {"pressure", 1, "Pa", TOBI_ALL, 0},       {"density", 1, "kg/m3", TOBI_ALL, 1},
-    {"object_id", 1, "1", TOBI_ALL, 1},       {"particle_id", 1, "1", TOBI_ALL, 1},
-    {"acceleration", 3, "m/s2", TOBI_SPH, 0}, {"vorticity", 3, "1/s", TOBI_SPH, 0},
-    {"surface", 1, "1", TOBI_SPH, 0},         {"material", 1, "1", TOBI_MPM, 0},
-    {"von_mises", 1, "Pa", TOBI_MPM, 0},      {"stress", 6, "Pa", TOBI_MPM, 0},
-    {"J", 1, "1", TOBI_MPM, 0},               {"deformation_gradient", 9, "1", TOBI_MPM, 0},
-    {"plastic", 1, "1", TOBI_MPM, 0},         {"rest_position", 3, "m", TOBI_MPM, 0},
-    {"piece", 1, "1", TOBI_MPM, 0},           {"cut_side", 1, "1", TOBI_MPM, 0},
-    {"damage", 1, "1", TOBI_MPM, 0},          {"texture_coordinates", 2, "1", TOBI_MPM, 0},
+/* Fields for results that every method has; those of one method are in its `outputs`. */
+static const tobi_output common[] = {
+    { "position", 3, "m" },     { "velocity", 3, "m/s" }, { "pressure", 1, "Pa" },
+    { "density", 1, "kg/m3" },  { "object_id", 1, "1" },  { "particle_id", 1, "1" },
 };
-enum { FIELD_COUNT = sizeof fields/sizeof *fields };
+enum { COMMON = sizeof common/sizeof *common };
+
+/* Field k of a method, NULL past the last. */
+static const tobi_output *find_output(const tobi_method *m, int k)
+{
+    if (k < COMMON) return &common[k];
+    for (const tobi_output *o = m->outputs; o && o->name; o++)
+        if (k-- == COMMON) return o;
+    return NULL;
+}
+
+static const tobi_output *find_name(const tobi_method *m, const char *name)
+{
+    const tobi_output *o;
+    for (int k = 0; (o = find_output(m, k)); k++)
+        if (strcmp(o->name, name) == 0) return o;
+    return NULL;
+}
+
+/* Field number k of all methods: none is counted twice. */
+static const tobi_output *find_any(int k)
+{
+    if (k < 0) return NULL;
+    if (k < COMMON) return &common[k];
+    k -= COMMON;
+    for (int i = 0; tobi_method_at(i); i++)
+        for (const tobi_output *o = tobi_method_at(i)->outputs; o && o->name; o++) {
+            int before = 0;
+            for (int j = 0; j < i; j++) before |= find_name(tobi_method_at(j), o->name) != NULL;
+            if (!before && k-- == 0) return o;
+        }
+    return NULL;
+}
 
 int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS])
 {
     const tobi_method *m = tobi_method_find(method);
-    int owners = m ? TOBI_ALL | m->fields : ~0, count = 0;
-    for (int k = 0; k < FIELD_COUNT; k++)
-        if (fields[k].owner & owners) names[count++] = fields[k].name;
+    const tobi_output *o;
+    int count = 0;
+    while (count < TOBI_WORLD_FIELDS && (o = m ? find_output(m, count) : find_any(count)))
+        names[count++] = o->name;
     return count;
 }
 
 const char *tobi_world_field_name(int field, int *components, const char **unit)
 {
-    if (field < 0 || field >= FIELD_COUNT) return NULL;
-    if (components) *components = fields[field].components;
-    if (unit) *unit = fields[field].unit;
-    return fields[field].name;
+    const tobi_output *o = find_any(field);
+    if (!o) return NULL;
+    if (components) *components = o->components;
+    if (unit) *unit = o->unit;
+    return o->name;
 }
 
-int tobi_world_bodies_have(int field) { return fields[field].bodies; }
+int tobi_world_bodies_have(int field)
+{
+    return field < COMMON && strcmp(common[field].name, "pressure") != 0;
+}
 
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
 {
@@ -59,16 +79,20 @@ int64_t tobi_world_count(const tobi_world *w, tobi_set set)
     return n;
 }
 
-/* Ids go up to the capacity; those of particles that have left are passed over. */
-static void order_rows(tobi_system *s)
+static tobi_status order_rows(tobi_system *s, tobi_error *err)
 {
-    const tobi_particles *p = &s->particles;
-    int64_t n = 0;
-    if (p->count < p->capacity) memset(s->row_of, -1, (size_t)p->capacity*sizeof *s->row_of);
-    for (int64_t i = 0; i < p->count; i++) s->row_of[p->id[i]] = (int32_t)i;
-    if (p->count == p->capacity) return;
-    for (int64_t id = 0; id < p->capacity; id++)
-        if (s->row_of[id] >= 0) s->row_of[n++] = s->row_of[id];
+    const int64_t n = s->particles.count;
+    if (s->row_capacity < n) {
+        free(s->row_of);
+        s->row_capacity = n + n/8;
+        s->row_of = malloc((size_t)s->row_capacity*sizeof *s->row_of);
+    }
+    int32_t *spare = malloc((size_t)(n + 1)*sizeof *spare);
+    if (spare && (s->row_of || n == 0)) tobi_particles_order(&s->particles, s->row_of, spare);
+    else s->row_capacity = 0;
+    free(spare);
+    return spare && (s->row_of || n == 0)
+               ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
 }
 
 static tobi_status refresh_system(tobi_world *w, tobi_system *s, tobi_error *err)
@@ -79,8 +103,7 @@ static tobi_status refresh_system(tobi_world *w, tobi_system *s, tobi_error *err
     s->info = kept;
     s->info.density_error_mean = mean;
     s->info.density_error_max = max;
-    order_rows(s);
-    return TOBI_OK;
+    return order_rows(s, err);
 }
 
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
@@ -94,15 +117,7 @@ tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* The latest cut that a particle remembers, with the sign of its side. */
-static double latest_cut(const tobi_particles *p, int64_t i)
-{
-    double cut = 0;
-    for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[i].c[k].w != 0; k++) cut = p->cuts[i].c[k].w;
-    return cut;
-}
-
-/* A field that every method has, or that no method knows more of; 0 if it is none of them. */
+/* A field that no method knows more of; 0 if it is none of them. */
 static int read_plain(const tobi_system *s, const char *field, int64_t i, double *out)
 {
     const tobi_particles *p = &s->particles;
@@ -115,8 +130,6 @@ static int read_plain(const tobi_system *s, const char *field, int64_t i, double
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(field, "object_id")) {
         out[0] = 0;      /* of every fluid and solid; bodies count from 1 */
-    } else if (!strcmp(field, "cut_side")) {
-        out[0] = latest_cut(p, i);
     } else return 0;
     return 1;
 }
@@ -125,22 +138,6 @@ static int read_plain(const tobi_system *s, const char *field, int64_t i, double
 static void read_texture(const tobi_world *w, const tobi_system *s, int64_t i, double *out)
 {
     for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[s->particles.id[i]][c] : 0;
-}
-
-static void read_fluid(const tobi_system *s, const char *field, int64_t i, double *out)
-{
-    const tobi_particles *p = &s->particles;
-    if (!strcmp(field, "acceleration") || !strcmp(field, "vorticity")) {
-        const tobi_float4 *v = &p->accel[i];
-        out[0] = v->x; out[1] = v->y; out[2] = v->z;
-    } else if (!strcmp(field, "pressure")) {
-        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-        out[0] = p->product[i] + tobi_system_hydrostatic(s, x);
-    } else if (!strcmp(field, "density")) {
-        out[0] = p->density[i]*s->fluid[p->fluid[i]].density;
-    } else {
-        out[0] = p->surface[i];
-    }
 }
 
 /* Velocities of a body's particles: central difference of its motion in double; no motion is asked for times
@@ -163,7 +160,7 @@ static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], 
 static tobi_status read_bodies(tobi_world *w, const char *field, int components, double *buffer,
                                tobi_error *err)
 {
-    int64_t row = 0, id = tobi_world_first_id(w, &w->system[w->system_count]);
+    int64_t row = 0, id = w->sim.body_first_id;
     for (int k = 0; k < w->sim.body_count; k++) {
         tobi_body *b = &w->sim.bodies[k];
         double *out = buffer + row*components;
@@ -182,31 +179,32 @@ static tobi_status read_bodies(tobi_world *w, const char *field, int components,
     return TOBI_OK;
 }
 
-static int has_field(const tobi_world *w, int owner)
+/* The field of the first system that has it, NULL without. */
+static const tobi_output *find_in_world(const tobi_world *w, const char *name)
 {
-    int has = 0;
-    for (int k = 0; k < w->system_count; k++) has |= owner & (TOBI_ALL | w->system[k].method->fields);
-    return has;
+    for (int k = 0; k < w->system_count; k++) {
+        const tobi_output *o = find_name(w->system[k].method, name);
+        if (o) return o;
+    }
+    return NULL;
 }
 
 /* One particle; a field that its system does not have is 0. */
-static void read_particle(const tobi_world *w, const tobi_system *s, const known_field *f, int64_t i,
+static void read_particle(const tobi_world *w, const tobi_system *s, const tobi_output *f, int64_t i,
                           double *out)
 {
-    if (!strcmp(f->name, "particle_id")) out[0] = (double)(tobi_world_first_id(w, s) + s->particles.id[i]);
+    if (!strcmp(f->name, "particle_id")) out[0] = (double)(s->first_id + s->particles.id[i]);
     else if (!strcmp(f->name, "material")) out[0] = tobi_world_first_material(w, s) + s->particles.fluid[i];
-    else if (!(f->owner & (TOBI_ALL | s->method->fields))) memset(out, 0, (size_t)f->components*sizeof *out);
+    else if (!find_name(s->method, f->name)) memset(out, 0, (size_t)f->components*sizeof *out);
     else if (!strcmp(f->name, "piece")) out[0] = w->pieces.of[i];
     else if (!strcmp(f->name, "texture_coordinates")) read_texture(w, s, i, out);
-    else if (read_plain(s, f->name, i, out)) return;
-    else if (s->method->read) s->method->read(s, f->name, i, out);
-    else read_fluid(s, f->name, i, out);
+    else if (!read_plain(s, f->name, i, out)) s->method->read(s, f->name, i, out);
 }
 
 typedef struct reading {
     const tobi_world *w;
     const tobi_system *s;
-    const known_field *field;
+    const tobi_output *field;
     double *buffer;
 } reading;
 
@@ -217,7 +215,7 @@ static void read_rows(const void *view, int64_t begin, int64_t end)
         read_particle(r->w, r->s, r->field, r->s->row_of[k], r->buffer + k*r->field->components);
 }
 
-static void read_system(const tobi_world *w, tobi_system *s, const known_field *f, double *buffer)
+static void read_system(const tobi_world *w, tobi_system *s, const tobi_output *f, double *buffer)
 {
     const int derived = !strcmp(f->name, "acceleration") || !strcmp(f->name, "vorticity");
     if (w->failure.status != TOBI_DIVERGED && derived && s->method->derive) s->method->derive(s, f->name);
@@ -227,9 +225,8 @@ static void read_system(const tobi_world *w, tobi_system *s, const known_field *
 
 /* Finds a field by its name and checks that there is room for it. Then the rows are in order. */
 static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, const void *buffer,
-                              int64_t count, int *number, tobi_error *err)
+                              int64_t count, const tobi_output **found, tobi_error *err)
 {
-    int k = 0;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(field, "the field");
     TOBI_NEED(buffer || count == 0, "the buffer");
@@ -237,47 +234,49 @@ static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, co
         return tobi_fail(err, TOBI_INVALID, "there is no set of particles %d; allowed are TOBI_FLUID and "
                          "TOBI_BODIES", (int)set);
     const char *name = strcmp(field, "id") == 0 ? "particle_id" : field;
-    while (k < FIELD_COUNT && strcmp(fields[k].name, name) != 0) k++;
-    if (k == FIELD_COUNT) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
-    if (!has_field(w, fields[k].owner))
+    const tobi_output *known = NULL;
+    int k = 0;
+    while ((known = find_any(k)) && strcmp(known->name, name) != 0) k++;
+    if (!known) return tobi_fail(err, TOBI_NOT_FOUND, "there is no field '%s'", field);
+    *found = find_in_world(w, name);
+    if (!*found)
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
-    if (set == TOBI_BODIES && !fields[k].bodies)
+    if (set == TOBI_BODIES && !tobi_world_bodies_have(k))
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))
         return tobi_fail(err, TOBI_INVALID, "field '%s' has %lld rows, room for %lld given", field,
                          (long long)tobi_world_count(w, set), (long long)count);
-    *number = k;
     return set == TOBI_FLUID ? tobi_world_refresh(w, err) : TOBI_OK;
 }
 
 tobi_status tobi_world_read_ids(tobi_world *w, tobi_set set, int64_t *buffer, int64_t count, tobi_error *err)
 {
-    int unused;
+    const tobi_output *unused;
     TOBI_TRY(find_field(w, set, "id", buffer, count, &unused, err));
     const int64_t bodies = set == TOBI_BODIES ? tobi_world_count(w, set) : 0;
     for (int k = 0; k < w->system_count && set == TOBI_FLUID; k++) {
         const tobi_system *s = &w->system[k];
         for (int64_t r = 0; r < s->particles.count; r++)
-            *buffer++ = tobi_world_first_id(w, s) + s->particles.id[s->row_of[r]];
+            *buffer++ = s->first_id + s->particles.id[s->row_of[r]];
     }
-    for (int64_t r = 0; r < bodies; r++) buffer[r] = tobi_world_first_id(w, &w->system[w->system_count]) + r;
+    for (int64_t r = 0; r < bodies; r++) buffer[r] = w->sim.body_first_id + r;
     return TOBI_OK;
 }
 
 tobi_status tobi_world_read(tobi_world *w, tobi_set set, const char *name, double *buffer, int64_t count,
                             tobi_error *err)
 {
-    int number;
-    TOBI_TRY(find_field(w, set, name, buffer, count, &number, err));
-    const char *field = fields[number].name;
-    const int components = fields[number].components;
+    const tobi_output *found;
+    TOBI_TRY(find_field(w, set, name, buffer, count, &found, err));
+    const char *field = found->name;
+    const int components = found->components;
     if (set == TOBI_BODIES) return read_bodies(w, field, components, buffer, err);
     const tobi_pieces *unused;
     if (!strcmp(field, "piece")) TOBI_TRY(tobi_world_pieces(w, &unused, err));
     if (!strcmp(field, "texture_coordinates")) TOBI_TRY(tobi_world_find_texture(w, err));
     for (int n = 0; n < w->system_count; n++) {
-        read_system(w, &w->system[n], &fields[number], buffer);
+        read_system(w, &w->system[n], found, buffer);
         buffer += w->system[n].particles.count*components;
     }
     return TOBI_OK;
@@ -306,9 +305,21 @@ static void write_velocity(tobi_system *s, const double *v)
     memory[0] = s->start_speed = sqrt(fastest);
 }
 
+/* The array of a method's state field, NULL without. */
+static void *find_state(const tobi_particles *p, const char *name, size_t *bytes)
+{
+    void *data;
+    const tobi_field *f;
+    for (int k = 0; (f = tobi_particles_state(p, k, &data)) && strcmp(f->name, name) != 0;) k++;
+    *bytes = f ? f->bytes : 0;
+    return data;
+}
+
 static void write_pressure(tobi_system *s, const double *pressure)
 {
-    for (int64_t r = 0; r < s->particles.count; r++) s->particles.pressure[s->row_of[r]] = (float)pressure[r];
+    size_t bytes;
+    float *to = find_state(&s->particles, "pressure", &bytes);
+    for (int64_t r = 0; to && r < s->particles.count; r++) to[s->row_of[r]] = (float)pressure[r];
 }
 
 tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buffer, int64_t count,
@@ -330,7 +341,7 @@ tobi_status tobi_world_write(tobi_world *w, const char *field, const double *buf
     TOBI_TRY(check_values(field, buffer, count, velocity ? 3 : 1, err));
     for (int k = 0; k < w->system_count; k++) {
         if (velocity) write_velocity(&w->system[k], buffer);
-        else if (w->system[k].particles.pressure) write_pressure(&w->system[k], buffer);
+        else write_pressure(&w->system[k], buffer);
         buffer += w->system[k].particles.count*(velocity ? 3 : 1);
     }
     w->fresh = 0;
@@ -388,12 +399,15 @@ static uint64_t mix(uint64_t h, const void *data, size_t bytes)
 static uint64_t mix_system(uint64_t h, const tobi_system *s)
 {
     const tobi_particles *p = &s->particles;
+    size_t pressure_row, strain_row;
+    const char *pressure = find_state(p, "pressure", &pressure_row);
+    const char *strain = find_state(p, "strain", &strain_row);
     for (int64_t r = 0; r < p->count; r++) {
         int64_t i = s->row_of[r];
         h = mix(h, &p->position[i], sizeof p->position[i]);
         h = mix(h, &p->velocity[i], 3*sizeof(float));
-        if (p->pressure) h = mix(h, &p->pressure[i], sizeof p->pressure[i]);
-        if (p->strain) h = mix(h, &p->strain[i], sizeof p->strain[i]);
+        h = mix(h, pressure + (size_t)i*pressure_row, pressure_row);
+        h = mix(h, strain + (size_t)i*strain_row, strain_row);
     }
     return h;
 }

@@ -33,7 +33,7 @@ typedef struct tobi_body_tally { double time, impulse[TOBI_BODY_FORCES][3]; } to
 typedef struct tobi_record_field {
     const char *name;                     /* of the world's list                     */
     int components;
-    int type;                             /* tobi_vtk_type in files                  */
+    int type;                             /* tobi_type in files                  */
     int bodies;                           /* 1: of their particles too               */
 } tobi_record_field;
 

@@ -1,6 +1,7 @@
 /* The picture of an output: water coloured by speed and bodies by number unless they have colours of their
    own, seen so that the box fits unless there is a camera. */
-#include "core/cuts.h"
+#include "mpm/cuts.h"
+#include "mpm/particle_fields.h"
 #include "io/frame.h"
 #include "world/params.h"
 #include "world/record.h"
@@ -111,7 +112,8 @@ static void find_color(const material *look, int part, int tint, float out[3])
 static int can_part(const tobi_system *s, int solid)
 {
     const tobi_solid_def *def = &s->solids[solid].def;
-    return tobi_solid_uses(def->model, "cut_friction") && (s->particles.cuts || def->strength > 0);
+    return tobi_solid_uses(def->model, "cut_friction") &&
+           (mpm_fields_of(&s->particles)->cuts || def->strength > 0);
 }
 
 /* The palette, if any material has a colour: of each material skin, core and face, each in all tints. */
@@ -166,13 +168,14 @@ static tobi_status choose_tints(tobi_run *run, tobi_drawing *d, tobi_error *err)
 /* At a cut: within a spacing, so that each of its sides has a layer. */
 static int find_part(const tobi_system *s, int64_t row)
 {
-    const tobi_particles *p = &s->particles;
-    for (int k = 0; p->cuts && k < TOBI_CUTS_EACH && p->cuts[row].c[k].w != 0; k++) {
-        const tobi_float4 *way = &p->cuts[row].c[k];
+    if (!s->method->solids) return SKIN;
+    const mpm_fields *f = mpm_fields_of(&s->particles);
+    for (int k = 0; f->cuts && k < TOBI_CUTS_EACH && f->cuts[row].c[k].w != 0; k++) {
+        const tobi_float4 *way = &f->cuts[row].c[k];
         const double square = (double)way->x * way->x + (double)way->y * way->y + (double)way->z * way->z;
         if (square < s->smoothing.spacing * s->smoothing.spacing) return FACE;
     }
-    return p->rest && p->rest[row].w > 0 ? CORE : SKIN;
+    return f->rest[row].w > 0 ? CORE : SKIN;
 }
 
 /* The particles of a system, which begin at *from, to those that are shown, of which there are d->count. */

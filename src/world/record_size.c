@@ -20,7 +20,7 @@ static double row_bytes(const tobi_run *run, int bodies)
     for (int k = 0; k < run->field_count; k++) {
         const tobi_record_field *f = &run->field[k];
         if (!bodies || f->bodies)
-            bytes += (double)(tobi_type_size((tobi_vtk_type)f->type)*(size_t)f->components);
+            bytes += (double)(tobi_type_size((tobi_type)f->type)*(size_t)f->components);
     }
     return bytes;
 }

@@ -17,7 +17,7 @@ static tobi_status fail_memory(tobi_error *err)
 /* Turns n doubles into the type they have in files, in a new array. */
 static void *convert(const double *from, int64_t n, int type)
 {
-    void *to = malloc((size_t)n * tobi_type_size((tobi_vtk_type)type) + 1);
+    void *to = malloc((size_t)n * tobi_type_size((tobi_type)type) + 1);
     if (!to) return NULL;
     if (type == TOBI_F32) for (int64_t i = 0; i < n; i++) ((float *)to)[i] = (float)from[i];
     else if (type == TOBI_I32)
@@ -31,7 +31,7 @@ static tobi_status add_array(tobi_point_set *set, const char *name, int type, in
 {
     void *data = convert(values, set->count * components, type);
     if (!data) return fail_memory(err);
-    set->array[set->arrays++] = (tobi_vtk_array){ name, (tobi_vtk_type)type, components, data };
+    set->array[set->arrays++] = (tobi_vtk_array){ name, (tobi_type)type, components, data };
     return TOBI_OK;
 }
 

@@ -136,7 +136,7 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more fluids");
     TOBI_TRY(tobi_param_check(&tobi_fluid_table, def, err));
-    if (!(w->system[0].method->fields & TOBI_SPH))
+    if (w->system[0].method->solids)
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes solids, not fluids; a solid of model liquid is one",
                          w->system[0].method->name);
     if (s->fluid_count > 0) TOBI_TRY(check_material(w, def, err));

@@ -40,7 +40,7 @@ static void check_corners(const tobi_rules *r, const tobi_world_def *d, int a)
 static void check_walls(const tobi_rules *r, const tobi_world_def *d, const tobi_method *method, int a)
 {
     tobi_error why = { 0 };
-    const int periodic = d->wall_min[a] == TOBI_WALL_PERIODIC, mpm = method && method->fields & TOBI_MPM;
+    const int periodic = d->wall_min[a] == TOBI_WALL_PERIODIC, mpm = method && method->solids;
     if (periodic != (d->wall_max[a] == TOBI_WALL_PERIODIC)) {
         tobi_fail(&why, TOBI_INVALID, "is periodic on one side only; write \"%c\": \"periodic\"", axes[a]);
         tell(r, &why, "domain.walls.%c", axes[a]);
@@ -77,7 +77,7 @@ static void check_numbers(const tobi_rules *r, const tobi_world_def *d, const to
     const char *key;
     tobi_error why = { 0 };
     if (!method || !r->corners || !r->numbers) return;
-    const int sph = (method->fields & TOBI_SPH) != 0;
+    const int sph = !method->solids;
     if (tobi_limits_check(d, sph, &key, &why) != TOBI_OK) tell(r, &why, "%s", key);
 }
 

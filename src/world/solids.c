@@ -43,7 +43,7 @@ tobi_status tobi_world_solid(const tobi_world *w, int solid, tobi_solid_info *in
     for (int64_t i = 0; i < s->particles.count; i++) {
         if (s->particles.fluid[i] != solid) continue;
         info->particles++;
-        info->mass += s->particles.strain[i].c[2].w;
+        info->mass += s->method->mass(s, i);
     }
     return TOBI_OK;
 }

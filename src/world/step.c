@@ -135,7 +135,7 @@ void tobi_step_sum_up(tobi_world *w)
 static const char *name_cfl(const tobi_system *s, double *value)
 {
     const tobi_world_def *d = &s->sim->def;
-    const int mpm = (s->method->fields & TOBI_MPM) != 0;
+    const int mpm = s->method->solids;
     *value = mpm ? ((const tobi_mlsmpm_def *)s->def)->cfl : d->time_step > 0 ? d->time_step : d->cfl;
     return mpm ? "mlsmpm.cfl" : d->time_step > 0 ? "time_step" : "cfl";
 }

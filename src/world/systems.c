@@ -90,13 +90,13 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
 tobi_system *tobi_world_solids(const tobi_world *w)
 {
     for (int k = 0; k < w->system_count; k++)
-        if (w->system[k].method->fields & TOBI_MPM) return (tobi_system *)&w->system[k];
+        if (w->system[k].method->solids) return (tobi_system *)&w->system[k];
     return NULL;
 }
 
 tobi_system *tobi_world_fluids(const tobi_world *w)
 {
-    return w->system[0].method->fields & TOBI_SPH ? (tobi_system *)&w->system[0] : NULL;
+    return !w->system[0].method->solids ? (tobi_system *)&w->system[0] : NULL;
 }
 
 int tobi_world_first_material(const tobi_world *w, const tobi_system *s)
@@ -106,42 +106,33 @@ int tobi_world_first_material(const tobi_world *w, const tobi_system *s)
     return first;
 }
 
-int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s)
-{
-    int64_t first = 0;
-    for (const tobi_system *k = w->system; k < s; k++) first += k->particles.capacity;
-    return first;
-}
-
 void tobi_world_free_system(tobi_system *s)
 {
     if (s->state) s->method->free(s->state);
     free(s->def);
     free(s->solids);
     free(s->row_of);
-    tobi_near_free(&s->near);
-    tobi_contact_free(&s->contacts);
     tobi_cells_free(&s->cells);
     tobi_particles_free(&s->particles);
 }
 
-/* The owners of the particle fields that a system needs. */
-static int needed_fields(const tobi_world *w, const tobi_system *s)
+/* The optional particle fields that a system needs. */
+static unsigned needed_fields(const tobi_world *w, const tobi_system *s)
 {
-    int owners = TOBI_ALL | s->method->fields;
-    for (int f = 0; f < s->fluid_count; f++)
-        if (s->fluid[f].tension > 0) owners |= TOBI_TENSION;
-    for (int k = 0; k < w->sim.body_count; k++)
-        if (w->sim.bodies[k].blade) owners |= TOBI_BLADES;
-    if (w->sim.body_count > 0 || is_full_vessel(w, s)) owners |= s->method->body_fields;
-    return owners;
+    return s->method->needs ? s->method->needs(s, is_full_vessel(w, s)) : 0;
+}
+
+static int64_t row_bytes(const tobi_world *w, const tobi_system *s)
+{
+    return tobi_particles_row_bytes(s->method->fields, needed_fields(w, s)) +
+           (s->method->solids ? 0 : TOBI_CELLS_ROW);
 }
 
 /* Beside the fields: neighbour lists and what a stopped step is taken back from, or sorting, tiles and nodes
    of the grid (seen: 60 to 90). */
 static int64_t list_bytes(const tobi_system *s)
 {
-    if (s->method->fields & TOBI_MPM) return 80;
+    if (s->method->solids) return 80;
     double r = s->smoothing.h/s->smoothing.spacing;
     return (int64_t)(4*(s->box.dimension == 3 ? 4.19*r*r*r : 3.14*r*r) + 36);
 }
@@ -160,7 +151,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
             if (w->regions[r].system == k) count += tobi_world_guess_particles(w, &w->regions[r]);
         if (w->started) count = s->particles.count;
         *fluid_particles += count;
-        *bytes += count*(tobi_particles_row_bytes(needed_fields(w, s)) + list_bytes(s));
+        *bytes += count*(row_bytes(w, s) + list_bytes(s));
     }
     for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
     *bytes += *body_particles*48;
@@ -205,15 +196,30 @@ tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *er
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
     tobi_particles_free(&s->particles);
-    TOBI_TRY(tobi_particles_reserve(&s->particles, room, needed_fields(w, s), err));
+    TOBI_TRY(tobi_particles_reserve(&s->particles, s->method->fields, needed_fields(w, s), room, err));
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
     return TOBI_OK;
 }
 
-tobi_status tobi_world_fit_system(tobi_world *w, tobi_system *s, tobi_error *err)
+/* Ids count on through the systems, then through the particles of bodies. */
+static void number_particles(tobi_world *w)
 {
-    return tobi_particles_fit(&s->particles, needed_fields(w, s), err);
+    int64_t first = 0;
+    for (int k = 0; k < w->system_count; k++) {
+        w->system[k].first_id = first;
+        first += w->system[k].particles.count;
+    }
+    w->sim.body_first_id = first;
+    for (int k = 0; k < w->sim.body_count; k++) first += w->sim.bodies[k].particle_count;
+    w->sim.next_id = first;
+}
+
+tobi_status tobi_world_fit_systems(tobi_world *w, tobi_error *err)
+{
+    number_particles(w);
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_particles_fit(&w->system[k].particles, err));
+    return TOBI_OK;
 }
 
 tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *err)
@@ -222,11 +228,8 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
     const int64_t n = s->particles.count;
     TOBI_TRY(tobi_exec_reserve(&w->sim.exec, n > 4096 ? n : 4096, err));
     tobi_cells_free(&s->cells);
-    if (s->method->fields & TOBI_SPH)
-        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, n, &w->sim.exec, err));
-    free(s->row_of);
-    s->row_of = malloc((size_t)(n + 1)*sizeof *s->row_of);
-    if (!s->row_of) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld rows", (long long)n);
+    if (!s->method->solids)
+        TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &w->sim.exec, err));
     if (!s->state) TOBI_TRY(s->method->create(s, err));
     s->method->memory(s, &memory);
     memory[0] = s->start_speed = tobi_world_start_speed(w, s);
@@ -243,9 +246,8 @@ int64_t tobi_world_bytes(const tobi_world *w)
     int64_t bytes = 0;
     for (int k = 0; w && k < w->system_count; k++) {
         const tobi_system *s = &w->system[k];
-        bytes += s->particles.capacity*(tobi_particles_row_bytes(needed_fields(w, s)) + 4) +
+        bytes += s->particles.capacity*row_bytes(w, s) + s->row_capacity*4 +
                  s->cells.list_capacity*4 + s->cells.total*4 +
-                 s->near.capacity*(int64_t)sizeof(tobi_near_entry) + tobi_near_bytes(&s->near) +
                  (s->method->bytes && s->state ? s->method->bytes(s) : 0);
     }
     return bytes;

@@ -1,6 +1,7 @@
 /* Texture coordinates of particles: of where they started, on the meshes that fill their solid. */
 #include "base/error.h"
 #include "geom/texture.h"
+#include "mpm/particle_fields.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,8 @@ static void look(const tobi_world *w, const tobi_system *s, int64_t i, float uv[
 {
     const tobi_particles *p = &s->particles;
     const double *lower = s->box.lower;
-    const double x[3] = {p->rest[i].x + lower[0], p->rest[i].y + lower[1], p->rest[i].z + lower[2]};
+    const tobi_float4 *rest = &mpm_fields_of(p)->rest[i];
+    const double x[3] = {rest->x + lower[0], rest->y + lower[1], rest->z + lower[2]};
     double nearest = INFINITY;
     uv[0] = uv[1] = 0;
     for (int k = 0; k < w->region_count; k++) {
@@ -47,7 +49,7 @@ tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
     const tobi_particles *p = &s->particles;
     for (int k = 0; k < w->region_count; k++)
         if (w->regions[k].shape.texture) TOBI_TRY(tobi_texture_prepare(w->regions[k].shape.texture, err));
-    w->texture = calloc((size_t)p->capacity + 1, sizeof *w->texture);
+    w->texture = calloc((size_t)p->next_id + 1, sizeof *w->texture);
     if (!w->texture)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)p->count);
     const looking view = { w, s };

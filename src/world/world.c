@@ -130,7 +130,7 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
-    if (def->blade && !(w->system[0].method->fields & TOBI_MPM))
+    if (def->blade && !w->system[0].method->solids)
         return tobi_fail(err, TOBI_UNSUPPORTED,
                          "body '%s' is a blade, which the method %s does not know; "
                          "blades cut solids of mlsmpm",
@@ -142,7 +142,7 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     s->sim->bodies = more;
     tobi_body *b = &s->sim->bodies[s->sim->body_count];
     /* Only SPH methods integrate over surfaces. */
-    double pieces = (w->system[0].method->fields & TOBI_SPH ? 0.5 : 1e3)*s->sim->def.spacing;
+    double pieces = (!w->system[0].method->solids ? 0.5 : 1e3)*s->sim->def.spacing;
     tobi_body_def placed = *def;
     if (!(def->spacing > 0)) placed.spacing = s->sim->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
@@ -214,8 +214,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_world_note_edges(w, err));
-    for (int k = 0; k < w->system_count; k++)
-        TOBI_TRY(tobi_world_fit_system(w, &w->system[k], err));
+    TOBI_TRY(tobi_world_fit_systems(w, err));
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_start_system(w, &w->system[k], err));
     TOBI_TRY(start_bodies(w, err));
     tobi_step_sum_up(w);

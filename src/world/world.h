@@ -1,6 +1,6 @@
 /* The inside of a tobi_world. */
 #pragma once
-#include "core/pieces.h"
+#include "mpm/pieces.h"
 #include "tobiuo/tobiuo.h"
 #include "world/fill.h"
 #include "world/methods.h"
@@ -46,15 +46,14 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
                                   tobi_error *err);
 /* Places its particles; then gives it all fields, for as many as there are; then its cells and its state. */
 tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *err);
-tobi_status tobi_world_fit_system(tobi_world *w, tobi_system *s, tobi_error *err);
+tobi_status tobi_world_fit_systems(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *err);
 void tobi_world_free_system(tobi_system *s);
 /* The system of the solids, or of the fluids; NULL if there is none. */
 tobi_system *tobi_world_solids(const tobi_world *w);
 tobi_system *tobi_world_fluids(const tobi_world *w);
-/* Materials come in the order of systems, particles too: the number of the first of a system. */
+/* Materials come in the order of systems: the number of the first of a system. */
 int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
-int64_t tobi_world_first_id(const tobi_world *w, const tobi_system *s);
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */

@@ -34,6 +34,11 @@ CASES = [
     ("check_house.py", "src/exec/a.c", "#pragma omp parallel for\n", None),
     ("check_layers.py", "src/geom/a.c", '#include "exec/exec.h"\n', None),
     ("check_layers.py", "src/exec/a.c", '#include "geom/x.h"\n', "exec includes geom"),
+    ("check_layers.py", "src/sph/a.k.h", "#include <math.h>\n", "a.k.h:1: includes a header of the system"),
+    ("check_layers.py", "src/sph/a.k.h", "\nvoid f(int a,\n       int b);\n", "a.k.h:2: declares a function,"),
+    ("check_layers.py", "src/sph/a.k.h", "typedef int (*f)(int);\n", "a.k.h:1: declares a function pointer"),
+    ("check_layers.py", "src/sph/a.k.h", "TOBI_FN int f(int a) { return g(a); }\n/* int g(int); */\n", None),
+    ("check_layers.py", "src/exec/a.k.h", "#include <math.h>\n", None),
 ]
 
 

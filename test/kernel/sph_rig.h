@@ -1,6 +1,7 @@
 /* A box of jittered particles, bound to a view as the DFSPH method binds it, and to an oracle. */
 #pragma once
 #include "core/cells.h"
+#include "sph/state.h"
 #include "core/smoothing.h"
 #include "sph/kernels.h"
 #include "kernel/sph_oracle.h"
@@ -47,7 +48,7 @@ static void rig_fill(rig *g, const rig_case *k, const int n[3])
                     q[a] = a < k->dimension ? (at[a] + 0.5 + k->jitter*rig_random())*d : 0;
                 for (int a = 0; a < k->dimension; a++) (&g->p.velocity[i].x)[a] = (float)rig_random();
                 g->p.velocity[i].w = (float)(0.5 + 0.5*rig_random());
-                g->p.pressure[i] = (float)(1000*rig_random() + 500);
+                sph_fields_of(&g->p)->pressure[i] = (float)(1000*rig_random() + 500);
                 g->p.id[i] = i;
                 g->p.fluid[i] = (uint8_t)(k->fluids > 1 && x%3 == 0);
             }
@@ -57,12 +58,13 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
 {
     sph_view *v = &g->view;
     tobi_particles *p = &g->p;
+    const sph_fields *f = sph_fields_of(p);
     v->count = p->count;
-    v->position = p->position; v->record = p->record; v->velocity = p->velocity; v->accel = p->accel;
-    v->wall = p->wall; v->density = p->density; v->diagonal = p->diagonal; v->precondition = p->precondition;
-    v->residual = p->residual; v->product = p->product; v->delta = p->delta; v->surface = p->surface;
-    v->pressure = p->pressure; v->fluid = p->fluid;
-    v->list = g->cells.list; v->list_start = p->list_start; v->list_groups = p->list_groups;
+    v->position = p->position; v->record = g->cells.record; v->velocity = p->velocity; v->accel = f->accel;
+    v->wall = f->wall; v->density = f->density; v->diagonal = f->diagonal; v->precondition = f->precondition;
+    v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
+    v->pressure = f->pressure; v->fluid = p->fluid;
+    v->list = g->cells.list; v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
     for (int a = 0; a < 3; a++) v->from_fixed[a] = g->box.from_fixed[a];
     v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h);
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
@@ -90,11 +92,11 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->isolated = (k->dimension == 3) == (k->support < 2.3) ? 5 : 1.8f;   /* some are below */
     v->core = (float)(0.9*g->c.spacing); v->push = 0.25f; v->background = 30;
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
-    v->stretch = k->along ? p->stretch : NULL;
-    v->shear = p->shear;
-    v->beside = p->beside; v->near = p->near; v->full = v->exact = v->midway = k->along == 1;
-    v->lean[0] = p->precondition; v->lean[1] = p->residual; v->lean[2] = p->correction;
-    v->normal = p->normal; v->capillary = p->capillary;
+    v->stretch = k->along ? f->stretch : NULL;
+    v->shear = f->shear;
+    v->beside = f->beside; v->near = f->near; v->full = v->exact = v->midway = k->along == 1;
+    v->lean[0] = f->precondition; v->lean[1] = f->residual; v->lean[2] = f->correction;
+    v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
 }
@@ -137,12 +139,13 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
 {
     const sph_view *v = &g->view;
     const tobi_particles *p = &g->p;
+    const sph_fields *f = sph_fields_of(p);
     oracle *o = &g->o;
     o->count = (int)p->count; o->dimension = k->dimension; o->shape = k->shape;
     o->d = g->c.spacing; o->h = g->c.h;
     o->fluid = p->fluid;
     o->along = k->along;
-    o->near = k->along == 2 ? p->near : NULL;
+    o->near = k->along == 2 ? f->near : NULL;
     o->plane_count = v->plane_count;
     memcpy(o->plane, v->plane, sizeof o->plane);
     for (int a = 0; a < 3; a++) {
@@ -170,11 +173,12 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
 static void rig_hide_walls(rig *g)
 {
     tobi_particles *p = &g->p;
-    for (int64_t i = 0; i < p->count; i++) p->near[i] = p->id[i]%3 == 0 ? 0 : -1;
+    const sph_fields *f = sph_fields_of(p);
+    for (int64_t i = 0; i < p->count; i++) f->near[i] = p->id[i]%3 == 0 ? 0 : -1;
     for (int64_t i = 0; i < p->count; i++) {
-        p->beside[i] = p->near[i] >= 0;
-        for (int n = 0; n < 8*p->list_groups[i]; n++)
-            p->beside[i] |= p->near[g->cells.list[8*(int64_t)p->list_start[i] + n]] >= 0;
+        f->beside[i] = f->near[i] >= 0;
+        for (int n = 0; n < 8*g->cells.list_groups[i]; n++)
+            f->beside[i] |= f->near[g->cells.list[8*(int64_t)g->cells.list_start[i] + n]] >= 0;
     }
 }
 
@@ -195,11 +199,12 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     }
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
-    if (tobi_particles_create(&g->p, count, TOBI_ALL | TOBI_SPH | TOBI_TENSION | TOBI_WETTED, err)) return 1;
-    if (tobi_cells_create(&g->cells, &g->box, g->c.h, count, &g->exec, err)) return 1;
+    const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED;
+    if (tobi_particles_create(&g->p, &sph_field_list, all, count, err)) return 1;
+    if (tobi_cells_create(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);
-    tobi_cells_sort(&g->cells, &g->box, &g->p, &g->exec);
+    tobi_cells_sort(&g->cells, &g->box, &g->p, sph_fields_of(&g->p)->pressure, &g->exec);
     if (tobi_cells_list(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (k->along == 2) rig_hide_walls(g);
     rig_bind(g, k, rho, nu);
@@ -220,44 +225,46 @@ static void rig_free(rig *g)
 static void rig_get(const rig *g, row *s)
 {
     const tobi_particles *p = &g->p;
+    const sph_fields *f = sph_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) {
         for (int a = 0; a < 3; a++) {
             s[i][POS + a] = (&p->position[i].x)[a];
             s[i][VEL + a] = (&p->velocity[i].x)[a];
-            s[i][ACC + a] = (&p->accel[i].x)[a];
+            s[i][ACC + a] = (&f->accel[i].x)[a];
         }
-        for (int a = 0; a < 4; a++) s[i][WALL + a] = (&p->wall[i].x)[a];
-        for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&p->normal[i].x)[a];
-        for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&p->stretch[i].x)[a];
-        for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&p->shear[i].x)[a];
-        s[i][BAND] = p->accel[i].w; s[i][CAPILLARY] = p->capillary[i];
-        s[i][PAYLOAD] = p->record[i].w;
-        s[i][RHO] = p->density[i]; s[i][DIAG] = p->diagonal[i]; s[i][PRE] = p->precondition[i];
-        s[i][RES] = p->residual[i]; s[i][PROD] = p->product[i]; s[i][DELTA] = p->delta[i];
-        s[i][PRES] = p->pressure[i]; s[i][SURF] = p->surface[i];
-        s[i][WET] = p->velocity[i].w; s[i][CORRECTION] = p->correction[i];
+        for (int a = 0; a < 4; a++) s[i][WALL + a] = (&f->wall[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][NORMAL + a] = (&f->normal[i].x)[a];
+        for (int a = 0; a < 4; a++) s[i][TENSOR + a] = (&f->stretch[i].x)[a];
+        for (int a = 0; a < 3; a++) s[i][TENSOR + 4 + a] = (&f->shear[i].x)[a];
+        s[i][BAND] = f->accel[i].w; s[i][CAPILLARY] = f->capillary[i];
+        s[i][PAYLOAD] = g->cells.record[i].w;
+        s[i][RHO] = f->density[i]; s[i][DIAG] = f->diagonal[i]; s[i][PRE] = f->precondition[i];
+        s[i][RES] = f->residual[i]; s[i][PROD] = f->product[i]; s[i][DELTA] = f->delta[i];
+        s[i][PRES] = f->pressure[i]; s[i][SURF] = f->surface[i];
+        s[i][WET] = p->velocity[i].w; s[i][CORRECTION] = f->correction[i];
     }
 }
 
 static void rig_set(rig *g, const row *s)
 {
     tobi_particles *p = &g->p;
+    const sph_fields *f = sph_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) {
         for (int a = 0; a < 3; a++) {
             (&p->position[i].x)[a] = s[i][POS + a];
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
-            (&p->accel[i].x)[a] = (float)s[i][ACC + a];
+            (&f->accel[i].x)[a] = (float)s[i][ACC + a];
         }
-        p->velocity[i].w = (float)s[i][WET]; p->correction[i] = (float)s[i][CORRECTION];
-        for (int a = 0; a < 4; a++) (&p->wall[i].x)[a] = (float)s[i][WALL + a];
-        for (int a = 0; a < 4; a++) (&p->normal[i].x)[a] = (float)s[i][NORMAL + a];
-        for (int a = 0; a < 4; a++) (&p->stretch[i].x)[a] = (float)s[i][TENSOR + a];
-        for (int a = 0; a < 3; a++) (&p->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];
-        p->accel[i].w = (float)s[i][BAND]; p->capillary[i] = (float)s[i][CAPILLARY];
-        p->record[i].w = (float)s[i][PAYLOAD];
-        p->density[i] = (float)s[i][RHO]; p->diagonal[i] = (float)s[i][DIAG];
-        p->precondition[i] = (float)s[i][PRE]; p->residual[i] = (float)s[i][RES];
-        p->product[i] = (float)s[i][PROD]; p->delta[i] = (float)s[i][DELTA];
-        p->pressure[i] = (float)s[i][PRES]; p->surface[i] = (uint8_t)s[i][SURF];
+        p->velocity[i].w = (float)s[i][WET]; f->correction[i] = (float)s[i][CORRECTION];
+        for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
+        for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
+        for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];
+        for (int a = 0; a < 3; a++) (&f->shear[i].x)[a] = (float)s[i][TENSOR + 4 + a];
+        f->accel[i].w = (float)s[i][BAND]; f->capillary[i] = (float)s[i][CAPILLARY];
+        g->cells.record[i].w = (float)s[i][PAYLOAD];
+        f->density[i] = (float)s[i][RHO]; f->diagonal[i] = (float)s[i][DIAG];
+        f->precondition[i] = (float)s[i][PRE]; f->residual[i] = (float)s[i][RES];
+        f->product[i] = (float)s[i][PROD]; f->delta[i] = (float)s[i][DELTA];
+        f->pressure[i] = (float)s[i][PRES]; f->surface[i] = (uint8_t)s[i][SURF];
     }
 }

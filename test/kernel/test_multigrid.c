@@ -1,5 +1,6 @@
 /* The preconditioner is a symmetric positive operator, the same on any number of threads. */
 #include "core/system.h"
+#include "sph/state.h"
 #include "core/smoothing.k.h"
 #include "linear/multigrid.h"
 #include "sph/kernels.h"
@@ -34,8 +35,8 @@ static void fill(pool *p, int dimension, int n, int threads)
     tobi_smoothing_init(&s->smoothing, TOBI_SHAPE_WENDLAND, dimension, p->d, 2);
     tobi_box_init(&s->box, dimension, lower, upper, periodic, s->smoothing.h);
     int64_t count = dimension == 3 ? (int64_t)n*n*n : (int64_t)n*n;
-    assert_int_equal(tobi_particles_create(&s->particles, count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
-    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, count, &p->sim.exec, &err),
+    assert_int_equal(tobi_particles_create(&s->particles, &sph_field_list, 0, count, &err), TOBI_OK);
+    assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &p->sim.exec, &err),
                      TOBI_OK);
     assert_int_equal(tobi_exec_reserve(&p->sim.exec, count, &err), TOBI_OK);
     seed = 11;
@@ -45,17 +46,17 @@ static void fill(pool *p, int dimension, int n, int threads)
             (&s->particles.position[i].x)[a] = p->d*((double)at[a] + 0.5 + 0.3*(random_unit() - 0.5));
     }
     s->particles.count = count;
-    tobi_cells_sort(&s->cells, &s->box, &s->particles, &p->sim.exec);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, sph_fields_of(&s->particles)->pressure, &p->sim.exec);
     for (int64_t i = 0; i < count; i++) {
         const double *x = &s->particles.position[i].x;
-        s->particles.surface[i] = x[dimension - 1] > p->d*(n - 1);
-        s->particles.precondition[i] = s->particles.surface[i] ? 0 : 1e-3f;
+        sph_fields_of(&s->particles)->surface[i] = x[dimension - 1] > p->d*(n - 1);
+        sph_fields_of(&s->particles)->precondition[i] = sph_fields_of(&s->particles)->surface[i] ? 0 : 1e-3f;
     }
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     const tobi_grid_weights w = {.strength = 1e-3,
                                  .volume = s->smoothing.volume,
-                                 .active = s->particles.precondition,
-                                 .marked = s->particles.surface,
+                                 .active = sph_fields_of(&s->particles)->precondition,
+                                 .marked = sph_fields_of(&s->particles)->surface,
                                  .hold = 1e-3/(p->d*p->d)};
     assert_int_equal(tobi_multigrid_create(&p->m, &points, 2, 1, &err), TOBI_OK);
     tobi_multigrid_set(&p->m, &p->sim.exec, &points, &w);
@@ -74,9 +75,9 @@ static void direction(pool *p)
 {
     sph_view v;
     memset(&v, 0, sizeof v);
-    v.residual = p->s.particles.residual;
-    v.precondition = p->s.particles.precondition;
-    v.record = p->s.particles.record;
+    v.residual = sph_fields_of(&p->s.particles)->residual;
+    v.precondition = sph_fields_of(&p->s.particles)->precondition;
+    v.record = p->s.cells.record;
     v.position = p->s.particles.position;
     v.coarse = tobi_multigrid_values(&p->m);
     tobi_launch(&p->sim.exec, sph_kernels_for(p->sim.exec.isa, TOBI_SHAPE_WENDLAND)->sph_cg_direction, &v, 0,
@@ -85,13 +86,15 @@ static void direction(pool *p)
 
 static double apply(pool *p)
 {
-    return tobi_multigrid_apply(&p->m, &p->sim.exec, p->s.particles.residual, p->s.particles.precondition);
+    const sph_fields *f = sph_fields_of(&p->s.particles);
+    return tobi_multigrid_apply(&p->m, &p->sim.exec, f->residual, f->precondition);
 }
 
 static void random_residual(pool *p)
 {
+    const sph_fields *f = sph_fields_of(&p->s.particles);
     for (int64_t i = 0; i < p->s.particles.count; i++)
-        p->s.particles.residual[i] = p->s.particles.precondition[i] > 0 ? (float)(random_unit() - 0.3) : 0;
+        f->residual[i] = f->precondition[i] > 0 ? (float)(random_unit() - 0.3) : 0;
 }
 
 static void symmetric_and_positive(void **state)
@@ -103,12 +106,12 @@ static void symmetric_and_positive(void **state)
         int64_t n = p.s.particles.count;
         float *a = malloc((size_t)n*sizeof *a), *za = malloc((size_t)n*sizeof *za);
         random_residual(&p);
-        memcpy(a, p.s.particles.residual, (size_t)n*sizeof *a);
+        memcpy(a, sph_fields_of(&p.s.particles)->residual, (size_t)n*sizeof *a);
         double energy = apply(&p), jacobi = 0, whole = 0, ab = 0, ba = 0;
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
-            za[i] = p.s.particles.record[i].w;
-            jacobi += (double)a[i]*a[i]*p.s.particles.precondition[i];
+            za[i] = p.s.cells.record[i].w;
+            jacobi += (double)a[i]*a[i]*sph_fields_of(&p.s.particles)->precondition[i];
             whole += (double)a[i]*za[i];
         }
         assert_true(energy > 0);
@@ -117,8 +120,8 @@ static void symmetric_and_positive(void **state)
         apply(&p);
         direction(&p);
         for (int64_t i = 0; i < n; i++) {
-            ab += (double)p.s.particles.residual[i]*za[i];
-            ba += (double)a[i]*p.s.particles.record[i].w;
+            ab += (double)sph_fields_of(&p.s.particles)->residual[i]*za[i];
+            ba += (double)a[i]*p.s.cells.record[i].w;
         }
         assert_true(fabs(ab - ba) <= 1e-4*fabs(ab));
         free(a);
@@ -134,7 +137,7 @@ static void same_bits_on_threads(void **state)
     fill(&one, 3, 48, 1);       /* large enough for shared sweeps */
     fill(&four, 3, 48, 4);
     random_residual(&one);
-    memcpy(four.s.particles.residual, one.s.particles.residual,
+    memcpy(sph_fields_of(&four.s.particles)->residual, sph_fields_of(&one.s.particles)->residual,
            (size_t)one.s.particles.count*sizeof(float));
     double a = apply(&one), b = apply(&four);
     assert_memory_equal(&a, &b, sizeof a);

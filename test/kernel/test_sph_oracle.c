@@ -4,6 +4,7 @@
 #define TOBI_SCALAR_LANES
 #define TOBI_ISA scalar
 #include "sph/isa_sph.c"
+#include "sph/state.h"
 #include "kernel/sph_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -50,11 +51,13 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_curvature oracle_curvature
 #define oracle_sph_tension oracle_tension
 static const entry kernels[] = {
-#define PAIR(K) {#K, offsetof(sph_kernels, K), oracle_of(K)},
-#define FOR(K) PAIR(K)
+#define PAIR(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_of(K)},
+#define FOR PAIR
+#define COUPLE(K, SUMS, MAXIMA, DOC)      /* see test_couple.c */
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
+#undef COUPLE
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };
 
@@ -118,7 +121,7 @@ static void check_totals(const double *a, const double *b, const double *size, d
 /* Fluxes as bodies would leave them. */
 static void add_flux(rig *g)
 {
-    for (int64_t i = 0; i < g->p.count; i++) g->p.wall[i].w = (float)(5*rig_random());
+    for (int64_t i = 0; i < g->p.count; i++) sph_fields_of(&g->p)->wall[i].w = (float)(5*rig_random());
 }
 
 /* Walks the list with production kernels; each one starts from the same rows as the other reading. */
@@ -131,9 +134,13 @@ static void walk(const rig_case *c, int case_index, reading other, double tolera
     const sph_kernels *table = sph_kernels_for(g.exec.isa, c->shape);
     for (int k = 0; k < KERNELS; k++) {
         char what[128];
-        double t[TOBI_TOTALS], u[TOBI_TOTALS] = {0}, size[TOBI_TOTALS] = {0};
+        double t[TOBI_TOTALS], all[TOBI_TOTALS] = {0}, u[TOBI_TOTALS] = {0}, size[TOBI_TOTALS] = {0};
         snprintf(what, sizeof what, "case %d, %s", case_index, kernels[k].name);
         rig_get(&g, in);
+        kernel_at(table, k).run(&g.view, 0, g.p.count, all);
+        if (!tobi_kernel_keeps(kernel_at(table, k), all))
+            fail_msg("%s: totals beside those of its line", what);
+        rig_set(&g, in);
         tobi_launch(&g.exec, kernel_at(table, k), &g.view, 0, g.p.count, t);
         rig_get(&g, made);
         rig_set(&g, in);
@@ -234,10 +241,10 @@ static void lattice_normalisation_is_the_equations(void **state)
 static void apply_operator(rig *g, const double *p, double *product)
 {
     const sph_kernels *table = sph_kernels_for(g->exec.isa, g->o.shape);
-    for (int64_t i = 0; i < g->p.count; i++) g->p.record[i].w = (float)p[i];
+    for (int64_t i = 0; i < g->p.count; i++) g->cells.record[i].w = (float)p[i];
     tobi_launch(&g->exec, table->sph_pressure_accel, &g->view, 0, g->p.count, NULL);
     tobi_launch(&g->exec, table->sph_product, &g->view, 0, g->p.count, NULL);
-    for (int64_t i = 0; i < g->p.count; i++) product[i] = g->p.product[i];
+    for (int64_t i = 0; i < g->p.count; i++) product[i] = sph_fields_of(&g->p)->product[i];
 }
 
 static void operator_is_symmetric_with_the_diagonal_it_claims(void **state)
@@ -267,8 +274,8 @@ static void operator_is_symmetric_with_the_diagonal_it_claims(void **state)
             memset(p, 0, n*sizeof *p);
             p[i] = 1;
             apply_operator(&g, p, ap);
-            if (!(fabs(ap[i]/g.p.diagonal[i] - 1) < 1e-4))
-                fail_msg("case %d: A_ii %.9g, diagonal %.9g", c, ap[i], g.p.diagonal[i]);
+            if (!(fabs(ap[i]/sph_fields_of(&g.p)->diagonal[i] - 1) < 1e-4))
+                fail_msg("case %d: A_ii %.9g, diagonal %.9g", c, ap[i], sph_fields_of(&g.p)->diagonal[i]);
         }
         free(p); free(q); free(ap); free(aq);
         rig_free(&g);
@@ -292,7 +299,7 @@ static void pressure_keeps_momentum(void **state)
         tobi_launch(&g.exec, table->sph_wall_force, &g.view, 0, g.p.count, t);
         for (int64_t i = 0; i < g.p.count; i++)
             for (int a = 0; a < 3; a++) {
-                double f = g.o.volume*g.o.rho0[g.p.fluid[i]]*(&g.p.accel[i].x)[a];
+                double f = g.o.volume*g.o.rho0[g.p.fluid[i]]*(&sph_fields_of(&g.p)->accel[i].x)[a];
                 sum[a] += f;
                 size += fabs(f);
             }
@@ -334,12 +341,12 @@ static void linear_fields_are_exact_on_the_lattice(void **state)
             }
             if (!inside) continue;
             seen++;
-            assert_true(fabs(g.p.density[i] - 1) < 2e-6);
-            assert_int_equal(g.p.surface[i], 0);
-            assert_true(fabs(g.p.residual[i]*g.view.dt - 1) < 1e-4);       /* -div v = 1 */
-            assert_true(fabs(g.p.accel[i].z - 7) < 1e-4);
-            assert_true(fabs(g.p.accel[i].x - (k.dimension == 3 ? 2 : 0)) < 1e-4);
-            assert_true(fabs(g.p.accel[i].y) < 1e-4);
+            assert_true(fabs(sph_fields_of(&g.p)->density[i] - 1) < 2e-6);
+            assert_int_equal(sph_fields_of(&g.p)->surface[i], 0);
+            assert_true(fabs(sph_fields_of(&g.p)->residual[i]*g.view.dt - 1) < 1e-4);       /* -div v = 1 */
+            assert_true(fabs(sph_fields_of(&g.p)->accel[i].z - 7) < 1e-4);
+            assert_true(fabs(sph_fields_of(&g.p)->accel[i].x - (k.dimension == 3 ? 2 : 0)) < 1e-4);
+            assert_true(fabs(sph_fields_of(&g.p)->accel[i].y) < 1e-4);
         }
         assert_true(seen >= 48);
         rig_free(&g);
@@ -373,8 +380,8 @@ static double divergence_error(int dimension, int along, double *ripple)
             inside &= x > g.c.h && x < g.box.size[a] - g.c.h;
         }
         if (!inside) continue;
-        worst = fmax(worst, fabs(g.p.residual[i]*g.view.dt - 1));
-        *ripple = fmax(*ripple, fabs(g.p.accel[i].x)/(2*g.c.rate*g.c.spacing));
+        worst = fmax(worst, fabs(sph_fields_of(&g.p)->residual[i]*g.view.dt - 1));
+        *ripple = fmax(*ripple, fabs(sph_fields_of(&g.p)->accel[i].x)/(2*g.c.rate*g.c.spacing));
     }
     rig_free(&g);
     return worst;
@@ -406,7 +413,7 @@ static void measure_walls(const rig_case *k, wall_errors *e)
     const sph_kernels *table = sph_kernels_for(g.exec.isa, k->shape);
     tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
     tobi_launch(&g.exec, table->sph_density, &g.view, 0, g.p.count, NULL);
-    for (int64_t i = 0; i < g.p.count; i++) g.p.record[i].w = 1000;
+    for (int64_t i = 0; i < g.p.count; i++) g.cells.record[i].w = 1000;
     tobi_launch(&g.exec, table->sph_pressure_accel, &g.view, 0, g.p.count, NULL);
     double scale = 1/g.c.spacing;    /* p/(rho d) */
     for (int64_t i = 0; i < g.p.count; i++) {
@@ -415,11 +422,11 @@ static void measure_walls(const rig_case *k, wall_errors *e)
         for (int a = 0; a < k->dimension; a++) {
             double x = (&g.p.position[i].x)[a];
             walls += x < g.c.spacing || x > g.box.size[a] - g.c.spacing;
-            a2 += pow((&g.p.accel[i].x)[a]/scale, 2);
+            a2 += pow((&sph_fields_of(&g.p)->accel[i].x)[a]/scale, 2);
         }
         e->accel[walls] = fmax(e->accel[walls], sqrt(a2));
-        e->density[walls] = fmax(e->density[walls], fabs(g.p.density[i] - 1));
-        e->open[walls] += g.p.surface[i];
+        e->density[walls] = fmax(e->density[walls], fabs(sph_fields_of(&g.p)->density[i] - 1));
+        e->open[walls] += sph_fields_of(&g.p)->surface[i];
     }
     rig_free(&g);
 }
@@ -434,7 +441,7 @@ static void walls_brake_by_their_law(void **state)
         create(&g, &cases[c]);
         row *in = rows(&g), *made = rows(&g), *expected = rows(&g);
         double worst[2] = {0}, largest[2] = {0};
-        memset(g.p.accel, 0, (size_t)g.p.count*sizeof *g.p.accel);
+        memset(sph_fields_of(&g.p)->accel, 0, (size_t)g.p.count*sizeof *sph_fields_of(&g.p)->accel);
         for (int a = 0; a < 3; a++) g.view.gravity[a] = g.o.gravity[a] = a == 0 ? 1e-9f : 0;
         g.view.still.push = g.o.still.push = 0;
         g.view.dt = g.o.dt = 1;        /* so that the change stands out of the rounding */

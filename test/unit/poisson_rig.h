@@ -106,7 +106,7 @@ static poisson_pair poisson_sum(const poisson *q, int64_t i, int64_t j)
 }
 
 #define POISSON_NEIGHBOURS(q, i, k)                                                                  \
-    for (int64_t k = 8*(int64_t)(q)->p.list_start[i], end_ = k + 8*(int64_t)(q)->p.list_groups[i];  \
+    for (int64_t k = 8*(int64_t)(q)->cells.list_start[i], end_ = k + 8*(int64_t)(q)->cells.list_groups[i];  \
          k < end_; k++)
 
 static void poisson_moments(const void *view, int64_t begin, int64_t end, double *totals)
@@ -169,7 +169,7 @@ static void poisson_apply(void *user, double *y, const double *x)
     q->in = x;
     q->out = y;
     q->products++;
-    tobi_launch(&q->exec, poisson_product, q, 0, q->p.count, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_product, 0, 0), q, 0, q->p.count, NULL);
 }
 
 static void poisson_precondition(void *user, double *z, const double *r)
@@ -198,8 +198,8 @@ static tobi_status poisson_fill(poisson *q, int dimension, const int n[3], int c
     }
     tobi_box_init(&q->box, dimension, lower, upper, none, q->h);
     TOBI_TRY(tobi_exec_init(&q->exec, threads, &err));
-    TOBI_TRY(tobi_particles_create(&q->p, count, TOBI_ALL | TOBI_SPH, &err));
-    TOBI_TRY(tobi_cells_create(&q->cells, &q->box, q->h, count, &q->exec, &err));
+    TOBI_TRY(tobi_particles_create(&q->p, NULL, 0, count, &err));
+    TOBI_TRY(tobi_cells_create(&q->cells, &q->box, q->h, &q->p, &q->exec, &err));
     TOBI_TRY(tobi_exec_reserve(&q->exec, count, &err));
     for (int z = 0; z < (dimension == 3 ? n[2] : 1); z++)
         for (int y = 0; y < n[1]; y++)
@@ -209,7 +209,7 @@ static tobi_status poisson_fill(poisson *q, int dimension, const int n[3], int c
                     (&q->p.position[i].x)[a] = q->d*(at[a] + 0.5 + 0.15*poisson_random());
             }
     q->p.count = count;
-    tobi_cells_sort(&q->cells, &q->box, &q->p, &q->exec);
+    tobi_cells_sort(&q->cells, &q->box, &q->p, NULL, &q->exec);
     TOBI_TRY(tobi_cells_list(&q->cells, &q->box, q->h, &q->p, &q->exec, &err));
     poisson_measure_lattice(q, dimension);
     return TOBI_OK;
@@ -223,8 +223,8 @@ static void poisson_assemble(poisson *q)
     for (size_t k = 0; k < sizeof array/sizeof *array; k++) *array[k] = calloc((size_t)n, sizeof(double));
     q->weight = malloc((size_t)q->cells.list_used*sizeof *q->weight);
     q->work = calloc((size_t)tobi_cg_work(n), sizeof *q->work);
-    tobi_launch(&q->exec, poisson_moments, q, 0, n, NULL);
-    tobi_launch(&q->exec, poisson_rows, q, 0, n, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_moments, 0, 0), q, 0, n, NULL);
+    tobi_launch(&q->exec, TOBI_HOST(poisson_rows, 0, 0), q, 0, n, NULL);
     for (int64_t i = 0; i < n; i++) q->b[i] += 0.1/q->d*poisson_random();
     q->system = (tobi_linear_system){.rows = n, .user = q, .apply = poisson_apply,
                                      .precondition = poisson_precondition, .singular = 1};

@@ -1,5 +1,6 @@
 /* The neighbour list against all pairs: walled and periodic boxes, near and far, every instruction set. */
 #include "core/cells.h"
+#include "sph/state.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,8 +32,8 @@ static void place(grid *g, const cloud *c, int threads)
         upper[a] = c->origin + c->size[a];
     }
     tobi_box_init(&g->box, c->dimension, lower, upper, c->periodic, c->h);
-    assert_int_equal(tobi_particles_create(&g->p, c->count, TOBI_ALL | TOBI_SPH, &err), TOBI_OK);
-    assert_int_equal(tobi_cells_create(&g->cells, &g->box, c->h, c->count, &g->exec, &err), TOBI_OK);
+    assert_int_equal(tobi_particles_create(&g->p, &sph_field_list, 0, c->count, &err), TOBI_OK);
+    assert_int_equal(tobi_cells_create(&g->cells, &g->box, c->h, &g->p, &g->exec, &err), TOBI_OK);
     state_ = 5;
     for (int i = 0; i < c->count; i++) {
         double *x = &g->p.position[i].x;
@@ -41,12 +42,12 @@ static void place(grid *g, const cloud *c, int threads)
             if (c->periodic[a] && i%7 == 0) x[a] += (i%2 ? 1 : -1)*c->size[a];   /* left over the side */
         }
         g->p.id[i] = i;
-        g->p.pressure[i] = (float)i;
+        sph_fields_of(&g->p)->pressure[i] = (float)i;
         g->p.velocity[i].x = (float)(2*i);
         g->p.fluid[i] = (uint8_t)(i%3);
     }
     g->p.count = c->count;
-    tobi_cells_sort(&g->cells, &g->box, &g->p, &g->exec);
+    tobi_cells_sort(&g->cells, &g->box, &g->p, sph_fields_of(&g->p)->pressure, &g->exec);
 }
 
 static void drop(grid *g)
@@ -79,9 +80,9 @@ static int64_t compare(const grid *g, const cloud *c)
     char *seen = malloc((size_t)c->count);
     int64_t pairs = 0;
     for (int i = 0; i < c->count; i++) {
-        const int32_t *list = g->cells.list + 8*(int64_t)g->p.list_start[i];
+        const int32_t *list = g->cells.list + 8*(int64_t)g->cells.list_start[i];
         memset(seen, 0, (size_t)c->count);
-        for (int k = 0; k < 8*g->p.list_groups[i]; k++) {
+        for (int k = 0; k < 8*g->cells.list_groups[i]; k++) {
             assert_in_range(list[k], 0, c->count - 1);
             if (list[k] != i) assert_int_equal(seen[list[k]]++, 0);
         }
@@ -138,8 +139,8 @@ static void sort_keeps_rows_and_orders_cells(void **state)
             int64_t id = g.p.id[i];
             assert_in_range(id, 0, clouds[c].count - 1);
             assert_int_equal(seen[id]++, 0);
-            assert_true(g.p.pressure[i] == (float)id && g.p.velocity[i].x == (float)(2*id));
-            assert_true(g.p.record[i].w == (float)id);
+            assert_true(sph_fields_of(&g.p)->pressure[i] == (float)id && g.p.velocity[i].x == (float)(2*id));
+            assert_true(g.cells.record[i].w == (float)id);
             assert_int_equal(g.p.fluid[i], id%3);
             for (int a = 0; a < clouds[c].dimension; a++) {
                 double x = (&g.p.position[i].x)[a];
@@ -167,10 +168,10 @@ static void order_does_not_depend_on_threads(void **state)
         list(&one, &clouds[c]);
         list(&more, &clouds[c]);
         for (int i = 0; i < clouds[c].count; i++) {
-            const int32_t *mine = one.cells.list + 8*(int64_t)one.p.list_start[i];
-            const int32_t *other = more.cells.list + 8*(int64_t)more.p.list_start[i];
-            assert_int_equal(one.p.list_groups[i], more.p.list_groups[i]);
-            assert_memory_equal(mine, other, 32*(size_t)one.p.list_groups[i]);
+            const int32_t *mine = one.cells.list + 8*(int64_t)one.cells.list_start[i];
+            const int32_t *other = more.cells.list + 8*(int64_t)more.cells.list_start[i];
+            assert_int_equal(one.cells.list_groups[i], more.cells.list_groups[i]);
+            assert_memory_equal(mine, other, 32*(size_t)one.cells.list_groups[i]);
         }
         drop(&one);
         drop(&more);
@@ -188,7 +189,7 @@ static void bad_boxes_are_refused(void **state)
     assert_non_null(strstr(err.text, "crowd"));
     g.box.periodic[1] = 1;
     tobi_cells_free(&g.cells);
-    assert_int_equal(tobi_cells_create(&g.cells, &g.box, c.h, 10, &g.exec, &err), TOBI_INVALID);
+    assert_int_equal(tobi_cells_create(&g.cells, &g.box, c.h, &g.p, &g.exec, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "three support radii"));
     drop(&g);
 }

@@ -1,5 +1,7 @@
 /* What a program changes between steps: gravity, forces, motions. Stopping in between changes no bit. */
 #include "calls.h"
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -172,10 +174,11 @@ static double *read_pressure(tobi_world *world)
 {
     double *out = read_all(world, "pressure", 1);
     const tobi_particles *p = &world->system[0].particles;
+    const sph_fields *f = sph_fields_of(p);
     for (int64_t r = 0; r < p->count; r++) {
         const int64_t i = world->system[0].row_of[r];
         const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
-        out[r] = p->pressure[i] + tobi_system_hydrostatic(&world->system[0], x);
+        out[r] = f->pressure[i] + sph_hydrostatic(&world->system[0], x);
     }
     return out;
 }

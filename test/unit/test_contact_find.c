@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "tobiuo/tobiuo.h"
+#include "mpm/contact.h"
+#include "mpm/particle_fields.h"
 #include "world/world.h"
 #include <math.h>
 #include <string.h>
@@ -75,7 +77,7 @@ static void mark_some(tobi_system *s, uint32_t *seed)
     s->sim->bodies[0].rigid.cut = 1;
     for (int64_t i = 0; i < s->particles.count; i++) {
         const float side = draw(seed) < 0 ? -1 : 1, away = (float)(0.75*SPACING*(1 + draw(seed)));
-        s->particles.cuts[i].c[0] = (tobi_float4){away, 0, 0, draw(seed) < 0.33 ? side : 0};
+        mpm_fields_of(&s->particles)->cuts[i].c[0] = (tobi_float4){away, 0, 0, draw(seed) < 0.33 ? side : 0};
     }
 }
 

@@ -1,7 +1,10 @@
 /* How easily water moves a body, and sound: what bounds the steps of an explicit coupling; the loads on a
    body, and their sums over what particles see of it. */
 #include "calls.h"
-#include "core/boundary.h"
+#include "mpm/contact.h"
+#include "sph/boundary.h"
+#include "sph/hydrostatic.h"
+#include "sph/state.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -133,7 +136,7 @@ static void loads_of_two_systems_add_up(void **state)
     tobi_body_clear_loads(b);
     for (s->number = 0; s->number < 2; s->number++) {
         tobi_boundary_load(s);
-        tobi_system_add_hydrostatic(s);
+        sph_add_hydrostatic(s);
     }
     tobi_contact_finish(&none, &s->particles, b, &solids, &far, &work, &s->sim->exec);
     const double *one = b->load[0].pressure;
@@ -189,7 +192,7 @@ static void sum_gradients(const void *view, int64_t begin, int64_t end, double *
 {
     const chosen *c = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &c->s->near.entry[k];
+        const tobi_near_entry *e = &sph_of(c->s)->near.entry[k];
         if (c->body >= 0 && e->body != c->body) continue;
         for (int a = 0; a < 3; a++) t[a] += e->gradient[a];
     }
@@ -202,16 +205,16 @@ static void sums_of_all_bodies_at_once(void **state)
     (void)state;
     tobi_world *w = make_boxes();
     tobi_system *s = &w->system[0];
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     double t[TOBI_TOTALS];
     assert_true(n->count > 5000 && n->count > s->particles.count);
     assert_int_equal(n->first[64], n->count);
     OK(tobi_exec_reserve(&s->sim->exec, n->count, &err));
     for (int own = 0; own < 2; own++) {
-        tobi_boundary_sum(s, sum_gradients, &(chosen){s, -1}, own);
+        tobi_boundary_sum(s, TOBI_HOST(sum_gradients, 3, 0), &(chosen){s, -1}, own);
         for (int k = 0; k < 64; k++) {
             const chosen one = {s, k};
-            tobi_launch(&s->sim->exec, sum_gradients, &one, own ? n->first[k] : 0,
+            tobi_launch(&s->sim->exec, TOBI_HOST(sum_gradients, 3, 0), &one, own ? n->first[k] : 0,
                         own ? n->first[k + 1] : n->count, t);
             assert_true(t[0] != 0);
             assert_memory_equal(t, n->total[k], 3*sizeof *t);

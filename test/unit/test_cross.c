@@ -11,8 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 #include "calls.h"
+#include "mpm/particle_fields.h"
 #include "base/param.h"
-#include "core/cuts.h"
+#include "mpm/cuts.h"
 #include "geom/vec3.h"
 #include "world/params.h"
 #include "world/world.h"
@@ -87,7 +88,8 @@ static tobi_world *make_block(int dimension, int transfer, int threads, double f
 /* Way of a particle at the start from the point where the cuts cross, m. */
 static void find_way(const tobi_particles *p, int64_t i, const cuts *c, double d[3])
 {
-    for (int a = 0; a < 3; a++) d[a] = a < c->dimension ? (&p->rest[i].x)[a] - 0.4 - c->at[a] : 0;
+    const mpm_fields *f = mpm_fields_of(p);
+    for (int a = 0; a < 3; a++) d[a] = a < c->dimension ? (&f->rest[i].x)[a] - 0.4 - c->at[a] : 0;
 }
 
 /* The piece of a particle: bit k for the side of plane k. */
@@ -104,6 +106,7 @@ static int find_piece(const tobi_particles *p, int64_t i, const cuts *c)
 static void cut(tobi_world *world, const cuts *c)
 {
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     const double band = (1.5*sqrt(c->dimension) + 0.25)*CELL;
     for (int64_t i = 0; i < p->count; i++) {
         double d[3];
@@ -113,7 +116,7 @@ static void cut(tobi_world *world, const cuts *c)
             const double far = vec3_dot(d, c->normal[k]);
             const int number = k == 0 && c->later && vec3_dot(d, c->normal[1]) > 0 ? 7 : k + 1;
             if (fabs(far) > band || (k == 1 && c->tip > 0 && vec3_dot(d, c->normal[0]) > c->tip)) continue;
-            p->cuts[i].c[known++] = (tobi_float4){ (float)(far*c->normal[k][0]), (float)(far*c->normal[k][1]),
+            f->cuts[i].c[known++] = (tobi_float4){ (float)(far*c->normal[k][0]), (float)(far*c->normal[k][1]),
                                                    (float)(far*c->normal[k][2]),
                                                    (float)(far > 0 ? number : -number) };
         }

@@ -13,6 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "calls.h"
+#include "mpm/particle_fields.h"
 #include "base/param.h"
 #include "world/params.h"
 #include "world/world.h"
@@ -343,10 +344,11 @@ static void set_off(tobi_world *world)
 {
     static double u[HALF_MOST][3];
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) {
-        const double x = p->rest[i].x - 0.4, y = p->rest[i].y - 0.4, z = p->rest[i].z - 0.4;
+        const double x = f->rest[i].x - 0.4, y = f->rest[i].y - 0.4, z = f->rest[i].z - 0.4;
         const double s = x > 0 ? 1 : -1;
-        p->cuts[i].c[0] = (tobi_float4){ (float)x, 0, 0, (float)s };
+        f->cuts[i].c[0] = (tobi_float4){ (float)x, 0, 0, (float)s };
         double *to = u[world->system[0].particles.id[i]];
         to[0] = s*(0.5 + 8*fabs(x)) + 3*y;
         to[1] = s*4*x - 6*y + 0.2*s;
@@ -432,7 +434,8 @@ static void same_bits(void **state)
     OK(tobi_world_advance(later, 0.03, NULL, &err));
     assert_true(tobi_world_hash(one) == tobi_world_hash(four));
     assert_true(tobi_world_hash(one) == tobi_world_hash(later));
-    assert_memory_equal(one->system[0].particles.cuts, later->system[0].particles.cuts,
+    assert_memory_equal(mpm_fields_of(&one->system[0].particles)->cuts,
+                        mpm_fields_of(&later->system[0].particles)->cuts,
                         (size_t)count*sizeof(tobi_columns));
     tobi_error why = { 0 };
     double *nowhere = calloc(TOBI_RECALL_ROW, sizeof *nowhere);

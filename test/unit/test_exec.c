@@ -112,7 +112,7 @@ static void sums_do_not_depend_on_threads(void **state)
     for (int threads = 1; threads <= 4; threads++) {
         tobi_exec x = start(threads, N);
         for (int again = 0; again < 5; again++) {
-            tobi_launch(&x, add_values, v, 0, N, t);
+            tobi_launch(&x, TOBI_HOST(add_values, 6, 1), v, 0, N, t);
             if (threads == 1 && again == 0) memcpy(first, t, sizeof t);
             assert_memory_equal(t, first, sizeof t);
         }
@@ -132,9 +132,9 @@ static void ranges_are_half_open(void **state)
     double v[2000], t[TOBI_TOTALS];
     for (int i = 0; i < 2000; i++) v[i] = 1;
     tobi_exec x = start(3, 2000);
-    tobi_launch(&x, add_values, v, 700, 1999, t);
+    tobi_launch(&x, TOBI_HOST(add_values, 6, 1), v, 700, 1999, t);
     assert_true(t[0] == 1299);
-    tobi_launch(&x, add_values, v, 5, 5, t);
+    tobi_launch(&x, TOBI_HOST(add_values, 6, 1), v, 5, 5, t);
     assert_true(t[0] == 0 && t[6] == 0);
     tobi_exec_free(&x);
 }

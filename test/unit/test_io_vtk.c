@@ -213,7 +213,7 @@ static void wrong_arguments_are_refused(void **state)
     assert_int_equal(tobi_vtp_write(path, TOBI_COMPRESS_ZLIB, &surface, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "triangle 0 uses vertex 4 of 4"));
     assert_int_equal(tobi_stl_write(path, 4, corner, 1, wild, &err), TOBI_INVALID);
-    tobi_vtk_array array = { "a", (tobi_vtk_type)9, 1, density };
+    tobi_vtk_array array = { "a", (tobi_type)9, 1, density };
     assert_int_equal(tobi_vtu_write(path, TOBI_COMPRESS_ZLIB, 3, points, &array, 1, &err), TOBI_INVALID);
     array = (tobi_vtk_array){ "a", TOBI_F32, 0, density };
     assert_int_equal(tobi_vtu_write(path, TOBI_COMPRESS_ZLIB, 3, points, &array, 1, &err), TOBI_INVALID);

@@ -91,7 +91,7 @@ static void a_thin_wall_costs_iterations(void **state)
         make(dimension, dimension == 3 ? 20 : 60, dimension == 3 ? 20 : 60, 0, 2);
         const int without = solve(POISSON_CYCLE).iterations;
         q.wall = 0.6*q.box.size[dimension - 1];
-        tobi_launch(&q.exec, poisson_rows, &q, 0, q.p.count, NULL);
+        tobi_launch(&q.exec, TOBI_HOST(poisson_rows, 0, 0), &q, 0, q.p.count, NULL);
         poisson_set_grid(&q);
         const int with = solve(POISSON_CYCLE).iterations;
         printf("%d-D, a thin wall: %d iterations, %d without\n", dimension, with, without);

@@ -12,7 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 #include "solid_rig.h"
-#include "core/cuts.h"
+#include "mpm/particle_fields.h"
+#include "mpm/cuts.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
 
@@ -37,8 +38,10 @@ static tobi_world *make_world(int dimension, int model, const int n[3], int thre
 static void remember_cuts(tobi_world *world)
 {
     tobi_particles *p = &world->system[0].particles;
-    p->cuts = calloc((size_t)p->capacity + 16, sizeof *p->cuts);
-    assert_non_null(p->cuts);
+    mpm_fields *f = mpm_fields_of(p);
+    p->needs |= MPM_NEED_BLADES;
+    f->cuts = calloc((size_t)p->capacity + 16, sizeof *f->cuts);
+    assert_non_null(f->cuts);
 }
 
 static const tobi_pieces *find(tobi_world *world)
@@ -76,7 +79,7 @@ static void a_block_is_one_piece(void **state)
     free(cut);
     /* Squeezed by half: the volume is that of now. */
     for (int i = 0; i < 120; i++) {
-        world->system[0].particles.strain[i].c[1].y = -0.5f;
+        mpm_fields_of(&world->system[0].particles)->strain[i].c[1].y = -0.5f;
         world->system[0].particles.position[i].y *= 0.5;
     }
     p = find(world);
@@ -88,12 +91,13 @@ static void a_block_is_one_piece(void **state)
 static void cut_at(tobi_world *world, double at, int number)
 {
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) {
         int k = 0;
         double x = p->position[i].x - at;
-        while (k < TOBI_CUTS_EACH && p->cuts[i].c[k].w != 0) k++;
+        while (k < TOBI_CUTS_EACH && f->cuts[i].c[k].w != 0) k++;
         if (fabs(x) < 3*D && k < TOBI_CUTS_EACH)
-            p->cuts[i].c[k] = (tobi_float4){ 1, 0, 0, (float)(x > 0 ? number : -number) };
+            f->cuts[i].c[k] = (tobi_float4){ 1, 0, 0, (float)(x > 0 ? number : -number) };
     }
 }
 
@@ -134,10 +138,11 @@ static void crumbs_are_told_apart(void **state)
     (void)state;
     tobi_world *world = make_world(3, TOBI_NEO_HOOKEAN, (int[]){ 8, 8, 8 }, 1);
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     remember_cuts(world);
     double whole = find(world)->mass;
     for (int64_t i = 0; i < p->count; i++)
-        p->cuts[i].c[0] = (tobi_float4){ 0, 0, 1, p->id[i] < 3 ? -7 : 7 };
+        f->cuts[i].c[0] = (tobi_float4){ 0, 0, 1, p->id[i] < 3 ? -7 : 7 };
     const tobi_pieces *found = find(world);
     assert_true(found->count == 1 && found->fragments == 1 && found->piece[1].particles == 3);
     assert_true(found->piece[1].first_id == 0 && found->mass == whole);
@@ -151,8 +156,9 @@ static void crumbs_are_told_apart(void **state)
 static void shift(tobi_world *world, double dx, double dy)
 {
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = 0; i < p->count; i++)
-        if (p->rest[i].x > 1.4f) {
+        if (f->rest[i].x > 1.4f) {
             p->position[i].x += dx;
             p->position[i].y += dy;
         }
@@ -175,9 +181,10 @@ static void tearing_and_touching(void **state)
     /* Stretched to twice its length it is whole, if its deformation says so. */
     tobi_world *world = make_world(3, TOBI_COROTATED, (int[]){ 8, 4, 4 }, 2);
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) p->position[i].x = 2*p->position[i].x;
     assert_int_equal(find(world)->count, 8);
-    for (int64_t i = 0; i < p->count; i++) p->strain[i].c[0].x = 1;
+    for (int64_t i = 0; i < p->count; i++) f->strain[i].c[0].x = 1;
     assert_int_equal(find(world)->count, 1);
     assert_true(fabs(find(world)->volume - 2*0.128) < 1e-6);
     tobi_world_destroy(world);
@@ -219,6 +226,7 @@ static double draw(uint64_t *seed)
 /* Marks what hangs together with particle i, in the order of links. */
 static void flood(const tobi_particles *p, int64_t i, int number, int *of, int64_t *stack)
 {
+    const mpm_fields *f = mpm_fields_of(p);
     int64_t top = 0;
     stack[top++] = i;
     of[i] = number;
@@ -228,7 +236,7 @@ static void flood(const tobi_particles *p, int64_t i, int number, int *of, int64
             double x = p->position[a].x - p->position[b].x, y = p->position[a].y - p->position[b].y,
                    z = p->position[a].z - p->position[b].z;
             if (of[b] >= 0 || !(sqrt(x*x + y*y + z*z) <= 1.5*D)) continue;
-            if (p->cuts[a].c[0].w != 0 && p->cuts[a].c[0].w == -p->cuts[b].c[0].w) continue;
+            if (f->cuts[a].c[0].w != 0 && f->cuts[a].c[0].w == -f->cuts[b].c[0].w) continue;
             of[b] = number;
             stack[top++] = b;
         }
@@ -240,12 +248,13 @@ static void check_cloud(int dimension, double size, double far, int threads)
 {
     tobi_world *world = make_world(dimension, TOBI_SAND, (int[]){ 15, 15, dimension == 3 ? 10 : 1 }, threads);
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     uint64_t seed = 7;
     remember_cuts(world);
     for (int64_t i = 0; i < p->count; i++) {
         double *x = &p->position[i].x, scale = i%50 == 0 ? far : size;
         for (int a = 0; a < dimension; a++) x[a] = scale*draw(&seed);
-        p->cuts[i].c[0].w = i%3 ? 0 : x[0] > 0.5*size ? 1 : -1;
+        f->cuts[i].c[0].w = i%3 ? 0 : x[0] > 0.5*size ? 1 : -1;
     }
     if (far > 1e6) p->position[17].x = NAN;
     const tobi_pieces *found = find(world);
@@ -307,11 +316,12 @@ static void threads_do_not_matter(void **state)
 static void slice_up(tobi_world *world)
 {
     tobi_particles *p = &world->system[0].particles;
+    const mpm_fields *f = mpm_fields_of(p);
     for (int64_t i = 0; i < p->count; i++) {
         int slice = (int)((p->position[i].x - 1)/D);
-        p->cuts[i].c[0].w = (float)(slice + 1);
-        p->cuts[i].c[1].w = -(float)(slice + 2);
-        if (slice == 69) p->cuts[i].c[2].w = p->rest[i].y > 1.2f ? 1000 : -1000;
+        f->cuts[i].c[0].w = (float)(slice + 1);
+        f->cuts[i].c[1].w = -(float)(slice + 2);
+        if (slice == 69) f->cuts[i].c[2].w = f->rest[i].y > 1.2f ? 1000 : -1000;
     }
     world->fresh = 0;
 }
@@ -407,7 +417,8 @@ static int count_core(tobi_world *world)
 {
     int count = 0;
     const tobi_particles *p = &world->system[0].particles;
-    for (int64_t i = 0; i < p->count; i++) count += p->rest[i].w == 1;
+    const mpm_fields *f = mpm_fields_of(p);
+    for (int64_t i = 0; i < p->count; i++) count += f->rest[i].w == 1;
     return count;
 }
 
@@ -420,7 +431,7 @@ static void the_core_is_below_the_skin(void **state)
     assert_true(world->system[0].particles.count == 1000);
     assert_true(count_core(world) == 216 && count_core(plain) == 0);
     for (int64_t i = 0; i < 1000; i++) {
-        const tobi_float4 *x = &world->system[0].particles.rest[i];
+        const tobi_float4 *x = &mpm_fields_of(&world->system[0].particles)->rest[i];
         int core = 1;
         for (int a = 0; a < 3; a++) core &= (&x->x)[a] > 1.175f && (&x->x)[a] < 1.825f;
         assert_int_equal(x->w == 1, core);
@@ -469,7 +480,8 @@ static char *picture(const double core[3], double gap, size_t *size)
     for (int a = 0; a < 3; a++) fill.box_max[a] = 1;
     tobi_world *world = color_world(&fill, core, 1);
     for (int64_t i = 0; i < 1000; i++)
-        if (world->system[0].particles.rest[i].x > 1.5f) world->system[0].particles.position[i].x += gap;
+        if (mpm_fields_of(&world->system[0].particles)->rest[i].x > 1.5f)
+            world->system[0].particles.position[i].x += gap;
     assert_non_null(mkdtemp(folder));
     output.frames = 1;
     OK(tobi_run_create(world, &output, folder, 1, NULL, &run, &err));

@@ -10,7 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 #include "solid_rig.h"
-#include "core/cuts.h"
+#include "mpm/particle_fields.h"
+#include "mpm/cuts.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
 
@@ -32,11 +33,13 @@ static image take_picture(double length)
     tobi_world *world = solid_world(&s);
     OK(tobi_world_start(world, &err));
     tobi_particles *p = &world->system[0].particles;
-    p->cuts = calloc((size_t)p->capacity + 16, sizeof *p->cuts);       /* as scenes with blades have it */
-    assert_true(p->cuts && p->count == 400);
+    mpm_fields *f = mpm_fields_of(p);
+    p->needs |= MPM_NEED_BLADES;
+    f->cuts = calloc((size_t)p->capacity + 16, sizeof *f->cuts);       /* as scenes with blades have it */
+    assert_true(f->cuts && p->count == 400);
     for (int64_t i = 0; i < p->count; i++)
-        if (p->rest[i].y > 2 - 2*length)
-            p->cuts[i].c[0] = (tobi_float4){ p->rest[i].x - 1.5f, 0, 0, p->rest[i].x > 1.5f ? 1 : -1 };
+        if (f->rest[i].y > 2 - 2*length)
+            f->cuts[i].c[0] = (tobi_float4){ f->rest[i].x - 1.5f, 0, 0, f->rest[i].x > 1.5f ? 1 : -1 };
     world->fresh = 0;                   /* the cuts were made behind its back */
     assert_non_null(mkdtemp(folder));
     output.frames = 1;

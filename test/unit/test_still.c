@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "calls.h"
+#include "sph/state.h"
 #include "sph/still.h"
 #include "world/world.h"
 
@@ -59,7 +60,7 @@ static void the_level_falls_no_faster_than_the_liquid(void **state)
     tobi_still before;
     tobi_world *world = make_pool(0.1, 0);
     OK(tobi_world_step(world, 0, NULL, &err));
-    level = world->system[0].still.level + 0.5*D;
+    level = sph_of(&world->system[0])->still.level + 0.5*D;
     const double start = level;
     for (int k = 1; k <= 3; k++) sph_still_move(&world->system[0], &before, void_below, speed, &level);
     assert_true(fabs(level - start - 3*speed*world->sim.dt) < 1e-9);

@@ -10,7 +10,7 @@
    alternates: the method gives velocities at the contacts, a sweep answers with impulses, the method puts
    them on its grid. Impulses add up over the sweeps, and only their sums must push and obey friction. */
 #pragma once
-#include "core/blade.h"
+#include "mpm/blade.h"
 #include "core/particles.h"
 #include "exec/exec.h"
 

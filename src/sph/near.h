@@ -1,29 +1,9 @@
-/* What particles see of bodies, as it is kept; core/boundary.h fills and reads it. */
+/* What particles see of bodies, as it is kept; sph/boundary.h fills and reads it. */
 #pragma once
 #include "core/body.h"
-#include "core/body_tree.h"
 #include "core/cells.h"
-
-/* What one fluid particle sees of one body. particles.near names a particle's last entry. */
-typedef struct tobi_near_entry {
-    int32_t particle;
-    int16_t body;
-    int32_t previous;         /* the particle's entry for an earlier body, -1 = none              */
-    double gradient[3];       /* G = -sum A W n, 1/m                                              */
-    double torque_arm[3];     /* -sum A W (x_b - centre) x n                                      */
-    double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
-    double share;             /* lambda: share of the kernel inside or behind the body            */
-    double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
-    double friction[3];       /* acceleration by no-slip friction in this step                    */
-    double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
-    double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */
-    double foot[3];           /* closest point on the body, relative to the box                   */
-    double foot_normal[3];    /* outward                                                          */
-    double distance;          /* signed distance to the body, m                                   */
-    double offset[3];         /* from foot to the particle, m                                     */
-    double barycentric[3];    /* of foot in its triangle                                          */
-    int32_t triangle;
-} tobi_near_entry;
+#include "sph/body_tree.h"
+#include "sph/couple.k.h"
 
 /* Points of one body by cell of width h over its box. */
 typedef struct tobi_near_bins {
@@ -44,7 +24,8 @@ typedef struct tobi_near_bodies {
     int64_t contacts;         /* particles pushed out in this step                                */
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
     int64_t *first;           /* [bodies + 1] first entry of each body                            */
-    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_boundary_sum                                 */
+    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_boundary_sum                             */
+    double (*answer)[6];      /* [bodies] sph/couple.k.h                                          */
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
@@ -58,10 +39,10 @@ typedef struct tobi_near_bodies {
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
-    int64_t first_capacity, total_capacity, part_capacity, caught_capacity, blocks_capacity, nearest_capacity;
-    int64_t bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity, hit_capacity;
+    int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
+    int64_t nearest_capacity, bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity;
+    int64_t hit_capacity;
 } tobi_near_bodies;
 
-/* Bytes of all but the entries. */
 int64_t tobi_near_bytes(const tobi_near_bodies *near);
 void tobi_near_free(tobi_near_bodies *near);

@@ -1,8 +1,10 @@
 /* Bodies that move by forces are unknowns of the liquid's pressure: their answer to it is part of its
    operator, so that a body lighter than the water it displaces is stable. Drawback: contact between bodies
    is known a step late. */
-#include "core/boundary.h"
-#include "core/system.h"
+#include "sph/boundary.h"
+#include "sph/hydrostatic.h"
+#include "sph/kernels.h"
+#include "sph/state.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>
@@ -33,106 +35,81 @@ static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
     for (int a = 0; a < 3; a++) r->foreseen_spin[a] = vec3_dot(turn[a], momentum);
 }
 
-/* What an entry makes of six velocities of its body: -sum A W n . (v + w x arm), 1/s. */
-static double flux(const tobi_near_entry *e, const double u[6])
+static tobi_couple_view see_entries(const tobi_system *s)
 {
-    return vec3_dot(e->gradient, u) + vec3_dot(e->torque_arm, u + 3);
+    const tobi_near_bodies *near = &sph_of(s)->near;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    return (tobi_couple_view){ .entry = near->entry, .answer = (const double (*)[6])near->answer,
+                               .near = f->near, .record = s->cells.record, .wall = f->wall,
+                               .product = f->product };
 }
 
-/* Sum over the moving bodies that a particle sees. */
-static double answer_at(const tobi_system *s, int64_t i)
+/* The same for all smoothing kernels. */
+static const sph_kernels *kernels_of(const tobi_system *s)
 {
-    double sum = 0;
-    for (int64_t k = s->particles.near[i]; k >= 0; k = s->near.entry[k].previous) {
-        const tobi_near_entry *e = &s->near.entry[k];
-        if (moves(&s->sim->bodies[e->body])) sum += flux(e, s->sim->bodies[e->body].rigid.answer);
-    }
-    return sum;
-}
-
-static void add_flux(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const tobi_system *s = view;
-    (void)t;
-    for (int64_t i = begin; i < end; i++)
-        if (s->particles.near[i] >= 0) s->particles.wall[i].w += (float)answer_at(s, i);
+    return sph_kernels_for(s->sim->exec.isa, 0);
 }
 
 /* Into the answers, which are free until then. */
 static void sum_known_forces(tobi_system *s)
 {
+    const tobi_near_bodies *n = &sph_of(s)->near;
     for (int viscous = 0; viscous < 2; viscous++) {
         tobi_boundary_known_forces(s, viscous);
-        for (int k = 0; k < s->sim->body_count; k++) {
-            tobi_rigid *r = &s->sim->bodies[k].rigid;
-            for (int a = 0; a < 6; a++) r->answer[a] = (viscous ? r->answer[a] : 0) + s->near.total[k][a];
-        }
+        for (int k = 0; k < s->sim->body_count; k++)
+            for (int a = 0; a < 6; a++) n->answer[k][a] = (viscous ? n->answer[k][a] : 0) + n->total[k][a];
     }
 }
 
 void tobi_couple_begin(tobi_system *s)
 {
+    const tobi_couple_view v = see_entries(s);
     if (!any_moves(s)) return;
     sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         tobi_rigid *r = &b->rigid;
-        double f[6];
+        double f[6], *answer = sph_of(s)->near.answer[k];
+        memcpy(f, answer, sizeof f);
+        memset(answer, 0, sizeof f);
         if (!moves(b)) continue;
-        memcpy(f, r->answer, sizeof f);
-        tobi_system_body_hydrostatic(s, k, f);
+        sph_body_hydrostatic(s, k, f);
         foresee(s, b, f);
-        vec3_sub(r->answer, r->foreseen, r->velocity);
-        vec3_sub(r->answer + 3, r->foreseen_spin, r->angular_velocity);
+        vec3_sub(answer, r->foreseen, r->velocity);
+        vec3_sub(answer + 3, r->foreseen_spin, r->angular_velocity);
     }
-    tobi_launch(&s->sim->exec, add_flux, s, 0, s->particles.count, NULL);
+    tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
 }
 
-/* Force and torque of the records' pressures on one body, without the factor of two volumes. */
+typedef struct pressing { const tobi_system *s; tobi_kernel kernel; const tobi_couple_view *view; } pressing;
+
+/* Of bodies that move alone, and of one at a time. */
 static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
 {
-    const tobi_system *s = view;
-    if (!moves(&s->sim->bodies[s->near.entry[begin].body])) return;
-    for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
-        double q = s->particles.record[e->particle].w;
-        for (int a = 0; a < 3; a++) {
-            t[a] += q*e->gradient[a];
-            t[3 + a] += q*e->torque_arm[a];
-        }
-    }
-}
-
-/* product = A q gains 2 J M^-1 (2 V J^T q), J the flux of all particles by the six velocities: symmetric. */
-static void add_answer(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const tobi_system *s = view;
-    const tobi_particles *p = &s->particles;
-    for (int64_t i = begin; i < end; i++) {
-        if (p->near[i] < 0) continue;
-        float before = p->product[i], after = before + (float)(2*answer_at(s, i));
-        p->product[i] = after;
-        t[0] += ((double)after - before)*p->record[i].w;
-        t[1] += (double)after - before;
-    }
+    const pressing *p = view;
+    if (moves(&p->s->sim->bodies[p->view->entry[begin].body])) p->kernel.run(p->view, begin, end, t);
 }
 
 void tobi_couple_product(tobi_system *s, double *totals)
 {
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_couple_view v = see_entries(s);
+    const pressing p = {s, kernels_of(s)->couple_pressure, &v};
     double t[TOBI_TOTALS];
     if (!any_moves(s)) return;
-    tobi_boundary_sum(s, sum_pressure, s, 1);
+    tobi_boundary_sum(s, TOBI_HOST(sum_pressure, p.kernel.sums, p.kernel.maxima), &p, 1);
     for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_rigid *r = &s->sim->bodies[k].rigid;
+        const tobi_rigid *r = &s->sim->bodies[k].rigid;
+        double *answer = n->answer[k];
         if (!moves(&s->sim->bodies[k])) continue;
-        memcpy(t, s->near.total[k], sizeof t);
+        memcpy(t, n->total[k], sizeof t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         for (int a = 0; a < 3; a++) {
-            r->answer[a] = r->mobility[a]*t[a];
-            r->answer[3 + a] = vec3_dot(r->turn_mobility[a], t + 3);
+            answer[a] = r->mobility[a]*t[a];
+            answer[3 + a] = vec3_dot(r->turn_mobility[a], t + 3);
         }
     }
-    tobi_launch(&s->sim->exec, add_answer, s, 0, s->particles.count, t);
+    tobi_launch(&s->sim->exec, kernels_of(s)->couple_product, &v, 0, s->particles.count, t);
     if (!totals) return;
     totals[0] += t[0];
     totals[1] += t[1];
@@ -146,10 +123,11 @@ static void collect_forces(const tobi_system *s, const tobi_body *b, double f[6]
 
 void tobi_couple_correct(tobi_system *s)
 {
+    const int64_t *first = sph_of(s)->near.first;
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
-        if (!moves(b) || s->near.first[k] == s->near.first[k + 1]) continue;
+        if (!moves(b) || first[k] == first[k + 1]) continue;
         collect_forces(s, b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);

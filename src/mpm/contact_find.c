@@ -1,9 +1,10 @@
 /* Which particles a body touches. Looking at the mesh is dear, so every body has a list of the particles that
    may come near it, and each of them a distance that it certainly keeps: no particle is looked at before it
    and the body may have used that up. The contacts are the same as those of looking at all in every step. */
-#include "core/contact.h"
+#include "mpm/contact.h"
 #include "base/error.h"
-#include "core/cuts.h"
+#include "mpm/cuts.h"
+#include "mpm/particle_fields.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <stdlib.h>
@@ -413,14 +414,16 @@ static void go_to_edge(const tobi_body *b, tobi_contact *k)
 
 static void prefetch(const tobi_particles *p, int64_t i)
 {
+    const mpm_fields *f = mpm_fields_of(p);
     __builtin_prefetch(&p->position[i]);
     __builtin_prefetch(&p->velocity[i]);
-    if (p->cuts) __builtin_prefetch(&p->cuts[i]);
+    if (f->cuts) __builtin_prefetch(&f->cuts[i]);
 }
 
 /* Looks at one candidate; whether it is a contact. */
 static int look(const pose *at, const tobi_particles *p, double way, candidate *one, tobi_contact *out)
 {
+    const mpm_fields *f = mpm_fields_of(p);
     const double slack = 1e-6*at->reach;
     const int64_t i = one->particle;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
@@ -430,7 +433,7 @@ static int look(const pose *at, const tobi_particles *p, double way, candidate *
     bounds known = { one->clear - way, one->sure - way, way < one->sure ? one->slot : -1 };
     if (known.slot < 0) known.clear = find_outside(at, x, local);
     const int kept = known.slot, touches = known.clear <= at->reach + slack &&
-        (p->cuts && at->body->blade ? touch_blade(at, x, local, &p->cuts[i], out, &known)
+        (f->cuts && at->body->blade ? touch_blade(at, x, local, &f->cuts[i], out, &known)
                                     : touch(at, x, local, out, &known)) &&
         !is_idle(at, out, &p->velocity[i]);
     one->clear = (float)((known.clear + way)*(1 - 1e-6));

@@ -1,4 +1,4 @@
-#include "core/blade.h"
+#include "mpm/blade.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
    it is inside, but not through which side it came: of a wing thinner than the way of a step the nearest
    side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
    turns within the step is taken to turn about the point nearest to the particle. */
-#include "core/boundary.h"
-#include "core/system.h"
+#include "sph/boundary.h"
+#include "sph/state.h"
 #include <math.h>
 #include <string.h>
 
@@ -31,8 +31,8 @@ typedef struct touch {
 
 static const tobi_near_entry *entry_of(const pusher *p, int64_t i)
 {
-    const tobi_near_entry *entry = p->s->near.entry;
-    int32_t k = p->s->particles.near[i];
+    const tobi_near_entry *entry = sph_of(p->s)->near.entry;
+    int32_t k = sph_fields_of(&p->s->particles)->near[i];
     while (k >= 0 && entry[k].body != p->body) k = entry[k].previous;
     return k >= 0 && entry[k].triangle >= 0 ? &entry[k] : NULL;
 }
@@ -152,8 +152,9 @@ static void widen(tobi_caught_block *b, const double x[3])
 static void list_caught(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    int32_t *list = s->near.caught + begin;
-    tobi_caught_block *found = &s->near.caught_block[begin/TOBI_BLOCK];
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    int32_t *list = n->caught + begin;
+    tobi_caught_block *found = &n->caught_block[begin/TOBI_BLOCK];
     *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
@@ -162,7 +163,7 @@ static void list_caught(const void *view, int64_t begin, int64_t end, double *to
         tobi_tree_walk walk = {0, 0};
         touch c;
         double into;
-        for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&s->near.tree, x, &walk)) >= 0;) {
+        for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&n->tree, x, &walk)) >= 0;) {
             const pusher p = {.b = &s->sim->bodies[k], .s = (tobi_system *)s, .body = k};
             caught = find_caught(&p, i, &c, &into);
             if (!caught) continue;
@@ -190,7 +191,7 @@ static int is_apart(const pusher *p, const tobi_caught_block *b)
 static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
-    tobi_near_bodies *n = &p->s->near;
+    tobi_near_bodies *n = &sph_of(p->s)->near;
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         tobi_block_sum *part = &n->part[k];
@@ -210,7 +211,7 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
 static void push_all(const pusher *p, double *t)
 {
     tobi_system *s = p->s;
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     int64_t parts = 0;
     for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
         const int32_t *list = n->caught + b*TOBI_BLOCK;
@@ -219,16 +220,17 @@ static void push_all(const pusher *p, double *t)
         if (k < n->caught_block[b].count) n->part[parts++] = (tobi_block_sum){.block = b};
     }
     if (parts < WORTH) push_parts(p, 0, parts, NULL);
-    else tobi_launch_each(&s->sim->exec, push_parts, p, parts, NULL);
+    else tobi_launch_each(&s->sim->exec, TOBI_HOST(push_parts, 0, 0), p, parts, NULL);
     tobi_combine_sums(n->part, parts, t);
 }
 
 void tobi_push_out(tobi_system *s)
 {
-    s->near.contacts = 0;
-    tobi_body_tree_build(&s->near.tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
+    tobi_near_bodies *n = &sph_of(s)->near;
+    n->contacts = 0;
+    tobi_body_tree_build(&n->tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
                          s->box.dimension);
-    tobi_launch(&s->sim->exec, list_caught, s, 0, s->particles.count, NULL);
+    tobi_launch(&s->sim->exec, TOBI_HOST(list_caught, 0, 0), s, 0, s->particles.count, NULL);
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};

@@ -1,7 +1,6 @@
 /* Friction of a liquid on a wall that it sticks to, docs/theory/dfsph.md. */
 #pragma once
 #include "exec/portable.h"
-#include <math.h>
 
 /* Stress on the wall over that of a linear profile, mu u/s, for a liquid that moves at u relative to it at
    the distance s; reynolds = u s/nu. Above 1 where a turbulent layer lies below s, eq. (14b): u+ = 8.3

@@ -2,9 +2,9 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
-#include "core/boundary.h"
-#include "core/system.h"
-#include "core/wall_law.h"
+#include "sph/boundary.h"
+#include "sph/state.h"
+#include "sph/wall_law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +43,7 @@ static int bin_along(const tobi_near_bins *c, double width, int a, double x)
 /* Lays the bins of all bodies out, cells of width h over the boxes. */
 static tobi_status plan_bins(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     const int bodies = s->sim->body_count;
     int64_t starts = 0, items = 0;
     TOBI_TRY(grow(&n->bins, &n->bins_capacity, bodies + 1, err));
@@ -100,7 +100,7 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        fill_bins(&s->near, (int)k, b);
+        fill_bins(&sph_of(s)->near, (int)k, b);
         memset(b->wet, 0, (size_t)b->point_count);
     }
 }
@@ -159,7 +159,7 @@ static int sees_any(void *user, int32_t point)
 /* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
 static int sees_body(look *l, int64_t body)
 {
-    const tobi_near_bodies *n = &l->s->near;
+    const tobi_near_bodies *n = &sph_of(l->s)->near;
     const tobi_near_bins *bins = &n->bins[body];
     const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int64_t bin = 0;
@@ -219,8 +219,9 @@ static int add_point(void *user, int32_t k)
 static void feel_gravity(look *l)
 {
     const tobi_system *s = l->s;
-    double held = tobi_still_share(&s->still, l->x)*s->still.push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*s->still.down[a];
+    const tobi_still *still = &sph_of(s)->still;
+    double held = tobi_still_share(still, l->x)*still->push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*still->down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
@@ -239,7 +240,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    visit_points(&l->s->near, body, l->x, add_point, l);
+    visit_points(&sph_of(l->s)->near, body, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }
@@ -259,7 +260,7 @@ static int cell_along(const tobi_cells *c, int axis, double x)
 static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits,
                            tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     if (begin == end) return TOBI_OK;
     TOBI_TRY(grow(&n->row, &n->row_capacity, n->row_count + 1, err));
     n->row[n->row_count++] = (tobi_near_row){body, (int32_t)begin, (int32_t)end, *hits};
@@ -303,10 +304,11 @@ static int is_far(const tobi_system *s, const double lo[3], const double hi[3], 
 static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
+    const tobi_near_bodies *n = &sph_of(s)->near;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
-        const tobi_near_row *row = &s->near.row[r];
-        int32_t *hit = s->near.hit + row->hit;
+        const tobi_near_row *row = &n->row[r];
+        int32_t *hit = n->hit + row->hit;
         look l = {.s = s, .b = &s->sim->bodies[row->body]};
         int64_t found = 0;
         double lo[3], hi[3];
@@ -316,14 +318,14 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
             if (is_far(s, lo, hi, l.x)) continue;
             if (sees_body(&l, row->body)) hit[found++] = i;
         }
-        s->near.found[r] = found;
+        n->found[r] = found;
     }
 }
 
 static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_near_bodies *n = &s->near;
+    const tobi_near_bodies *n = &sph_of(s)->near;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
         const tobi_near_row *row = &n->row[r];
@@ -339,21 +341,24 @@ static void fill_entries(const void *view, int64_t begin, int64_t end, double *t
 
 static void chain_entries(tobi_system *s)
 {
-    memset(s->particles.near, 0xFF, (size_t)s->particles.count*sizeof *s->particles.near);
-    for (int64_t k = 0; k < s->near.count; k++) {
-        tobi_near_entry *e = &s->near.entry[k];
-        e->previous = s->particles.near[e->particle];
-        s->particles.near[e->particle] = (int32_t)k;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    int32_t *near = sph_fields_of(&s->particles)->near;
+    memset(near, 0xFF, (size_t)s->particles.count*sizeof *near);
+    for (int64_t k = 0; k < n->count; k++) {
+        tobi_near_entry *e = &n->entry[k];
+        e->previous = near[e->particle];
+        near[e->particle] = (int32_t)k;
     }
 }
 
 /* Room for what is done with the entries before the next search. */
 static tobi_status reserve(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     const int64_t bodies = s->sim->body_count, blocks = s->particles.count/TOBI_BLOCK + 1;
     const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
     TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
+    TOBI_TRY(grow(&n->answer, &n->answer_capacity, bodies, err));
     TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
     TOBI_TRY(grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
     TOBI_TRY(grow(&n->nearest, &n->nearest_capacity, blocks*TOBI_BLOCK, err));
@@ -363,13 +368,13 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
 /* Rows near each body are searched, not all particles for every body. */
 tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     tobi_exec *x = &s->sim->exec;
     const int bodies = s->sim->body_count;
     int64_t hits = 0;
     n->row_count = 0;
     TOBI_TRY(plan_bins(s, err));
-    tobi_launch_each(x, prepare_bodies, s, bodies, NULL);
+    tobi_launch_each(x, TOBI_HOST(prepare_bodies, 0, 0), s, bodies, NULL);
     TOBI_TRY(grow(&n->first, &n->first_capacity, bodies + 1, err));
     for (int k = 0; k < bodies; k++) {
         n->first[k] = n->row_count;
@@ -378,7 +383,7 @@ tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
     TOBI_TRY(grow(&n->found, &n->found_capacity, n->row_count, err));
     TOBI_TRY(grow(&n->hit, &n->hit_capacity, hits, err));
     TOBI_TRY(tobi_exec_reserve(x, n->row_count, err));
-    tobi_launch_each(x, find_hits, s, n->row_count, NULL);
+    tobi_launch_each(x, TOBI_HOST(find_hits, 0, 0), s, n->row_count, NULL);
     n->count = tobi_scan(x, n->row_count, n->found);
     for (int k = 0; k < bodies; k++)
         n->first[k] = n->first[k] < n->row_count ? n->found[n->first[k]] : n->count;
@@ -388,9 +393,9 @@ tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 
 tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &s->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
-    tobi_launch_each(&s->sim->exec, fill_entries, s, n->row_count, NULL);
+    tobi_launch_each(&s->sim->exec, TOBI_HOST(fill_entries, 0, 0), s, n->row_count, NULL);
     chain_entries(s);
     TOBI_TRY(reserve(s, err));
     TOBI_TRY(tobi_body_tree_reserve(&n->tree, s->sim->body_count, err));
@@ -400,28 +405,30 @@ tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
+    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
 {
-    tobi_loop(s->sim->exec.threads, s->near.count, 0, visit, s);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, visit, s);
 }
 
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = (s)->near.entry[k].particle, once = (s)->particles.near[i] == k; once; once = 0)   \
-            for (const tobi_near_entry *e = &(s)->near.entry[k]; e; e = next_entry((s), e))
+        for (int64_t i = sph_of(s)->near.entry[k].particle,                                                \
+                     once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
+            for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
+    const sph_fields *f = sph_fields_of(&s->particles);
     FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_float4 *w = &s->particles.wall[i];
+        tobi_float4 *w = &f->wall[i];
         w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
         w->w += (float)e->wall_flux;
-        s->particles.density[i] = 1 - (1 - s->particles.density[i])*(1 - (float)e->share);
+        f->density[i] = 1 - (1 - f->density[i])*(1 - (float)e->share);
     }
 }
 
@@ -469,8 +476,8 @@ void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
-    int32_t k = s->particles.near[i];
-    for (const tobi_near_entry *e = k >= 0 ? &s->near.entry[k] : NULL; e; e = next_entry(s, e)) {
+    int32_t k = sph_fields_of(&s->particles)->near[i];
+    for (const tobi_near_entry *e = k >= 0 ? &sph_of(s)->near.entry[k] : NULL; e; e = next_entry(s, e)) {
         double lack = least - e->distance - dot(way, e->foot_normal);
         for (int a = 0; a < 3 && lack > 0; a++) way[a] += lack*e->foot_normal[a];
     }
@@ -480,10 +487,11 @@ static void relax_particles(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
     for (int64_t i = begin; i < end; i++) {
-        if (!p->beside[i]) continue;
-        double way[3] = {p->accel[i].x, p->accel[i].y, p->accel[i].z}, size = sqrt(dot(way, way)),
+        if (!f->beside[i]) continue;
+        double way[3] = {f->accel[i].x, f->accel[i].y, f->accel[i].z}, size = sqrt(dot(way, way)),
                scale = s->dt*s->dt, *x = &p->position[i].x;
         if (size*scale > most) scale = most/size;
         for (int a = 0; a < 3; a++) way[a] *= scale;
@@ -504,7 +512,7 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
-        tobi_float4 *n = &s->particles.normal[i];
+        tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
         for (int c = 0; c < 3; c++) {
             u[c] -= across*e->foot_normal[c];
@@ -520,7 +528,8 @@ void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals)
 
 int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
-    return n->first_capacity*(int64_t)sizeof *n->first + n->total_capacity*(int64_t)sizeof *n->total +
+    return n->capacity*(int64_t)sizeof *n->entry + n->first_capacity*(int64_t)sizeof *n->first +
+           n->total_capacity*(int64_t)sizeof *n->total + n->answer_capacity*(int64_t)sizeof *n->answer +
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
            n->nearest_capacity*(int64_t)sizeof *n->nearest +
@@ -534,6 +543,7 @@ void tobi_near_free(tobi_near_bodies *n)
     free(n->entry);
     free(n->first);
     free(n->total);
+    free(n->answer);
     free(n->part);
     free(n->caught);
     free(n->caught_block);

@@ -1,8 +1,9 @@
 /* Sums over what the particles see of each body, for all bodies in one launch: a launch per body costs more
    than small bodies have to add. A block of entries holds those of a few bodies, each of which makes a part.
    Part g + b of body g and block b is nobody else's, because both ascend with the entries. */
-#include "core/boundary.h"
-#include "core/system.h"
+#include "sph/boundary.h"
+#include "sph/state.h"
+#include <assert.h>
 
 typedef struct summing { tobi_near_bodies *n; tobi_kernel kernel; const void *view; int own; } summing;
 
@@ -22,7 +23,8 @@ static void sum_block(const void *view, int64_t begin, int64_t end, double *tota
         tobi_block_sum *part = &n->part[block + g];
         if (from >= to) continue;
         *part = (tobi_block_sum){.block = q->own ? block - before : block};
-        q->kernel(q->view, from, to, part->total);
+        q->kernel.run(q->view, from, to, part->total);
+        assert(tobi_kernel_keeps(q->kernel, part->total));
     }
 }
 
@@ -42,9 +44,9 @@ static void combine_bodies(const void *view, int64_t begin, int64_t end, double 
 
 void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int own)
 {
-    summing q = {&s->near, kernel, view, own};
-    tobi_launch(&s->sim->exec, sum_block, &q, 0, s->near.count, NULL);
-    tobi_launch(&s->sim->exec, combine_bodies, &q, 0, s->sim->body_count, NULL);
+    summing q = {&sph_of(s)->near, kernel, view, own};
+    tobi_launch(&s->sim->exec, TOBI_HOST(sum_block, 0, 0), &q, 0, q.n->count, NULL);
+    tobi_launch(&s->sim->exec, TOBI_HOST(combine_bodies, 0, 0), &q, 0, s->sim->body_count, NULL);
 }
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
@@ -68,8 +70,9 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
+    const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
+        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
         const tobi_body *b = &s->sim->bodies[e->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
@@ -79,8 +82,8 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
         if (r->viscous) turning_traction(s, e, turning);
-        float capillary = s->particles.capillary ? s->particles.capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : s->particles.pressure[e->particle];
+        float capillary = f->capillary ? f->capillary[e->particle] : 0;
+        float pressure = r->known ? 0 : f->pressure[e->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
@@ -94,18 +97,18 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 void tobi_boundary_known_forces(tobi_system *s, int viscous)
 {
     const reaction r = {s, viscous, 1};
-    tobi_boundary_sum(s, sum_reaction, &r, 0);
+    tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
 }
 
 void tobi_boundary_load(tobi_system *s)
 {
     for (int viscous = 0; viscous < 2; viscous++) {
         reaction r = {s, viscous, 0};
-        tobi_boundary_sum(s, sum_reaction, &r, 0);
+        tobi_boundary_sum(s, TOBI_HOST(sum_reaction, 6, 0), &r, 0);
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body_load *load = &s->sim->bodies[k].load[s->number];
             double *sum = viscous ? load->friction : load->pressure;
-            for (int a = 0; a < 6; a++) sum[a] += s->near.total[k][a];
+            for (int a = 0; a < 6; a++) sum[a] += sph_of(s)->near.total[k][a];
         }
     }
 }

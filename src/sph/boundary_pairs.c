@@ -1,8 +1,8 @@
 /* Neighbours near bodies: pairs that a body separates leave the neighbour list, and particles near a body or
    next to one that is are marked. Most pairs are farther from bodies than from each other, and only the rest
    asks for the mesh. Drawback: a pair within reach of a mesh costs two walks through it. */
-#include "core/boundary.h"
-#include "core/system.h"
+#include "sph/boundary.h"
+#include "sph/state.h"
 #include <math.h>
 #include <string.h>
 
@@ -10,13 +10,13 @@ static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &s->near.entry[e->previous] : NULL;
+    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
 }
 
 /* From j to i, in fixed point. */
 static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 {
-    const tobi_record *a = &s->particles.record[i], *b = &s->particles.record[j];
+    const tobi_record *a = &s->cells.record[i], *b = &s->cells.record[j];
     d[0] = (int32_t)((uint32_t)a->x - (uint32_t)b->x);
     d[1] = (int32_t)((uint32_t)a->y - (uint32_t)b->y);
     d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z);
@@ -25,7 +25,7 @@ static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 /* A body between two particles is not farther from both together than they are from each other. */
 static int may_separate(const tobi_system *s, int64_t i, int64_t j)
 {
-    const double least = s->near.nearest[i] + s->near.nearest[j];
+    const double *nearest = sph_of(s)->near.nearest, least = nearest[i] + nearest[j];
     double square = 0;
     int32_t fixed[3];
     if (least > 1.001*s->smoothing.h) return 0;
@@ -43,7 +43,8 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const tobi_near_entry *a = &s->near.entry[p->near[i]], *b;
+    const int32_t *near = sph_fields_of(p)->near;
+    const tobi_near_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     int32_t fixed[3];
     double d[3];
@@ -51,7 +52,7 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
     const double length = sqrt(dot(d, d));
     for (; a; a = next_entry(s, a))
-        for (b = &s->near.entry[p->near[j]]; b; b = next_entry(s, b)) {
+        for (b = &entry[near[j]]; b; b = next_entry(s, b)) {
             if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
             for (int c = 0; c < 3; c++) {
@@ -68,57 +69,63 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
 
 static void find_nearest(tobi_system *s)
 {
-    double *nearest = s->near.nearest;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    double *nearest = n->nearest;
     for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
-    for (int64_t k = 0; k < s->near.count; k++) {
-        const tobi_near_entry *e = &s->near.entry[k];
+    for (int64_t k = 0; k < n->count; k++) {
+        const tobi_near_entry *e = &n->entry[k];
         nearest[e->particle] = fmin(nearest[e->particle], fabs(e->distance));
     }
 }
 
 static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
-    tobi_system *s = (tobi_system *)view;
-    const tobi_particles *p = &s->particles;
+    const tobi_system *s = view;
+    const tobi_cells *c = &s->cells;
+    const int32_t *near = sph_fields_of(&s->particles)->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = s->near.entry[k].particle;
-        if (p->near[i] != k) continue;      /* once per particle */
-        int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++) {
+        int64_t i = n->entry[k].particle;
+        if (near[i] != k) continue;      /* once per particle */
+        int32_t *list = c->list + 8*(int64_t)c->list_start[i];
+        for (int g = 0; g < 8*c->list_groups[i]; g++) {
             int32_t j = list[g];
             if (j == i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
             list[g] = (int32_t)i;
             cut++;
         }
     }
-    __atomic_fetch_add(&s->near.cut_pairs, cut, __ATOMIC_RELAXED);      /* whole: any order gives the same */
+    __atomic_fetch_add(&n->cut_pairs, cut, __ATOMIC_RELAXED);      /* whole: any order gives the same */
 }
 
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
+    tobi_near_bodies *n = &sph_of(s)->near;
     find_nearest(s);
-    s->near.cut_pairs = 0;
-    tobi_loop(s->sim->exec.threads, s->near.count, 64, cut_pairs, s);
-    s->near.cut_pairs /= 2;      /* each was seen from both sides */
+    n->cut_pairs = 0;
+    tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
+    n->cut_pairs /= 2;      /* each was seen from both sides */
 }
 
 static void mark_beside(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_particles *p = &s->particles;
+    const tobi_cells *c = &s->cells;
+    uint8_t *beside = sph_fields_of(&s->particles)->beside;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = s->near.entry[k].particle;
-        const int32_t *list = s->cells.list + 8*(int64_t)p->list_start[i];
-        for (int g = 0; g < 8*p->list_groups[i]; g++)
-            __atomic_store_n(&p->beside[list[g]], 1, __ATOMIC_RELAXED);
-        __atomic_store_n(&p->beside[i], 1, __ATOMIC_RELAXED);
+        int64_t i = sph_of(s)->near.entry[k].particle;
+        const int32_t *list = c->list + 8*(int64_t)c->list_start[i];
+        for (int g = 0; g < 8*c->list_groups[i]; g++)
+            __atomic_store_n(&beside[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&beside[i], 1, __ATOMIC_RELAXED);
     }
 }
 
 void tobi_boundary_mark_beside(tobi_system *s)
 {
-    if (!s->particles.beside) return;
-    memset(s->particles.beside, 0, (size_t)s->particles.count);
-    tobi_loop(s->sim->exec.threads, s->near.count, 0, mark_beside, s);
+    uint8_t *beside = sph_fields_of(&s->particles)->beside;
+    if (!beside) return;
+    memset(beside, 0, (size_t)s->particles.count);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, mark_beside, s);
 }

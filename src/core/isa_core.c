@@ -1,7 +1,9 @@
-/* Neighbour search, compiled once per instruction set. For each cell the rows of cells around it are
-   contiguous runs; their records are unpacked once for all particles of the cell, which then test as many
-   candidates at once as a register holds and pack the hits to the front. */
-#include "core/cells.h"
+/* Turns kernels.def into loops, compiled once per instruction set, and the neighbour search. For each cell
+   the rows of cells around it are contiguous runs; their records are unpacked once for all particles of the
+   cell, which then test as many candidates at once as a register holds and pack the hits to the front.
+   Drawback: the search is written for wide registers alone, a device will need another. */
+#include "core/cells.k.h"
+#include "core/kernels.h"
 
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -63,7 +65,7 @@ static inline int pack(int32_t *out, many_int index, unsigned m)
 typedef struct run { int32_t begin, end; } run;
 
 /* The contiguous index ranges that hold all candidates of a particle in cell (cx, cy, cz). */
-static int find_runs(const tobi_cells *c, int cx, int cy, int cz, run *runs)
+static int find_runs(const tobi_cells_view *c, int cx, int cy, int cz, run *runs)
 {
     int count = 0;
     int depth = c->n[2] > 1 ? 1 : 0;
@@ -75,7 +77,7 @@ static int find_runs(const tobi_cells *c, int cx, int cy, int cz, run *runs)
             int y = cy + dy;
             if (c->periodic[1]) y = (y + c->n[1])%c->n[1];
             else if (y < 0 || y >= c->n[1]) continue;
-            int64_t row = tobi_cells_row(c, y, z);
+            int64_t row = cells_row(c, y, z);
             int first = cx > 0 ? cx - 1 : 0, last = cx + 1 < c->n[0] ? cx + 1 : c->n[0] - 1;
             runs[count++] = (run){c->start[row + first], c->start[row + last + 1]};
             if (!c->periodic[0]) continue;
@@ -99,7 +101,7 @@ static inline many_int load(const int32_t *p)
 }
 
 /* Unpacks records [begin, end), at most CHUNK less those there already; returns the first left over. */
-static int32_t unpack(const tobi_list_view *v, int32_t begin, int32_t end, candidates *c)
+static int32_t unpack(const tobi_cells_view *v, int32_t begin, int32_t end, candidates *c)
 {
     static const int32_t STEP[TOBI_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
     if (end - begin > CHUNK - c->count) end = begin + CHUNK - c->count;
@@ -125,7 +127,7 @@ static inline many distance(int32_t own, const int32_t *x, float from_fixed)
 }
 
 /* Appends the neighbours of i among the candidates to its n hits; returns how many it has now. */
-static int search(const tobi_list_view *v, int32_t i, const candidates *c, int32_t *out, int n)
+static int search(const tobi_cells_view *v, int32_t i, const candidates *c, int32_t *out, int n)
 {
     const tobi_record own = v->record[i];
     for (int k = 0; k < c->count && n <= MAX_NEIGHBORS; k += MANY) {
@@ -143,7 +145,7 @@ static int search(const tobi_list_view *v, int32_t i, const candidates *c, int32
 typedef struct batch { int32_t begin, end; int count[BATCH]; int32_t hits[BATCH][ROOM]; } batch;
 
 /* The neighbours of particles of one cell, by run; 0: too many. */
-static int search_cell(const tobi_list_view *v, const run *runs, int run_count, batch *b)
+static int search_cell(const tobi_cells_view *v, const run *runs, int run_count, batch *b)
 {
     candidates c;
     c.count = 0;
@@ -168,7 +170,7 @@ static int search_cell(const tobi_list_view *v, const run *runs, int run_count, 
 typedef struct lists { int32_t begin, end; int64_t used; int32_t found[FOUND]; } lists;
 
 /* Whole groups of 8, padded with the particle itself. */
-static void append(const tobi_list_view *v, const batch *b, lists *l)
+static void append(const tobi_cells_view *v, const batch *b, lists *l)
 {
     for (int32_t i = b->begin; i < b->end; i++) {
         int n = b->count[i - b->begin];
@@ -182,7 +184,7 @@ static void append(const tobi_list_view *v, const batch *b, lists *l)
     l->end = b->end;
 }
 
-static void claim(const tobi_list_view *v, lists *l)
+static void claim(const tobi_cells_view *v, lists *l)
 {
     int64_t start = __atomic_fetch_add(v->used, l->used, __ATOMIC_RELAXED);
     if (start + l->used > v->capacity) {
@@ -195,16 +197,9 @@ static void claim(const tobi_list_view *v, lists *l)
     l->used = 0;
 }
 
-static int cell_of(const tobi_cells *c, int axis, double x)
+static void cells_search(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    int k = (int)__builtin_floor(x*c->inverse[axis]);
-    return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : k;
-}
-
-void JOIN(tobi_neighbors, TOBI_ISA)(const void *view, int64_t begin, int64_t end, double *totals)
-{
-    const tobi_list_view *v = view;
-    const tobi_cells *c = v->cells;
+    const tobi_cells_view *v = view;
     run runs[MAX_RUNS];
     lists l;
     batch b;
@@ -213,12 +208,12 @@ void JOIN(tobi_neighbors, TOBI_ISA)(const void *view, int64_t begin, int64_t end
     l.used = 0;
     for (int32_t i = (int32_t)begin; i < end; i = b.end) {
         tobi_double3 q = v->position[i];
-        int x = cell_of(c, 0, q.x), y = cell_of(c, 1, q.y), z = cell_of(c, 2, q.z);
-        int32_t next = c->start[tobi_cells_row(c, y, z) + x + 1];
+        int x = cells_along(v, 0, q.x), y = cells_along(v, 1, q.y), z = cells_along(v, 2, q.z);
+        int32_t next = v->start[cells_row(v, y, z) + x + 1];
         b.begin = i;
         b.end = next < end ? next : (int32_t)end;
         if (b.end > i + BATCH) b.end = i + BATCH;
-        if (!search_cell(v, runs, find_runs(c, x, y, z, runs), &b)) {
+        if (!search_cell(v, runs, find_runs(v, x, y, z, runs), &b)) {
             *v->overflow = 2;
             return;
         }
@@ -227,3 +222,15 @@ void JOIN(tobi_neighbors, TOBI_ISA)(const void *view, int64_t begin, int64_t end
     }
     claim(v, &l);
 }
+
+#define CELLS(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_cells_view, run_##K)
+#define SEARCH(K, SUMS, MAXIMA, DOC)
+#include "core/kernels.def"
+#undef CELLS
+#undef SEARCH
+
+const tobi_core_kernels JOIN(tobi_core_kernels, TOBI_ISA) = {
+#define CELLS(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
+#define SEARCH(K, SUMS, MAXIMA, DOC) .K = {K, SUMS, MAXIMA},
+#include "core/kernels.def"
+};

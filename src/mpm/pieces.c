@@ -1,8 +1,9 @@
 /* Pairs by hashed cells, pieces by a forest of rows: a link hangs the root of the higher row under the lower
    one, so that the roots do not depend on the order of the links (Jayanti and Tarjan 2016, PODC, without
    their random order). */
-#include "core/pieces.h"
-#include "core/cuts.h"
+#include "mpm/pieces.h"
+#include "mpm/cuts.h"
+#include "mpm/particle_fields.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -29,7 +30,7 @@ static int keeps_neighbors(const search *f, int64_t row)
 
 static tobi_double3 find_place(const search *f, int64_t row)
 {
-    const tobi_float4 *rest = &f->particles->rest[row];
+    const tobi_float4 *rest = &mpm_fields_of(f->particles)->rest[row];
     return keeps_neighbors(f, row) ? (tobi_double3){rest->x, rest->y, rest->z} : f->particles->position[row];
 }
 
@@ -159,17 +160,19 @@ static void join(int32_t *parent, int32_t a, int32_t b)
 /* Across a crack the deformation of particles is the width of the crack. */
 static int is_cracked(const search *f, int64_t i)
 {
-    return f->solids[f->particles->fluid[i]].def.strength > 0 && f->particles->strain[i].c[1].w > 0.9f;
+    const mpm_fields *own = mpm_fields_of(f->particles);
+    return f->solids[f->particles->fluid[i]].def.strength > 0 && own->strain[i].c[1].w > 0.9f;
 }
 
 /* 1 if two particles that were neighbours at rest have been pulled apart. */
 static int is_torn(const search *f, int64_t i, int64_t j)
 {
     const tobi_particles *p = f->particles;
-    const tobi_columns *e = &p->strain[i], *g = &p->strain[j];
+    const mpm_fields *fields = mpm_fields_of(p);
+    const tobi_columns *e = &fields->strain[i], *g = &fields->strain[j];
     const double spacing = f->reach/REACH;
     double now = 0, meant = 0, rest[3];
-    for (int a = 0; a < 3; a++) rest[a] = (double)(&p->rest[j].x)[a] - (&p->rest[i].x)[a];
+    for (int a = 0; a < 3; a++) rest[a] = (double)(&fields->rest[j].x)[a] - (&fields->rest[i].x)[a];
     for (int a = 0; a < 3; a++) {
         double x = (&p->position[j].x)[a] - (&p->position[i].x)[a], y = rest[a];
         for (int c = 0; c < 3; c++) y += 0.5*((&e->c[c].x)[a] + (&g->c[c].x)[a])*rest[c];
@@ -184,8 +187,9 @@ static int is_torn(const search *f, int64_t i, int64_t j)
 static int holds(const search *f, int64_t i, int64_t j)
 {
     const tobi_particles *p = f->particles;
+    const mpm_fields *fields = mpm_fields_of(p);
     if (p->fluid[i] != p->fluid[j] || f->solids[p->fluid[i]].def.model == TOBI_LIQUID) return 0;
-    if (p->cuts && tobi_cuts_apart(&p->cuts[i], &p->cuts[j])) return 0;
+    if (fields->cuts && tobi_cuts_apart(&fields->cuts[i], &fields->cuts[j])) return 0;
     return !keeps_neighbors(f, i) || !is_torn(f, i, j);
 }
 
@@ -240,7 +244,7 @@ static void sum_pieces(const tobi_system *s, const int32_t *row_of, const double
         const int64_t i = row_of[r];
         if (of[i] < 0) continue;
         tobi_piece *piece = &found[of[i]].piece;
-        const double mass = p->strain[i].c[2].w;
+        const double mass = mpm_fields_of(p)->strain[i].c[2].w;
         if (piece->particles++ == 0) {
             piece->first_id = p->id[i];
             piece->solid = p->fluid[i];
@@ -292,7 +296,7 @@ static void read_volumes(const void *view, int64_t begin, int64_t end)
     for (int64_t i = begin; i < end; i++) {
         double ratio[9];
         r->s->method->read(r->s, "J", i, ratio);
-        r->volume[i] = ratio[0]*r->s->particles.strain[i].c[0].w;
+        r->volume[i] = ratio[0]*mpm_fields_of(&r->s->particles)->strain[i].c[0].w;
     }
 }
 
@@ -327,7 +331,7 @@ tobi_status tobi_pieces_find(tobi_system *s, const int32_t *row_of, tobi_piece_l
     choose_strides(&f, n);
     if (status == TOBI_OK) status = sort_by_cell(&f, &s->sim->exec, n, err);
     if (status == TOBI_OK) {
-        tobi_launch(&s->sim->exec, link_range, &f, 0, n, NULL);
+        tobi_launch(&s->sim->exec, TOBI_HOST(link_range, 0, 0), &f, 0, n, NULL);
         status = list_pieces(s, row_of, &f, list, err);
     }
     free_search(&f);

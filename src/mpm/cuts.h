@@ -6,7 +6,7 @@
    m, in the material at rest; c[k].w the number of the cut, 1 to 2^24, with the sign of the particle's side.
    0 = none, and none after it. */
 #pragma once
-#include "core/particles.h"
+#include "exec/portable.h"
 
 enum { TOBI_CUTS_EACH = 3 };           /* cuts that one particle can remember                      */
 

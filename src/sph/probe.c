@@ -1,4 +1,6 @@
-#include "core/probe.h"
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
+#include "sph/probe.h"
 #include <math.h>
 #include <string.h>
 
@@ -65,7 +67,7 @@ static void visit(const tobi_system *s, const double x[3], const range *r, visit
 
 /* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure and velocity. */
 typedef struct fit {
-    const tobi_particles *particles;
+    const tobi_system *s;
     double radius, matrix[BASIS][BASIS], right[BASIS][VALUES];
     int count;
 } fit;
@@ -77,8 +79,8 @@ static void add_to_fit(void *user, int64_t i, const double d[3])
     if (q >= 1) return;
     double w = (1 - q)*(1 - q)*(1 - q)*(1 - q)*(1 + 4*q);
     const double basis[BASIS] = {1, d[0]/f->radius, d[1]/f->radius, d[2]/f->radius};
-    const tobi_float4 *v = &f->particles->velocity[i];
-    const double value[VALUES] = {f->particles->pressure[i], v->x, v->y, v->z};
+    const tobi_float4 *v = &f->s->particles.velocity[i];
+    const double value[VALUES] = {sph_fields_of(&f->s->particles)->pressure[i], v->x, v->y, v->z};
     f->count++;
     for (int a = 0; a < BASIS; a++) {
         for (int b = 0; b < BASIS; b++) f->matrix[a][b] += w*basis[a]*basis[b];
@@ -131,7 +133,7 @@ static void press(void *user, int64_t i, const double r[3])
     membrane *m = user;
     const tobi_smoothing_constants *c = &m->s->smoothing;
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
-    const tobi_still *w = &m->s->still;
+    const tobi_still *w = &sph_of(m->s)->still;
     double held = tobi_still_share(w, &m->s->particles.position[i].x)*w->push/m->s->fluid[0].density;
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
@@ -142,7 +144,7 @@ static void press(void *user, int64_t i, const double r[3])
     double sigma = c->plane.sigma[k], reach = sigma > 0 ? c->plane.lambda[k]/sigma : 0;
     double weight = c->volume*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
     double rho = m->s->fluid[m->s->particles.fluid[i]].density;
-    m->traction += weight*(2*m->s->particles.pressure[i] - rho*along*(depth + reach));
+    m->traction += weight*(2*sph_fields_of(&m->s->particles)->pressure[i] - rho*along*(depth + reach));
 }
 
 /* The nearest side or body within half a spacing of x. */
@@ -227,7 +229,7 @@ static double measure_wall(membrane *m)
 
 int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3])
 {
-    fit f = {.particles = &s->particles, .radius = RADIUS*s->smoothing.spacing};
+    fit f = {.s = s, .radius = RADIUS*s->smoothing.spacing};
     double local[3], value[VALUES] = {0};
     int n = 1 + s->box.dimension;
     for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
@@ -241,12 +243,12 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
     memcpy(velocity, value + 1, 3*sizeof *velocity);
     membrane wall;
     if (f.count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
-    if (f.count > 0) *pressure += tobi_system_hydrostatic(s, local);
+    if (f.count > 0) *pressure += sph_hydrostatic(s, local);
     return f.count;
 }
 
 typedef struct column {
-    const tobi_particles *particles;
+    const tobi_system *s;
     double near2, sign, top;    /* top: along the axis, box coordinates */
     int axis;
 } column;
@@ -255,15 +257,15 @@ static void look_for_top(void *user, int64_t i, const double d[3])
 {
     column *c = user;
     double r2 = d[0]*d[0] + d[1]*d[1] + d[2]*d[2] - d[c->axis]*d[c->axis];
-    double height = (&c->particles->position[i].x)[c->axis];
-    if (r2 > c->near2 || !(c->particles->density[i] > BULK)) return;
+    double height = (&c->s->particles.position[i].x)[c->axis];
+    if (r2 > c->near2 || !(sph_fields_of(&c->s->particles)->density[i] > BULK)) return;
     if (!(c->sign*height < c->sign*c->top)) c->top = height;
 }
 
 double tobi_probe_level(const tobi_system *s, const double x[3])
 {
     double local[3] = {0}, d = s->smoothing.spacing, size = 0;
-    column c = {.particles = &s->particles, .near2 = d*d, .sign = 1, .axis = s->box.dimension - 1};
+    column c = {.s = s, .near2 = d*d, .sign = 1, .axis = s->box.dimension - 1};
     for (int a = 0; a < s->box.dimension; a++) {
         local[a] = x[a] - s->box.lower[a];
         if (fabs(s->sim->def.gravity[a]) <= size) continue;

@@ -1,4 +1,4 @@
-#include "core/contact.h"
+#include "mpm/contact.h"
 #include "geom/vec3.h"
 #include <math.h>
 #include <string.h>

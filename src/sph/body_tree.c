@@ -1,7 +1,7 @@
 /* A tree of bodies' boxes, halved at the middle body along the longest axis and built anew for every use: a
    thousand bodies take less time than one look at all particles. Its size depends on the number of bodies
    alone, so that building cannot fail. Drawback: long bodies that lie askew have large boxes. */
-#include "core/body_tree.h"
+#include "sph/body_tree.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,39 @@
+/* The fields of the SPH methods and what of them is shown in results. Drawback: dfsph and wcsph have the same
+   list, though wcsph needs less of it. */
+#include "sph/state.h"
+#include "sph/hydrostatic.h"
+#include <string.h>
+
+#define ROW(...) TOBI_FIELD_ROW(sph_fields, __VA_ARGS__)
+static const tobi_field fields[] = { SPH_FIELDS(ROW) };
+const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, sizeof(sph_fields) };
+
+const tobi_output sph_outputs[] = {
+    { "acceleration", 3, "m/s2" }, { "vorticity", 3, "1/s" }, { "surface", 1, "1" }, { NULL, 0, NULL } };
+
+unsigned sph_needs(const tobi_system *s, int full)
+{
+    unsigned needs = s->sim->body_count > 0 || full ? SPH_NEED_WETTED : 0;
+    for (int f = 0; f < s->fluid_count; f++)
+        if (s->fluid[f].tension > 0) needs |= SPH_NEED_TENSION;
+    return needs;
+}
+
+void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
+{
+    const tobi_particles *p = &s->particles;
+    const sph_fields *f = sph_fields_of(&s->particles);
+    if (!strcmp(name, "acceleration") || !strcmp(name, "vorticity")) {
+        const tobi_float4 *v = &f->accel[i];
+        out[0] = v->x; out[1] = v->y; out[2] = v->z;
+    } else if (!strcmp(name, "pressure")) {
+        const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+        out[0] = f->product[i] + sph_hydrostatic(s, x);
+    } else if (!strcmp(name, "density")) {
+        out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
+    } else {
+        out[0] = f->surface[i];
+    }
+}
+
+int64_t sph_bytes(const tobi_system *s) { return tobi_near_bytes(&sph_of(s)->near); }

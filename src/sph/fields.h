@@ -1,0 +1,34 @@
+/* The particle fields of the SPH methods. Those of neighbour lists are in core/cells.h. */
+#pragma once
+#include "core/particles.h"
+
+/* Scenes with surface tension; liquids with bodies in them. */
+enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2 };
+
+#define SPH_FIELDS(X) \
+    X(float,       TOBI_F32, 1, pressure,     TOBI_STATE,   0, "Pa",   "pressure") \
+    X(tobi_float4, TOBI_F32, 4, accel,        TOBI_SCRATCH, 0, "m/s2", "acceleration of the pass") \
+    X(tobi_float4, TOBI_F32, 4, wall,         TOBI_SCRATCH, 0, "1/m",  "wall gradient G; w = G . v_wall") \
+    X(tobi_float4, TOBI_F32, 4, stretch,      TOBI_SCRATCH, SPH_NEED_WETTED, "1", \
+      "T, eq. (7b), (7c): xx, yy, zz, xy") \
+    X(tobi_float4, TOBI_F32, 4, shear,        TOBI_SCRATCH, SPH_NEED_WETTED, "1", "T: yz, zx") \
+    X(uint8_t,     TOBI_U8,  1, beside,       TOBI_SCRATCH, SPH_NEED_WETTED, "1", \
+      "1: it or a neighbour sees a body") \
+    X(float,       TOBI_F32, 1, density,      TOBI_SCRATCH, 0, "1",    "density over rest density") \
+    X(float,       TOBI_F32, 1, diagonal,     TOBI_SCRATCH, 0, "m/kg", "diagonal of the pressure operator") \
+    X(float,       TOBI_F32, 1, precondition, TOBI_SCRATCH, 0, "kg/m", "1/diagonal, 0 where p is held") \
+    X(float,       TOBI_F32, 1, residual,     TOBI_SCRATCH, 0, "1/s2", "residual of the pressure equation") \
+    X(float,       TOBI_F32, 1, product,      TOBI_SCRATCH, 0, "1/s2", "A q in a solve; else mean pressure") \
+    X(float,       TOBI_F32, 1, delta,        TOBI_SCRATCH, 0, "Pa",   "pressure change of this solve") \
+    X(float,       TOBI_F32, 1, correction,   TOBI_SCRATCH, 0, "Pa",   "of the position correction") \
+    X(tobi_float4, TOBI_F32, 4, normal,       TOBI_SCRATCH, SPH_NEED_TENSION, "1", \
+      "normal of the surface; w = weight") \
+    X(float,       TOBI_F32, 1, capillary,    TOBI_SCRATCH, SPH_NEED_TENSION, "Pa", \
+      "surface tension times curvature") \
+    X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "1 at a free surface") \
+    X(int32_t,     TOBI_I32, 1, near,         TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
+
+typedef struct sph_fields { SPH_FIELDS(TOBI_FIELD_POINTER) } sph_fields;
+extern const tobi_field_list sph_field_list;
+
+static inline sph_fields *sph_fields_of(const tobi_particles *p) { return p->own; }

@@ -1,0 +1,23 @@
+/* What the states of all SPH methods begin with. */
+#pragma once
+#include "core/system.h"
+#include "sph/fields.h"
+#include "sph/near.h"
+#include "sph/still_water.h"
+
+typedef struct sph_state {
+    tobi_near_bodies near;          /* particles that see a body                                        */
+    tobi_still still;               /* what still water holds of gravity                                */
+    double still_volume;            /* m3 of fluid times the share of gravity so held                   */
+    double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
+    double lowest;                  /* m, drop of the lowest particle at a free surface                 */
+} sph_state;
+
+static inline sph_state *sph_of(const tobi_system *s) { return s->state; }
+
+extern const tobi_output sph_outputs[];
+unsigned sph_needs(const tobi_system *s, int full);
+/* Pressure, density and sph_outputs of one particle. */
+void sph_read(const tobi_system *s, const char *name, int64_t i, double *out);
+/* Of the state: method->bytes. */
+int64_t sph_bytes(const tobi_system *s);
