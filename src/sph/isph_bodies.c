@@ -159,7 +159,6 @@ void isph_bodies_press(isph_solver *m, tobi_system *s)
         const pressing view = { &m->view, &s->cells, b };
         double t[TOBI_TOTALS];
         tobi_launch(m->exec, TOBI_HOST(press_points, 6, 0), &view, 0, b->point_count, t);
-        memcpy(b->info.pressure_force, t, 3*sizeof *t);
-        memcpy(b->info.pressure_torque, t + 3, 3*sizeof *t);
+        memcpy(b->load[s->number].pressure, t, 6*sizeof *t);
     }
 }

@@ -6,7 +6,7 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/wcsph.h"
-#include "sph/couple.h"
+#include "sph/boundary.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/still.h"
