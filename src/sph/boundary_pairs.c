@@ -10,7 +10,9 @@ static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    const int32_t k = n->link[e - n->entry].previous;
+    return k >= 0 ? &n->entry[k] : NULL;
 }
 
 /* From j to i, in fixed point. */
@@ -44,6 +46,7 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
     const int32_t *near = sph_fields_of(p)->near;
+    const tobi_near_link *link = sph_of(s)->near.link;
     const tobi_near_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     int32_t fixed[3];
@@ -53,7 +56,8 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     const double length = sqrt(dot(d, d));
     for (; a; a = next_entry(s, a))
         for (b = &entry[near[j]]; b; b = next_entry(s, b)) {
-            if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
+            const int body = link[a - entry].body;
+            if (body != link[b - entry].body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
             for (int c = 0; c < 3; c++) {
                 to[c] = x[c] - d[c];
@@ -61,7 +65,7 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
                 rb[c] = to[c] + d[c] - b->foot[c];
             }
             if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
-            const tobi_bvh *tree = s->sim->bodies[a->body].bvh;
+            const tobi_bvh *tree = s->sim->bodies[body].bvh;
             if (tobi_bvh_segment_hits(tree, x, to)) return 1;
         }
     return 0;
@@ -73,8 +77,8 @@ static void find_nearest(tobi_system *s)
     double *nearest = n->nearest;
     for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
     for (int64_t k = 0; k < n->count; k++) {
-        const tobi_near_entry *e = &n->entry[k];
-        nearest[e->particle] = fmin(nearest[e->particle], fabs(e->distance));
+        double *least = &nearest[n->link[k].particle];
+        *least = fmin(*least, fabs(n->entry[k].distance));
     }
 }
 
@@ -86,7 +90,7 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
     tobi_near_bodies *n = &sph_of(s)->near;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = n->entry[k].particle;
+        int64_t i = n->link[k].particle;
         if (near[i] != k) continue;      /* once per particle */
         int32_t *list = c->list + 8*(int64_t)c->list_start[i];
         for (int g = 0; g < 8*c->list_groups[i]; g++) {
@@ -114,7 +118,7 @@ static void mark_beside(const void *view, int64_t begin, int64_t end)
     const tobi_cells *c = &s->cells;
     uint8_t *beside = sph_fields_of(&s->particles)->beside;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = sph_of(s)->near.entry[k].particle;
+        int64_t i = sph_of(s)->near.link[k].particle;
         const int32_t *list = c->list + 8*(int64_t)c->list_start[i];
         for (int g = 0; g < 8*c->list_groups[i]; g++)
             __atomic_store_n(&beside[list[g]], 1, __ATOMIC_RELAXED);

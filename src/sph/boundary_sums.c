@@ -16,7 +16,7 @@ static void sum_block(const void *view, int64_t begin, int64_t end, double *tota
     const tobi_near_bodies *n = q->n;
     const int64_t block = begin/TOBI_BLOCK;
     (void)totals;
-    for (int g = n->entry[begin].body; g <= n->entry[end - 1].body; g++) {
+    for (int g = n->link[begin].body; g <= n->link[end - 1].body; g++) {
         const int64_t first = n->first[g], stop = n->first[g + 1], before = first/TOBI_BLOCK;
         const int64_t from = q->own ? first + (block - before)*TOBI_BLOCK : most(first, begin);
         const int64_t to = least(stop, q->own ? from + TOBI_BLOCK : end);
@@ -51,7 +51,7 @@ void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */
-static void turning_traction(const tobi_system *s, const tobi_near_entry *e, double force[3])
+static void turning_traction(const tobi_system *s, const tobi_near_link *e, double force[3])
 {
     const tobi_body *b = &s->sim->bodies[e->body];
     const double *w = b->info.angular_velocity;
@@ -70,26 +70,28 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
+    const tobi_near_bodies *near = &sph_of(s)->near;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
-        const tobi_body *b = &s->sim->bodies[e->body];
-        double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
+        const tobi_near_link *l = &near->link[k];
+        const tobi_near_entry *e = &near->entry[k];
+        const tobi_body *b = &s->sim->bodies[l->body];
+        double mass = s->smoothing.volume * s->fluid[s->particles.fluid[l->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
         const double *accel = r->viscous ? e->friction : e->lift;
         for (int a = 0; a < 3; a++) {
             force[a] = -mass*accel[a];
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
         }
-        if (r->viscous) turning_traction(s, e, turning);
-        float capillary = f->capillary ? f->capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : f->pressure[e->particle];
+        if (r->viscous) turning_traction(s, l, turning);
+        float capillary = f->capillary ? f->capillary[l->particle] : 0;
+        float pressure = r->known ? 0 : f->pressure[l->particle];
         double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
         for (int a = 0; a < 3; a++) {
             int p = (a + 1)%3, q = (a + 2)%3;
-            t[a] += force[a] + push*e->gradient[a];
+            t[a] += force[a] + push*l->gradient[a];
             t[3 + a] += arm[p]*(force[q] + turning[q]) - arm[q]*(force[p] + turning[p]) +
-                        push*e->torque_arm[a];
+                        push*l->torque_arm[a];
         }
     }
 }

@@ -39,7 +39,7 @@ static tobi_couple_view see_entries(const tobi_system *s)
 {
     const tobi_near_bodies *near = &sph_of(s)->near;
     const sph_fields *f = sph_fields_of(&s->particles);
-    return (tobi_couple_view){ .entry = near->entry, .answer = (const double (*)[6])near->answer,
+    return (tobi_couple_view){ .link = near->link, .answer = (const double (*)[6])near->answer,
                                .near = f->near, .record = s->cells.record, .wall = f->wall,
                                .product = f->product };
 }
@@ -87,7 +87,7 @@ typedef struct pressing { const tobi_system *s; tobi_kernel kernel; const tobi_c
 static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
 {
     const pressing *p = view;
-    if (moves(&p->s->sim->bodies[p->view->entry[begin].body])) p->kernel.run(p->view, begin, end, t);
+    if (moves(&p->s->sim->bodies[p->view->link[begin].body])) p->kernel.run(p->view, begin, end, t);
 }
 
 void tobi_couple_product(tobi_system *s, double *totals)

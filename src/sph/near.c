@@ -138,6 +138,7 @@ typedef struct look {
     const tobi_body *b;
     double x[3];
     double gravity[3];          /* m/s2, what the particle feels */
+    tobi_near_link *link;
     tobi_near_entry *entry;
 } look;
 
@@ -201,8 +202,8 @@ static int add_point(void *user, int32_t k)
     for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
     for (int a = 0; a < 3; a++) {
         int p = (a + 1)%3, q = (a + 2)%3;
-        e->gradient[a] -= aw*n[a];
-        e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
+        l->link->gradient[a] -= aw*n[a];
+        l->link->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
         e->lift[a] -= aw*gn*(s + reach)*n[a];
     }
     e->wall_flux -= aw*dot(n, v);
@@ -230,8 +231,7 @@ static int look_at(look *l, int32_t i, int body)
     tobi_bvh_hit hit;
     feel_gravity(l);
     memset(e, 0, sizeof *e);
-    e->particle = i;
-    e->body = (int16_t)body;
+    *l->link = (tobi_near_link){.particle = i, .body = (int16_t)body};
     e->triangle = -1;
     if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
     e->distance = hit.signed_distance;
@@ -332,7 +332,7 @@ static void fill_entries(const void *view, int64_t begin, int64_t end, double *t
         const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
         const int32_t *hit = n->hit + row->hit;
         for (int64_t k = n->found[r]; k < stop; k++, hit++) {
-            look l = {.s = s, .b = &s->sim->bodies[row->body], .entry = &n->entry[k]};
+            look l = {.s = s, .b = &s->sim->bodies[row->body], .link = &n->link[k], .entry = &n->entry[k]};
             place_look(&l, *hit);
             if (!look_at(&l, *hit, row->body)) l.entry->distance = s->smoothing.h;
         }
@@ -345,7 +345,7 @@ static void chain_entries(tobi_system *s)
     int32_t *near = sph_fields_of(&s->particles)->near;
     memset(near, 0xFF, (size_t)s->particles.count*sizeof *near);
     for (int64_t k = 0; k < n->count; k++) {
-        tobi_near_entry *e = &n->entry[k];
+        tobi_near_link *e = &n->link[k];
         e->previous = near[e->particle];
         near[e->particle] = (int32_t)k;
     }
@@ -394,6 +394,7 @@ tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &sph_of(s)->near;
+    TOBI_TRY(grow(&n->link, &n->link_capacity, n->count, err));
     TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
     tobi_launch_each(&s->sim->exec, TOBI_HOST(fill_entries, 0, 0), s, n->row_count, NULL);
     chain_entries(s);
@@ -405,7 +406,9 @@ tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    const int32_t k = n->link[e - n->entry].previous;
+    return k >= 0 ? &n->entry[k] : NULL;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
@@ -416,7 +419,7 @@ static void visit_entries(tobi_system *s, tobi_range visit)
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = sph_of(s)->near.entry[k].particle,                                                \
+        for (int64_t i = sph_of(s)->near.link[k].particle,                                                 \
                      once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
             for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
 
@@ -424,9 +427,11 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
+    const tobi_near_bodies *n = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &f->wall[i];
-        w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
+        const double *g = n->link[e - n->entry].gradient;
+        w->x += (float)g[0]; w->y += (float)g[1]; w->z += (float)g[2];
         w->w += (float)e->wall_flux;
         f->density[i] = 1 - (1 - f->density[i])*(1 - (float)e->share);
     }
@@ -435,10 +440,10 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
 void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
-static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const double u[3],
+static void entry_accel(const tobi_system *s, int64_t i, const tobi_near_entry *e, const double u[3],
                         double lift[3], double drag[3])
 {
-    const tobi_fluid *f = &s->fluid[s->particles.fluid[e->particle]];
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
     double nu = f->viscosity/f->density, a[3];
     for (int c = 0; c < 3; c++) {
         lift[c] = e->lift[c];
@@ -461,7 +466,7 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
-        entry_accel(s, e, u, lift, drag);
+        entry_accel(s, i, e, u, lift, drag);
         tobi_near_entry *own = (tobi_near_entry *)e;   /* kept for the reaction */
         memcpy(own->lift, lift, sizeof lift);
         memcpy(own->friction, drag, sizeof drag);
@@ -511,6 +516,7 @@ void tobi_boundary_relax(tobi_system *s)
 static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
+    const tobi_near_bodies *near = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -519,7 +525,8 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
             size += u[c]*u[c];
         }
         if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
-        double cosine = s->sim->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
+        const tobi_body *body = &s->sim->bodies[near->link[e - near->entry].body];
+        double cosine = body->contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }
 }
@@ -528,7 +535,8 @@ void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals)
 
 int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
-    return n->capacity*(int64_t)sizeof *n->entry + n->first_capacity*(int64_t)sizeof *n->first +
+    return n->link_capacity*(int64_t)sizeof *n->link + n->capacity*(int64_t)sizeof *n->entry +
+           n->first_capacity*(int64_t)sizeof *n->first +
            n->total_capacity*(int64_t)sizeof *n->total + n->answer_capacity*(int64_t)sizeof *n->answer +
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
@@ -540,6 +548,7 @@ int64_t tobi_near_bytes(const tobi_near_bodies *n)
 
 void tobi_near_free(tobi_near_bodies *n)
 {
+    free(n->link);
     free(n->entry);
     free(n->first);
     free(n->total);

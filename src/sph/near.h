@@ -19,8 +19,9 @@ typedef struct tobi_near_row { int32_t body, begin, end; int64_t hit; } tobi_nea
 typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
 
 typedef struct tobi_near_bodies {
-    tobi_near_entry *entry;   /* by body, then by particle                                        */
-    int64_t count, capacity;
+    tobi_near_link *link;     /* by body, then by particle                                        */
+    tobi_near_entry *entry;   /* of each link                                                     */
+    int64_t count, capacity, link_capacity;
     int64_t contacts;         /* particles pushed out in this step                                */
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
     int64_t *first;           /* [bodies + 1] first entry of each body                            */

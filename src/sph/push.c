@@ -31,10 +31,10 @@ typedef struct touch {
 
 static const tobi_near_entry *entry_of(const pusher *p, int64_t i)
 {
-    const tobi_near_entry *entry = sph_of(p->s)->near.entry;
+    const tobi_near_bodies *n = &sph_of(p->s)->near;
     int32_t k = sph_fields_of(&p->s->particles)->near[i];
-    while (k >= 0 && entry[k].body != p->body) k = entry[k].previous;
-    return k >= 0 && entry[k].triangle >= 0 ? &entry[k] : NULL;
+    while (k >= 0 && n->link[k].body != p->body) k = n->link[k].previous;
+    return k >= 0 && n->entry[k].triangle >= 0 ? &n->entry[k] : NULL;
 }
 
 /* Where a particle began the step, as seen from the body: as far from its nearest point as then. */

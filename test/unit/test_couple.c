@@ -192,7 +192,7 @@ static void sum_gradients(const void *view, int64_t begin, int64_t end, double *
 {
     const chosen *c = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &sph_of(c->s)->near.entry[k];
+        const tobi_near_link *e = &sph_of(c->s)->near.link[k];
         if (c->body >= 0 && e->body != c->body) continue;
         for (int a = 0; a < 3; a++) t[a] += e->gradient[a];
     }
