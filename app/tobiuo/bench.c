@@ -6,7 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KEY_THREADS = KEY_OWN, KEY_STEPS, KEY_SETTLE, KEY_SCENE, KEY_PROJECT };
+enum { KEY_THREADS = KEY_OWN, KEY_STEPS, KEY_SETTLE, KEY_SCENE, KEY_PROJECT,
+       KEY_BODIES, KEY_SIZE, KEY_FIXED };
 enum { MORE_ITERATIONS = 12 };
 
 static const struct argp_option options[] = {
@@ -16,6 +17,9 @@ static const struct argp_option options[] = {
     { "spacing", KEY_SPACING, "M", 0, "particle spacing, m", 0 },
     { "scene", KEY_SCENE, "SCENE", 0, "fish: the scene (scenes/flying_fish)", 0 },
     { "project", KEY_PROJECT, "S", 0, "fish: project the wall clock to this time (0.8 s)", 0 },
+    { "bodies", KEY_BODIES, "N", 0, "bodies_in_water: how many bodies (1000)", 0 },
+    { "size", KEY_SIZE, "X", 0, "bodies_in_water: edge of a body in spacings (2)", 0 },
+    { "fixed", KEY_FIXED, NULL, 0, "bodies_in_water: bodies that do not move", 0 },
     { 0 }
 };
 
@@ -36,6 +40,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_SPACING: o->spacing = parse_positive(state, "--spacing", value); break;
     case KEY_PROJECT: o->project = parse_positive(state, "--project", value); break;
     case KEY_SCENE: o->scene = value; break;
+    case KEY_BODIES: o->bodies = parse_count(state, "--bodies", value); break;
+    case KEY_SIZE: o->size = parse_positive(state, "--size", value); break;
+    case KEY_FIXED: o->fixed = 1; break;
     case ARGP_KEY_ARG:
         if (o->which) argp_error(state, "one CASE only");
         o->which = value;
@@ -235,6 +242,7 @@ const struct argp bench_argp = {
            "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
            "  cut     a ball that a blade goes through, and the same without, half a minute\n"
            "  bodies  200 rigid boxes fall into a bin, seconds\n"
+           "  bodies_in_water   a pool of 100 000 particles with one small body and with 1000\n"
            "\nTimes are wall clock; run it on a machine that does nothing else."
 };
 
@@ -246,15 +254,17 @@ int tobiuo_bench(int argc, char **argv)
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
     int cut = strcmp(which, "cut") == 0, other = !strcmp(which, "wcsph") || !strcmp(which, "isph");
-    if (!tank && !small && !other && !ball && !cut && !bodies && strcmp(which, "fish") != 0) {
+    int in_water = strcmp(which, "bodies_in_water") == 0;
+    if (!tank && !small && !other && !ball && !cut && !bodies && !in_water && strcmp(which, "fish") != 0) {
         complain("bench: there is no case '%s'; known are small, tank, wcsph, isph, fish, ball, "
-                 "cut and bodies", which);
+                 "cut, bodies and bodies_in_water", which);
         return EXIT_USAGE;
     }
     bench_print_machine(o.threads);
     if (ball) return bench_ball(&o);
     if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);
+    if (in_water) return bench_bodies_in_water(&o);
     if (other) return measure_method(&o, which);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);

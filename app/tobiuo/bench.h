@@ -9,6 +9,9 @@ typedef struct bench_options {
     double project;          /* s of simulated time to project to; 0 = 0.8   */
     int threads;             /* 0 = all cores                                */
     int steps, settle;       /* 0 = the case's own                           */
+    int bodies;              /* of the case bodies_in_water; 0 = its own               */
+    double size;             /* of a body of it, spacings; 0 = its own       */
+    int fixed;               /* 1: they do not move                          */
 } bench_options;
 
 enum { BENCH_STAGES = 16 };
@@ -62,3 +65,5 @@ int bench_ball(const bench_options *o);
 int bench_cut(const bench_options *o);
 /* bench_bodies.c: rigid bodies. */
 int bench_bodies(const bench_options *o);
+/* bench_bodies_in_water.c: what small bodies cost in water. */
+int bench_bodies_in_water(const bench_options *o);

@@ -235,6 +235,25 @@ static void mirror_motion(tobi_body *b)
     memcpy(b->rigid.angular_velocity, b->info.angular_velocity, sizeof b->rigid.angular_velocity);
 }
 
+void tobi_body_clear_loads(tobi_body *b) { memset(b->load, 0, sizeof b->load); }
+
+void tobi_body_sum_loads(tobi_body *b)
+{
+    tobi_body_load sum = b->load[0];
+    for (int k = 1; k < TOBI_SYSTEM_LIMIT; k++) {
+        for (int a = 0; a < 6; a++) {
+            sum.pressure[a] += b->load[k].pressure[a];
+            sum.friction[a] += b->load[k].friction[a];
+        }
+        vec3_add_scaled(sum.edge, sum.edge, 1, b->load[k].edge);
+    }
+    memcpy(b->info.pressure_force, sum.pressure, sizeof b->info.pressure_force);
+    memcpy(b->info.pressure_torque, sum.pressure + 3, sizeof b->info.pressure_torque);
+    memcpy(b->info.viscous_force, sum.friction, sizeof b->info.viscous_force);
+    memcpy(b->info.viscous_torque, sum.friction + 3, sizeof b->info.viscous_torque);
+    memcpy(b->info.edge_force, sum.edge, sizeof b->info.edge_force);
+}
+
 void tobi_body_report(tobi_body *b)
 {
     const tobi_rigid *r = &b->rigid;

@@ -25,6 +25,10 @@ typedef struct tobi_edge_foot {
     double  barycentric[3];
 } tobi_edge_foot;
 
+/* What one system presses a body with, mean over the world's step: N, and N m about the centre. */
+typedef struct tobi_body_load { double pressure[6], friction[6], edge[3]; } tobi_body_load;
+enum { TOBI_SYSTEM_LIMIT = 2 };
+
 /* What a point of a body's surface knows of the water: none; particles see it; particles do not fit in. */
 enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP };
 
@@ -80,7 +84,8 @@ typedef struct tobi_body {
     int deforms;                     /* its motion is not rigid: `rigid` is an approximation   */
     double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
     tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_need_rest        */
-    tobi_body_info info;
+    tobi_body_load load[TOBI_SYSTEM_LIMIT];      /* of this step: each system adds to its own  */
+    tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
 
 /* Reads, places, checks and samples a body at time 0, in the domain box. point_spacing: of the
@@ -118,5 +123,9 @@ void tobi_body_drive_points(tobi_body *b);
 void tobi_body_bring_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
+/* Before a step: no system presses. */
+void tobi_body_clear_loads(tobi_body *b);
+/* After a step: the sums of the loads as the forces of `info`. */
+void tobi_body_sum_loads(tobi_body *b);
 /* Copies pose and velocities of a free body from `rigid` into `info`. */
 void tobi_body_report(tobi_body *b);

@@ -37,7 +37,7 @@ typedef struct tobi_rigid {
     double next_orientation[4];
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
-    /* Within the step of a liquid, sph/couple.h: */
+    /* Within the step of a liquid, sph/boundary.h: */
     double foreseen[3], foreseen_spin[3];         /* m/s, rad/s: at the end of the step                 */
     double mobility[3], turn_mobility[3][3];      /* 1/kg, 1/(kg m2): velocities per impulse            */
 } tobi_rigid;

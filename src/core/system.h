@@ -21,6 +21,7 @@ typedef struct tobi_solid {
 
 typedef struct tobi_system {
     tobi_simulation *sim;           /* the world's                                           */
+    int number;                     /* of the world's systems: whose load on a body it adds to */
     const struct tobi_method *method;
     void *def;                      /* owned: the method's parameters                        */
     void *state;                    /* owned: the method's own, from `create` on             */

@@ -60,17 +60,39 @@ tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err)
     return TOBI_OK;
 }
 
+static void add_totals(int sums, int maxima, double *a, const double *c)
+{
+    for (int k = 0; k < sums; k++) a[k] += c[k];
+    for (int k = TOBI_SUMS; k < TOBI_SUMS + maxima; k++) if (c[k] > a[k]) a[k] = c[k];
+}
+
 /* Pairwise over blocks: error grows with log n, order fixed by n alone. */
 static void combine(tobi_kernel kernel, double *p, int64_t blocks, double *totals)
 {
-    const int last = TOBI_SUMS + kernel.maxima;
     for (int64_t step = 1; step < blocks; step *= 2)
-        for (int64_t b = 0; b + step < blocks; b += 2*step) {
-            double *a = p + b*TOBI_TOTALS, *c = p + (b + step)*TOBI_TOTALS;
-            for (int k = 0; k < kernel.sums; k++) a[k] += c[k];
-            for (int k = TOBI_SUMS; k < last; k++) if (c[k] > a[k]) a[k] = c[k];
-        }
+        for (int64_t b = 0; b + step < blocks; b += 2*step)
+            add_totals(kernel.sums, kernel.maxima, p + b*TOBI_TOTALS, p + (b + step)*TOBI_TOTALS);
     memcpy(totals, p, TOBI_TOTALS*sizeof *totals);
+}
+
+/* The same pairs as above: where one side is missing it is zero. */
+void tobi_combine_sums(tobi_block_sum *p, int64_t count, double *totals)
+{
+    memset(totals, 0, TOBI_TOTALS*sizeof *totals);
+    while (count > 1) {
+        int64_t kept = 0;
+        for (int64_t k = 0; k < count; k++) {
+            const int64_t pair = p[k].block/2;
+            if (kept > 0 && p[kept - 1].block == pair) {
+                add_totals(TOBI_SUMS, TOBI_TOTALS - TOBI_SUMS, p[kept - 1].total, p[k].total);
+                continue;
+            }
+            p[kept] = p[k];
+            p[kept++].block = pair;
+        }
+        count = kept;
+    }
+    if (count) memcpy(totals, p[0].total, TOBI_TOTALS*sizeof *totals);
 }
 
 /* Cuts [begin, end) into blocks of `grain`. */

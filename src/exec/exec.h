@@ -71,6 +71,12 @@ void tobi_launch(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t beg
    many. */
 void tobi_launch_each(tobi_exec *x, tobi_kernel kernel, const void *view, int64_t count, double *totals);
 
+/* Totals of one block of a launch. */
+typedef struct tobi_block_sum { int64_t block; double total[TOBI_TOTALS]; } tobi_block_sum;
+
+/* Totals of a launch of which no other block has anything to add. Blocks ascend; the parts are spent. */
+void tobi_combine_sums(tobi_block_sum *parts, int64_t count, double *totals);
+
 /* Stable radix sort of keys (each < key_limit) with their indices 0..n-1. On return keys are sorted
    and order[k] is the old index of rank k. The three scratch arrays hold n entries each. */
 void tobi_sort_by_key(tobi_exec *x, int64_t n, uint32_t key_limit, uint32_t *keys, int32_t *order,

@@ -365,16 +365,17 @@ static double find_span(const tobi_body *b, const outcome *total, const tobi_con
     return step->before > 0 ? share*step->dt + (1 - share)*step->before : step->dt;
 }
 
-static void give_to_body(tobi_body *b, const outcome *total, double dt)
+static void give_to_body(tobi_body *b, const outcome *total, const tobi_contact_step *step)
 {
+    tobi_body_load *load = &b->load[step->system];
     for (int a = 0; a < 3; a++) {
         b->rigid.impulse[a] += total->pressure[a] + total->friction[a];
         b->rigid.twist[a] += total->pressure[3 + a] + total->friction[3 + a];
-        b->info.pressure_force[a] = total->pressure[a]/dt;
-        b->info.pressure_torque[a] = total->pressure[3 + a]/dt;
-        b->info.viscous_force[a] = total->friction[a]/dt;
-        b->info.viscous_torque[a] = total->friction[3 + a]/dt;
-        b->info.edge_force[a] = total->edge[a]/dt;
+        load->edge[a] += total->edge[a]/step->whole;
+    }
+    for (int a = 0; a < 6; a++) {
+        load->pressure[a] += total->pressure[a]/step->whole;
+        load->friction[a] += total->friction[a]/step->whole;
     }
 }
 
@@ -397,7 +398,7 @@ int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, c
     work->fracture += total.fracture;
     work->friction += total.rubbing;
     work->bodies += total.fracture + total.rubbing + total.material;
-    give_to_body(b, &total, step->dt);
+    give_to_body(b, &total, step);
     remember_edge(c, b, &total);
     b->rigid.span = find_span(b, &total, step);
     /* Touched, it moves as it will, or a resting body would fall into the material in every step. */

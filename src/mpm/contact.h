@@ -63,6 +63,8 @@ typedef struct tobi_contact_work { double fracture, friction, bodies; } tobi_con
 
 typedef struct tobi_contact_step {
     double dt, before;               /* s, of this step and the one before, 0 in the first         */
+    double whole;                    /* s, of the world's step, which may be several of these      */
+    int system;                      /* whose load on the body this is                             */
     double radius;                   /* m, half a particle spacing                               */
     double reach;                    /* m, how deep inside a body a particle is still found      */
     double margin;                   /* m, how far from touching a particle is looked at         */
@@ -88,8 +90,8 @@ void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_s
    the largest change over the largest impulse. */
 double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
                           tobi_exec *x);
-/* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its forces: normal parts as
-   pressure, tangential as viscous) and are remembered by the particles, as velocity.w > 0. Particles that
+/* After the sweeps: the impulses act on the body (rigid.impulse, rigid.twist, and its load: normal parts as
+   pressure, tangential as friction) and are remembered by the particles, as velocity.w > 0. Particles that
    still overlap are shifted a little, which enters no momentum; *far is raised to the largest shift, m.
    work is added to. Returns how many contacts push. */
 int64_t tobi_contact_finish(tobi_contacts *c, tobi_particles *p, tobi_body *b, const tobi_contact_step *step,

@@ -314,7 +314,8 @@ static tobi_status touch_bodies(tobi_system *s, mlsmpm *m, double *clock, tobi_e
     for (int a = 0; a < s->box.dimension; a++) g += s->sim->def.gravity[a]*s->sim->def.gravity[a];
     double way = (m->memory.speed + s->sim->body_speed + sqrt(g)*s->dt)*s->dt;
     const tobi_contact_step contact = {
-        .dt = s->dt, .before = m->memory.strain_dt, .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
+        .dt = s->dt, .before = m->memory.strain_dt, .whole = s->sim->dt, .system = s->number,
+        .radius = 0.5*s->smoothing.spacing, .reach = m->cell,
         .margin = fmin(2*way, m->cell), .rest_speed = 4*sqrt(g)*s->dt, .dimension = s->box.dimension };
     TOBI_TRY(mpm_touch_bodies(&m->touch, s, &m->grid, &m->view, &contact, m->fresh ? 0 : m->memory.drift,
                               err));

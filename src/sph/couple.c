@@ -1,4 +1,7 @@
-#include "sph/couple.h"
+/* Bodies that move by forces are unknowns of the liquid's pressure: their answer to it is part of its
+   operator, so that a body lighter than the water it displaces is stable. Drawback: contact between bodies
+   is known a step late. */
+#include "sph/boundary.h"
 #include "sph/hydrostatic.h"
 #include "sph/kernels.h"
 #include "sph/state.h"
@@ -13,18 +16,6 @@ static int any_moves(const tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++)
         if (moves(&s->sim->bodies[k])) return 1;
     return 0;
-}
-
-/* First of the entries, which are sorted by body, of this body or a later one. */
-static int64_t first_entry(const tobi_near_bodies *n, int body)
-{
-    int64_t low = 0, high = n->count;
-    while (low < high) {
-        int64_t middle = (low + high)/2;
-        if (n->entry[middle].body < body) low = middle + 1;
-        else high = middle;
-    }
-    return low;
 }
 
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and
@@ -48,7 +39,7 @@ static tobi_couple_view see_entries(const tobi_system *s)
 {
     const tobi_near_bodies *near = &sph_of(s)->near;
     const sph_fields *f = sph_fields_of(&s->particles);
-    return (tobi_couple_view){ .entry = near->entry, .answer = (const double (*)[6])near->answer,
+    return (tobi_couple_view){ .link = near->link, .answer = (const double (*)[6])near->answer,
                                .near = f->near, .record = s->cells.record, .wall = f->wall,
                                .product = f->product };
 }
@@ -59,18 +50,29 @@ static const sph_kernels *kernels_of(const tobi_system *s)
     return sph_kernels_for(s->sim->exec.isa, 0);
 }
 
+/* Into the answers, which are free until then. */
+static void sum_known_forces(tobi_system *s)
+{
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    for (int viscous = 0; viscous < 2; viscous++) {
+        tobi_boundary_known_forces(s, viscous);
+        for (int k = 0; k < s->sim->body_count; k++)
+            for (int a = 0; a < 6; a++) n->answer[k][a] = (viscous ? n->answer[k][a] : 0) + n->total[k][a];
+    }
+}
+
 void tobi_couple_begin(tobi_system *s)
 {
-    sph_state *state = sph_of(s);
     const tobi_couple_view v = see_entries(s);
     if (!any_moves(s)) return;
-    memset(state->near.answer, 0, (size_t)s->sim->body_count*sizeof *state->near.answer);
+    sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         tobi_rigid *r = &b->rigid;
-        double f[6], *answer = state->near.answer[k];
+        double f[6], *answer = sph_of(s)->near.answer[k];
+        memcpy(f, answer, sizeof f);
+        memset(answer, 0, sizeof f);
         if (!moves(b)) continue;
-        tobi_near_known_forces(s, k, f);
         sph_body_hydrostatic(s, k, f);
         foresee(s, b, f);
         vec3_sub(answer, r->foreseen, r->velocity);
@@ -79,18 +81,28 @@ void tobi_couple_begin(tobi_system *s)
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
 }
 
+typedef struct pressing { const tobi_system *s; tobi_kernel kernel; const tobi_couple_view *view; } pressing;
+
+/* Of bodies that move alone, and of one at a time. */
+static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t)
+{
+    const pressing *p = view;
+    if (moves(&p->s->sim->bodies[p->view->link[begin].body])) p->kernel.run(p->view, begin, end, t);
+}
+
 void tobi_couple_product(tobi_system *s, double *totals)
 {
-    sph_state *state = sph_of(s);
+    const tobi_near_bodies *n = &sph_of(s)->near;
     const tobi_couple_view v = see_entries(s);
+    const pressing p = {s, kernels_of(s)->couple_pressure, &v};
     double t[TOBI_TOTALS];
     if (!any_moves(s)) return;
+    tobi_boundary_sum(s, TOBI_HOST(sum_pressure, p.kernel.sums, p.kernel.maxima), &p, 1);
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_rigid *r = &s->sim->bodies[k].rigid;
-        double *answer = state->near.answer[k];
+        double *answer = n->answer[k];
         if (!moves(&s->sim->bodies[k])) continue;
-        tobi_launch(&s->sim->exec, kernels_of(s)->couple_pressure, &v, first_entry(&state->near, k),
-                    first_entry(&state->near, k + 1), t);
+        memcpy(t, n->total[k], sizeof t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         for (int a = 0; a < 3; a++) {
             answer[a] = r->mobility[a]*t[a];
@@ -103,20 +115,20 @@ void tobi_couple_product(tobi_system *s, double *totals)
     totals[1] += t[1];
 }
 
-static void collect_forces(const tobi_body *b, double f[6])
+static void collect_forces(const tobi_system *s, const tobi_body *b, double f[6])
 {
-    vec3_add_scaled(f, b->info.pressure_force, 1, b->info.viscous_force);
-    vec3_add_scaled(f + 3, b->info.pressure_torque, 1, b->info.viscous_torque);
+    const tobi_body_load *load = &b->load[s->number];
+    for (int a = 0; a < 6; a++) f[a] = load->pressure[a] + load->friction[a];
 }
 
 void tobi_couple_correct(tobi_system *s)
 {
-    sph_state *state = sph_of(s);
+    const int64_t *first = sph_of(s)->near.first;
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
-        if (!moves(b) || first_entry(&state->near, k) == first_entry(&state->near, k + 1)) continue;
-        collect_forces(b, f);
+        if (!moves(b) || first[k] == first[k + 1]) continue;
+        collect_forces(s, b, f);
         foresee(s, b, f);
         tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);
         tobi_body_drive(b, b->rigid.foreseen, b->rigid.foreseen_spin);
@@ -129,7 +141,7 @@ void tobi_couple_finish(tobi_system *s)
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b)) continue;
-        collect_forces(b, f);
+        collect_forces(s, b, f);
         vec3_add_scaled(b->rigid.impulse, b->rigid.impulse, s->dt, f);
         vec3_add_scaled(b->rigid.twist, b->rigid.twist, s->dt, f + 3);
     }

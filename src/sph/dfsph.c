@@ -9,7 +9,7 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/dfsph.h"
-#include "sph/couple.h"
+#include "sph/boundary.h"
 #include "linear/multigrid.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
@@ -360,7 +360,7 @@ static tobi_status settle(tobi_system *s, dfsph *m, double *clock, tobi_error *e
         if (s->info.density_error_max < SETTLED) return TOBI_OK;
         correct_density(s, m, clock);
         TOBI_TRY(tobi_simulation_heed(s->sim, err));
-        tobi_near_settle(s);
+        tobi_boundary_relax(s);
         TOBI_TRY(find_neighbors(s, m, clock, err));
     }
     return TOBI_OK;

@@ -36,4 +36,4 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     }
 }
 
-int64_t sph_bytes(const tobi_system *s) { return sph_of(s)->near.capacity*(int64_t)sizeof(tobi_near_entry); }
+int64_t sph_bytes(const tobi_system *s) { return tobi_near_bytes(&sph_of(s)->near); }

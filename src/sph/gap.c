@@ -2,9 +2,8 @@
    sphere 8 spacings across a third of the section. Water would fill it, at the pressure of still water (18).
    So points there are pressed by all the water above them, and only what moves is missing. Drawback: a flat
    body that lies close has its full buoyancy too, as if it stood on grains. */
+#include "sph/boundary.h"
 #include "sph/state.h"
-#include "sph/gap.h"
-#include "core/system.h"
 
 static int faces_side(const tobi_system *s, const double x[3], const double n[3])
 {
@@ -18,7 +17,8 @@ static int faces_side(const tobi_system *s, const double x[3], const double n[3]
 
 static int faces_body(const tobi_system *s, int body, const double x[3], const double n[3])
 {
-    for (int k = 0; k < s->sim->body_count; k++) {
+    tobi_tree_walk walk = {0, 0};
+    for (int k; (k = tobi_body_tree_next(&sph_of(s)->near.tree, x, &walk)) >= 0;) {
         tobi_bvh_hit hit;
         if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
         if (n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return 1;
@@ -26,25 +26,42 @@ static int faces_body(const tobi_system *s, int body, const double x[3], const d
     return 0;
 }
 
-typedef struct wetting { const tobi_system *s; int body; } wetting;
-
-static void wet_points(const void *view, int64_t begin, int64_t end)
+/* The body that the q-th of all points belongs to. */
+static int body_of(const tobi_system *s, int64_t q)
 {
-    const wetting *w = view;
-    const tobi_system *s = w->s;
-    const tobi_body *b = &s->sim->bodies[w->body];
-    for (int64_t q = begin; q < end; q++) {
+    const tobi_near_bins *bins = sph_of(s)->near.bins;
+    int low = 0, high = s->sim->body_count;
+    while (high - low > 1) {
+        const int middle = (low + high)/2;
+        if (bins[middle].item <= q) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+static void wet_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const sph_state *state = sph_of(s);
+    const tobi_near_bins *bins = state->near.bins;
+    int k = body_of(s, begin);
+    (void)totals;
+    for (int64_t all = begin; all < end; all++) {
+        while (all >= bins[k + 1].item) k++;
+        const tobi_body *b = &s->sim->bodies[k];
+        const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
-        if (b->wet[q] || !(tobi_still_pressure(&sph_of(s)->still, x) > 0)) continue;
-        if (faces_side(s, x, n) || faces_body(s, w->body, x, n)) b->wet[q] = TOBI_WET_GAP;
+        if (b->wet[q] || !(tobi_still_pressure(&state->still, x) > 0)) continue;
+        if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
     }
 }
 
-void tobi_gap_wet(tobi_system *s)
+void tobi_boundary_fill_gaps(tobi_system *s)
 {
-    if (!(sph_of(s)->still.push > 0)) return;
-    for (int k = 0; k < s->sim->body_count; k++) {
-        const wetting view = {s, k};
-        tobi_loop(s->sim->exec.threads, s->sim->bodies[k].point_count, 256, wet_points, &view);
-    }
+    sph_state *state = sph_of(s);
+    tobi_near_bodies *n = &state->near;
+    const int bodies = s->sim->body_count;
+    if (!(state->still.push > 0)) return;
+    tobi_body_tree_build(&n->tree, s->sim->bodies, bodies, s->smoothing.h, s->box.dimension);
+    tobi_launch(&s->sim->exec, TOBI_HOST(wet_range, 0, 0), s, 0, n->bins[bodies].item, NULL);
 }

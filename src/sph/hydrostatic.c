@@ -51,11 +51,8 @@ static void add_still(tobi_system *s)
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6] = {0};
         sum_still(s, &s->sim->bodies[k], f);
-        for (int a = 0; a < 3; a++) {
-            s->sim->bodies[k].info.pressure_force[a] += f[a];
-            s->sim->bodies[k].info.pressure_torque[a] += f[3 + a];
-            s->info.wall_force[a] -= f[a];
-        }
+        for (int a = 0; a < 6; a++) s->sim->bodies[k].load[s->number].pressure[a] += f[a];
+        for (int a = 0; a < 3; a++) s->info.wall_force[a] -= f[a];
     }
 }
 
@@ -67,8 +64,9 @@ void sph_add_hydrostatic(tobi_system *s)
         double push = s->fluid[0].density*(s->sim->def.gravity[a] - s->gravity[a]);
         if (push == 0) continue;
         for (int k = 0; k < s->sim->body_count; k++) {
-            s->sim->bodies[k].info.pressure_force[a] -= push*s->sim->bodies[k].info.volume;
-            s->info.wall_force[a] += push*s->sim->bodies[k].info.volume;
+            tobi_body *b = &s->sim->bodies[k];
+            b->load[s->number].pressure[a] -= push*b->info.volume;
+            s->info.wall_force[a] += push*b->info.volume;
         }
         s->info.wall_force[a] += push*held;
     }

@@ -6,7 +6,7 @@
 void sph_fill_up(tobi_system *s);
 /* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
 double sph_hydrostatic(const tobi_system *s, const double x[3]);
-/* Adds its forces to those on the walls and the bodies of this step. */
+/* Adds its forces to those on the walls and to this system's load on the bodies. */
 void sph_add_hydrostatic(tobi_system *s);
 /* Adds that on one body to force and torque f, N and N m. */
 void sph_body_hydrostatic(const tobi_system *s, int body, double f[6]);

@@ -3,6 +3,7 @@
    held by a small source of pressure, evenness by a shift of positions; neither gives speed to particles.
    The step is symplectic: one list, at the positions before it (decision 46). Drawback: what divergence and
    Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
+#include "sph/boundary.h"
 #include "sph/isph.h"
 #include "sph/isph_bodies.h"
 #include "sph/isph_passes.h"
@@ -187,7 +188,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     launch(s, m, isph_press_walls, pressure);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = pressure[a] + friction[a];
-    tobi_near_body_forces(s);
+    tobi_boundary_load(s);
     isph_bodies_press(&m->solver, s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }

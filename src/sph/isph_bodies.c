@@ -28,9 +28,9 @@ static void move_foot(const tobi_body *b, const tobi_near_entry *e, double veloc
     }
 }
 
-static isph_mirror make_mirror(const tobi_system *s, const tobi_near_entry *e)
+static isph_mirror make_mirror(const tobi_system *s, const tobi_near_link *link, const tobi_near_entry *e)
 {
-    isph_mirror m = { .body = e->body, .previous = e->previous };
+    isph_mirror m = { .body = link->body, .previous = link->previous };
     const tobi_smoothing_constants *c = &s->smoothing;
     const double lambda = behind_plane(c, e->distance);
     /* beside an edge the plane faces the particle */
@@ -39,7 +39,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_near_entry *e)
     m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
     memcpy(m.offset, e->offset, sizeof m.offset);
     for (int a = 0; a < 3; a++) m.normal[a] = faces ? e->offset[a]/e->distance : e->foot_normal[a];
-    move_foot(&s->sim->bodies[e->body], e, m.velocity);
+    move_foot(&s->sim->bodies[link->body], e, m.velocity);
     return m;
 }
 
@@ -59,8 +59,8 @@ tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
     }
     v->mirror = m->mirror;
     for (int64_t k = 0; k < n->count; k++) {
-        m->mirror[k] = make_mirror(s, &n->entry[k]);
-        float *behind = &v->behind[n->entry[k].particle];
+        m->mirror[k] = make_mirror(s, &n->link[k], &n->entry[k]);
+        float *behind = &v->behind[n->link[k].particle];
         *behind = 1 - (1 - *behind)*(1 - (float)n->entry[k].share);
     }
     return TOBI_OK;
@@ -73,7 +73,7 @@ void isph_bodies_unlift(tobi_system *s)
     for (int64_t k = 0; k < n->count; k++) {
         const tobi_near_entry *e = &n->entry[k];
         for (int a = 0; a < 3; a++)
-            (&s->particles.velocity[e->particle].x)[a] -= (float)(s->dt*e->lift[a]);
+            (&s->particles.velocity[n->link[k].particle].x)[a] -= (float)(s->dt*e->lift[a]);
     }
 }
 
@@ -159,7 +159,6 @@ void isph_bodies_press(isph_solver *m, tobi_system *s)
         const pressing view = { &m->view, &s->cells, b };
         double t[TOBI_TOTALS];
         tobi_launch(m->exec, TOBI_HOST(press_points, 6, 0), &view, 0, b->point_count, t);
-        memcpy(b->info.pressure_force, t, 3*sizeof *t);
-        memcpy(b->info.pressure_torque, t + 3, 3*sizeof *t);
+        memcpy(b->load[s->number].pressure, t, 6*sizeof *t);
     }
 }

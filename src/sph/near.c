@@ -2,9 +2,8 @@
    A point counts when it faces the particle and no part of the body lies between. For a function f(s)
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
+#include "sph/boundary.h"
 #include "sph/state.h"
-#include "sph/gap.h"
-#include "core/system.h"
 #include "sph/wall_law.h"
 #include <math.h>
 #include <stdlib.h>
@@ -20,7 +19,7 @@ static double plane_value(const tobi_system *s, const float *table, double dista
     return table[k] + (at - k)*((double)table[k + 1] - table[k]);
 }
 
-static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, tobi_error *err)
+static tobi_status grow_rows(void **p, int64_t *capacity, int64_t need, size_t size, tobi_error *err)
 {
     if (need <= *capacity) return TOBI_OK;
     int64_t more = need + need/2 + 64;
@@ -33,73 +32,102 @@ static tobi_status grow(void **p, int64_t *capacity, int64_t need, size_t size, 
     return TOBI_OK;
 }
 
-static int bin_along(const tobi_near_bodies *n, int a, double x)
+#define grow(array, capacity, need, err) grow_rows((void **)(array), capacity, need, sizeof **(array), err)
+
+static int bin_along(const tobi_near_bins *c, double width, int a, double x)
 {
-    double k = floor((x - n->bin_lower[a])/n->bin_width);
-    return k < 0 ? -1 : k >= n->bins[a] ? n->bins[a] : (int)k;
+    double k = floor((x - c->lower[a])/width);
+    return k < 0 ? -1 : k >= c->n[a] ? c->n[a] : (int)k;
 }
 
-/* Sorts a body's points into cells of width h over its box. */
-static tobi_status fill_bins(tobi_system *s, const tobi_body *b, tobi_error *err)
+/* Lays the bins of all bodies out, cells of width h over the boxes. */
+static tobi_status plan_bins(tobi_system *s, tobi_error *err)
 {
     tobi_near_bodies *n = &sph_of(s)->near;
-    double lo[3], hi[3];
-    tobi_bvh_box(b->bvh, lo, hi);
-    int64_t total = 1;
+    const int bodies = s->sim->body_count;
+    int64_t starts = 0, items = 0;
+    TOBI_TRY(grow(&n->bins, &n->bins_capacity, bodies + 1, err));
     n->bin_width = s->smoothing.h;
-    for (int a = 0; a < 3; a++) {
-        n->bin_lower[a] = lo[a];
-        n->bins[a] = a == 2 && s->box.dimension == 2
-                         ? 1
-                         : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);
-        total *= n->bins[a];
+    for (int k = 0; k < bodies; k++) {
+        tobi_near_bins *c = &n->bins[k];
+        double lo[3], hi[3];
+        int64_t total = 1;
+        tobi_bvh_box(s->sim->bodies[k].bvh, lo, hi);
+        for (int a = 0; a < 3; a++) {
+            c->lower[a] = lo[a];
+            c->n[a] = a == 2 && s->box.dimension == 2
+                          ? 1
+                          : (int)fmin((hi[a] - lo[a]) / n->bin_width + 1, 4096);
+            total *= c->n[a];
+        }
+        if (s->box.dimension == 2) c->lower[2] = -0.5*n->bin_width;
+        c->start = starts;
+        c->item = items;
+        starts += total + 2;
+        items += s->sim->bodies[k].point_count;
     }
-    if (s->box.dimension == 2) n->bin_lower[2] = -0.5*n->bin_width;
-    void *start = n->bin_start, *item = n->bin_item;
-    tobi_status status = grow(&start, &n->bin_capacity, total + 2, sizeof(int32_t), err);
-    n->bin_start = start;
-    TOBI_TRY(status);
-    status = grow(&item, &n->item_capacity, b->point_count, sizeof(int32_t), err);
-    n->bin_item = item;
-    TOBI_TRY(status);
-    memset(n->bin_start, 0, (size_t)(total + 2)*sizeof(int32_t));
+    n->bins[bodies] = (tobi_near_bins){.start = starts, .item = items};
+    TOBI_TRY(grow(&n->bin_start, &n->start_capacity, starts, err));
+    return grow(&n->bin_item, &n->item_capacity, items, err);
+}
+
+/* Sorts a body's points into its bins. */
+static void fill_bins(const tobi_near_bodies *n, int k, const tobi_body *b)
+{
+    const tobi_near_bins *bins = &n->bins[k];
+    int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
+    const int64_t total = bins[1].start - bins->start - 2;
+    memset(start, 0, (size_t)(total + 2)*sizeof *start);
     for (int pass = 0; pass < 2; pass++) {
-        for (int64_t k = 0; k < b->point_count; k++) {
+        for (int64_t q = 0; q < b->point_count; q++) {
             int c[3];
             for (int a = 0; a < 3; a++) {
-                c[a] = bin_along(n, a, b->point[k][a]);
-                c[a] = c[a] < 0 ? 0 : c[a] >= n->bins[a] ? n->bins[a] - 1 : c[a];
+                c[a] = bin_along(bins, n->bin_width, a, b->point[q][a]);
+                c[a] = c[a] < 0 ? 0 : c[a] >= bins->n[a] ? bins->n[a] - 1 : c[a];
             }
-            int64_t bin = ((int64_t)c[2]*n->bins[1] + c[1])*n->bins[0] + c[0];
-            if (pass == 0) n->bin_start[bin + 2]++;
-            else n->bin_item[n->bin_start[bin + 1]++] = (int32_t)k;
+            int64_t bin = ((int64_t)c[2]*bins->n[1] + c[1])*bins->n[0] + c[0];
+            if (pass == 0) start[bin + 2]++;
+            else item[start[bin + 1]++] = (int32_t)q;
         }
         if (pass == 0)
-            for (int64_t c = 1; c <= total; c++) n->bin_start[c + 1] += n->bin_start[c];
+            for (int64_t c = 1; c <= total; c++) start[c + 1] += start[c];
     }
-    return TOBI_OK;
+}
+
+static void prepare_bodies(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) {
+        const tobi_body *b = &s->sim->bodies[k];
+        fill_bins(&sph_of(s)->near, (int)k, b);
+        memset(b->wet, 0, (size_t)b->point_count);
+    }
 }
 
 /* Calls visit for every point of the cells around x; stops early when it answers nonzero. */
 typedef int (*visit_fn)(void *user, int32_t point);
-static int visit_points(const tobi_near_bodies *n, const double x[3], visit_fn visit, void *user)
+static int visit_points(const tobi_near_bodies *n, int64_t body, const double x[3], visit_fn visit,
+                        void *user)
 {
+    const tobi_near_bins *bins = &n->bins[body];
+    const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int c[3];
     for (int a = 0; a < 3; a++) {
-        c[a] = bin_along(n, a, x[a]);
-        double beyond = c[a] < 0 ? n->bin_lower[a] - x[a]
-                                 : x[a] - (n->bin_lower[a] + n->bins[a] * n->bin_width);
-        if ((c[a] < 0 || c[a] >= n->bins[a]) && beyond > n->bin_width) return 0;
+        c[a] = bin_along(bins, n->bin_width, a, x[a]);
+        double beyond = c[a] < 0 ? bins->lower[a] - x[a]
+                                 : x[a] - (bins->lower[a] + bins->n[a] * n->bin_width);
+        if ((c[a] < 0 || c[a] >= bins->n[a]) && beyond > n->bin_width) return 0;
     }
     for (int z = c[2] - 1; z <= c[2] + 1; z++)
         for (int y = c[1] - 1; y <= c[1] + 1; y++)
             for (int q = c[0] - 1; q <= c[0] + 1; q++) {
-                if (z < 0 || z >= n->bins[2] || y < 0 || y >= n->bins[1] || q < 0 ||
-                    q >= n->bins[0])
+                if (z < 0 || z >= bins->n[2] || y < 0 || y >= bins->n[1] || q < 0 ||
+                    q >= bins->n[0])
                     continue;
-                int64_t bin = ((int64_t)z*n->bins[1] + y)*n->bins[0] + q;
-                for (int32_t k = n->bin_start[bin]; k < n->bin_start[bin + 1]; k++)
-                    if (visit(user, n->bin_item[k])) return 1;
+                int64_t bin = ((int64_t)z*bins->n[1] + y)*bins->n[0] + q;
+                for (int32_t k = start[bin]; k < start[bin + 1]; k++)
+                    if (visit(user, item[k])) return 1;
             }
     return 0;
 }
@@ -110,6 +138,7 @@ typedef struct look {
     const tobi_body *b;
     double x[3];
     double gravity[3];          /* m/s2, what the particle feels */
+    tobi_near_link *link;
     tobi_near_entry *entry;
 } look;
 
@@ -126,6 +155,22 @@ static int sees_any(void *user, int32_t point)
 {
     double r[3];
     return faces(user, point, r) > 0;
+}
+
+/* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
+static int sees_body(look *l, int64_t body)
+{
+    const tobi_near_bodies *n = &sph_of(l->s)->near;
+    const tobi_near_bins *bins = &n->bins[body];
+    const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
+    int64_t bin = 0;
+    for (int a = 2; a >= 0; a--) {
+        const int c = bin_along(bins, n->bin_width, a, l->x[a]);
+        bin = bin*bins->n[a] + (c < 0 ? 0 : c >= bins->n[a] ? bins->n[a] - 1 : c);
+    }
+    for (int32_t k = start[bin]; k < start[bin + 1]; k++)
+        if (sees_any(l, item[k])) return 1;
+    return visit_points(n, body, l->x, sees_any, l);
 }
 
 /* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way. */
@@ -157,8 +202,8 @@ static int add_point(void *user, int32_t k)
     for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
     for (int a = 0; a < 3; a++) {
         int p = (a + 1)%3, q = (a + 2)%3;
-        e->gradient[a] -= aw*n[a];
-        e->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
+        l->link->gradient[a] -= aw*n[a];
+        l->link->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
         e->lift[a] -= aw*gn*(s + reach)*n[a];
     }
     e->wall_flux -= aw*dot(n, v);
@@ -175,9 +220,9 @@ static int add_point(void *user, int32_t k)
 static void feel_gravity(look *l)
 {
     const tobi_system *s = l->s;
-    sph_state *state = sph_of(s);
-    double held = tobi_still_share(&state->still, l->x)*state->still.push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*state->still.down[a];
+    const tobi_still *still = &sph_of(s)->still;
+    double held = tobi_still_share(still, l->x)*still->push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*still->down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
@@ -186,8 +231,7 @@ static int look_at(look *l, int32_t i, int body)
     tobi_bvh_hit hit;
     feel_gravity(l);
     memset(e, 0, sizeof *e);
-    e->particle = i;
-    e->body = (int16_t)body;
+    *l->link = (tobi_near_link){.particle = i, .body = (int16_t)body};
     e->triangle = -1;
     if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
     e->distance = hit.signed_distance;
@@ -196,7 +240,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    visit_points(&sph_of(l->s)->near, l->x, add_point, l);
+    visit_points(&sph_of(l->s)->near, body, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }
@@ -207,200 +251,199 @@ static void place_look(look *l, int64_t i)
     l->x[0] = q.x; l->x[1] = q.y; l->x[2] = q.z;
 }
 
-/* What the loops below need. */
-typedef struct looking {
-    tobi_system *s;
-    int body;
-    int64_t first;                     /* entry of the body                             */
-    int64_t *cut;                      /* pairs that a body parts, seen from both sides */
-} looking;
-
-/* Marks the particles that see the body in `delta` (free at this time) and counts them per block. */
-static void count_near(const void *view, int64_t begin, int64_t end)
+static int cell_along(const tobi_cells *c, int axis, double x)
 {
-    const looking *v = view;
-    tobi_system *s = v->s;
-    sph_state *state = sph_of(s);
-    for (int64_t block = begin; block < end; block++) {
-        int64_t last = (block + 1)*TOBI_BLOCK, found = 0;
-        for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
-            look l = {.s = s, .b = &s->sim->bodies[v->body]};
-            place_look(&l, i);
-            int near = visit_points(&state->near, l.x, sees_any, &l);
-            sph_fields_of(&s->particles)->delta[i] = (float)near;
-            found += near;
-        }
-        state->near.block_count[block] = found;
-    }
+    double k = floor(x*c->inverse[axis]);
+    return k < 0 ? 0 : k >= c->n[axis] ? c->n[axis] - 1 : (int)k;
 }
 
-static void fill_near(const void *view, int64_t begin, int64_t end)
-{
-    const looking *v = view;
-    tobi_system *s = v->s;
-    sph_state *state = sph_of(s);
-    const sph_fields *f = sph_fields_of(&s->particles);
-    for (int64_t block = begin; block < end; block++) {
-        int64_t last = (block + 1)*TOBI_BLOCK, at = v->first + state->near.block_count[block];
-        for (int64_t i = block*TOBI_BLOCK; i < last && i < s->particles.count; i++) {
-            if (f->delta[i] == 0) continue;
-            look l = {.s = s, .b = &s->sim->bodies[v->body], .entry = &state->near.entry[at]};
-            place_look(&l, i);
-            if (!look_at(&l, (int32_t)i, v->body)) l.entry->distance = s->smoothing.h;
-            l.entry->previous = f->near[i];
-            f->near[i] = (int32_t)at++;
-        }
-    }
-}
-
-tobi_status tobi_near_find(tobi_system *s, tobi_error *err)
+static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits,
+                           tobi_error *err)
 {
     tobi_near_bodies *n = &sph_of(s)->near;
-    int64_t blocks = (s->particles.count + TOBI_BLOCK - 1)/TOBI_BLOCK;
-    n->count = 0;
-    void *p = n->block_count;
-    tobi_status status = grow(&p, &n->block_capacity, blocks + 1, sizeof *n->block_count, err);
-    n->block_count = p;
-    TOBI_TRY(status);
-    p = n->answer;
-    status = grow(&p, &n->answer_capacity, s->sim->body_count, sizeof *n->answer, err);
-    n->answer = p;
-    TOBI_TRY(status);
-    memset(sph_fields_of(&s->particles)->near, 0xFF, (size_t)s->particles.count*sizeof(int32_t));
-    for (int k = 0; k < s->sim->body_count; k++) {
-        TOBI_TRY(fill_bins(s, &s->sim->bodies[k], err));
-        memset(s->sim->bodies[k].wet, 0, (size_t)s->sim->bodies[k].point_count);
-        const looking view = {.s = s, .body = k, .first = n->count};
-        tobi_loop(s->sim->exec.threads, blocks, 4, count_near, &view);
-        int64_t found = tobi_scan(&s->sim->exec, blocks, n->block_count);
-        p = n->entry;
-        status = grow(&p, &n->capacity, n->count + found, sizeof *n->entry, err);
-        n->entry = p;
-        TOBI_TRY(status);
-        tobi_loop(s->sim->exec.threads, blocks, 4, fill_near, &view);
-        n->count += found;
+    if (begin == end) return TOBI_OK;
+    TOBI_TRY(grow(&n->row, &n->row_capacity, n->row_count + 1, err));
+    n->row[n->row_count++] = (tobi_near_row){body, (int32_t)begin, (int32_t)end, *hits};
+    *hits += end - begin;
+    return TOBI_OK;
+}
+
+/* Adds the rows of cells within h of the body's box, in the order of their particles. */
+static tobi_status list_rows(tobi_system *s, int body, int64_t *hits, tobi_error *err)
+{
+    const tobi_cells *c = &s->cells;
+    double lo[3], hi[3];
+    int low[3], high[3];
+    tobi_bvh_box(s->sim->bodies[body].bvh, lo, hi);
+    for (int a = 0; a < 3; a++) {
+        low[a] = cell_along(c, a, lo[a] - 1.001*s->smoothing.h);
+        high[a] = cell_along(c, a, hi[a] + 1.001*s->smoothing.h);
     }
-    tobi_gap_wet(s);
+    for (int k = low[1]/c->strip; k <= high[1]/c->strip; k++)
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = k*c->strip; y < (k + 1)*c->strip && y <= high[1]; y++) {
+                if (y < low[1]) continue;
+                const int32_t *start = c->start + tobi_cells_row(c, y, z);
+                TOBI_TRY(add_row(s, body, start[low[0]], start[high[0] + 1], hits, err));
+            }
+    return TOBI_OK;
+}
+
+/* Whether x is too far from a box for a point in it to be within h. */
+static int is_far(const tobi_system *s, const double lo[3], const double hi[3], const double x[3])
+{
+    double square = 0;
+    for (int a = 0; a < s->box.dimension; a++) {
+        const double beyond = x[a] < lo[a] ? lo[a] - x[a] : x[a] > hi[a] ? x[a] - hi[a] : 0;
+        square += beyond*beyond;
+    }
+    return square > 1.001*s->smoothing.h*s->smoothing.h;
+}
+
+/* Finds the particles of rows that see the row's body. */
+static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    (void)totals;
+    for (int64_t r = begin; r < end; r++) {
+        const tobi_near_row *row = &n->row[r];
+        int32_t *hit = n->hit + row->hit;
+        look l = {.s = s, .b = &s->sim->bodies[row->body]};
+        int64_t found = 0;
+        double lo[3], hi[3];
+        tobi_bvh_box(l.b->bvh, lo, hi);
+        for (int32_t i = row->begin; i < row->end; i++) {
+            place_look(&l, i);
+            if (is_far(s, lo, hi, l.x)) continue;
+            if (sees_body(&l, row->body)) hit[found++] = i;
+        }
+        n->found[r] = found;
+    }
+}
+
+static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    (void)totals;
+    for (int64_t r = begin; r < end; r++) {
+        const tobi_near_row *row = &n->row[r];
+        const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
+        const int32_t *hit = n->hit + row->hit;
+        for (int64_t k = n->found[r]; k < stop; k++, hit++) {
+            look l = {.s = s, .b = &s->sim->bodies[row->body], .link = &n->link[k], .entry = &n->entry[k]};
+            place_look(&l, *hit);
+            if (!look_at(&l, *hit, row->body)) l.entry->distance = s->smoothing.h;
+        }
+    }
+}
+
+static void chain_entries(tobi_system *s)
+{
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    int32_t *near = sph_fields_of(&s->particles)->near;
+    memset(near, 0xFF, (size_t)s->particles.count*sizeof *near);
+    for (int64_t k = 0; k < n->count; k++) {
+        tobi_near_link *e = &n->link[k];
+        e->previous = near[e->particle];
+        near[e->particle] = (int32_t)k;
+    }
+}
+
+/* Room for what is done with the entries before the next search. */
+static tobi_status reserve(tobi_system *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &sph_of(s)->near;
+    const int64_t bodies = s->sim->body_count, blocks = s->particles.count/TOBI_BLOCK + 1;
+    const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
+    TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
+    TOBI_TRY(grow(&n->answer, &n->answer_capacity, bodies, err));
+    TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
+    TOBI_TRY(grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
+    TOBI_TRY(grow(&n->nearest, &n->nearest_capacity, blocks*TOBI_BLOCK, err));
+    return grow(&n->caught_block, &n->blocks_capacity, blocks, err);
+}
+
+/* Rows near each body are searched, not all particles for every body. */
+tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_exec *x = &s->sim->exec;
+    const int bodies = s->sim->body_count;
+    int64_t hits = 0;
+    n->row_count = 0;
+    TOBI_TRY(plan_bins(s, err));
+    tobi_launch_each(x, TOBI_HOST(prepare_bodies, 0, 0), s, bodies, NULL);
+    TOBI_TRY(grow(&n->first, &n->first_capacity, bodies + 1, err));
+    for (int k = 0; k < bodies; k++) {
+        n->first[k] = n->row_count;
+        TOBI_TRY(list_rows(s, k, &hits, err));
+    }
+    TOBI_TRY(grow(&n->found, &n->found_capacity, n->row_count, err));
+    TOBI_TRY(grow(&n->hit, &n->hit_capacity, hits, err));
+    TOBI_TRY(tobi_exec_reserve(x, n->row_count, err));
+    tobi_launch_each(x, TOBI_HOST(find_hits, 0, 0), s, n->row_count, NULL);
+    n->count = tobi_scan(x, n->row_count, n->found);
+    for (int k = 0; k < bodies; k++)
+        n->first[k] = n->first[k] < n->row_count ? n->found[n->first[k]] : n->count;
+    n->first[bodies] = n->count;
+    return TOBI_OK;
+}
+
+tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
+{
+    tobi_near_bodies *n = &sph_of(s)->near;
+    TOBI_TRY(grow(&n->link, &n->link_capacity, n->count, err));
+    TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
+    tobi_launch_each(&s->sim->exec, TOBI_HOST(fill_entries, 0, 0), s, n->row_count, NULL);
+    chain_entries(s);
+    TOBI_TRY(reserve(s, err));
+    TOBI_TRY(tobi_body_tree_reserve(&n->tree, s->sim->body_count, err));
+    tobi_boundary_fill_gaps(s);
     return TOBI_OK;
 }
 
 static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
 {
-    return e->previous >= 0 ? &sph_of(s)->near.entry[e->previous] : NULL;
-}
-
-/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
-   rounding would let a segment through an edge pass one way only. */
-static int separated(const tobi_system *s, int64_t i, int64_t j)
-{
-    sph_state *state = sph_of(s);
-    const tobi_particles *p = &s->particles;
-    const sph_fields *f = sph_fields_of(&s->particles);
-    if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const tobi_near_entry *a = &state->near.entry[f->near[i]], *b;
-    const tobi_record *from = &s->cells.record[i], *to = &s->cells.record[j];
-    const double d[3] = {(int32_t)((uint32_t)from->x - (uint32_t)to->x)/s->box.to_fixed[0],
-                         (int32_t)((uint32_t)from->y - (uint32_t)to->y)/s->box.to_fixed[1],
-                         (int32_t)((uint32_t)from->z - (uint32_t)to->z)/s->box.to_fixed[2]};
-    double length = sqrt(dot(d, d)), x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-    for (; a; a = next_entry(s, a))
-        for (b = &state->near.entry[f->near[j]]; b; b = next_entry(s, b)) {
-            if (a->body != b->body || fabs(a->distance) + fabs(b->distance) >= length) continue;
-            double to[3], ra[3], rb[3];
-            for (int c = 0; c < 3; c++) {
-                to[c] = x[c] - d[c];
-                ra[c] = to[c] - a->foot[c];
-                rb[c] = to[c] + d[c] - b->foot[c];
-            }
-            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
-            const tobi_bvh *tree = s->sim->bodies[a->body].bvh;
-            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
-        }
-    return 0;
-}
-
-static void cut_pairs(const void *view, int64_t begin, int64_t end)
-{
-    const looking *v = view;
-    const tobi_system *s = v->s;
-    const sph_fields *p = sph_fields_of(&s->particles);
-    int64_t cut = 0;
-    for (int64_t k = begin; k < end; k++) {
-        int64_t i = sph_of(s)->near.entry[k].particle;
-        if (p->near[i] != k) continue;      /* once per particle */
-        int32_t *list = s->cells.list + 8*(int64_t)s->cells.list_start[i];
-        for (int g = 0; g < 8*s->cells.list_groups[i]; g++) {
-            int32_t j = list[g];
-            if (j == i || p->near[j] < 0 || !separated(s, i, j)) continue;
-            list[g] = (int32_t)i;
-            cut++;
-        }
-    }
-    __atomic_fetch_add(v->cut, cut, __ATOMIC_RELAXED);      /* whole numbers: any order gives the same */
-}
-
-void tobi_near_cut_pairs(tobi_system *s)
-{
-    sph_state *state = sph_of(s);
-    int64_t cut = 0;
-    const looking view = {.s = s, .cut = &cut};
-    tobi_loop(s->sim->exec.threads, state->near.count, 64, cut_pairs, &view);
-    state->near.cut_pairs = cut/2;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    const int32_t k = n->link[e - n->entry].previous;
+    return k >= 0 ? &n->entry[k] : NULL;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
 {
-    const looking view = {.s = s};
-    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, visit, &view);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, visit, s);
 }
 
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = sph_of(s)->near.entry[k].particle,                                                \
+        for (int64_t i = sph_of(s)->near.link[k].particle,                                                 \
                      once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
             for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
 
-static void mark_beside(const void *view, int64_t begin, int64_t end)
-{
-    const tobi_system *s = ((const looking *)view)->s;
-    const sph_fields *p = sph_fields_of(&s->particles);
-    for (int64_t k = begin; k < end; k++) {
-        int64_t i = sph_of(s)->near.entry[k].particle;
-        const int32_t *list = s->cells.list + 8*(int64_t)s->cells.list_start[i];
-        for (int g = 0; g < 8*s->cells.list_groups[i]; g++)
-            __atomic_store_n(&p->beside[list[g]], 1, __ATOMIC_RELAXED);
-        __atomic_store_n(&p->beside[i], 1, __ATOMIC_RELAXED);
-    }
-}
-
-void tobi_near_mark_beside(tobi_system *s)
-{
-    const sph_fields *f = sph_fields_of(&s->particles);
-    if (!f->beside) return;
-    memset(f->beside, 0, (size_t)s->particles.count);
-    visit_entries(s, mark_beside);
-}
-
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
-    tobi_system *s = ((const looking *)view)->s;
+    const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
+    const tobi_near_bodies *n = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &f->wall[i];
-        w->x += (float)e->gradient[0]; w->y += (float)e->gradient[1]; w->z += (float)e->gradient[2];
+        const double *g = n->link[e - n->entry].gradient;
+        w->x += (float)g[0]; w->y += (float)g[1]; w->z += (float)g[2];
         w->w += (float)e->wall_flux;
         f->density[i] = 1 - (1 - f->density[i])*(1 - (float)e->share);
     }
 }
 
-void tobi_near_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
+void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
-static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const double u[3],
+static void entry_accel(const tobi_system *s, int64_t i, const tobi_near_entry *e, const double u[3],
                         double lift[3], double drag[3])
 {
-    const tobi_fluid *f = &s->fluid[s->particles.fluid[e->particle]];
+    const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
     double nu = f->viscosity/f->density, a[3];
     for (int c = 0; c < 3; c++) {
         lift[c] = e->lift[c];
@@ -419,11 +462,11 @@ static void entry_accel(const tobi_system *s, const tobi_near_entry *e, const do
 
 static void add_forces(const void *view, int64_t begin, int64_t end)
 {
-    tobi_system *s = ((const looking *)view)->s;
+    const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
-        entry_accel(s, e, u, lift, drag);
+        entry_accel(s, i, e, u, lift, drag);
         tobi_near_entry *own = (tobi_near_entry *)e;   /* kept for the reaction */
         memcpy(own->lift, lift, sizeof lift);
         memcpy(own->friction, drag, sizeof drag);
@@ -433,7 +476,7 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_near_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
+void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
 
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
@@ -445,9 +488,9 @@ static void keep_away(const tobi_system *s, int64_t i, double least, double way[
     }
 }
 
-static void settle_particles(const void *view, int64_t begin, int64_t end)
+static void relax_particles(const void *view, int64_t begin, int64_t end)
 {
-    const tobi_system *s = ((const looking *)view)->s;
+    const tobi_system *s = view;
     const tobi_particles *p = &s->particles;
     const sph_fields *f = sph_fields_of(&s->particles);
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
@@ -465,15 +508,15 @@ static void settle_particles(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_near_settle(tobi_system *s)
+void tobi_boundary_relax(tobi_system *s)
 {
-    const looking view = {.s = s};
-    tobi_loop(s->sim->exec.threads, s->particles.count, 0, settle_particles, &view);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, relax_particles, s);
 }
 
-static void bend_normals(const void *view, int64_t begin, int64_t end)
+static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
-    tobi_system *s = ((const looking *)view)->s;
+    const tobi_system *s = view;
+    const tobi_near_bodies *near = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -482,93 +525,44 @@ static void bend_normals(const void *view, int64_t begin, int64_t end)
             size += u[c]*u[c];
         }
         if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
-        double cosine = s->sim->bodies[e->body].contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
+        const tobi_body *body = &s->sim->bodies[near->link[e - near->entry].body];
+        double cosine = body->contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }
 }
 
-void tobi_near_contact(tobi_system *s) { visit_entries(s, bend_normals); }
+void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals); }
 
-/* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
-   second part adds no force to a closed surface, but a torque, eq. (17). */
-static void turning_traction(const tobi_system *s, const tobi_near_entry *e, double force[3])
+int64_t tobi_near_bytes(const tobi_near_bodies *n)
 {
-    const tobi_body *b = &s->sim->bodies[e->body];
-    const double *w = b->info.angular_velocity;
-    double share = b->friction == TOBI_NO_SLIP
-                       ? 2*s->smoothing.volume*s->fluid[s->particles.fluid[e->particle]].viscosity : 0;
-    for (int a = 0; a < 3; a++) {
-        int p = (a + 1)%3, q = (a + 2)%3;
-        force[a] = share*(w[p]*e->gradient[q] - w[q]*e->gradient[p]);
-    }
-}
-
-/* Sums of the reactions on one body over the entries. */
-typedef struct reaction { const tobi_system *s; int body; int viscous, known; } reaction;
-
-static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t)
-{
-    const reaction *r = view;
-    const tobi_system *s = r->s;
-    const sph_fields *f = sph_fields_of(&s->particles);
-    for (int64_t k = begin; k < end; k++) {
-        const tobi_near_entry *e = &sph_of(s)->near.entry[k];
-        if (e->body != r->body) continue;
-        const tobi_body *b = &s->sim->bodies[e->body];
-        double mass = s->smoothing.volume * s->fluid[s->particles.fluid[e->particle]].density,
-               force[3], arm[3], turning[3] = {0, 0, 0};
-        const double *accel = r->viscous ? e->friction : e->lift;
-        for (int a = 0; a < 3; a++) {
-            force[a] = -mass*accel[a];
-            arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
-        }
-        if (r->viscous) turning_traction(s, e, turning);
-        float capillary = f->capillary ? f->capillary[e->particle] : 0;
-        float pressure = r->known ? 0 : f->pressure[e->particle];
-        double push = r->viscous ? 0 : 2*s->smoothing.volume*(pressure - capillary);
-        for (int a = 0; a < 3; a++) {
-            int p = (a + 1)%3, q = (a + 2)%3;
-            t[a] += force[a] + push*e->gradient[a];
-            t[3 + a] += arm[p]*(force[q] + turning[q]) - arm[q]*(force[p] + turning[p]) +
-                        push*e->torque_arm[a];
-        }
-    }
-}
-
-void tobi_near_known_forces(tobi_system *s, int body, double force[6])
-{
-    memset(force, 0, 6*sizeof *force);
-    for (int viscous = 0; viscous < 2; viscous++) {
-        double t[TOBI_TOTALS];
-        reaction r = {s, body, viscous, 1};
-        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, sph_of(s)->near.count, t);
-        for (int a = 0; a < 6; a++) force[a] += t[a];
-    }
-}
-
-void tobi_near_body_forces(tobi_system *s)
-{
-    sph_state *state = sph_of(s);
-    for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body_info *info = &s->sim->bodies[k].info;
-        double t[TOBI_TOTALS];
-        reaction r = {s, k, 0, 0};
-        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
-        memcpy(info->pressure_force, t, 3*sizeof *t);
-        memcpy(info->pressure_torque, t + 3, 3*sizeof *t);
-        r.viscous = 1;
-        tobi_launch(&s->sim->exec, TOBI_HOST(sum_reaction, 6, 0), &r, 0, state->near.count, t);
-        memcpy(info->viscous_force, t, 3*sizeof *t);
-        memcpy(info->viscous_torque, t + 3, 3*sizeof *t);
-    }
+    return n->link_capacity*(int64_t)sizeof *n->link + n->capacity*(int64_t)sizeof *n->entry +
+           n->first_capacity*(int64_t)sizeof *n->first +
+           n->total_capacity*(int64_t)sizeof *n->total + n->answer_capacity*(int64_t)sizeof *n->answer +
+           n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
+           n->blocks_capacity*(int64_t)sizeof *n->caught_block +
+           n->nearest_capacity*(int64_t)sizeof *n->nearest +
+           n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
+           n->item_capacity*(int64_t)sizeof *n->bin_item + n->row_capacity*(int64_t)sizeof *n->row +
+           n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
 }
 
 void tobi_near_free(tobi_near_bodies *n)
 {
+    free(n->link);
     free(n->entry);
-    free(n->block_count);
+    free(n->first);
+    free(n->total);
+    free(n->answer);
+    free(n->part);
+    free(n->caught);
+    free(n->caught_block);
+    free(n->nearest);
+    free(n->bins);
     free(n->bin_start);
     free(n->bin_item);
-    free(n->answer);
+    free(n->row);
+    free(n->found);
+    free(n->hit);
+    tobi_body_tree_free(&n->tree);
     memset(n, 0, sizeof *n);
 }

@@ -1,43 +1,49 @@
-/* The fluid particles near bodies and what they see of them. */
+/* What particles see of bodies, as it is kept; sph/boundary.h fills and reads it. */
 #pragma once
 #include "core/body.h"
 #include "core/cells.h"
+#include "sph/body_tree.h"
 #include "sph/couple.k.h"
 
+/* Points of one body by cell of width h over its box. */
+typedef struct tobi_near_bins {
+    int n[3];
+    double lower[3];          /* m                                                                */
+    int64_t start, item;      /* where its own begin in bin_start, bin_item                       */
+} tobi_near_bins;
+
+/* Particles of a row of cells near a body. */
+typedef struct tobi_near_row { int32_t body, begin, end; int64_t hit; } tobi_near_row;
+
+/* The caught particles of a block. */
+typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
+
 typedef struct tobi_near_bodies {
-    tobi_near_entry *entry;
-    int64_t count, capacity;
+    tobi_near_link *link;     /* by body, then by particle                                        */
+    tobi_near_entry *entry;   /* of each link                                                     */
+    int64_t count, capacity, link_capacity;
     int64_t contacts;         /* particles pushed out in this step                                */
     int64_t cut_pairs;        /* fluid pairs cut because a body lies between                      */
-    int64_t *block_count;     /* entries per block of particles, scratch of the search            */
-    int64_t block_capacity;
-    int32_t *bin_start, *bin_item;   /* points of one body by cell of width h                     */
-    int64_t bin_capacity, item_capacity;
-    double (*answer)[6];      /* of each body, sph/couple.k.h                                    */
-    int64_t answer_capacity;
-    int bins[3];
-    double bin_lower[3], bin_width;
+    int64_t *first;           /* [bodies + 1] first entry of each body                            */
+    double (*total)[TOBI_TOTALS];    /* [bodies] by tobi_boundary_sum                             */
+    double (*answer)[6];      /* [bodies] sph/couple.k.h                                          */
+    tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
+    int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
+    tobi_caught_block *caught_block;
+    double *nearest;          /* [particles] distance to the nearest body, m, INFINITY without    */
+    tobi_body_tree tree;
+    /* scratch of the search */
+    tobi_near_bins *bins;     /* [bodies + 1]                                                     */
+    double bin_width;         /* m                                                                */
+    int32_t *bin_start, *bin_item;
+    tobi_near_row *row;
+    int64_t row_count;
+    int64_t *found;           /* [row_count] particles that see the body, then entries before     */
+    int32_t *hit;             /* those particles                                                  */
+    int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
+    int64_t nearest_capacity, bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity;
+    int64_t hit_capacity;
 } tobi_near_bodies;
 
-struct tobi_system;
-/* Finds the entries at the bodies' present pose and velocities, writes particles.near. */
-tobi_status tobi_near_find(struct tobi_system *s, tobi_error *err);
-/* Replaces neighbours that lie behind a body by the particle itself in the list. */
-void tobi_near_cut_pairs(struct tobi_system *s);
-/* Writes particles.beside, if there is one. After cutting pairs. */
-void tobi_near_mark_beside(struct tobi_system *s);
-/* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the
- * planes' part). */
-void tobi_near_add_gradients(struct tobi_system *s);
-/* Adds dt times lift and no-slip friction of the bodies to the velocities. */
-void tobi_near_add_forces(struct tobi_system *s);
-/* Moves the particles with `beside` by dt^2 accel, a tenth of a spacing at most and not into bodies or sides;
- * velocities stay. */
-void tobi_near_settle(struct tobi_system *s);
-/* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
-void tobi_near_contact(struct tobi_system *s);
-/* Force and torque on one body by lift, friction and surface tension: all that does not wait for pressure. */
-void tobi_near_known_forces(struct tobi_system *s, int body, double force[6]);
-/* Forces and torques on every body of the pressure and the friction of this step. */
-void tobi_near_body_forces(struct tobi_system *s);
+int64_t tobi_near_bytes(const tobi_near_bodies *near);
 void tobi_near_free(tobi_near_bodies *near);

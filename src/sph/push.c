@@ -2,14 +2,15 @@
    it is inside, but not through which side it came: of a wing thinner than the way of a step the nearest
    side may be the far one. So the way itself, as seen from the body, is looked at too. Drawback: a body that
    turns within the step is taken to turn about the point nearest to the particle. */
+#include "sph/boundary.h"
 #include "sph/state.h"
-#include "sph/push.h"
-#include "core/system.h"
 #include <math.h>
 #include <string.h>
 
 /* Of the spacing: positions nearer to a body are not left. */
 static const double LEAST = 0.2;
+/* Blocks with caught particles that are worth waking threads for. */
+enum { WORTH = 4 };
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
 
@@ -30,10 +31,10 @@ typedef struct touch {
 
 static const tobi_near_entry *entry_of(const pusher *p, int64_t i)
 {
-    const tobi_near_entry *entry = sph_of(p->s)->near.entry;
+    const tobi_near_bodies *n = &sph_of(p->s)->near;
     int32_t k = sph_fields_of(&p->s->particles)->near[i];
-    while (k >= 0 && entry[k].body != p->body) k = entry[k].previous;
-    return k >= 0 && entry[k].triangle >= 0 ? &entry[k] : NULL;
+    while (k >= 0 && n->link[k].body != p->body) k = n->link[k].previous;
+    return k >= 0 && n->entry[k].triangle >= 0 ? &n->entry[k] : NULL;
 }
 
 /* Where a particle began the step, as seen from the body: as far from its nearest point as then. */
@@ -139,22 +140,97 @@ static int push_particle(const pusher *p, int64_t i, double *t)
     return 1;
 }
 
-static void push_range(const void *view, int64_t begin, int64_t end, double *t)
+static void widen(tobi_caught_block *b, const double x[3])
+{
+    for (int a = 0; a < 3; a++) {
+        b->lower[a] = fmin(b->lower[a], x[a]);
+        b->upper[a] = fmax(b->upper[a], x[a]);
+    }
+}
+
+/* Lists the particles that bodies have caught where they are: no other moves, so no other is caught later. */
+static void list_caught(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const tobi_system *s = view;
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    int32_t *list = n->caught + begin;
+    tobi_caught_block *found = &n->caught_block[begin/TOBI_BLOCK];
+    *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) {
+        const tobi_double3 *at = &s->particles.position[i];
+        const double x[3] = {at->x, at->y, at->z};
+        tobi_tree_walk walk = {0, 0};
+        touch c;
+        double into;
+        for (int k, caught = 0; !caught && (k = tobi_body_tree_next(&n->tree, x, &walk)) >= 0;) {
+            const pusher p = {.b = &s->sim->bodies[k], .s = (tobi_system *)s, .body = k};
+            caught = find_caught(&p, i, &c, &into);
+            if (!caught) continue;
+            widen(found, x);
+            list[found->count++] = (int32_t)i;
+        }
+    }
+}
+
+static int is_outside(const pusher *p, int64_t i)
+{
+    const double *x = &p->s->particles.position[i].x;
+    for (int a = 0; a < p->s->box.dimension; a++)
+        if (x[a] < p->lo[a] || x[a] > p->hi[a]) return 1;
+    return 0;
+}
+
+static int is_apart(const pusher *p, const tobi_caught_block *b)
+{
+    for (int a = 0; a < p->s->box.dimension; a++)
+        if (b->upper[a] < p->lo[a] || b->lower[a] > p->hi[a]) return 1;
+    return 0;
+}
+
+static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
-    for (int64_t i = begin; i < end; i++) {
-        const double *x = &p->s->particles.position[i].x;
-        int outside = 0;
-        for (int a = 0; a < p->s->box.dimension; a++) outside |= x[a] < p->lo[a] || x[a] > p->hi[a];
-        if (outside || !push_particle(p, i, t)) continue;
-        /* All sums are taken; whole numbers add up the same in any order. */
-        __atomic_fetch_add(&sph_of(p->s)->near.contacts, 1, __ATOMIC_RELAXED);
+    tobi_near_bodies *n = &sph_of(p->s)->near;
+    (void)totals;
+    for (int64_t k = begin; k < end; k++) {
+        tobi_block_sum *part = &n->part[k];
+        tobi_caught_block *block = &n->caught_block[part->block];
+        const int32_t *list = n->caught + part->block*TOBI_BLOCK;
+        for (int32_t c = 0; c < block->count; c++) {
+            const tobi_double3 *at = &p->s->particles.position[list[c]];
+            if (is_outside(p, list[c]) || !push_particle(p, list[c], part->total)) continue;
+            widen(block, (double[3]){at->x, at->y, at->z});
+            /* All sums are taken; whole numbers add up the same in any order. */
+            __atomic_fetch_add(&n->contacts, 1, __ATOMIC_RELAXED);
+        }
     }
+}
+
+/* The totals of a launch over all particles. */
+static void push_all(const pusher *p, double *t)
+{
+    tobi_system *s = p->s;
+    tobi_near_bodies *n = &sph_of(s)->near;
+    int64_t parts = 0;
+    for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
+        const int32_t *list = n->caught + b*TOBI_BLOCK;
+        int32_t k = is_apart(p, &n->caught_block[b]) ? n->caught_block[b].count : 0;
+        while (k < n->caught_block[b].count && is_outside(p, list[k])) k++;
+        if (k < n->caught_block[b].count) n->part[parts++] = (tobi_block_sum){.block = b};
+    }
+    if (parts < WORTH) push_parts(p, 0, parts, NULL);
+    else tobi_launch_each(&s->sim->exec, TOBI_HOST(push_parts, 0, 0), p, parts, NULL);
+    tobi_combine_sums(n->part, parts, t);
 }
 
 void tobi_push_out(tobi_system *s)
 {
-    sph_of(s)->near.contacts = 0;
+    tobi_near_bodies *n = &sph_of(s)->near;
+    n->contacts = 0;
+    tobi_body_tree_build(&n->tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
+                         s->box.dimension);
+    tobi_launch(&s->sim->exec, TOBI_HOST(list_caught, 0, 0), s, 0, s->particles.count, NULL);
     for (int k = 0; k < s->sim->body_count; k++) {
         double t[TOBI_TOTALS];
         pusher p = {.s = s, .b = &s->sim->bodies[k], .body = k, .share = 1};
@@ -165,15 +241,12 @@ void tobi_push_out(tobi_system *s)
         }
         if (p.b->rigid.kind != TOBI_PRESCRIBED) {
             p.counting = 1;
-            tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
+            push_all(&p, t);
             p.share = 1/(1 + t[0]*t[6]);     /* together they stop the body at most, never turn it round */
             p.counting = 0;
         }
-        tobi_launch(&s->sim->exec, TOBI_HOST(push_range, 6, 1), &p, 0, s->particles.count, t);
-        tobi_body_info *info = &s->sim->bodies[k].info;
-        for (int a = 0; a < 3; a++) {
-            info->pressure_force[a] += t[a]/s->dt;
-            info->pressure_torque[a] += t[3 + a]/s->dt;
-        }
+        push_all(&p, t);
+        tobi_body_load *load = &s->sim->bodies[k].load[s->number];
+        for (int a = 0; a < 6; a++) load->pressure[a] += t[a]/s->dt;
     }
 }

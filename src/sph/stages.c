@@ -1,7 +1,6 @@
 #include "sph/state.h"
 #include "sph/stages.h"
-#include "sph/couple.h"
-#include "sph/push.h"
+#include "sph/boundary.h"
 #include <math.h>
 #include <string.h>
 
@@ -137,10 +136,13 @@ tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, dou
 {
     launch(s, v, k->sph_walls, NULL);
     if (s->sim->body_count > 0) {
-        TOBI_TRY(tobi_near_find(s, err));
-        tobi_near_cut_pairs(s);
-        tobi_near_mark_beside(s);
-        tobi_near_add_gradients(s);
+        tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
+        TOBI_TRY(tobi_boundary_search(s, err));
+        tobi_stage_end(&s->sim->stages, "body search", clock);
+        TOBI_TRY(tobi_boundary_measure(s, err));
+        tobi_boundary_cut_pairs(s);
+        tobi_boundary_mark_beside(s);
+        tobi_boundary_add_gradients(s);
     }
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     return TOBI_OK;
@@ -198,7 +200,7 @@ static void apply_tension(tobi_system *s, sph_view *v, const sph_kernels *k)
     if (!(most > 0)) return;
     launch(s, v, k->sph_normal, NULL);
     launch(s, v, k->sph_smooth_normal, NULL);
-    if (s->sim->body_count > 0) tobi_near_contact(s);
+    if (s->sim->body_count > 0) tobi_boundary_turn_normals(s);
     launch(s, v, k->sph_curvature, NULL);
     launch(s, v, k->sph_tension, NULL);
 }
@@ -218,7 +220,7 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
     if (v->moment[0]) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
-    if (s->sim->body_count > 0) tobi_near_add_forces(s);
+    if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
     apply_tension(s, v, k);
     tobi_stage_end(&s->sim->stages, "forces", clock);
 }
@@ -230,7 +232,7 @@ void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, doubl
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
     sph_of(s)->still_volume = t[3]*s->smoothing.volume;
-    if (s->sim->body_count > 0) tobi_near_body_forces(s);
+    if (s->sim->body_count > 0) tobi_boundary_load(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 
@@ -274,7 +276,7 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     v->filter = 0;
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
-    if (s->sim->body_count > 0) tobi_near_add_forces(s);
+    if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
     apply_tension(s, v, k);
     s->dt = step;
     v->dt = dt;

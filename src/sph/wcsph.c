@@ -6,7 +6,7 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/wcsph.h"
-#include "sph/couple.h"
+#include "sph/boundary.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/still.h"
@@ -108,7 +108,7 @@ static double find_surface(tobi_system *s)
 {
     sph_state *state = sph_of(s);
     const sph_fields *f = sph_fields_of(&s->particles);
-    for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.entry[k].particle] = 0;
+    for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.link[k].particle] = 0;
     return sph_still_low(s);
 }
 

@@ -41,8 +41,10 @@ static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
 {
     double clock = tobi_clock();
     s->body_speed = s->wall_speed;
-    for (int k = 0; k < s->body_count; k++)
+    for (int k = 0; k < s->body_count; k++) {
+        tobi_body_clear_loads(&s->bodies[k]);
         TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
+    }
     tobi_stage_end(&s->stages, "motion", &clock);
     return TOBI_OK;
 }
@@ -68,6 +70,7 @@ static tobi_status move_bodies(tobi_world *w, tobi_error *err)
     tobi_stage_end(&s->stages, "motion", &clock);
     for (int k = 0; k < w->system_count; k++)
         if (w->system[k].method->finish) w->system[k].method->finish(&w->system[k]);
+    for (int k = 0; k < s->body_count; k++) tobi_body_sum_loads(&s->bodies[k]);
     return TOBI_OK;
 }
 

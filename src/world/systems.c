@@ -81,7 +81,7 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
         return status;
     }
     tobi_system *s = &w->system[w->system_count++];
-    *s = (tobi_system){ .sim = &w->sim, .method = method, .def = params };
+    *s = (tobi_system){ .sim = &w->sim, .number = w->system_count - 1, .method = method, .def = params };
     memcpy(s->gravity, w->sim.def.gravity, sizeof s->gravity);
     set_smoothing(w, s);
     return TOBI_OK;

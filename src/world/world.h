@@ -10,7 +10,6 @@ enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
-enum { TOBI_SYSTEM_LIMIT = 2 };
 enum { TOBI_ALIVE = 0x70b10 };
 
 struct tobi_world {

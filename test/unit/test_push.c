@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
+#include "sph/boundary.h"
 #include "sph/state.h"
-#include "sph/push.h"
 #include "world/world.h"
 
 static const double SPACING = 0.01, THICKNESS = 1e-4;
@@ -68,7 +68,9 @@ static void step(tobi_system *s, const double way[3], double x[3])
     double speed = 0;
     s->dt = 1;
     assert_int_equal(tobi_body_predict(&s->sim->bodies[0], 0, s->dt, &speed, &err), TOBI_OK);
-    assert_int_equal(tobi_near_find(s, &err), TOBI_OK);
+    tobi_cells_sort(&s->cells, &s->box, &s->particles, NULL, &s->sim->exec);
+    assert_int_equal(tobi_boundary_search(s, &err), TOBI_OK);
+    assert_int_equal(tobi_boundary_measure(s, &err), TOBI_OK);
     double *p = &s->particles.position[0].x;
     float *v = &s->particles.velocity[0].x;
     for (int a = 0; a < 3; a++) {
@@ -97,7 +99,7 @@ static void stays_on_its_side(void **state)
             assert_true(fabs(s->particles.velocity[0].x - side*0.003) < 1e-8);   /* the plate's */
             assert_true(fabs(s->particles.velocity[0].y - 0.001) < 1e-8);
             double mass = s->smoothing.volume*1000;
-            assert_true(fabs(s->sim->bodies[0].info.pressure_force[0] + side*mass*0.009) < 1e-6*mass);
+            assert_true(fabs(s->sim->bodies[0].load[0].pressure[0] + side*mass*0.009) < 1e-6*mass);
             tobi_world_destroy(world);
         }
 }

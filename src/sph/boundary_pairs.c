@@ -1,0 +1,135 @@
+/* Neighbours near bodies: pairs that a body separates leave the neighbour list, and particles near a body or
+   next to one that is are marked. Most pairs are farther from bodies than from each other, and only the rest
+   asks for the mesh. Drawback: a pair within reach of a mesh costs two walks through it. */
+#include "sph/boundary.h"
+#include "sph/state.h"
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
+
+static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
+{
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    const int32_t k = n->link[e - n->entry].previous;
+    return k >= 0 ? &n->entry[k] : NULL;
+}
+
+/* From j to i, in fixed point. */
+static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
+{
+    const tobi_record *a = &s->cells.record[i], *b = &s->cells.record[j];
+    d[0] = (int32_t)((uint32_t)a->x - (uint32_t)b->x);
+    d[1] = (int32_t)((uint32_t)a->y - (uint32_t)b->y);
+    d[2] = (int32_t)((uint32_t)a->z - (uint32_t)b->z);
+}
+
+/* A body between two particles is not farther from both together than they are from each other. */
+static int may_separate(const tobi_system *s, int64_t i, int64_t j)
+{
+    const double *nearest = sph_of(s)->near.nearest, least = nearest[i] + nearest[j];
+    double square = 0;
+    int32_t fixed[3];
+    if (least > 1.001*s->smoothing.h) return 0;
+    subtract(s, i, j, fixed);
+    for (int a = 0; a < 3; a++) {
+        const double d = fixed[a]*(double)s->box.from_fixed[a];
+        square += d*d;
+    }
+    return least*least < 1.001*square;
+}
+
+/* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
+   rounding would let a segment through an edge pass one way only. */
+static int separated(const tobi_system *s, int64_t i, int64_t j)
+{
+    const tobi_particles *p = &s->particles;
+    if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
+    const int32_t *near = sph_fields_of(p)->near;
+    const tobi_near_link *link = sph_of(s)->near.link;
+    const tobi_near_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
+    const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
+    int32_t fixed[3];
+    double d[3];
+    subtract(s, i, j, fixed);
+    for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
+    const double length = sqrt(dot(d, d));
+    for (; a; a = next_entry(s, a))
+        for (b = &entry[near[j]]; b; b = next_entry(s, b)) {
+            const int body = link[a - entry].body;
+            if (body != link[b - entry].body || fabs(a->distance) + fabs(b->distance) >= length) continue;
+            double to[3], ra[3], rb[3];
+            for (int c = 0; c < 3; c++) {
+                to[c] = x[c] - d[c];
+                ra[c] = to[c] - a->foot[c];
+                rb[c] = to[c] + d[c] - b->foot[c];
+            }
+            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
+            const tobi_bvh *tree = s->sim->bodies[body].bvh;
+            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
+        }
+    return 0;
+}
+
+static void find_nearest(tobi_system *s)
+{
+    const tobi_near_bodies *n = &sph_of(s)->near;
+    double *nearest = n->nearest;
+    for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
+    for (int64_t k = 0; k < n->count; k++) {
+        double *least = &nearest[n->link[k].particle];
+        *least = fmin(*least, fabs(n->entry[k].distance));
+    }
+}
+
+static void cut_pairs(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const tobi_cells *c = &s->cells;
+    const int32_t *near = sph_fields_of(&s->particles)->near;
+    tobi_near_bodies *n = &sph_of(s)->near;
+    int64_t cut = 0;
+    for (int64_t k = begin; k < end; k++) {
+        int64_t i = n->link[k].particle;
+        if (near[i] != k) continue;      /* once per particle */
+        int32_t *list = c->list + 8*(int64_t)c->list_start[i];
+        for (int g = 0; g < 8*c->list_groups[i]; g++) {
+            int32_t j = list[g];
+            if (j == i || !may_separate(s, i, j) || !separated(s, i, j)) continue;
+            list[g] = (int32_t)i;
+            cut++;
+        }
+    }
+    __atomic_fetch_add(&n->cut_pairs, cut, __ATOMIC_RELAXED);      /* whole: any order gives the same */
+}
+
+void tobi_boundary_cut_pairs(tobi_system *s)
+{
+    tobi_near_bodies *n = &sph_of(s)->near;
+    find_nearest(s);
+    n->cut_pairs = 0;
+    tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
+    n->cut_pairs /= 2;      /* each was seen from both sides */
+}
+
+static void mark_beside(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const tobi_cells *c = &s->cells;
+    uint8_t *beside = sph_fields_of(&s->particles)->beside;
+    for (int64_t k = begin; k < end; k++) {
+        int64_t i = sph_of(s)->near.link[k].particle;
+        const int32_t *list = c->list + 8*(int64_t)c->list_start[i];
+        for (int g = 0; g < 8*c->list_groups[i]; g++)
+            __atomic_store_n(&beside[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&beside[i], 1, __ATOMIC_RELAXED);
+    }
+}
+
+void tobi_boundary_mark_beside(tobi_system *s)
+{
+    uint8_t *beside = sph_fields_of(&s->particles)->beside;
+    if (!beside) return;
+    memset(beside, 0, (size_t)s->particles.count);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, mark_beside, s);
+}
