@@ -54,8 +54,8 @@ static void particles_fly_on_parabolas(void **state)
 
 static void restart_goes_on_with_the_same_bits(void **state)
 {
-    tobi_scene *scene;
-    tobi_world *world = make(&scene), *again = make(&scene);
+    tobi_scene *scene, *same;
+    tobi_world *world = make(&scene), *again = make(&same);
     (void)state;
     for (int k = 0; k < 5; k++) OK(tobi_world_step(world, 0, NULL, &err));
     OK(tobi_world_save(world, "free_flight.h5", &err));
@@ -66,6 +66,7 @@ static void restart_goes_on_with_the_same_bits(void **state)
     tobi_world_destroy(world);
     tobi_world_destroy(again);
     tobi_scene_free(scene);
+    tobi_scene_free(same);
 }
 
 static void mistakes_are_told(void **state)
