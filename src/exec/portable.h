@@ -66,6 +66,7 @@ TOBI_FN lane_int lane_bits(lane a)
 TOBI_FN float lane_at(lane a, int k) { (void)k; return a; }
 TOBI_FN int32_t lane_int_at(lane_int a, int k) { (void)k; return a; }
 TOBI_FN lane lane_load(const float *p) { return *p; }
+TOBI_FN void lane_store(float *p, lane a) { *p = a; }
 TOBI_FN float lane_sum(lane a) { return a; }
 TOBI_FN tobi_float4 lane_sum4(lane x, lane y, lane z, lane w)
 {
@@ -229,6 +230,7 @@ TOBI_FN lane lane_load(const float *p)
     __builtin_memcpy(&v, p, sizeof v);
     return v;
 }
+TOBI_FN void lane_store(float *p, lane a) { __builtin_memcpy(p, &a, sizeof a); }
 /* One tree on every machine: (0+4)+(2+6) + (1+5)+(3+7). */
 TOBI_FN float lane_sum(lane a)
 {

@@ -2,6 +2,7 @@
 #include "sph/kernels.h"
 #include "sph/couple.k.h"
 #include "sph/filter.k.h"
+#include "sph/isph.k.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"
@@ -27,16 +28,24 @@
     TOBI_PAIR_LOOP(K##_cubic, sph_view, run_##K##_cubic)
 #define FOR(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, sph_view, run_##K)
 #define COUPLE(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_couple_view, run_##K)
+#define IMAGE(K, SUMS, MAXIMA, DOC)                                                                 \
+    ISPH_LOOP(K, TOBI_SHAPE_WENDLAND, run_##K##_wendland)                                           \
+    ISPH_LOOP(K, TOBI_SHAPE_CUBIC, run_##K##_cubic)
+#define ISPH(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, isph_view, run_##K)
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef IMAGE
+#undef ISPH
 
 const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
     {
 #define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_wendland, SUMS, MAXIMA},
 #define FOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
 #define COUPLE FOR
+#define IMAGE PAIR
+#define ISPH FOR
 #include "sph/kernels.def"
 #undef PAIR
     },
@@ -46,5 +55,7 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef IMAGE
+#undef ISPH
     },
 };

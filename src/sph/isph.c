@@ -6,7 +6,6 @@
 #include "sph/boundary.h"
 #include "sph/isph.h"
 #include "sph/isph_bodies.h"
-#include "sph/isph_passes.h"
 #include "sph/isph_solve.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
@@ -31,6 +30,7 @@ typedef struct isph {
     /* survives a restart; vessel: SPH_VESSEL_*; failures: steps in a row that did not converge */
     struct { double speed, vessel, failures; } memory;
     double motion_dt;                /* s, the step that motion alone allows                        */
+    double side_force[3];            /* N, of the pressure on the sides of the domain               */
 } isph;
 
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
@@ -124,7 +124,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     sph_drive_bodies(s, &clock);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
-    launch(s, m, isph_measure_geometry, NULL);
+    launch(s, m, m->kernel->isph_geometry, NULL);
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
     return TOBI_OK;
 }
@@ -139,7 +139,7 @@ static void forces(tobi_system *s)
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     sph_apply_forces(s, &without, m->kernel, &clock);
     isph_bodies_unlift(s);
-    launch(s, m, isph_add_gravity, NULL);
+    launch(s, m, m->kernel->isph_gravity, NULL);
 }
 
 /* One failure is an event, and the best answer so far is used; many in a row are the end of the run. */
@@ -161,33 +161,29 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
     const tobi_linear_settings settings = { .tolerance = m->def.tolerance, .max = m->def.iterations_max };
-    const double count = (double)s->particles.count;
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
-    launch(s, m, isph_kick, t);
+    launch(s, m, m->kernel->isph_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
-    launch(s, m, isph_measure_divergence, t);
-    s->info.divergence_mean = t[0]/count;
-    s->info.divergence_max = t[6];
+    memcpy(m->side_force, t + 1, sizeof m->side_force);
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);
     return TOBI_OK;
 }
 
-/* Pressure by the images, friction as it was made. */
+/* Pressure by the images, as the kick found it; friction as it was made. */
 static void measure_forces(tobi_system *s, isph *m, double *clock)
 {
-    double pressure[TOBI_TOTALS], friction[TOBI_TOTALS];
+    double friction[TOBI_TOTALS];
     sph_view without = m->view;
     without.pressure = sph_fields_of(&s->particles)->residual;
     memset(without.pressure, 0, (size_t)s->particles.count*sizeof *without.pressure);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
-    launch(s, m, isph_press_walls, pressure);
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] = pressure[a] + friction[a];
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
     tobi_boundary_load(s);
     isph_bodies_press(&m->solver, s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
@@ -196,10 +192,12 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
 static void move(tobi_system *s)
 {
     isph *m = s->state;
-    double clock = tobi_clock();
+    double t[TOBI_TOTALS], clock = tobi_clock();
     measure_forces(s, m, &clock);
-    launch(s, m, isph_find_shift, NULL);
-    launch(s, m, isph_use_change, NULL);
+    launch(s, m, m->kernel->isph_shift, t);
+    s->info.divergence_mean = t[0]/(double)s->particles.count;
+    s->info.divergence_max = t[6];
+    launch(s, m, m->kernel->isph_use_change, NULL);
     tobi_stage_end(&s->sim->stages, "shifting", &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
 }

@@ -82,6 +82,8 @@ typedef struct pressing {
     const isph_view *v;
     const tobi_cells *cells;
     const tobi_body *b;
+    int shape;                       /* TOBI_SHAPE_*                                                */
+    double scale;                    /* m3, on W                                                    */
 } pressing;
 
 typedef struct point_sums { double weight, pressure; } point_sums;
@@ -91,17 +93,16 @@ static void add_cell(const pressing *q, int64_t k, int64_t cell, point_sums *s)
 {
     const isph_view *v = q->v;
     for (int64_t i = q->cells->start[cell]; i < q->cells->start[cell + 1]; i++) {
-        isph_pair p = { .weight = 1 };
-        double ahead = 0, rise = 0;
+        double ahead = 0, rise = 0, r2 = 0;
         for (int a = 0; a < v->dimension; a++) {
-            p.x[a] = isph_place(v, i)[a] - q->b->point[k][a];
-            if (v->periodic[a]) p.x[a] -= v->size[a]*round(p.x[a]/v->size[a]);
-            p.r2 += p.x[a]*p.x[a];
-            ahead += p.x[a]*q->b->normal[k][a];
-            rise -= v->density*v->gravity[a]*p.x[a];
+            double x = (&v->position[i].x)[a] - q->b->point[k][a];
+            if (v->periodic[a]) x -= v->size[a]*round(x/v->size[a]);
+            r2 += x*x;
+            ahead += x*q->b->normal[k][a];
+            rise -= v->density*v->gravity[a]*x;
         }
-        if (!(ahead > 0) || p.r2 >= v->h*v->h) continue;
-        const double w = isph_weight(v, &p);
+        if (!(ahead > 0) || r2 >= v->h*v->h) continue;
+        const double w = q->scale*tobi_smoothing_w(q->shape, v->dimension, v->h, sqrt(r2));
         s->weight += w;
         s->pressure += w*(v->pressure[i] + rise);
     }
@@ -156,7 +157,8 @@ void isph_bodies_press(isph_solver *m, tobi_system *s)
 {
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
-        const pressing view = { &m->view, &s->cells, b };
+        const tobi_smoothing_constants *c = &s->smoothing;
+        const pressing view = { &m->view, &s->cells, b, c->shape, c->volume*c->weight_correction };
         double t[TOBI_TOTALS];
         tobi_launch(m->exec, TOBI_HOST(press_points, 6, 0), &view, 0, b->point_count, t);
         memcpy(b->load[s->number].pressure, t, 6*sizeof *t);

@@ -3,7 +3,7 @@
    list, which a product that computes them anew would not. */
 #include "sph/isph_solve.h"
 #include "sph/fields.h"
-#include "sph/isph_passes.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static const double DAMPING = 0.7;
 
 /* X(type, pointer): arrays of one value per particle. */
 #define ARRAYS(X)                                                                                    \
-    X(double, m->pressure) X(double, m->scratch) X(double, m->view.excess)                           \
+    X(double, m->view.solution) X(double, m->scratch) X(double, m->view.excess)                           \
     X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
     X(tobi_float4, m->view.lack) X(isph_tensor, m->view.inverse) X(float, m->view.trace)             \
     X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.filled) \
@@ -39,7 +39,7 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
 #define X(type, pointer) pointer = (void *)at; at += n*(int64_t)sizeof(type);
     ARRAYS(X)
 #undef X
-    m->view.change = (tobi_double3 *)m->work;      /* free between the solves */
+    m->view.change = (tobi_float4 *)m->work;      /* free between the solves */
     m->rows = p->capacity;
     return TOBI_OK;
 }
@@ -51,7 +51,8 @@ void isph_solver_begin(isph_solver *m, tobi_system *s)
     m->exec = &s->sim->exec;
     m->sim = s->sim;
     v->dimension = c->dimension;
-    v->shape = c->shape;
+    m->kernel = sph_kernels_for(s->sim->exec.isa, c->shape);
+    v->inverse_h = (float)(1/c->h);
     v->spacing = c->spacing;
     v->h = c->h;
     v->volume = c->volume;
@@ -61,6 +62,10 @@ void isph_solver_begin(isph_solver *m, tobi_system *s)
     v->density = s->fluid[0].density;
     memcpy(v->size, s->box.size, sizeof v->size);
     memcpy(v->periodic, s->box.periodic, sizeof v->periodic);
+    memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
+    for (int a = 0; a < v->dimension; a++)
+        for (int k = 0; k < 2 && !v->periodic[a]; k++)
+            v->side[k][a] = (int32_t)lround((k*v->size[a] - s->box.centre[a])*s->box.to_fixed[a]);
 }
 
 static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi_error *err)
@@ -88,6 +93,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     TOBI_TRY(reserve_entries(m, &s->cells, err));
     v->count = p->count;
     v->position = p->position;
+    v->record = s->cells.record;
     v->velocity = p->velocity;
     v->accel = f->accel;
     v->pressure = f->pressure;
@@ -95,7 +101,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->list_start = s->cells.list_start;
     v->list_groups = s->cells.list_groups;
     v->dt = s->dt;
-    memcpy(v->gravity, s->gravity, sizeof v->gravity);
+    for (int a = 0; a < 3; a++) v->gravity[a] = a < v->dimension ? (float)s->gravity[a] : 0;
     return TOBI_OK;
 }
 
@@ -104,7 +110,7 @@ static void apply(void *user, double *y, const double *x)
     isph_solver *m = user;
     m->view.in = x;
     m->view.out = y;
-    tobi_launch(m->exec, isph_multiply, &m->view, 0, m->view.count, NULL);
+    tobi_launch(m->exec, m->kernel->isph_multiply, &m->view, 0, m->view.count, NULL);
 }
 
 static int ask_stop(void *user)
@@ -124,17 +130,17 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 {
     double t[TOBI_TOTALS];
     const int64_t n = m->view.count;
-    float *p = sph_fields_of(&s->particles)->pressure;
-    tobi_launch(m->exec, isph_assemble_rows, &m->view, 0, n, t);
+    m->view.kick = (float)m->view.dt;
+    tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
     const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
     tobi_multigrid_set(&m->grid, m->exec, &points, &w);
     const tobi_linear_system system = { .rows = n, .singular = !(t[0] > 0), .user = m, .apply = apply,
                                         .precondition = precondition, .stop = ask_stop };
-    for (int64_t i = 0; i < n; i++) m->pressure[i] = p[i];
     const tobi_linear_report report =
-        tobi_cg(m->exec, &system, settings, m->view.source, m->pressure, m->work);
-    for (int64_t i = 0; i < n; i++) p[i] = (float)m->pressure[i];
+        tobi_cg(m->exec, &system, settings, m->view.source, m->view.solution, m->work);
+    tobi_launch(m->exec, m->kernel->isph_answer, &m->view, 0, n, NULL);
+    m->view.kick = 0;
     return report;
 }
 

@@ -2,15 +2,17 @@
 #pragma once
 #include "core/system.h"
 #include "linear/multigrid.h"
-#include "sph/isph_pairs.h"
+#include "sph/isph_view.h"
+#include "sph/kernels.h"
 
 typedef struct isph_solver {
     isph_view view;
+    const sph_kernels *kernel;
     tobi_exec *exec;
     tobi_simulation *sim;            /* asked whether to stop                                       */
     tobi_multigrid grid;
     void *memory;                    /* all arrays of the view but the entries, and those below     */
-    double *pressure, *scratch, *work;
+    double *scratch, *work;
     int64_t rows;                    /* room for particles                                          */
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */

@@ -7,10 +7,14 @@ typedef struct sph_kernels {
 #define PAIR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #define FOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #define COUPLE FOR
+#define IMAGE PAIR
+#define ISPH FOR
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef IMAGE
+#undef ISPH
 } sph_kernels;
 
 /* shape: TOBI_SHAPE_*; isa: exec's level. Static data, never NULL. */

@@ -54,10 +54,14 @@ static const entry kernels[] = {
 #define PAIR(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_of(K)},
 #define FOR PAIR
 #define COUPLE(K, SUMS, MAXIMA, DOC)      /* see test_couple.c */
+#define IMAGE(K, SUMS, MAXIMA, DOC)       /* see test_isph_oracle.c */
+#define ISPH IMAGE
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef IMAGE
+#undef ISPH
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };
 

@@ -1,0 +1,325 @@
+/* Kernels of isph, in the letters of docs/theory/isph.md: pair sums in float lanes, what is made of them in
+   double. */
+#pragma once
+#include "sph/isph_images.k.h"
+
+/* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
+#define ISPH_GATE_BEGIN 0.05
+#define ISPH_GATE_OPEN 0.15
+/* Least share of a row that is missing where the gate is open, per relative loss of neighbours: clusters
+   whose rows are fuller than the lattice would float otherwise. */
+#define ISPH_EXCESS_FLOOR 0.5
+/* Most of kappa. */
+#define ISPH_SCALE_MAX 1.3
+/* Determinant below which M has no use. */
+#define ISPH_DETERMINANT_MIN 0.1
+/* Lack of volume that the source takes out at most. */
+#define ISPH_STRETCH_MAX 0.05
+/* Shift: pairs nearer than CORE spacings go apart by PUSH of the overlap each; SHIFT_MAX in spacings. */
+#define ISPH_CORE 0.8f
+#define ISPH_PUSH 0.25f
+#define ISPH_SHIFT_MAX 0.1
+/* Of tr M/dim: less are drops, which do not shift; less know no gradient of the velocity; more are the
+   bulk. */
+#define ISPH_DROP 0.6
+#define ISPH_SPARSE 0.75
+#define ISPH_BULK 0.95
+
+TOBI_FN double isph_larger(double a, double b) { return a > b ? a : b; }
+TOBI_FN double isph_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+TOBI_FN void isph_apply(const isph_tensor *t, const double x[3], double out[3])
+{
+    out[0] = t->xx*x[0] + t->xy*x[1] + t->zx*x[2];
+    out[1] = t->xy*x[0] + t->yy*x[1] + t->yz*x[2];
+    out[2] = t->zx*x[0] + t->yz*x[1] + t->zz*x[2];
+}
+
+/* B = (1 - gamma) M^-1 + gamma, eq. (4). In 2-D zz = 1. */
+TOBI_FN isph_tensor isph_invert(const double m[6], double gate)
+{
+    const double a = m[0], b = m[1], c = m[2], d = m[3], e = m[4], f = m[5];
+    const double xx = b*c - e*e, yy = a*c - f*f, zz = a*b - d*d, xy = e*f - d*c, yz = d*f - a*e,
+                 zx = d*e - b*f, determinant = a*xx + d*xy + f*zx;
+    if (!(determinant > ISPH_DETERMINANT_MIN)) gate = 1;
+    const double k = gate < 1 ? (1 - gate)/determinant : 0;
+    isph_tensor t = {(float)(k*xx + gate), (float)(k*yy + gate), (float)(k*zz + gate), (float)(k*xy),
+                     (float)(k*yz), (float)(k*zx)};
+    return t;
+}
+
+/* M, the sums of V W and V grad W, and what bodies have of tr M; eq. (2) to (5). */
+typedef struct isph_geometry_acc { lane xx, yy, zz, xy, yz, zx, w, gx, gy, gz, bodies; } isph_geometry_acc;
+
+TOBI_FN void isph_geometry_start(const isph_view *v, int64_t i, isph_geometry_acc *a)
+{
+    (void)v; (void)i;
+    a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = a->w = a->gx = a->gy = a->gz = a->bodies = lane_set(0);
+}
+
+TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+                                isph_geometry_acc *a, const int shape, const int kind)
+{
+    const lane f = isph_falloff(v, n, m, shape, kind), x = f*n->dx, y = f*n->dy, z = f*n->dz;
+    (void)i;
+    a->xx += x*n->dx; a->yy += y*n->dy; a->zz += z*n->dz;
+    a->xy += x*n->dy; a->yz += y*n->dz; a->zx += z*n->dx;
+    a->gx += x; a->gy += y; a->gz += z;
+    a->w += isph_weight(v, n, m, shape, kind);
+    if (kind == ISPH_BODY) a->bodies += f*n->r2;
+}
+
+/* What the shift asks of a neighbour at the surface, eq. (10b): as w of `lack`, which turns it into a
+   direction. */
+TOBI_FN tobi_float4 isph_weigh_lack(const isph_view *v, tobi_float4 c, double trace)
+{
+    const double size = sqrt((double)c.x*c.x + (double)c.y*c.y + (double)c.z*c.z);
+    c.w = (float)(isph_larger(0, v->dimension - trace)/(size + 1e-30));
+    return c;
+}
+
+TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_acc *a, double *totals)
+{
+    const double k = v->slope;
+    const tobi_float4 main = lane_sum4(a->xx, a->yy, a->zz, a->w),
+                      g = lane_sum4(a->gx, a->gy, a->gz, lane_set(0)),
+                      off = lane_sum4(a->xy, a->yz, a->zx, a->bodies);
+    double m[6] = {k*main.x, k*main.y, k*main.z, k*off.x, k*off.y, k*off.z};
+    /* one plane per body leaves gaps in its corners, which are no surface */
+    const double sum = m[0] + m[1] + m[2],
+                 trace = isph_larger(sum, sum - k*off.w + v->dimension*v->behind[i]);
+    const double loss = 1 - trace/v->dimension;
+    const double gate =
+        v->open ? isph_clamp((loss - ISPH_GATE_BEGIN)/(ISPH_GATE_OPEN - ISPH_GATE_BEGIN), 0, 1) : 0;
+    const double scale = v->dimension/isph_larger(trace, ISPH_BULK*v->dimension);
+    tobi_float4 lack = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
+    (void)totals;
+    if (v->dimension == 2) m[2] = 1;
+    v->trace[i] = (float)trace;
+    v->gate[i] = (float)gate;
+    v->scale[i] = (float)(scale < ISPH_SCALE_MAX ? scale : ISPH_SCALE_MAX);
+    v->filled[i] = (float)(v->weight*(1 + (double)main.w));
+    v->lack[i] = isph_weigh_lack(v, lack, trace);
+    v->inverse[i] = isph_invert(m, gate);
+}
+
+/* v += dt g, and what neighbours read while rows are made. */
+TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    for (int a = 0; a < v->dimension; a++) (&v->velocity[i].x)[a] += (float)v->dt*v->gravity[a];
+    v->velocity[i].w = 0;           /* eq. (6b) of boundaries.md: images leave nothing to make up */
+    v->record[i].w = v->scale[i];
+}
+
+/* Pa/m2: what presses too dense liquid apart, and, in the bulk, pulls too thin liquid together, eq. (8). */
+TOBI_FN double isph_volume_source(const isph_view *v, int64_t i)
+{
+    const int bulk = v->trace[i] > ISPH_BULK*v->dimension || !v->open;
+    const double e = isph_larger(v->filled[i] - 1.0, bulk ? -ISPH_STRETCH_MAX : 0);
+    return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
+}
+
+/* A row of the pressure equation, eq. (6), and its source, eq. (8). The start of the solve is the last
+   pressure. totals[0]: excess. */
+typedef struct isph_rows_acc {
+    lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, lift, divergence;
+    float bodies;                    /* of self, by bodies */
+} isph_rows_acc;
+
+TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
+{
+    const tobi_float4 u = v->velocity[i];
+    const isph_tensor b = v->inverse[i];
+    a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
+    a->bxx = lane_set(b.xx); a->byy = lane_set(b.yy); a->bzz = lane_set(b.zz);
+    a->bxy = lane_set(b.xy); a->byz = lane_set(b.yz); a->bzx = lane_set(b.zx);
+    a->scale = lane_set(v->scale[i]);
+    a->sum = a->self = a->lift = a->divergence = lane_set(0);
+    a->bodies = 0;
+}
+
+/* Into the entries of the list: images add to those of their pairs. */
+TOBI_FN void isph_rows_enter(const isph_view *v, const isph_image *m, lane a, const int kind)
+{
+    if (kind == ISPH_BODY) {
+        for (int k = 0; k < TOBI_LANES; k++)
+            if (m->entry[k] >= 0) v->entry[m->entry[k]] += lane_at(a, k);
+        return;
+    }
+    if (kind == ISPH_SIDE && m->k >= 0) a += lane_load(&v->entry[m->k]);
+    if (m->k >= 0) lane_store(&v->entry[m->k], a);
+}
+
+TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+                            isph_rows_acc *c, const int shape, const int kind)
+{
+    const lane f = isph_falloff(v, n, m, shape, kind), a = (float)v->slope*f*(c->scale + n->w);
+    lane u[3];
+    (void)i;
+    isph_velocity(v, n, m, kind, u);
+    const lane x = c->bxx*n->dx + c->bxy*n->dy + c->bzx*n->dz, y = c->bxy*n->dx + c->byy*n->dy + c->byz*n->dz,
+               z = c->bzx*n->dx + c->byz*n->dy + c->bzz*n->dz;
+    c->divergence += f*((u[0] - c->ux)*x + (u[1] - c->uy)*y + (u[2] - c->uz)*z);
+    c->lift += a*isph_lift(v, m, kind);
+    c->sum += a;
+    if (kind == ISPH_SIDE && m->k < 0) c->self += a;
+    if (kind == ISPH_BODY)
+        for (int k = 0; k < TOBI_LANES; k++)
+            if (m->entry[k] < 0) c->bodies += lane_at(a, k);
+    isph_rows_enter(v, m, a, kind);
+}
+
+TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, double *totals)
+{
+    const tobi_float4 t = lane_sum4(a->sum, a->self, a->lift, a->divergence);
+    const double loss = 1 - v->trace[i]/v->dimension;
+    const double excess = 2*v->gate[i]*isph_larger(v->full - t.x, ISPH_EXCESS_FLOOR*loss*v->full);
+    const double diagonal = t.x - t.y - a->bodies + excess;
+    v->source[i] = isph_volume_source(v, i) + t.z + v->density/v->dt*v->slope*t.w;
+    v->excess[i] = excess;
+    v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
+    v->solution[i] = v->pressure[i];
+    totals[0] += excess;
+}
+
+/* out = A in. Eight sums, one tree. */
+TOBI_FN void isph_multiply(const isph_view *v, int64_t i, double *totals)
+{
+    const double own = v->in[i];
+    const int64_t first = 8*(int64_t)v->list_start[i];
+    const int32_t *j = v->list + first;
+    const float *a = v->entry + first;
+    double s[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    (void)totals;
+    for (int g = 0; g < 8*v->list_groups[i]; g += 8)
+        for (int k = 0; k < 8; k++) s[k] += a[g + k]*(own - v->in[j[g + k]]);
+    v->out[i] = v->excess[i]*own + (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])));
+}
+
+/* The answer of the solve, for neighbours to read. */
+TOBI_FN void isph_answer(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    v->pressure[i] = (float)v->solution[i];
+    v->record[i].w = v->pressure[i];
+}
+
+/* v -= dt/rho grad p, eq. (9): the difference form, with B, in the bulk; the plain sum, with -p_i in place of
+   missing neighbours, at a free surface. totals: |grad p|; [1..3] force of image pairs on the sides of the
+   domain, eq. (11), N. */
+typedef struct isph_kick_acc { lane p, x, y, z, fx, fy, fz; } isph_kick_acc;
+
+TOBI_FN void isph_kick_start(const isph_view *v, int64_t i, isph_kick_acc *a)
+{
+    a->p = lane_set(v->pressure[i]);
+    a->x = a->y = a->z = a->fx = a->fy = a->fz = lane_set(0);
+}
+
+TOBI_FN void isph_kick_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+                            isph_kick_acc *a, const int shape, const int kind)
+{
+    const lane f = isph_falloff(v, n, m, shape, kind), other = n->w + isph_lift(v, m, kind),
+               q = f*(other - a->p);
+    (void)i;
+    a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
+    if (kind != ISPH_SIDE) return;
+    const lane both = f*(other + a->p);
+    a->fx += both*n->dx; a->fy += both*n->dy; a->fz += both*n->dz;
+}
+
+TOBI_FN void isph_kick_finish(const isph_view *v, int64_t i, isph_kick_acc *a, double *totals)
+{
+    const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
+                      w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
+    const double mean = 2*v->gate[i]*v->pressure[i], k = -v->slope, x[3] = {k*s.x, k*s.y, k*s.z};
+    double g[3];
+    isph_apply(&v->inverse[i], x, g);
+    for (int c = 0; c < 3; c++) g[c] += mean*(&v->lack[i].x)[c];
+    totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
+    totals[1] += v->volume*k*w.x; totals[2] += v->volume*k*w.y; totals[3] += v->volume*k*w.z;
+    for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
+}
+
+/* The shift of positions, eq. (10), as an acceleration in accel, and the change of velocity that goes with
+   it. totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
+typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9]; } isph_shift_acc;
+
+TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
+{
+    const tobi_float4 u = v->velocity[i];
+    a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
+    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = lane_set(0);
+    for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
+}
+
+TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+                             isph_shift_acc *a, const int shape, const int kind)
+{
+    const lane f = isph_falloff(v, n, m, shape, kind), r = lane_sqrt(n->r2), x[3] = {n->dx, n->dy, n->dz},
+               push = ISPH_PUSH*lane_positive(ISPH_CORE*(float)v->spacing - r)/(r + 1e-20f);
+    lane u[3];
+    (void)i;
+    isph_velocity(v, n, m, kind, u);
+    u[0] = f*(u[0] - a->ux); u[1] = f*(u[1] - a->uy); u[2] = f*(u[2] - a->uz);
+    for (int b = 0; b < 3; b++) {
+        a->core[b] += push*x[b];
+        for (int c = 0; c < 3; c++) a->slope[3*b + c] += u[b]*x[c];
+    }
+    if (kind != ISPH_PLAIN) return;
+    lane c[4];
+    lane_load_float4(v->lack, n->j, &c[0], &c[1], &c[2], &c[3]);
+    c[3] = lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), c[3]);
+    for (int b = 0; b < 3; b++) a->normal[b] += c[3]*c[b];
+}
+
+/* Takes the part of x along n out. */
+TOBI_FN void isph_take_normal(double x[3], const double n[3])
+{
+    const double n2 = n[0]*n[0] + n[1]*n[1] + n[2]*n[2];
+    if (!(n2 > 1e-24)) return;
+    const double along = (x[0]*n[0] + x[1]*n[1] + x[2]*n[2])/n2;
+    for (int a = 0; a < 3; a++) x[a] -= along*n[a];
+}
+
+/* |div v| of the gradient g. */
+TOBI_FN void isph_note_divergence(const isph_view *v, int64_t i, const double g[9], double *totals)
+{
+    const isph_tensor *b = &v->inverse[i];
+    if (v->gate[i] > 0) return;
+    const double sum = g[0]*b->xx + g[4]*b->yy + g[8]*b->zz + (g[1] + g[3])*b->xy + (g[5] + g[7])*b->yz +
+                       (g[2] + g[6])*b->zx, size = sum < 0 ? -sum : sum;
+    totals[0] += size;
+    totals[6] = isph_larger(totals[6], size);
+}
+
+TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s, double *totals)
+{
+    const double full = v->trace[i]/(double)v->dimension, d = v->spacing;
+    double x[3], along[3], n[3], g[9], size = 0;
+    for (int k = 0; k < 9; k++) g[k] = -v->slope*lane_sum(s->slope[k]);
+    for (int a = 0; a < 3; a++) {
+        x[a] = -v->shifting*d*d*(&v->lack[i].x)[a];
+        n[a] = lane_sum(s->normal[a]);
+    }
+    isph_note_divergence(v, i, g, totals);
+    if (v->open && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
+    else if (v->open && full < ISPH_BULK) isph_take_normal(x, n);
+    for (int a = 0; a < 3; a++) {
+        x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;
+        size += x[a]*x[a];
+    }
+    const double most = ISPH_SHIFT_MAX*d, keep = size > most*most ? most/sqrt(size) : 1;
+    const double part = v->open && full < ISPH_SPARSE ? 0 : keep;
+    isph_apply(&v->inverse[i], x, along);
+    for (int a = 0; a < 3; a++) {
+        (&v->change[i].x)[a] = (float)(part*(g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2]));
+        (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->dt*v->dt));
+    }
+}
+
+TOBI_FN void isph_use_change(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    for (int a = 0; a < 3; a++) (&v->velocity[i].x)[a] += (&v->change[i].x)[a];
+}

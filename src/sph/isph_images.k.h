@@ -1,0 +1,185 @@
+/* The pair loop of isph: the neighbours of a particle, and the mirror images of them and of itself at the
+   sides of the domain and at bodies. The image of a pair is as far from either particle, so that sums over
+   images stay symmetric, and never nearer than the pair itself, so that the neighbour list holds all that can
+   have one. A kernel K with accumulator K##_acc has
+     K##_start(v, i, &acc)
+     K##_pair(v, i, &near, &image, &acc, shape, kind)     eight pairs; kind: a constant of ISPH_*
+     K##_finish(v, i, &acc, totals)
+   At sides all pairs of one reflection go together. At a body a pair has one mirror plane, the mean of those
+   at the points of the surface that are closest to either: exact at flat faces, rounded at edges. Images at
+   two bodies at once are left out. Drawback: pairs at bodies are made one at a time. */
+#pragma once
+#include "sph/isph_view.h"
+
+enum { ISPH_PLAIN, ISPH_SIDE, ISPH_BODY };
+enum { ISPH_BODIES = 4 };            /* that a pair sees at once                                    */
+
+/* What eight pairs are images of. */
+typedef struct isph_image {
+    int64_t k;                       /* entry of the first pair in the list; -1: of i and itself    */
+    lane sign[3];                    /* of velocities: -1 along mirrored axes                       */
+    lane away[3];                    /* m, from j to its image                                      */
+    /* bodies only */
+    const int64_t *entry;            /* of each pair, in place of k                                 */
+    lane weight;                     /* 1; less at edges                                            */
+    lane normal[3], flow;            /* 1, m/s: velocity of the surface along the normal            */
+} isph_image;
+
+/* V F over slope: V grad W = -V F x_ij. 0 out of reach. */
+TOBI_FN lane isph_falloff(const isph_view *v, const tobi_near *n, const isph_image *m, const int shape,
+                          const int kind)
+{
+    const lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
+    return kind == ISPH_BODY ? f*m->weight : f;
+}
+
+/* V W over weight. */
+TOBI_FN lane isph_weight(const isph_view *v, const tobi_near *n, const isph_image *m, const int shape,
+                         const int kind)
+{
+    const lane w = smoothing_shape(shape, lane_sqrt(n->r2)*v->inverse_h);
+    return kind == ISPH_BODY ? w*m->weight : w;
+}
+
+/* Velocities of j or of its image; walls do not mirror what gravity gave in this step. */
+TOBI_FN void isph_velocity(const isph_view *v, const tobi_near *n, const isph_image *m, const int kind,
+                           lane u[3])
+{
+    lane w, across = lane_set(0);
+    lane_load_float4(v->velocity, n->j, &u[0], &u[1], &u[2], &w);
+    if (kind == ISPH_PLAIN) return;
+    for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->kick*v->gravity[a]);
+    if (kind == ISPH_SIDE) return;
+    for (int a = 0; a < 3; a++) across += 2*(u[a] - v->kick*v->gravity[a])*m->normal[a];
+    across -= 2*m->flow;
+    for (int a = 0; a < 3; a++) u[a] -= across*m->normal[a];
+}
+
+/* Pa: pressure of the image less that of j, as of liquid at rest, eq. (7). */
+TOBI_FN lane isph_lift(const isph_view *v, const isph_image *m, const int kind)
+{
+    if (kind == ISPH_PLAIN) return lane_set(0);
+    return (float)v->density*(v->gravity[0]*m->away[0] + v->gravity[1]*m->away[1] +
+                              v->gravity[2]*m->away[2]);
+}
+
+/* m2, out of reach of every kernel. */
+TOBI_FN lane isph_far(const isph_view *v) { return lane_set(4*(float)(v->h*v->h)); }
+
+TOBI_FN lane isph_square(const tobi_near *n) { return n->dx*n->dx + n->dy*n->dy + n->dz*n->dz; }
+
+/* Eight neighbours; those that are i itself, which pad the list, are out of reach. */
+TOBI_FN void isph_load(const isph_view *v, int64_t i, const int32_t *j, tobi_near *n)
+{
+    const tobi_record own = v->record[i];
+    lane_int x, y, z;
+    n->j = j;
+    n->index = lane_load_index(j);
+    lane_load_record(v->record, j, &x, &y, &z, &n->w);
+    n->dx = lane_from_int(lane_sub_wrap(own.x, x))*v->from_fixed[0];
+    n->dy = lane_from_int(lane_sub_wrap(own.y, y))*v->from_fixed[1];
+    n->dz = lane_from_int(lane_sub_wrap(own.z, z))*v->from_fixed[2];
+    n->r2 = lane_where_equal(n->index, lane_set_int((int32_t)i), isph_far(v), isph_square(n));
+}
+
+/* Reflections that i may see: side[a] of axis a has -1 for none, 0 and 1 for its lower and upper side. */
+typedef struct isph_frames { int side[3][3], count[3], total; } isph_frames;
+
+TOBI_FN isph_frames isph_find_frames(const isph_view *v, int64_t i)
+{
+    isph_frames f;
+    for (int a = 0; a < 3; a++) {
+        const double x = (&v->position[i].x)[a];
+        f.count[a] = 1;
+        f.side[a][0] = -1;
+        if (v->periodic[a] || a >= v->dimension) continue;
+        if (x < v->h) f.side[a][f.count[a]++] = 0;
+        if (v->size[a] - x < v->h) f.side[a][f.count[a]++] = 1;
+    }
+    f.total = f.count[0]*f.count[1]*f.count[2];
+    return f;
+}
+
+/* Sides of reflection m. */
+TOBI_FN void isph_choose_sides(const isph_frames *f, int m, int side[3])
+{
+    side[0] = f->side[0][m%f->count[0]];
+    side[1] = f->side[1][m/f->count[0]%f->count[1]];
+    side[2] = f->side[2][m/(f->count[0]*f->count[1])];
+}
+
+/* The pairs as the sides mirror them: by the sum of both distances from a side, so that i sees j as j sees i.
+   Of a group of i itself (k < 0) the first counts. */
+TOBI_FN void isph_reflect(const isph_view *v, int64_t i, const int side[3], tobi_near *n, isph_image *m)
+{
+    static const int32_t first[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const int32_t *own = &v->record[i].x;
+    lane_int at[3];
+    lane w, x[3] = {n->dx, n->dy, n->dz};
+    lane_load_record(v->record, n->j, &at[0], &at[1], &at[2], &w);
+    for (int a = 0; a < 3; a++) {
+        m->sign[a] = lane_set(1);
+        m->away[a] = lane_set(0);
+        if (side[a] < 0) continue;
+        const int32_t wall = v->side[side[a]][a];
+        const lane both = lane_from_int(lane_sub_wrap(wall, at[a])) + (float)(wall - own[a]),
+                   image = -both*v->from_fixed[a];
+        m->sign[a] = lane_set(-1);
+        m->away[a] = x[a] - image;
+        x[a] = image;
+    }
+    n->dx = x[0]; n->dy = x[1]; n->dz = x[2];
+    n->r2 = m->k < 0 ? lane_where_equal(lane_load_index(first), lane_set_int(0), isph_square(n), isph_far(v))
+                     : lane_where_equal(n->index, lane_set_int((int32_t)i), isph_far(v), isph_square(n));
+}
+
+#include "sph/isph_body_images.k.h"
+
+/* Calls K##_pair for each group of each reflection at the sides. */
+#define ISPH_SIDES(K, SHAPE)                                                                        \
+    const isph_frames frames = isph_find_frames(v, i);                                              \
+    for (int f = 1; f < frames.total; f++) {                                                        \
+        int side[3];                                                                                \
+        isph_choose_sides(&frames, f, side);                                                        \
+        for (int g = -TOBI_LANES; g < groups; g += TOBI_LANES) {                                    \
+            isph_load(v, i, g < 0 ? self : j + g, &near);                                           \
+            image.k = g < 0 ? -1 : first + g;                                                       \
+            isph_reflect(v, i, side, &near, &image);                                                \
+            K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_SIDE);                                  \
+        }                                                                                           \
+    }
+
+/* The same for pairs at bodies. */
+#define ISPH_AT_BODIES(K, SHAPE)                                                                    \
+    if (v->near && v->near[i] >= 0) {                                                               \
+        isph_walk walk = isph_walk_begin(v, i, &frames, first, groups);                             \
+        while (isph_walk_fill(&walk)) {                                                             \
+            isph_walk_load(&walk, &near, &image);                                                   \
+            K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_BODY);                                  \
+        }                                                                                           \
+    }
+
+#define ISPH_LOOP(K, SHAPE, NAME)                                                                   \
+    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
+    {                                                                                               \
+        const isph_view *v = (const isph_view *)view;                                               \
+        for (int64_t i = begin; i < end; i++) {                                                     \
+            const int64_t first = 8*(int64_t)v->list_start[i];                                      \
+            const int groups = 8*v->list_groups[i];                                                 \
+            const int32_t *j = v->list + first;                                                     \
+            int32_t self[8];                                                                        \
+            K##_acc acc;                                                                            \
+            tobi_near near;                                                                         \
+            isph_image image;                                                                       \
+            for (int k = 0; k < 8; k++) self[k] = (int32_t)i;                                       \
+            K##_start(v, i, &acc);                                                                  \
+            for (int g = 0; g < groups; g += TOBI_LANES) {                                          \
+                isph_load(v, i, j + g, &near);                                                      \
+                image.k = first + g;                                                                \
+                K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_PLAIN);                             \
+            }                                                                                       \
+            ISPH_SIDES(K, SHAPE)                                                                    \
+            ISPH_AT_BODIES(K, SHAPE)                                                                \
+            K##_finish(v, i, &acc, totals);                                                         \
+        }                                                                                           \
+    }

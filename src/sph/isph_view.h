@@ -1,0 +1,61 @@
+/* What the kernels of isph read and write: a flat struct of plain pointers and constants, and the mirror
+   planes in which particles see bodies. */
+#pragma once
+#include "core/smoothing.k.h"
+#include "exec/pairs.h"
+
+/* Symmetric. */
+typedef struct isph_tensor { float xx, yy, zz, xy, yz, zx; } isph_tensor;
+
+/* The plane in which a particle sees a body. */
+typedef struct isph_mirror {
+    int32_t body, previous;          /* previous: the particle's plane for an earlier body, -1 = none */
+    double offset[3];                /* m, from the closest point of the surface to the particle    */
+    double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
+    double share;                    /* 1: how much of the half space behind is body, 0 to 1        */
+} isph_mirror;
+
+typedef struct isph_view {
+    int64_t count;
+    int dimension;
+    int open;                        /* 1: there may be a free surface                              */
+    double spacing, h, volume;       /* m, m, m3                                                    */
+    double weight, slope;            /* core/smoothing.h                                            */
+    double full;                     /* 1/m2: the sum of a row of the Laplacian on the lattice      */
+    double size[3];                  /* m                                                           */
+    int periodic[3];
+    float inverse_h;                 /* 1/m                                                         */
+    float from_fixed[3];             /* m per unit of the records                                   */
+    int32_t side[2][3];              /* lower and upper sides of the domain, units of the records   */
+    float gravity[3];                /* m/s2                                                        */
+    float kick;                      /* s: dt while velocities hold the step's gravity, else 0      */
+    double density;                  /* kg/m3                                                       */
+    double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
+    double volume_gain, shifting;    /* parameters                                                  */
+    /* particle arrays */
+    const tobi_double3 *position;
+    tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */
+    tobi_float4 *velocity, *accel;
+    float *pressure;                 /* Pa                                                          */
+    const int32_t *list;
+    const uint32_t *list_start;
+    const uint16_t *list_groups;
+    const int32_t *near;             /* last mirror of each particle, < 0: none; NULL: no bodies    */
+    const isph_mirror *mirror;
+    float *behind;                   /* 1: share of the kernel in and behind bodies                 */
+    /* the method's own: geometry, eq. (2) to (5) */
+    isph_tensor *inverse;            /* 1: B                                                        */
+    float *trace;                    /* 1: tr M                                                     */
+    float *gate;                     /* 1: gamma, 0 in the bulk, 1 at a free surface                */
+    float *scale;                    /* 1: kappa                                                    */
+    float *filled;                   /* 1: kernel sum, 1 on the lattice                             */
+    tobi_float4 *lack;               /* 1/m: sum of V grad W; w: eq. (10b)                          */
+    /* the matrix */
+    float *entry;                    /* 1/m2: a of each entry of the list                           */
+    double *excess, *inverse_diagonal;     /* 1/m2, m2                                              */
+    double *source;                  /* Pa/m2                                                       */
+    double *solution;                /* Pa                                                          */
+    const double *in;                /* of the product at hand                                      */
+    double *out;
+    tobi_float4 *change;             /* m/s: of the velocity, with the shift                        */
+} isph_view;

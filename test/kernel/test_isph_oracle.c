@@ -1,0 +1,519 @@
+/* The kernels of isph: in lanes and as scalars (what CUDA compiles) against sums over all pairs and explicit
+   images in double, and the same bits on every instruction set. Then what the matrix and the operators
+   promise. */
+#define TOBI_SCALAR_LANES
+#define TOBI_ISA scalar
+#include "sph/isa_sph.c"
+#include "core/smoothing.h"
+#include "unit/poisson_rig.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <cmocka.h>
+
+static poisson pool;
+static isph_view view;
+static const sph_kernels *kernel;
+static int shape;
+
+/* The arrays of the view that kernels write, or that this test fills. */
+#define ARRAYS(X)                                                                                   \
+    X(pressure) X(trace) X(gate) X(scale) X(filled) X(behind) X(excess) X(inverse_diagonal)         \
+    X(source) X(solution) X(out) X(inverse) X(lack) X(change) X(accel) X(velocity)
+
+/* In cases with a body its face is where the lower side along x was; that is FAR supports further down. */
+enum { FAR = 10 };
+static const double FLOW = 0.7;      /* m/s, of the face along x */
+static int bodies;
+static tobi_double3 *shifted;
+static int32_t *near_body;
+static isph_mirror *mirror;
+
+static void put_body(void)
+{
+    const double away = FAR*view.h;
+    int32_t count = 0;
+    for (int64_t i = 0; i < view.count; i++) {
+        shifted[i] = pool.p.position[i];
+        near_body[i] = -1;
+        if (!bodies) continue;
+        shifted[i].x += away;
+        if (pool.p.position[i].x >= view.h) continue;
+        near_body[i] = count;
+        mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .offset = {pool.p.position[i].x, 0, 0},
+                                        .normal = {1, 0, 0}, .velocity = {FLOW, 0.3, 0}, .share = 1};
+    }
+    view.size[0] = pool.box.size[0] + (bodies ? away : 0);
+    view.near = bodies ? near_body : NULL;
+}
+
+/* A jittered pool, closed or with a surface, and a view of it with memory of its own. */
+static void open_pool(int dimension, int closed, int smoothing, int body)
+{
+    const int n[3] = {12, dimension == 2 ? 14 : 9, 10};
+    if (poisson_fill(&pool, dimension, n, closed, 2) != TOBI_OK) fail();
+    const int64_t count = pool.p.count;
+    tobi_smoothing_constants c;
+    shape = smoothing;
+    bodies = body;
+    tobi_smoothing_init(&c, shape, dimension, pool.d, 2.5);
+    kernel = sph_kernels_for(pool.exec.isa, shape);
+    view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .spacing = pool.d,
+                       .h = pool.h, .volume = c.volume, .weight = c.weight, .slope = c.slope,
+                       .full = 2*c.rate, .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3,
+                       .motion_dt = 2e-3,
+                       .volume_gain = 0.1, .shifting = 0.5};
+    memcpy(view.size, pool.box.size, sizeof view.size);
+    memcpy(view.from_fixed, pool.box.from_fixed, sizeof view.from_fixed);
+    for (int a = 0; a < dimension; a++)
+        for (int k = 0; k < 2; k++)
+            view.side[k][a] =
+                (int32_t)lround((k*pool.box.size[a] - pool.box.centre[a])*pool.box.to_fixed[a]);
+    view.gravity[0] = 1;
+    view.gravity[dimension - 1] = -9.81f;
+#define X(name) view.name = calloc((size_t)count, sizeof *view.name);
+    ARRAYS(X)
+#undef X
+    view.entry = calloc((size_t)pool.cells.list_used, sizeof(float));
+    view.in = calloc((size_t)count, sizeof(double));
+    view.mirror = mirror = calloc((size_t)count, sizeof *mirror);
+    view.position = shifted = calloc((size_t)count, sizeof *shifted);
+    near_body = calloc((size_t)count, sizeof *near_body);
+    view.record = pool.cells.record;
+    view.list = pool.cells.list;
+    view.list_start = pool.cells.list_start;
+    view.list_groups = pool.cells.list_groups;
+    put_body();
+    for (int64_t i = 0; i < count; i++) {
+        ((double *)view.in)[i] = poisson_random();
+        view.pressure[i] = (float)(1000*poisson_random());
+        for (int a = 0; a < dimension; a++) (&view.velocity[i].x)[a] = (float)poisson_random();
+    }
+}
+
+static void close_pool(void)
+{
+#define X(name) free(view.name);
+    ARRAYS(X)
+#undef X
+    free(view.entry);
+    free((void *)view.in);
+    free(mirror);
+    free(shifted);
+    free(near_body);
+    poisson_drop(&pool);
+}
+
+static void run(tobi_kernel k, double *totals)
+{
+    tobi_launch(&pool.exec, k, &view, 0, view.count, totals);
+}
+
+/* Every image of every particle that i can see, in 3^dim boxes; code of its own. */
+typedef struct image { int64_t j; double x[3], r, away[3]; int flip[3]; int self; } image;
+typedef struct sums {
+    double moment[6], filled, lack[3], product, divergence, lift, row, gradient[3], force[3], core[3],
+           normal[3], slope[9];
+} sums;
+
+static double falloff(double r)
+{
+    const double q = r/view.h, t = 1 - q, u = q < 0.5 ? 0.5 - q : 0;
+    return view.slope*(shape == TOBI_SHAPE_WENDLAND ? t*t*t : (t*t - 4*u*u)/(r + 1e-30));
+}
+
+static double weight(double r)
+{
+    const double q = r/view.h, t = 1 - q, u = q < 0.5 ? 0.5 - q : 0;
+    return view.weight*(shape == TOBI_SHAPE_WENDLAND ? t*t*t*t*(1 + 4*q) : 2*t*t*t - 8*u*u*u);
+}
+
+/* Velocity of an image: its part across a wall is mirrored, less what gravity gave (kick). */
+static void image_velocity(const image *m, double u[3])
+{
+    for (int a = 0; a < 3; a++) {
+        const double kick = (double)view.kick*view.gravity[a];
+        u[a] = (&view.velocity[m->j].x)[a];
+        if (m->flip[a]) u[a] = -(u[a] - kick) + kick + (bodies && a == 0 && m->flip[a] == 1 ? 2*FLOW : 0);
+    }
+}
+
+static void add_pair(int64_t i, const image *m, sums *s)
+{
+    const isph_tensor *b = &view.inverse[i];
+    const double f = falloff(m->r), *x = m->x, a = f*((double)view.scale[i] + view.scale[m->j]);
+    const double g[3] = {b->xx*x[0] + b->xy*x[1] + b->zx*x[2], b->xy*x[0] + b->yy*x[1] + b->yz*x[2],
+                         b->zx*x[0] + b->yz*x[1] + b->zz*x[2]};
+    const int side = m->flip[0] > (bodies ? 1 : 0) || m->flip[1] || m->flip[2],
+              image = side || m->flip[0], face = bodies && m->flip[0] == 1;
+    double u[3], lift = 0;
+    for (int k = 0; k < view.dimension; k++) lift += view.density*view.gravity[k]*m->away[k];
+    image_velocity(m, u);
+    s->filled += weight(m->r);
+    s->product += a*(view.in[i] - view.in[m->j]);
+    s->lift += a*lift;
+    s->row += a;
+    for (int k = 0; k < 3; k++) {
+        const double jump = u[k] - (&view.velocity[i].x)[k], p = view.pressure[m->j] + lift,
+                     own = view.pressure[i];
+        s->moment[k] += f*x[k]*x[k];
+        s->moment[3 + k] += f*x[k]*x[(k + 1)%3];
+        s->lack[k] -= f*x[k];
+        s->divergence -= jump*f*g[k];
+        s->gradient[k] -= (p - own)*f*x[k];
+        if (side && !face) s->force[k] -= view.volume*(p + own)*f*x[k];
+        if (m->r < 0.8*view.spacing) s->core[k] += 0.25*(0.8*view.spacing - m->r)*x[k]/m->r;
+        for (int c = 0; c < 3; c++) s->slope[3*k + c] -= jump*f*x[c];
+        if (!image) s->normal[k] += (double)view.lack[m->j].w*(&view.lack[m->j].x)[k];
+    }
+}
+
+static sums sum_pairs(int64_t i)
+{
+    const int dim = view.dimension;
+    sums s = {.filled = view.weight};
+    for (int64_t j = 0; j < view.count; j++)
+        for (int code = 0; code < (dim == 3 ? 27 : 9); code++) {
+            image m = {.j = j, .self = i == j && code == 0};
+            double r2 = 0;
+            for (int a = 0, c = code; a < 3; a++, c /= 3) {
+                const double y = (&pool.p.position[j].x)[a];
+                m.flip[a] = a < dim ? c%3 : 0;
+                const double at = !m.flip[a] ? y : m.flip[a] == 1 ? -y : 2*pool.box.size[a] - y;
+                m.x[a] = (&pool.p.position[i].x)[a] - at;
+                m.away[a] = at - y;
+                r2 += m.x[a]*m.x[a];
+            }
+            m.r = sqrt(r2);
+            if (!m.self && m.r < view.h) add_pair(i, &m, &s);
+        }
+    return s;
+}
+
+/* The rows i of all arrays that a kernel may write: what an oracle answers, and what it is measured by. */
+typedef struct check { const char *name; double worst; } check;
+static void compare(check *c, double made, double expected, double scale)
+{
+    const double e = fabs(made - expected)/scale;
+    if (!(e <= c->worst)) c->worst = e;
+}
+
+static double loss_of(const sums *s)
+{
+    return 1 - (s->moment[0] + s->moment[1] + s->moment[2])/view.dimension;
+}
+static double gate_of(const sums *s) { return view.open ? fmin(fmax((loss_of(s) - 0.05)/0.1, 0), 1) : 0; }
+
+static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
+{
+    const double trace = view.dimension*(1 - loss_of(s)), gate = gate_of(s);
+    const isph_tensor b = view.inverse[i];
+    const double made[6] = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx};
+    double m[6], missing = sqrt(s->lack[0]*s->lack[0] + s->lack[1]*s->lack[1] + s->lack[2]*s->lack[2]);
+    compare(c, view.trace[i], trace, 1);
+    compare(c, view.gate[i], gate, 10);
+    compare(c, view.scale[i], fmin(1.3, view.dimension/fmax(trace, 0.95*view.dimension)), 1);
+    compare(c, view.filled[i], s->filled, 1);
+    for (int a = 0; a < 3; a++) compare(c, (&view.lack[i].x)[a], s->lack[a], 1/view.h);
+    compare(c, view.lack[i].w*missing, fmax(0, view.dimension - trace), 1);
+    /* B M = (1 - gamma) + gamma M */
+    for (int k = 0; k < 6; k++) m[k] = s->moment[k];
+    if (view.dimension == 2) m[2] = 1;
+    const double full[3][3] = {{m[0], m[3], m[5]}, {m[3], m[1], m[4]}, {m[5], m[4], m[2]}};
+    const double inverse[3][3] = {{made[0], made[3], made[5]}, {made[3], made[1], made[4]},
+                                  {made[5], made[4], made[2]}};
+    for (int a = 0; a < 3; a++)
+        for (int k = 0; k < 3; k++) {
+            double sum = 0;
+            for (int e = 0; e < 3; e++) sum += inverse[a][e]*full[e][k];
+            compare(c, sum, (1 - gate)*(a == k) + gate*full[a][k], 10);
+        }
+}
+
+static tobi_float4 before;           /* velocity of the row at hand, before the kernel */
+
+static void oracle_isph_gravity(check *c, int64_t i, const sums *s)
+{
+    (void)s;
+    for (int a = 0; a < 3; a++)
+        compare(c, (&view.velocity[i].x)[a],
+                (&before.x)[a] + (a < view.dimension ? view.dt*view.gravity[a] : 0), 1);
+    compare(c, view.record[i].w, view.scale[i], 1);
+}
+
+static double excess_of(const sums *s)
+{
+    return 2*gate_of(s)*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
+}
+
+static void oracle_isph_rows(check *c, int64_t i, const sums *s)
+{
+    const double e = fmax(s->filled - 1, loss_of(s) < 0.05 || !view.open ? -0.05 : 0);
+    const double source = s->lift - view.density/view.dt*s->divergence +
+                          view.density*0.1*e/(view.dt*view.motion_dt);
+    compare(c, view.source[i], source, view.density/view.dt/view.dt);
+    compare(c, view.excess[i], excess_of(s), 10*view.full);
+    compare(c, view.solution[i], view.pressure[i], 1000);
+    assert_true(view.inverse_diagonal[i] > 0);
+}
+
+static void oracle_isph_multiply(check *c, int64_t i, const sums *s)
+{
+    compare(c, view.out[i], s->product + view.excess[i]*view.in[i], view.full);
+}
+
+static void oracle_isph_answer(check *c, int64_t i, const sums *s)
+{
+    (void)s;
+    compare(c, view.pressure[i], view.solution[i], 1000);
+    compare(c, view.record[i].w, view.pressure[i], 1000);
+}
+
+static void oracle_isph_kick(check *c, int64_t i, const sums *s)
+{
+    double g[3];
+    isph_apply(&view.inverse[i], s->gradient, g);
+    for (int a = 0; a < view.dimension; a++) {
+        g[a] += 2*view.gate[i]*view.pressure[i]*(&view.lack[i].x)[a];
+        compare(c, (&view.velocity[i].x)[a], (&before.x)[a] - view.dt/view.density*g[a],
+                view.dt/view.density*1000/view.h);
+    }
+}
+
+static void oracle_isph_shift(check *c, int64_t i, const sums *s)
+{
+    const double full = 1 - loss_of(s), d = view.spacing;
+    double x[3], along[3], size = 0, n2 = 0, at = 0;
+    for (int a = 0; a < 3; a++) x[a] = view.open && full < 0.6 ? 0 : -view.shifting*d*d*s->lack[a];
+    for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
+    for (int a = 0; a < 3; a++) {
+        if (view.open && full < 0.95 && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
+        x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
+        size += x[a]*x[a];
+    }
+    const double keep = size > 0.01*d*d ? 0.1*d/sqrt(size) : 1;
+    isph_apply(&view.inverse[i], x, along);
+    for (int a = 0; a < 3; a++) {
+        double change = 0;
+        for (int b = 0; b < 3; b++) change += s->slope[3*a + b]*along[b];
+        compare(c, (&view.accel[i].x)[a]*view.dt*view.dt, keep*x[a], d);
+        compare(c, (&view.change[i].x)[a], view.open && full < 0.75 ? 0 : keep*change, 1);
+    }
+}
+
+static void oracle_isph_use_change(check *c, int64_t i, const sums *s)
+{
+    (void)s;
+    for (int a = 0; a < 3; a++)
+        compare(c, (&view.velocity[i].x)[a], (&before.x)[a] + (&view.change[i].x)[a], 1);
+}
+
+typedef struct entry {
+    const char *name;
+    size_t offset;
+    void (*oracle)(check *c, int64_t i, const sums *s);
+} entry;
+
+/* A kernel without an oracle does not compile: the list is the production list. */
+static const entry kernels[] = {
+#define PAIR(K, SUMS, MAXIMA, DOC)        /* see test_sph_oracle.c */
+#define FOR PAIR
+#define COUPLE PAIR
+#define IMAGE(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_##K},
+#define ISPH IMAGE
+#include "sph/kernels.def"
+};
+enum { KERNELS = sizeof kernels/sizeof *kernels };
+
+static tobi_kernel kernel_at(const sph_kernels *table, int k)
+{
+    return *(const tobi_kernel *)((const char *)table + kernels[k].offset);
+}
+
+/* Before a kernel: what the solver does between them. */
+static void prepare(int k)
+{
+    view.kick = !strcmp(kernels[k].name, "isph_rows") ? (float)view.dt : 0;
+    if (!strcmp(kernels[k].name, "isph_answer"))
+        for (int64_t i = 0; i < view.count; i++) view.solution[i] *= 0.9;
+}
+
+static void follow_the_equations(int scalar)
+{
+    for (int k = 0; k < 16; k++) {
+        open_pool(2 + k%2, k/2%2, k/4%2 ? TOBI_SHAPE_CUBIC : TOBI_SHAPE_WENDLAND, k/8);
+        if (scalar) kernel = &sph_kernels_scalar[shape];
+        for (int n = 0; n < KERNELS; n++) {
+            double t[TOBI_TOTALS], force[3] = {0}, div = 0;
+            check c = {kernels[n].name, 0};
+            tobi_float4 *old = malloc((size_t)view.count*sizeof *old);
+            memcpy(old, view.velocity, (size_t)view.count*sizeof *old);
+            prepare(n);
+            run(kernel_at(kernel, n), t);
+            const int all = !strcmp(kernels[n].name, "isph_kick") || !strcmp(kernels[n].name, "isph_shift");
+            for (int64_t i = 0; i < view.count; i += all ? 1 : 7) {
+                before = old[i];
+                sums s = sum_pairs(i);
+                for (int a = 0; a < 3; a++) force[a] += s.force[a];
+                if (!(view.gate[i] > 0)) div += fabs(s.divergence);
+                kernels[n].oracle(&c, i, &s);
+            }
+            if (!strcmp(kernels[n].name, "isph_kick"))
+                for (int a = 0; a < 3; a++) compare(&c, t[1 + a], force[a], 1e4*view.volume/view.h);
+            if (!strcmp(kernels[n].name, "isph_shift")) compare(&c, t[0], div, div + 1);
+            if (!strcmp(kernels[n].name, "isph_rows")) assert_true((t[0] > 0) == view.open);
+            if (!(c.worst < 2e-5)) fail_msg("case %d, %s: off by %g", k, c.name, c.worst);
+            free(old);
+        }
+        close_pool();
+    }
+}
+
+static void kernels_follow_the_equations(void **state)
+{
+    (void)state;
+    follow_the_equations(0);
+}
+
+/* What CUDA compiles. */
+static void scalar_lanes_follow_them_too(void **state)
+{
+    (void)state;
+    follow_the_equations(1);
+}
+
+static int64_t pack(float *to)
+{
+    int64_t n = 0;
+#define X(name)                                                                                     \
+    memcpy(to + n, view.name, (size_t)view.count*sizeof *view.name);                                \
+    n += view.count*(int64_t)sizeof *view.name/4;
+    ARRAYS(X)
+#undef X
+    memcpy(to + n, view.entry, (size_t)pool.cells.list_used*sizeof *view.entry);
+    return n + pool.cells.list_used;
+}
+
+static void unpack(const float *from)
+{
+    int64_t n = 0;
+#define X(name)                                                                                     \
+    memcpy(view.name, from + n, (size_t)view.count*sizeof *view.name);                              \
+    n += view.count*(int64_t)sizeof *view.name/4;
+    ARRAYS(X)
+#undef X
+    memcpy(view.entry, from + n, (size_t)pool.cells.list_used*sizeof *view.entry);
+}
+
+/* Each kernel by both tables, from the same arrays. */
+static void walk(const sph_kernels *other)
+{
+    const size_t most = (size_t)(view.count*60 + pool.cells.list_used);
+    float *in = calloc(most, sizeof *in), *a = calloc(most, sizeof *a), *b = calloc(most, sizeof *b);
+    for (int k = 0; k < KERNELS; k++) {
+        double t[TOBI_TOTALS], u[TOBI_TOTALS];
+        prepare(k);
+        pack(in);
+        run(kernel_at(other, k), t);
+        const int64_t n = pack(a);
+        unpack(in);
+        run(kernel_at(kernel, k), u);
+        pack(b);
+        if (memcmp(a, b, (size_t)n*sizeof *a) || memcmp(t, u, sizeof t))
+            fail_msg("%s: bits differ", kernels[k].name);
+    }
+    free(in);
+    free(a);
+    free(b);
+}
+
+static void instruction_sets_give_the_same_bits(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        open_pool(2 + k%2, 0, k/2%2, k/4);
+        for (int isa = 2; isa < pool.exec.isa; isa++) walk(sph_kernels_for(isa, shape));
+        close_pool();
+    }
+}
+
+static void the_matrix_is_symmetric(void **state)
+{
+    (void)state;
+    for (int body = 0; body < 2; body++) {
+        open_pool(3, 0, TOBI_SHAPE_WENDLAND, body);
+        double forth = 0, back = 0;
+        double *x = calloc((size_t)view.count, sizeof *x);
+        const double *y = view.in;
+        for (int n = 0; n < 4; n++) run(kernel_at(kernel, n), NULL);
+        for (int64_t i = 0; i < view.count; i++) x[i] = poisson_random();
+        run(kernel->isph_multiply, NULL);
+        for (int64_t i = 0; i < view.count; i++) forth += x[i]*view.out[i];
+        view.in = x;
+        run(kernel->isph_multiply, NULL);
+        for (int64_t i = 0; i < view.count; i++) back += y[i]*view.out[i];
+        view.in = y;
+        /* sides: to round-off of double; bodies: sums of images in another order */
+        assert_true(fabs(forth - back) < (body ? 1e-7 : 1e-9)*view.full*(double)view.count);
+        free(x);
+        close_pool();
+    }
+}
+
+/* Water at rest under its own pressure feels no force at all, at walls and in corners as well. */
+static void linear_pressures_are_exact(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        open_pool(2 + k, 1, TOBI_SHAPE_WENDLAND, 0);
+        run(kernel->isph_geometry, NULL);
+        for (int64_t i = 0; i < view.count; i++) {
+            const double *x = &view.position[i].x;
+            view.velocity[i] = (tobi_float4){ 0 };
+            view.solution[i] = 0;
+            for (int a = 0; a <= 1 + k; a++) view.solution[i] += view.density*view.gravity[a]*x[a];
+        }
+        double t[TOBI_TOTALS];
+        run(kernel->isph_gravity, NULL);
+        run(kernel->isph_answer, NULL);
+        run(kernel->isph_kick, t);
+        for (int64_t i = 0; i < view.count; i++)
+            for (int a = 0; a <= 1 + k; a++) assert_true(fabsf((&view.velocity[i].x)[a]) < 1e-4*view.dt*9.81);
+        close_pool();
+    }
+}
+
+/* Divergence of a linear flow that no wall feels, away from walls. */
+static void linear_flows_are_exact(void **state)
+{
+    (void)state;
+    open_pool(2, 1, TOBI_SHAPE_WENDLAND, 0);
+    run(kernel->isph_geometry, NULL);
+    double worst = 0;
+    int64_t inside = 0;
+    for (int64_t i = 0; i < view.count; i++)
+        view.velocity[i] = (tobi_float4){ (float)(2*view.position[i].x + 5*view.position[i].y),
+                                          (float)(view.position[i].y - 3*view.position[i].x), 0, 0 };
+    for (int64_t i = 0; i < view.count; i++) {
+        double t[TOBI_TOTALS] = { 0 };
+        const double x = view.position[i].x, y = view.position[i].y;
+        if (fmin(fmin(x, y), fmin(view.size[0] - x, view.size[1] - y)) < view.h) continue;
+        kernel->isph_shift.run(&view, i, i + 1, t);
+        worst = fmax(worst, fabs(t[0] - 3));
+        inside++;
+    }
+    assert_true(inside > 20);
+    assert_true(worst < 1e-4);
+    close_pool();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(kernels_follow_the_equations), cmocka_unit_test(scalar_lanes_follow_them_too),
+        cmocka_unit_test(instruction_sets_give_the_same_bits), cmocka_unit_test(the_matrix_is_symmetric),
+        cmocka_unit_test(linear_pressures_are_exact), cmocka_unit_test(linear_flows_are_exact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
