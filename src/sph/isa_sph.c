@@ -3,6 +3,7 @@
 #include "sph/couple.k.h"
 #include "sph/filter.k.h"
 #include "sph/isph.k.h"
+#include "sph/isph_loop.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"

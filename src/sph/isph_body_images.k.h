@@ -1,5 +1,10 @@
-/* Images at bodies, made one pair at a time and handed on in groups. */
+/* Images of pairs at bodies: in the mean of the planes at the points of the surface that are closest to
+   either, exact at flat faces, rounded at edges. Images at two bodies at once are left out. Drawback: pairs are made
+   one at a time; they are handed on in groups. */
 #pragma once
+#include "sph/isph_images.k.h"
+
+enum { ISPH_BODIES = 4 };            /* that a pair sees at once                                    */
 
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {

@@ -1,0 +1,56 @@
+/* The pair loop of isph: the neighbours of a particle, and the images of them and of itself at the sides of
+   the domain and at bodies. A kernel K with accumulator K##_acc has
+     K##_start(v, i, &acc)
+     K##_pair(v, i, &near, &image, &acc, shape, kind)     eight pairs; kind: a constant of ISPH_*
+     K##_finish(v, i, &acc, totals) */
+#pragma once
+#include "sph/isph_body_images.k.h"
+
+/* Calls K##_pair for each group of each reflection at the sides. */
+#define ISPH_SIDES(K, SHAPE)                                                                        \
+    const isph_frames frames = isph_find_frames(v, i);                                              \
+    for (int f = 1; f < frames.total; f++) {                                                        \
+        int side[3];                                                                                \
+        isph_choose_sides(&frames, f, side);                                                        \
+        for (int g = -TOBI_LANES; g < groups; g += TOBI_LANES) {                                    \
+            isph_load(v, i, g < 0 ? self : j + g, &near);                                           \
+            image.k = g < 0 ? -1 : first + g;                                                       \
+            isph_reflect(v, i, side, &near, &image);                                                \
+            K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_SIDE);                                  \
+        }                                                                                           \
+    }
+
+/* The same for pairs at bodies. */
+#define ISPH_AT_BODIES(K, SHAPE)                                                                    \
+    if (v->near && v->near[i] >= 0) {                                                               \
+        isph_walk walk = isph_walk_begin(v, i, &frames, first, groups);                             \
+        while (isph_walk_fill(&walk)) {                                                             \
+            isph_walk_load(&walk, &near, &image);                                                   \
+            K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_BODY);                                  \
+        }                                                                                           \
+    }
+
+#define ISPH_LOOP(K, SHAPE, NAME)                                                                   \
+    static void NAME(const void *view, int64_t begin, int64_t end, double *totals)                  \
+    {                                                                                               \
+        const isph_view *v = (const isph_view *)view;                                               \
+        for (int64_t i = begin; i < end; i++) {                                                     \
+            const int64_t first = 8*(int64_t)v->list_start[i];                                      \
+            const int groups = 8*v->list_groups[i];                                                 \
+            const int32_t *j = v->list + first;                                                     \
+            int32_t self[8];                                                                        \
+            K##_acc acc;                                                                            \
+            tobi_near near;                                                                         \
+            isph_image image;                                                                       \
+            for (int k = 0; k < 8; k++) self[k] = (int32_t)i;                                       \
+            K##_start(v, i, &acc);                                                                  \
+            for (int g = 0; g < groups; g += TOBI_LANES) {                                          \
+                isph_load(v, i, j + g, &near);                                                      \
+                image.k = first + g;                                                                \
+                K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_PLAIN);                             \
+            }                                                                                       \
+            ISPH_SIDES(K, SHAPE)                                                                    \
+            ISPH_AT_BODIES(K, SHAPE)                                                                \
+            K##_finish(v, i, &acc, totals);                                                         \
+        }                                                                                           \
+    }
