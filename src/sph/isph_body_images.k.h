@@ -1,6 +1,6 @@
-/* Images of pairs at bodies: in the mean of the planes at the points of the surface that are closest to
-   either, exact at flat faces, rounded at edges. Images at two bodies at once are left out. Drawback: pairs are made
-   one at a time; they are handed on in groups. */
+/* Images of pairs at bodies, in the mean of the planes at the points of the surface that are closest to
+   either particle: exact at flat faces, rounded at edges. Images at two bodies at once are left out.
+   Drawback: pairs are made one at a time; they are handed on in groups. */
 #pragma once
 #include "sph/isph_images.k.h"
 
