@@ -17,6 +17,8 @@ typedef struct tobi_cell_points {
 typedef struct tobi_grid_level {
     int n[3];
     float *value, *source;           /* u and f of B u = f                                          */
+    float *next;                     /* the value that a sweep of Jacobi makes                      */
+    int odd;                         /* 1: it wraps over an odd number of nodes                     */
     float *face[3];                  /* weight between a node and the next along each axis          */
     float *inverse;                  /* 1/diagonal, 0 where nothing is to be solved                 */
 } tobi_grid_level;

@@ -42,6 +42,21 @@ TOBI_FN void grid_sweep(const tobi_grid_view *v, int64_t i, double *totals)
             g->value[row + x] = (g->source[row + x] + grid_pull(g, x, y, z, row + x))*g->inverse[row + x];
 }
 
+/* Damped Jacobi over all nodes, value to next: where an odd number of nodes wraps, two colours do not do,
+   and an order of nodes would not be symmetric. */
+TOBI_FN void grid_relax(const tobi_grid_view *v, int64_t i, double *totals)
+{
+    const tobi_grid_level *g = &v->g;
+    const int y = (int)(i%g->n[1]), z = (int)(i/g->n[1]);
+    const int64_t row = i*g->n[0];
+    (void)totals;
+    for (int x = 0; x < g->n[0]; x++) {
+        const int64_t c = row + x;
+        const float answer = (g->source[c] + grid_pull(g, x, y, z, c))*g->inverse[c];
+        g->next[c] = g->inverse[c] > 0 ? g->value[c] + 0.8f*(answer - g->value[c]) : g->value[c];
+    }
+}
+
 /* source = the residual of the finer level, summed over groups of eight nodes. */
 TOBI_FN void grid_restrict(const tobi_grid_view *v, int64_t i, double *totals)
 {
@@ -149,7 +164,7 @@ TOBI_FN void grid_wet_faces(const tobi_grid_view *v, int64_t i, double *totals)
     for (int x = 0; x < g->n[0]; x++) {
         const int64_t c = i*g->n[0] + x;
         const int k = a == 0 ? x : a == 1 ? y : z;
-        /* no wrap over an odd number of nodes: its ends have one colour */
+        /* no wrap over an odd number of nodes: its ends have one colour; the points know of it */
         const int end = k + 1 == g->n[a] && (!v->points.periodic[a] || g->n[a]%2);
         const float here = g->value[c], next = g->value[c + grid_after(g, a, k, stride)];
         const float wet = (next < here ? next : here)/v->full;
@@ -179,7 +194,6 @@ TOBI_FN void grid_diagonal(const tobi_grid_view *v, int64_t i, double *totals)
 TOBI_FN void grid_coarsen_node(const tobi_grid_view *v, int x, int y, int z, int64_t c)
 {
     const tobi_grid_level *g = &v->g, *f = &v->other;
-    const int own[3] = {x, y, z};
     float face[3] = {0, 0, 0}, hold = 0, solved = 0;
     for (int k = 0; k < 8; k++) {
         const int at[3] = {2*x + (k & 1), 2*y + (k >> 1 & 1), 2*z + (k >> 2)};
@@ -190,10 +204,7 @@ TOBI_FN void grid_coarsen_node(const tobi_grid_view *v, int x, int y, int z, int
         hold += f->value[i];
         solved += f->source[i];
     }
-    for (int a = 0; a < 3; a++) {
-        const int end = own[a] + 1 == g->n[a] && g->n[a]%2;
-        g->face[a][c] = end ? 0 : face[a];
-    }
+    for (int a = 0; a < 3; a++) g->face[a][c] = face[a];
     g->value[c] = hold;
     g->source[c] = solved;
 }

@@ -26,7 +26,11 @@ static int64_t plan(tobi_multigrid *m)
         const tobi_grid_level *fine = &m->grid[m->levels - 1];
         total += nodes_of(fine);
         if (nodes_of(fine) <= 8 || m->levels == TOBI_GRID_LEVELS) return total;
-        for (int a = 0; a < 3; a++) m->grid[m->levels].n[a] = (fine->n[a] + 1)/2;
+        tobi_grid_level *coarse = &m->grid[m->levels];
+        for (int a = 0; a < 3; a++) {
+            coarse->n[a] = (fine->n[a] + 1)/2;
+            coarse->odd |= a < p->dimension && p->periodic[a] && coarse->n[a] > 1 && coarse->n[a]%2;
+        }
     }
 }
 
@@ -38,7 +42,7 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
     m->wide = wide;
     m->visits = visits;
     const int64_t total = plan(m), cells = (int64_t)m->cells[0]*m->cells[1]*m->cells[2];
-    m->memory = calloc((size_t)total*6, sizeof *m->memory);
+    m->memory = calloc((size_t)total*7, sizeof *m->memory);
     m->corner = calloc((size_t)cells, sizeof *m->corner);
     if (!m->memory || !m->corner) {
         tobi_multigrid_free(m);
@@ -47,8 +51,9 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
     float *at = m->memory;
     for (int l = 0; l < m->levels; l++) {
         tobi_grid_level *g = &m->grid[l];
-        float **array[] = {&g->value, &g->source, &g->face[0], &g->face[1], &g->face[2], &g->inverse};
-        for (int k = 0; k < 6; k++, at += nodes_of(g)) *array[k] = at;
+        float **array[] = {&g->value, &g->source, &g->next, &g->face[0], &g->face[1], &g->face[2],
+                           &g->inverse};
+        for (int k = 0; k < 7; k++, at += nodes_of(g)) *array[k] = at;
     }
     return TOBI_OK;
 }
@@ -84,6 +89,20 @@ static void launch_nodes(tobi_exec *x, tobi_kernel kernel, const tobi_grid_view 
 
 static const tobi_linear_kernels *kernels_of(const tobi_exec *x) { return tobi_linear_kernels_for(x->isa); }
 
+/* Both colours, the first or the second of them first; or twice all nodes. */
+static void sweep(tobi_exec *x, tobi_grid_view *v, int second_first)
+{
+    const tobi_linear_kernels *k = kernels_of(x);
+    for (int s = 0; s < 2; s++) {
+        v->colour = s ^ second_first;
+        launch_nodes(x, v->g.odd ? k->grid_relax : k->grid_sweep, v);
+        if (!v->g.odd) continue;
+        float *made = v->g.next;
+        v->g.next = v->g.value;
+        v->g.value = made;
+    }
+}
+
 /* From nothing, or from the value that an earlier cycle left. */
 static void cycle(const tobi_multigrid *m, tobi_exec *x, int level, int from_nothing)
 {
@@ -91,10 +110,7 @@ static void cycle(const tobi_multigrid *m, tobi_exec *x, int level, int from_not
     const int coarsest = level + 1 == m->levels, rounds = coarsest ? 8 : 1;
     tobi_grid_view v = {.g = m->grid[level]};
     if (from_nothing) memset(v.g.value, 0, (size_t)nodes_of(&v.g)*sizeof *v.g.value);
-    for (int s = 0; s < 2*rounds; s++) {
-        v.colour = s & 1;
-        launch_nodes(x, k->grid_sweep, &v);
-    }
+    for (int s = 0; s < rounds; s++) sweep(x, &v, 0);
     if (!coarsest) {
         tobi_grid_view down = {.g = m->grid[level + 1], .other = v.g};
         launch_nodes(x, k->grid_restrict, &down);
@@ -103,10 +119,7 @@ static void cycle(const tobi_multigrid *m, tobi_exec *x, int level, int from_not
         v.other = m->grid[level + 1];
         launch_nodes(x, k->grid_prolong, &v);
     }
-    for (int s = 0; s < 2*rounds; s++) {
-        v.colour = !(s & 1);
-        launch_nodes(x, k->grid_sweep, &v);
-    }
+    for (int s = 0; s < rounds; s++) sweep(x, &v, 1);
 }
 
 /* A view of the points and the finest grid. */

@@ -101,11 +101,35 @@ static void a_failed_solve_is_told(void **state)
     }
 }
 
+/* 28 cells around: the grid halves to 14 and to 7, over which two colours do not wrap. */
+static void solves_converge_around_an_odd_grid(void **state)
+{
+    (void)state;
+    tobi_world *world;
+    tobi_step_info info;
+    tobi_world_def w = make_def(1);
+    tobi_isph_def m = tobi_default_isph_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    w.spacing = 0.0125;
+    w.domain_max[1] = 0.8;
+    w.wall_min[0] = w.wall_max[0] = TOBI_WALL_PERIODIC;
+    m.support = 2.8;
+    fill.box_max[0] = 1;
+    fill.box_max[1] = 0.5;
+    OK(tobi_world_create(&w, &m, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &fill, 1, &err));
+    OK(tobi_world_step(world, 0, &info, &err));
+    assert_true(info.divergence_converged);
+    assert_true(info.divergence_iterations < 15);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_mirrors_as_a_side_does),  cmocka_unit_test(refusals),
-        cmocka_unit_test(a_failed_solve_is_told),
+        cmocka_unit_test(a_failed_solve_is_told), cmocka_unit_test(solves_converge_around_an_odd_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
