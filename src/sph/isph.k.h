@@ -69,6 +69,19 @@ TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_near *
     if (kind == ISPH_BODY) a->bodies += f*n->r2;
 }
 
+/* kappa, eq. (5). */
+TOBI_FN double isph_scale(int dimension, double trace)
+{
+    const double scale = dimension/isph_larger(trace, ISPH_BULK*dimension);
+    return scale < ISPH_SCALE_MAX ? scale : ISPH_SCALE_MAX;
+}
+
+/* e of eq. (6), for a row of that sum. */
+TOBI_FN double isph_excess(const isph_view *v, double loss, double sum, double gate)
+{
+    return 2*gate*v->surface_row*isph_larger(v->full - sum, ISPH_EXCESS_FLOOR*loss*v->full);
+}
+
 /* What the shift asks of a neighbour at the surface, eq. (10b): as w of `lack`, which turns it into a
    direction. */
 TOBI_FN tobi_float4 isph_weigh_lack(const isph_view *v, tobi_float4 c, double trace)
@@ -91,13 +104,12 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     const double loss = 1 - trace/v->dimension;
     const double gate =
         v->open ? isph_clamp((loss - ISPH_GATE_BEGIN)/(ISPH_GATE_OPEN - ISPH_GATE_BEGIN), 0, 1) : 0;
-    const double scale = v->dimension/isph_larger(trace, ISPH_BULK*v->dimension);
     tobi_float4 lack = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
     (void)totals;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
     v->gate[i] = (float)gate;
-    v->scale[i] = (float)(scale < ISPH_SCALE_MAX ? scale : ISPH_SCALE_MAX);
+    v->scale[i] = (float)isph_scale(v->dimension, trace);
     v->filled[i] = (float)(v->weight*(1 + (double)main.w));
     v->lack[i] = isph_weigh_lack(v, lack, trace);
     v->inverse[i] = isph_invert(m, gate);
@@ -174,7 +186,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
 {
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->lift, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
-    const double excess = 2*v->gate[i]*isph_larger(v->full - t.x, ISPH_EXCESS_FLOOR*loss*v->full);
+    const double excess = isph_excess(v, loss, t.x, v->gate[i]);
     const double diagonal = t.x - t.y - a->bodies + excess;
     v->source[i] = isph_volume_source(v, i) + t.z + v->density/v->dt*v->slope*t.w;
     v->excess[i] = excess;
@@ -232,7 +244,8 @@ TOBI_FN void isph_kick_finish(const isph_view *v, int64_t i, isph_kick_acc *a, d
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                       w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
-    const double mean = 2*v->gate[i]*v->pressure[i], k = -v->slope, x[3] = {k*s.x, k*s.y, k*s.z};
+    const double mean = 2*v->gate[i]*v->surface_force*v->pressure[i], k = -v->slope,
+                 x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3];
     isph_apply(&v->inverse[i], x, g);
     for (int c = 0; c < 3; c++) g[c] += mean*(&v->lack[i].x)[c];

@@ -3,6 +3,7 @@
    list, which a product that computes them anew would not. */
 #include "sph/isph_solve.h"
 #include "sph/fields.h"
+#include "sph/isph_surface.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,6 +61,7 @@ void isph_solver_begin(isph_solver *m, tobi_system *s)
     v->slope = c->slope;
     v->full = 2*c->rate;
     v->density = s->fluid[0].density;
+    isph_surface_measure(v, c);
     memcpy(v->size, s->box.size, sizeof v->size);
     memcpy(v->periodic, s->box.periodic, sizeof v->periodic);
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);

@@ -22,6 +22,7 @@ typedef struct isph_view {
     double spacing, h, volume;       /* m, m, m3                                                    */
     double weight, slope;            /* core/smoothing.h                                            */
     double full;                     /* 1/m2: the sum of a row of the Laplacian on the lattice      */
+    double surface_row, surface_force;     /* 1: of what is missing at a surface, isph_surface.h      */
     double size[3];                  /* m                                                           */
     int periodic[3];
     float inverse_h;                 /* 1/m                                                         */

@@ -63,7 +63,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .h = pool.h, .volume = c.volume, .weight = c.weight, .slope = c.slope,
                        .full = 2*c.rate, .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3,
                        .motion_dt = 2e-3,
-                       .volume_gain = 0.1, .shifting = 0.5};
+                       .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5};
     memcpy(view.size, pool.box.size, sizeof view.size);
     memcpy(view.from_fixed, pool.box.from_fixed, sizeof view.from_fixed);
     for (int a = 0; a < dimension; a++)
@@ -244,7 +244,7 @@ static void oracle_isph_gravity(check *c, int64_t i, const sums *s)
 
 static double excess_of(const sums *s)
 {
-    return 2*gate_of(s)*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
+    return 2*gate_of(s)*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
 }
 
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)
@@ -275,7 +275,7 @@ static void oracle_isph_kick(check *c, int64_t i, const sums *s)
     double g[3];
     isph_apply(&view.inverse[i], s->gradient, g);
     for (int a = 0; a < view.dimension; a++) {
-        g[a] += 2*view.gate[i]*view.pressure[i]*(&view.lack[i].x)[a];
+        g[a] += 2*1.1*view.gate[i]*view.pressure[i]*(&view.lack[i].x)[a];
         compare(c, (&view.velocity[i].x)[a], (&before.x)[a] - view.dt/view.density*g[a],
                 view.dt/view.density*1000/view.h);
     }
