@@ -1,7 +1,7 @@
-/* What stands for the missing neighbours of a particle at a free surface, scaled so that a flat surface of the
-   lattice, half a spacing above its top row, carries hydrostatic pressure exactly: in the row of the pressure
-   equation and in the force. Drawback: second rows, where the gate is nearly shut, keep an error of some
-   hundredths of a spacing. */
+/* What stands for the missing neighbours of a particle at a free surface, scaled so that a flat surface of
+   the lattice, half a spacing above its top row, carries hydrostatic pressure exactly: in the row of the
+   pressure equation and in the force. Drawback: second rows, where the gate is nearly shut, keep an error of
+   some hundredths of a spacing. */
 #include "sph/isph.k.h"
 #include "sph/isph_surface.h"
 #include <math.h>
@@ -12,7 +12,8 @@ enum { REACH = 5 };      /* spacings, more than the widest support */
 static double fall_off(const tobi_smoothing_constants *c, const int at[3])
 {
     const double d = c->spacing, r = d*sqrt(at[0]*at[0] + at[1]*at[1] + at[2]*at[2]);
-    return r > 0 && r < c->h ? c->volume*c->slope_correction*tobi_smoothing_f(c->shape, c->dimension, c->h, r) : 0;
+    if (!(r > 0 && r < c->h)) return 0;
+    return c->volume*c->slope_correction*tobi_smoothing_f(c->shape, c->dimension, c->h, r);
 }
 
 typedef struct row_sums { double trace, weight, lift, gradient, lack; } row_sums;
@@ -45,7 +46,6 @@ void isph_surface_measure(isph_view *v, const tobi_smoothing_constants *c)
     const row_sums top = sum_row(c, 0, scale);
     /* p = rho g d (1/2 + layer): sum a (p_i - p_j) + e p_i = 0, and dp/dz = -rho g. The gate is open. */
     v->surface_row = 1;
-    v->surface_force = 1;
     v->surface_row = top.lift/(0.5*isph_excess(v, 1 - top.trace/c->dimension, top.weight, 1));
     v->surface_force = (1/(d*d) - top.gradient)/top.lack;
 }
