@@ -101,6 +101,29 @@ static void a_failed_solve_is_told(void **state)
     }
 }
 
+/* A pool at rest on the lattice: hydrostatic from its surface, half a spacing above the top row. */
+static void flat_surfaces_are_exact(void **state)
+{
+    (void)state;
+    tobi_world *world;
+    double p[450], x[3*450], worst = 0;
+    tobi_world_def w = make_def(0.3);
+    tobi_isph_def m = tobi_default_isph_def();
+    m.tolerance = 1e-8;
+    m.volume_gain = 0;      /* the second row is short of volume, and would pull */
+    w.time_step = 1e-3;
+    OK(tobi_world_create(&w, &m, &world, &err));
+    add_water(world);
+    OK(tobi_world_step(world, 0, NULL, &err));
+    OK(tobi_world_read(world, TOBI_FLUID, "pressure", p, 450, &err));
+    OK(tobi_world_read(world, TOBI_FLUID, "position", x, 450, &err));
+    for (int i = 0; i < 450; i++)      /* `pressure` is an average, at floor and surface over one side */
+        if (x[3*i + 1] > 0.04 && x[3*i + 1] < 0.1)
+            worst = fmax(worst, fabs(p[i]/9810 - (0.15 - x[3*i + 1]))/w.spacing);
+    if (worst > 0.03) fail_msg("off by the pressure of %g spacings", worst);
+    tobi_world_destroy(world);
+}
+
 /* 28 cells around: the grid halves to 14 and to 7, over which two colours do not wrap. */
 static void solves_converge_around_an_odd_grid(void **state)
 {
@@ -129,7 +152,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_mirrors_as_a_side_does),  cmocka_unit_test(refusals),
-        cmocka_unit_test(a_failed_solve_is_told), cmocka_unit_test(solves_converge_around_an_odd_grid),
+        cmocka_unit_test(flat_surfaces_are_exact),        cmocka_unit_test(a_failed_solve_is_told),
+        cmocka_unit_test(solves_converge_around_an_odd_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
