@@ -12,7 +12,8 @@ fi
 mkdir -p "$work"
 python3 tools/stage_site.py stage "$work"
 NO_MKDOCS_2_WARNING=1 "$tools/bin/mkdocs" build --quiet --clean --config-file "$work/mkdocs.yml"
+"$tools/bin/python" tools/stage_site.py equations "$work"
 python3 tools/stage_site.py check "$work"
 rm -rf build/site
 mv "$work/site" build/site
-echo "build/site/index.html"
+echo "build/site/index.html; search needs a server: python3 -m http.server -d build/site"
