@@ -18,8 +18,9 @@ RANK = {
     "geom": 2, "linear": 2,
     "core": 3,
     "sph": 4, "mpm": 4, "rigid": 4, "io": 4,
-    "world": 5,
-    "scene": 6,
+    "view": 5,
+    "world": 6,
+    "scene": 7,
 }
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}

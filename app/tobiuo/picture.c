@@ -1,3 +1,5 @@
+/* Curves as a script for gnuplot: the program writes commands and data, gnuplot draws. Drawback: a
+   second program must be installed. */
 #define _GNU_SOURCE
 #include "picture.h"
 #include <ctype.h>

@@ -1,3 +1,5 @@
+/* Reads a CSV table whole into memory, column by column. Drawback: a history of many million rows
+   takes as many doubles per column. */
 #define _GNU_SOURCE
 #include "table.h"
 #include "app.h"

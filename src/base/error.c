@@ -1,3 +1,5 @@
+/* Errors are a status and a text that the failing call writes where its caller says. Drawback: the
+   text has a fixed room and is cut beyond it. */
 #include "base/error.h"
 #include <stdio.h>
 #include <string.h>

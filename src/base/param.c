@@ -1,3 +1,5 @@
+/* Defaults, range checks and look-up by name over parameter tables: one reading of a table serves
+   every use. Drawback: a rule between two members of a definition is not in its table (world/rules.h). */
 #include "base/param.h"
 #include <math.h>
 #include <string.h>

@@ -1,3 +1,6 @@
+/* A body becomes quadrature points on its mesh, which move with the triangles they lie on, so that
+   deforming and rigid bodies are one case. Drawback: points are equally fine on flat and on curved
+   parts. */
 #include "core/body.h"
 #include "base/error.h"
 #include "geom/vec3.h"
@@ -537,7 +540,7 @@ static void advance_free(tobi_body *b)
     memcpy(r->orientation, r->next_orientation, sizeof r->orientation);
     memset(r->push, 0, sizeof r->push);
     memset(r->turn, 0, sizeof r->turn);
-    tobi_rigid_settle(r);
+    tobi_rigid_apply_locks(r);
     tobi_quaternion_matrix(r->orientation, m);
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];

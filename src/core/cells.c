@@ -1,3 +1,6 @@
+/* Particles are sorted by cell in every step, then searched: neighbours lie side by side in memory.
+   The list is the scratch of the sort. Drawback: cells are as wide as the widest kernel needs
+   everywhere. */
 #include "core/cells.h"
 #include "core/cells.k.h"
 #include "core/kernels.h"

@@ -1,3 +1,5 @@
+/* Drift of a rigid body by implicit midpoint in the body frame, which keeps its energy and, to the
+   last bit, its angular momentum. Drawback: a turn of radians in one step has no solution and is told. */
 #include "core/rigid.h"
 #include "geom/vec3.h"
 #include <stdio.h>
@@ -192,7 +194,7 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     memcpy(r->torque, def->torque, sizeof r->torque);
     memcpy(r->velocity, def->velocity, sizeof r->velocity);
     multiply(r->inertia, def->angular_velocity, r->momentum);
-    tobi_rigid_settle(r);
+    tobi_rigid_apply_locks(r);
     return TOBI_OK;
 }
 
@@ -272,7 +274,7 @@ void tobi_rigid_drift(tobi_rigid *r, double dt)
         mean.velocity[a] = 0.5*(r->velocity[a] + keep*(r->velocity[a] + dt*r->pull[a]));
         mean.momentum[a] = 0.5*(r->momentum[a] + keep*(r->momentum[a] + dt*r->pull_torque[a]));
     }
-    tobi_rigid_settle(&mean);
+    tobi_rigid_apply_locks(&mean);
     tobi_rigid_coast(&mean, dt);
     memcpy(r->next_position, mean.next_position, sizeof r->next_position);
     memcpy(r->next_orientation, mean.next_orientation, sizeof r->next_orientation);
@@ -299,7 +301,7 @@ void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
             turn[a][b] = a == b && !(turns >> (3 + a) & 1) ? 1/turn[a][b] : 0;
 }
 
-void tobi_rigid_settle(tobi_rigid *r)
+void tobi_rigid_apply_locks(tobi_rigid *r)
 {
     int bits = bits_of(r);
     double shift[3], turn[3][3];

@@ -67,7 +67,7 @@ void tobi_rigid_coast(tobi_rigid *r, double dt);
    orientation; locked degrees of freedom give 0. */
 void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3]);
 /* Drops what locked degrees of freedom do not allow; brings angular_velocity up to date. */
-void tobi_rigid_settle(tobi_rigid *r);
+void tobi_rigid_apply_locks(tobi_rigid *r);
 /* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */
 double tobi_rigid_kinetic_energy(const tobi_rigid *r);
 

@@ -1,3 +1,6 @@
+/* Corners, convex edges and faces of a mesh, merged where the mesh is flat, and a ball where all
+   corners are as far from one point. Drawback: a round shape that is no ball is as many faces as its
+   mesh has. */
 #include "geom/facets.h"
 #include "geom/bvh_tree.h"
 #include "geom/edges.h"

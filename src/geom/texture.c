@@ -1,3 +1,5 @@
+/* The corners of the file are kept as they came, and the nearest is asked. Drawback: a look-up is a
+   search among all triangles. */
 #include "geom/texture.h"
 #include "geom/vec3.h"
 #include <stdlib.h>

@@ -1,3 +1,5 @@
+/* One write per row, numbers formatted by hand so that no locale matters. Drawback: rows are not
+   buffered, so that tables of many rows per second cost system calls. */
 #define _GNU_SOURCE 1
 #include "io/csv.h"
 #include "base/plain.h"

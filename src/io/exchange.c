@@ -1,3 +1,5 @@
+/* PLY and OBJ written directly: both are a header and numbers. Drawback: OBJ is text, three times the
+   size of its numbers. */
 #include "io/exchange.h"
 #include "io/file.h"
 

@@ -1,3 +1,5 @@
+/* Writes beside the target and renames at the end; the error is kept until then. Drawback: a result
+   takes its room on the disk twice for a moment. */
 #define _GNU_SOURCE 1
 #include "io/file.h"
 #include <errno.h>

@@ -1,3 +1,5 @@
+/* The edge of a blade in its present pose, as segments with a direction in which they cut. Drawback: a
+   search among all edges of the blade per point. */
 #include "mpm/blade.h"
 #include "geom/vec3.h"
 #include <math.h>

@@ -1,3 +1,6 @@
+/* Sweeps over the contacts of one body: each asks for an impulse that ends its approach, and a matrix
+   of six sums what the body answers. Drawback: contacts of a sweep do not know of one another, so that
+   it takes several. */
 #include "mpm/contact.h"
 #include "geom/vec3.h"
 #include <math.h>

@@ -1,3 +1,5 @@
+/* A cut is memory of particles: the side on which each lies of the edge that passed it. Nodes with
+   both sides get a second velocity. Drawback: two cuts through one node share two velocities. */
 #include "mpm/cut.h"
 #include "base/error.h"
 #include "mpm/blade.h"

@@ -1,3 +1,5 @@
+/* Blocks of nodes exist only around blocks of particles, found by sorting, not by hashing. Drawback:
+   the list is made anew in every step. */
 #include "mpm/grid.h"
 #include "mpm/particle_fields.h"
 #include "base/error.h"

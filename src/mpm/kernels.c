@@ -1,3 +1,5 @@
+/* Chooses among the tables of kernels that isa_mpm.c made, one per instruction set. Drawback: the
+   choice is made once, when a simulation begins. */
 #include "mpm/kernels.h"
 
 const mpm_kernels *mpm_kernels_for(int isa, int dimension)

@@ -1,3 +1,5 @@
+/* Moduli, cones and wave speeds of a material, once, before the first step. Drawback: the speed is
+   that of the material at rest, larger strains are left to a reserve. */
 #include "mpm/material.h"
 #include "mpm/particle_fields.h"
 #include "tobiuo/types.h"

@@ -1,3 +1,6 @@
+/* Contacts of one block of the grid stand together, and blocks of one colour share no nodes, so that
+   threads need no locks and sums have one order. Drawback: contacts crowded in few blocks keep few
+   threads busy. */
 #include "mpm/pack.h"
 #include "base/error.h"
 #include <stdlib.h>

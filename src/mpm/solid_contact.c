@@ -1,3 +1,5 @@
+/* Where solids that are not bonded share a node, one of them has the second velocity there, and the
+   two may part but not pass. Drawback: of three solids at one node two move as one. */
 #include "mpm/solid_contact.h"
 #include "geom/vec3.h"
 #include "mpm/spline.h"

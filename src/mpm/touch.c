@@ -1,3 +1,5 @@
+/* Contact with bodies acts on the nodes of the grid, between forces and motion, so that stress feels
+   it in the same step. Drawback: a sweep over all contacts several times per step. */
 #include "mpm/touch.h"
 #include "base/error.h"
 #include "geom/vec3.h"

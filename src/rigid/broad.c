@@ -1,3 +1,5 @@
+/* Sort along one axis and sweep. Drawback: many bodies above one another along that axis are
+   quadratic. */
 #include "rigid/broad.h"
 #include "geom/vec3.h"
 #include <stdlib.h>

@@ -1,3 +1,5 @@
+/* One step of all bodies: forces, then contacts by impulses, at the time step of the world. Drawback:
+   contacts between two steps are seen at the next. */
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
 #include "rigid/broad.h"
@@ -194,7 +196,7 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
         r->pull_torque[a] = torque[a];
     }
     r->span = 0;
-    tobi_rigid_settle(r);
+    tobi_rigid_apply_locks(r);
     return TOBI_OK;
 }
 

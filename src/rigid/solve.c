@@ -1,3 +1,5 @@
+/* Impulses by sweeps over all contacts, in a fixed order, until a sweep changes little. Drawback: tall
+   piles converge slowly, and the sweep is serial. */
 #include "rigid/solve.h"
 #include "geom/vec3.h"
 #include <stdlib.h>
@@ -280,7 +282,7 @@ static void give_bodies(const tobi_solver *s, tobi_body *bodies, int count)
         memcpy(r->velocity, b->speed, sizeof r->velocity);
         memcpy(r->push, b->push, sizeof r->push);
         memcpy(r->turn, b->push + 3, sizeof r->turn);
-        tobi_rigid_settle(r);
+        tobi_rigid_apply_locks(r);
     }
 }
 

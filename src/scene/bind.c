@@ -1,3 +1,5 @@
+/* Walks an object by its table and writes members of a struct. Mistakes are collected with their
+   places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
 #include "tobiuo/scene.h"

@@ -1,3 +1,5 @@
+/* `control` and `flow` are Lua files with parameters; the table is here because no definition of the
+   library has these keys. Drawback: the reader knows these two by name. */
 #include "scene/controls.h"
 #include "scene/parts.h"
 #include "scene/write.h"

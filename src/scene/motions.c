@@ -1,3 +1,5 @@
+/* A motion is a script, keyframes or numbers; exactly one of them. Drawback: sums of motions need a
+   script. */
 #define _GNU_SOURCE 1
 #include "scene/motions.h"
 #include "scene/parts.h"

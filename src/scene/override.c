@@ -1,3 +1,5 @@
+/* Changes the JSON tree before it is bound, so that values from the command line pass the same checks.
+   Drawback: a mistake is told by its path, without a line. */
 #define _GNU_SOURCE 1
 #include "scene/override.h"
 #include <ctype.h>

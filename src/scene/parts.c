@@ -1,3 +1,5 @@
+/* The grammar as a list of rows. Drawback: what depends on two parts at once is checked elsewhere
+   (scene/check.c). */
 #include "scene/parts.h"
 #include "scene/controls.h"
 #include "world/params.h"

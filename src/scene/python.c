@@ -1,3 +1,5 @@
+/* A reader of literals and arithmetic, no interpreter: a parameter file cannot do anything. Drawback:
+   a file that computes its values in functions is refused. */
 #define _GNU_SOURCE 1
 #include "scene/python.h"
 #include <ctype.h>

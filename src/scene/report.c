@@ -1,3 +1,5 @@
+/* Mistakes are sorted by their place and shown up to a limit. Drawback: what lies beyond the limit
+   shows after the first are mended. */
 #define _GNU_SOURCE 1
 #include "scene/report.h"
 #include <ctype.h>

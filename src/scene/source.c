@@ -1,3 +1,5 @@
+/* Comments become spaces, then jansson reads; places are found again by their path. Drawback: the text
+   is scanned twice. */
 #define _GNU_SOURCE 1
 #include "scene/source.h"
 #include "scene/python.h"

@@ -1,3 +1,5 @@
+/* The nearest known word by the number of edits, swaps included: one edit, and one more for every four
+   letters. Drawback: words of more than 40 letters get no suggestion. */
 #include "tobiuo/scene.h"
 #include <ctype.h>
 #include <string.h>

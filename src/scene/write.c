@@ -1,3 +1,5 @@
+/* Numbers are written with the fewest digits that read back to the same bits. Drawback: comments of
+   the scene are lost. */
 #define _GNU_SOURCE 1
 #include "scene/write.h"
 #include "world/params.h"

@@ -8,13 +8,6 @@
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
 
-static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
-{
-    const tobi_near_bodies *n = &sph_of(s)->near;
-    const int32_t k = n->link[e - n->entry].previous;
-    return k >= 0 ? &n->entry[k] : NULL;
-}
-
 /* From j to i, in fixed point. */
 static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 {
@@ -46,16 +39,16 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
     const int32_t *near = sph_fields_of(p)->near;
-    const tobi_near_link *link = sph_of(s)->near.link;
-    const tobi_near_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
+    const tobi_boundary_link *link = sph_of(s)->near.link;
+    const tobi_boundary_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     int32_t fixed[3];
     double d[3];
     subtract(s, i, j, fixed);
     for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
     const double length = sqrt(dot(d, d));
-    for (; a; a = next_entry(s, a))
-        for (b = &entry[near[j]]; b; b = next_entry(s, b)) {
+    for (; a; a = tobi_boundary_next(&sph_of(s)->near, a))
+        for (b = &entry[near[j]]; b; b = tobi_boundary_next(&sph_of(s)->near, b)) {
             const int body = link[a - entry].body;
             if (body != link[b - entry].body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
@@ -73,7 +66,7 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
 
 static void find_nearest(tobi_system *s)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     double *nearest = n->nearest;
     for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
     for (int64_t k = 0; k < n->count; k++) {
@@ -87,7 +80,7 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
     const tobi_system *s = view;
     const tobi_cells *c = &s->cells;
     const int32_t *near = sph_fields_of(&s->particles)->near;
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
         int64_t i = n->link[k].particle;
@@ -105,7 +98,7 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     find_nearest(s);
     n->cut_pairs = 0;
     tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);

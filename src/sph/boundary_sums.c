@@ -5,7 +5,7 @@
 #include "sph/state.h"
 #include <assert.h>
 
-typedef struct summing { tobi_near_bodies *n; tobi_kernel kernel; const void *view; int own; } summing;
+typedef struct summing { tobi_boundary_links *n; tobi_kernel kernel; const void *view; int own; } summing;
 
 static int64_t least(int64_t a, int64_t b) { return a < b ? a : b; }
 static int64_t most(int64_t a, int64_t b) { return a > b ? a : b; }
@@ -13,7 +13,7 @@ static int64_t most(int64_t a, int64_t b) { return a > b ? a : b; }
 static void sum_block(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const summing *q = view;
-    const tobi_near_bodies *n = q->n;
+    const tobi_boundary_links *n = q->n;
     const int64_t block = begin/TOBI_BLOCK;
     (void)totals;
     for (int g = n->link[begin].body; g <= n->link[end - 1].body; g++) {
@@ -31,7 +31,7 @@ static void sum_block(const void *view, int64_t begin, int64_t end, double *tota
 static void combine_bodies(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const summing *q = view;
-    const tobi_near_bodies *n = q->n;
+    const tobi_boundary_links *n = q->n;
     (void)totals;
     for (int64_t g = begin; g < end; g++) {
         const int64_t first = n->first[g], stop = n->first[g + 1], before = first/TOBI_BLOCK;
@@ -51,7 +51,7 @@ void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int
 
 /* The Laplacian knows the traction mu dv/dn. A wall that turns at omega has mu (dv/dn + n x omega): the
    second part adds no force to a closed surface, but a torque, eq. (17). */
-static void turning_traction(const tobi_system *s, const tobi_near_link *e, double force[3])
+static void turning_traction(const tobi_system *s, const tobi_boundary_link *e, double force[3])
 {
     const tobi_body *b = &s->sim->bodies[e->body];
     const double *w = b->info.angular_velocity;
@@ -70,11 +70,11 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
-    const tobi_near_bodies *near = &sph_of(s)->near;
+    const tobi_boundary_links *near = &sph_of(s)->near;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_link *l = &near->link[k];
-        const tobi_near_entry *e = &near->entry[k];
+        const tobi_boundary_link *l = &near->link[k];
+        const tobi_boundary_entry *e = &near->entry[k];
         const tobi_body *b = &s->sim->bodies[l->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[l->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};

@@ -37,7 +37,7 @@ static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
 
 static tobi_couple_view see_entries(const tobi_system *s)
 {
-    const tobi_near_bodies *near = &sph_of(s)->near;
+    const tobi_boundary_links *near = &sph_of(s)->near;
     const sph_fields *f = sph_fields_of(&s->particles);
     return (tobi_couple_view){ .link = near->link, .answer = (const double (*)[6])near->answer,
                                .near = f->near, .record = s->cells.record, .wall = f->wall,
@@ -53,7 +53,7 @@ static const sph_kernels *kernels_of(const tobi_system *s)
 /* Into the answers, which are free until then. */
 static void sum_known_forces(tobi_system *s)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     for (int viscous = 0; viscous < 2; viscous++) {
         tobi_boundary_known_forces(s, viscous);
         for (int k = 0; k < s->sim->body_count; k++)
@@ -92,7 +92,7 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
 
 void tobi_couple_product(tobi_system *s, double *totals)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     const tobi_couple_view v = see_entries(s);
     const pressing p = {s, kernels_of(s)->couple_pressure, &v};
     double t[TOBI_TOTALS];

@@ -4,16 +4,16 @@
 
 /* One fluid particle sees one body: what solves read of it, in 64 bytes. sph_fields.near names a particle's
    last. */
-typedef struct tobi_near_link {
+typedef struct tobi_boundary_link {
     int32_t particle;
     int16_t body;
     int32_t previous;         /* the particle's link to an earlier body, -1 = none                */
     double gradient[3];       /* G = -sum A W n, 1/m                                              */
     double torque_arm[3];     /* -sum A W (x_b - centre) x n                                      */
-} tobi_near_link;
+} tobi_boundary_link;
 
 /* What else it sees; entry k goes with link k. */
-typedef struct tobi_near_entry {
+typedef struct tobi_boundary_entry {
     double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
     double share;             /* lambda: share of the kernel inside or behind the body            */
     double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
@@ -26,10 +26,10 @@ typedef struct tobi_near_entry {
     double offset[3];         /* from foot to the particle, m                                     */
     double barycentric[3];    /* of foot in its triangle                                          */
     int32_t triangle;
-} tobi_near_entry;
+} tobi_boundary_entry;
 
 typedef struct tobi_couple_view {
-    const tobi_near_link *link;
+    const tobi_boundary_link *link;
     const double (*answer)[6];       /* of each body: velocities, or accelerations per pressure; 0: none */
     const int32_t *near;             /* a particle's last entry, -1 = none                               */
     const tobi_record *record;       /* w: the pressure                                                  */
@@ -42,7 +42,7 @@ TOBI_FN double couple_sum(const tobi_couple_view *v, int64_t i)
 {
     double sum = 0;
     for (int64_t k = v->near[i]; k >= 0; k = v->link[k].previous) {
-        const tobi_near_link *e = &v->link[k];
+        const tobi_boundary_link *e = &v->link[k];
         const double *u = v->answer[e->body];
         sum += (e->gradient[0]*u[0] + e->gradient[1]*u[1] + e->gradient[2]*u[2]) +
                (e->torque_arm[0]*u[3] + e->torque_arm[1]*u[4] + e->torque_arm[2]*u[5]);
@@ -59,7 +59,7 @@ TOBI_FN void couple_flux(const tobi_couple_view *v, int64_t i, double *totals)
 /* Over entries. totals: force and torque of the pressures on a body, without the factor of two volumes. */
 TOBI_FN void couple_pressure(const tobi_couple_view *v, int64_t k, double *totals)
 {
-    const tobi_near_link *e = &v->link[k];
+    const tobi_boundary_link *e = &v->link[k];
     const double q = v->record[e->particle].w;
     for (int a = 0; a < 3; a++) {
         totals[a] += q*e->gradient[a];

@@ -13,7 +13,7 @@
 #include "linear/multigrid.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
-#include "sph/still.h"
+#include "sph/reference.h"
 #include "sph/undo.h"
 #include <math.h>
 #include <stdlib.h>
@@ -94,8 +94,8 @@ static void bind_view(tobi_system *s, dfsph *m)
     v->moment[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
     v->moment[1] = p->residual;
     v->moment[2] = p->correction;
-    sph_still_set(s, m->memory.level);
-    v->still = sph_of(s)->still;
+    sph_reference_set(s, m->memory.level);
+    v->reference = sph_of(s)->reference;
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err)
@@ -350,7 +350,7 @@ static void correct_density(tobi_system *s, dfsph *m, double *clock)
 /* Before the first step: a lattice cut by a body has gaps along it that water would leak through, and pairs
    that crowd. Near bodies the shift of (12) takes place without time passing. Bodies that move by forces
    set off slowly and gain nothing, decision 31. */
-static tobi_status settle(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status relax_lattice(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     const tobi_simulation *w = s->sim;
     if (s->step > 0 || w->body_count == 0 || tobi_body_any_free(w->bodies, w->body_count)) return TOBI_OK;
@@ -367,9 +367,9 @@ static tobi_status settle(tobi_system *s, dfsph *m, double *clock, tobi_error *e
 }
 
 /* The level of still water follows the free surface of the last step. */
-static void set_still_water(tobi_system *s, dfsph *m)
+static void set_reference(tobi_system *s, dfsph *m)
 {
-    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
+    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
                    fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
 }
 
@@ -394,12 +394,12 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         status = sph_see_walls(s, &m->view, m->kernel, clock, err);
         if (status != TOBI_OK) break;
         m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
-        m->memory.low = sph_still_low(s);
+        m->memory.low = sph_reference_low(s);
         apply_forces(s, m, clock);
         tobi_couple_begin(s);
         remove_divergence(s, m, clock);
         restore_velocities(s, kept);
-        set_still_water(s, m);
+        set_reference(s, m);
         bind_view(s, m);
     }
     free(kept);
@@ -429,15 +429,15 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
     sph_drive_bodies(s, &clock);
-    set_still_water(s, m);
+    set_reference(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
     TOBI_TRY(look_into_vessel(s, m, &clock, err));
-    TOBI_TRY(settle(s, m, &clock, err));
+    TOBI_TRY(relax_lattice(s, m, &clock, err));
     TOBI_TRY(find_first_pressure(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
-    m->memory.low = sph_still_low(s);
+    m->memory.low = sph_reference_low(s);
     return TOBI_OK;
 }
 
@@ -489,15 +489,15 @@ static void derive(tobi_system *s, const char *field)
 static void follow_gravity(tobi_system *s, int loaded)
 {
     dfsph *m = s->state;
-    const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, sph_still_low,
+    const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, sph_reference_low,
                                   m->def.still_water };
-    if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
+    if (!loaded) sph_reference_follow(s, &m->view, m->kernel, &surface);
 }
 
 static void free_state(void *state)
 {
     dfsph *m = state;
-    if (m) tobi_near_free(&m->common.near);
+    if (m) tobi_boundary_links_free(&m->common.near);
     if (m) tobi_multigrid_free(&m->grid);
     if (m) sph_undo_free(&m->undo);
     free(m);

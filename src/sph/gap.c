@@ -29,7 +29,7 @@ static int faces_body(const tobi_system *s, int body, const double x[3], const d
 /* The body that the q-th of all points belongs to. */
 static int body_of(const tobi_system *s, int64_t q)
 {
-    const tobi_near_bins *bins = sph_of(s)->near.bins;
+    const tobi_boundary_bins *bins = sph_of(s)->near.bins;
     int low = 0, high = s->sim->body_count;
     while (high - low > 1) {
         const int middle = (low + high)/2;
@@ -43,7 +43,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
 {
     const tobi_system *s = view;
     const sph_state *state = sph_of(s);
-    const tobi_near_bins *bins = state->near.bins;
+    const tobi_boundary_bins *bins = state->near.bins;
     int k = body_of(s, begin);
     (void)totals;
     for (int64_t all = begin; all < end; all++) {
@@ -51,7 +51,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         const tobi_body *b = &s->sim->bodies[k];
         const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
-        if (b->wet[q] || !(tobi_still_pressure(&state->still, x) > 0)) continue;
+        if (b->wet[q] || !(tobi_reference_pressure(&state->reference, x) > 0)) continue;
         if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
     }
 }
@@ -59,9 +59,9 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
 void tobi_boundary_fill_gaps(tobi_system *s)
 {
     sph_state *state = sph_of(s);
-    tobi_near_bodies *n = &state->near;
+    tobi_boundary_links *n = &state->near;
     const int bodies = s->sim->body_count;
-    if (!(state->still.push > 0)) return;
+    if (!(state->reference.push > 0)) return;
     tobi_body_tree_build(&n->tree, s->sim->bodies, bodies, s->smoothing.h, s->box.dimension);
     tobi_launch(&s->sim->exec, TOBI_HOST(wet_range, 0, 0), s, 0, n->bins[bodies].item, NULL);
 }

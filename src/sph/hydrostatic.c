@@ -16,22 +16,22 @@ double sph_hydrostatic(const tobi_system *s, const double x[3])
     double sum = 0;
     for (int a = 0; a < s->box.dimension; a++)
         sum += (s->sim->def.gravity[a] - s->gravity[a])*(x[a] - 0.5*s->box.size[a]);
-    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_still_pressure(&sph_of(s)->still, x);
+    return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_reference_pressure(&sph_of(s)->reference, x);
 }
 
 /* Where particles do not fit in, nothing but still water presses: all of it. */
-static double still_pressure(const tobi_still *w, const double *x, int wet)
+static double reference_pressure(const tobi_reference *w, const double *x, int wet)
 {
-    if (wet != TOBI_WET_GAP) return tobi_still_pressure(w, x);
-    return w->push*fmax(tobi_still_drop(w, x) - w->level, 0);
+    if (wet != TOBI_WET_GAP) return tobi_reference_pressure(w, x);
+    return w->push*fmax(tobi_reference_drop(w, x) - w->level, 0);
 }
 
 /* Force and torque of still water on a body, where it is wet. */
-static void sum_still(const tobi_system *s, const tobi_body *b, double f[6])
+static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6])
 {
     for (int64_t k = 0; k < b->point_count; k++) {
         if (!b->wet[k]) continue;
-        double p = -b->area[k]*still_pressure(&sph_of(s)->still, b->point[k], b->wet[k]), arm[3];
+        double p = -b->area[k]*reference_pressure(&sph_of(s)->reference, b->point[k], b->wet[k]), arm[3];
         const double *n = b->normal[k];
         for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {
@@ -43,14 +43,14 @@ static void sum_still(const tobi_system *s, const tobi_body *b, double f[6])
 }
 
 /* The walls take what is left of the weight that still water holds. */
-static void add_still(tobi_system *s)
+static void add_reference(tobi_system *s)
 {
     sph_state *state = sph_of(s);
-    const double held = state->still.push*state->still_volume;
-    for (int a = 0; a < 3; a++) s->info.wall_force[a] += state->still.down[a]*held;
+    const double held = state->reference.push*state->reference_volume;
+    for (int a = 0; a < 3; a++) s->info.wall_force[a] += state->reference.down[a]*held;
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6] = {0};
-        sum_still(s, &s->sim->bodies[k], f);
+        sum_reference(s, &s->sim->bodies[k], f);
         for (int a = 0; a < 6; a++) s->sim->bodies[k].load[s->number].pressure[a] += f[a];
         for (int a = 0; a < 3; a++) s->info.wall_force[a] -= f[a];
     }
@@ -59,7 +59,7 @@ static void add_still(tobi_system *s)
 void sph_add_hydrostatic(tobi_system *s)
 {
     double held = s->smoothing.volume*(double)s->particles.count;
-    if (sph_of(s)->still.push > 0) add_still(s);
+    if (sph_of(s)->reference.push > 0) add_reference(s);
     for (int a = 0; a < s->box.dimension; a++) {
         double push = s->fluid[0].density*(s->sim->def.gravity[a] - s->gravity[a]);
         if (push == 0) continue;
@@ -78,5 +78,5 @@ void sph_body_hydrostatic(const tobi_system *s, int body, double f[6])
         double push = s->sim->def.gravity[a] - s->gravity[a];
         if (push != 0) f[a] -= s->fluid[0].density*push*s->sim->bodies[body].info.volume;
     }
-    if (sph_of(s)->still.push > 0) sum_still(s, &s->sim->bodies[body], f);
+    if (sph_of(s)->reference.push > 0) sum_reference(s, &s->sim->bodies[body], f);
 }

@@ -224,7 +224,7 @@ static int64_t count_bytes(const tobi_system *s)
 static void free_state(void *state)
 {
     isph *m = state;
-    if (m) tobi_near_free(&m->common.near);
+    if (m) tobi_boundary_links_free(&m->common.near);
     if (m) isph_solver_free(&m->solver);
     if (m) sph_undo_free(&m->undo);
     free(m);

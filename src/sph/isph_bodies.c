@@ -19,7 +19,7 @@ static double behind_plane(const tobi_smoothing_constants *c, double distance)
     return c->plane.lambda[k] + (at - k)*((double)c->plane.lambda[k + 1] - c->plane.lambda[k]);
 }
 
-static void move_foot(const tobi_body *b, const tobi_near_entry *e, double velocity[3])
+static void move_foot(const tobi_body *b, const tobi_boundary_entry *e, double velocity[3])
 {
     const int32_t *t = b->mesh.triangles[e->triangle];
     for (int a = 0; a < 3; a++) {
@@ -28,7 +28,8 @@ static void move_foot(const tobi_body *b, const tobi_near_entry *e, double veloc
     }
 }
 
-static isph_mirror make_mirror(const tobi_system *s, const tobi_near_link *link, const tobi_near_entry *e)
+static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *link,
+                               const tobi_boundary_entry *e)
 {
     isph_mirror m = { .body = link->body, .previous = link->previous };
     const tobi_smoothing_constants *c = &s->smoothing;
@@ -45,7 +46,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_near_link *link,
 
 tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     isph_view *v = &m->view;
     memset(v->behind, 0, (size_t)s->particles.count*sizeof *v->behind);
     v->near = s->sim->body_count ? sph_fields_of(&s->particles)->near : NULL;
@@ -69,9 +70,9 @@ tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
 /* Particles may have several entries: not shared among threads. */
 void isph_bodies_unlift(tobi_system *s)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     for (int64_t k = 0; k < n->count; k++) {
-        const tobi_near_entry *e = &n->entry[k];
+        const tobi_boundary_entry *e = &n->entry[k];
         for (int a = 0; a < 3; a++)
             (&s->particles.velocity[n->link[k].particle].x)[a] -= (float)(s->dt*e->lift[a]);
     }

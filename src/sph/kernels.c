@@ -1,3 +1,5 @@
+/* Chooses among the tables of kernels that isa_sph.c made, one per instruction set and smoothing
+   kernel. Drawback: a third smoothing kernel is a third table of everything. */
 #include "sph/kernels.h"
 
 const sph_kernels *sph_kernels_for(int isa, int shape)

@@ -191,7 +191,7 @@ TOBI_FN void sph_warm_residual(const sph_view *v, int64_t i, double *totals)
 TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
 {
     float e = v->density[i] - 1;
-    float pace = tobi_still_pressure(&v->still, &v->position[i].x) > 0 ? 1 : 0.1f;
+    float pace = tobi_reference_pressure(&v->reference, &v->position[i].x) > 0 ? 1 : 0.1f;
     e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : pace*(e < -0.02f ? -0.02f : e);
     v->pressure[i] = 0;
     sph_start_search(v, i, e * v->inverse_dt * v->inverse_dt,
@@ -266,9 +266,9 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 {
     (void)totals;
     const double *x = &v->position[i].x;
-    if (v->still_before.push > 0)
-        v->pressure[i] += (float)(tobi_still_pressure(&v->still_before, x) -
-                                  tobi_still_pressure(&v->still, x));
+    if (v->reference_before.push > 0)
+        v->pressure[i] += (float)(tobi_reference_pressure(&v->reference_before, x) -
+                                  tobi_reference_pressure(&v->reference, x));
     float least = sph_floor(v, i);
     if (v->surface[i] && v->pressure[i] < least) v->pressure[i] = least;
     if (v->diagonal[i] <= v->isolated) v->pressure[i] = 0;

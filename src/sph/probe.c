@@ -1,3 +1,5 @@
+/* Pressure, level and velocity at places: averages of the particles around, each method by its own
+   walls. Drawback: a probe nearer than a support to a corner has few particles to ask. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/probe.h"
@@ -147,8 +149,8 @@ static void press(void *user, int64_t i, const double r[3])
     membrane *m = user;
     const tobi_smoothing_constants *c = &m->s->smoothing;
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
-    const tobi_still *w = &sph_of(m->s)->still;
-    double held = tobi_still_share(w, &m->s->particles.position[i].x)*w->push/m->s->fluid[0].density;
+    const tobi_reference *w = &sph_of(m->s)->reference;
+    double held = tobi_reference_share(w, &m->s->particles.position[i].x)*w->push/m->s->fluid[0].density;
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
         along += (m->s->gravity[a] - held*w->down[a])*m->normal[a];

@@ -141,7 +141,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
        layer-by-layer mode that a collocated pressure leaves free. */
     int flagged = div < v->surface_limit;
     /* in still water nothing is at a surface: that is how its level was chosen */
-    v->surface[i] = flagged && !(tobi_still_pressure(&v->still, &v->position[i].x) > 0);
+    v->surface[i] = flagged && !(tobi_reference_pressure(&v->reference, &v->position[i].x) > 0);
     /* edges of the box and disorder lower div x as well, but on all sides alike */
     float nx = w.x - k*g.x, ny = w.y - k*g.y, nz = w.z - k*g.z, n2 = nx*nx + ny*ny + nz*nz;
     int sure = div < v->open_limit &&
@@ -149,7 +149,7 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
-    double drop = sure && flagged ? tobi_still_drop(&v->still, &v->position[i].x) : 0;
+    double drop = sure && flagged ? tobi_reference_drop(&v->reference, &v->position[i].x) : 0;
     v->delta[i] = (float)drop;      /* free until the solve */
     totals[7] = drop > totals[7] ? drop : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
@@ -209,16 +209,16 @@ TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
     float g2 = v->gravity[0]*v->gravity[0] + v->gravity[1]*v->gravity[1] + v->gravity[2]*v->gravity[2];
     if (sph_walled(v, i)) return 0;
     float full = 2*v->spacing*(float)sqrt(g2)/v->inverse_density[v->fluid[i]];
-    float p = v->pressure[i] + (float)tobi_still_pressure(&v->still, &v->position[i].x);
+    float p = v->pressure[i] + (float)tobi_reference_pressure(&v->reference, &v->position[i].x);
     return p >= full ? 1 : p > 0 ? p/full : 0;
 }
 
 /* Gravity less what still water holds, m/s2. */
 TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
 {
-    double taken = tobi_still_share(&v->still, &v->position[i].x)*v->still.push*
+    double taken = tobi_reference_share(&v->reference, &v->position[i].x)*v->reference.push*
                    v->inverse_density[v->fluid[i]];
-    for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->still.down[c]);
+    for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->reference.down[c]);
 }
 
 /* Rate at which a no-slip plane at the distance s brakes a particle along itself, eq. (14), (14b). */
@@ -283,7 +283,7 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
 {
     float free[6], sigma[6], lambda[6], s_sigma[6], open = 1;
     int touched = 0;
-    totals[3] += tobi_still_share(&v->still, &v->position[i].x);
+    totals[3] += tobi_reference_share(&v->reference, &v->position[i].x);
     for (int k = 0; k < v->plane_count; k++) {
         float s = sph_plane_distance(v, k, i);
         free[k] = 1;

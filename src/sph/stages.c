@@ -1,3 +1,5 @@
+/* What the steps of dfsph, wcsph and isph have in common, as functions of the system and a view.
+   Drawback: a method must bind its view again after each sort. */
 #include "sph/state.h"
 #include "sph/stages.h"
 #include "sph/boundary.h"
@@ -231,7 +233,7 @@ void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, doubl
     v->pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
-    sph_of(s)->still_volume = t[3]*s->smoothing.volume;
+    sph_of(s)->reference_volume = t[3]*s->smoothing.volume;
     if (s->sim->body_count > 0) tobi_boundary_load(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }

@@ -2,13 +2,13 @@
 #pragma once
 #include "core/system.h"
 #include "sph/fields.h"
-#include "sph/near.h"
-#include "sph/still_water.h"
+#include "sph/boundary_links.h"
+#include "sph/reference_pressure.h"
 
 typedef struct sph_state {
-    tobi_near_bodies near;          /* particles that see a body                                        */
-    tobi_still still;               /* what still water holds of gravity                                */
-    double still_volume;            /* m3 of fluid times the share of gravity so held                   */
+    tobi_boundary_links near;          /* particles that see a body                                        */
+    tobi_reference reference;       /* what still water holds of gravity                                */
+    double reference_volume;        /* m3 of fluid times the share of gravity so held                   */
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
     double lowest;                  /* m, drop of the lowest particle at a free surface                 */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */

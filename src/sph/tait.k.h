@@ -6,11 +6,11 @@
 /* Water at rest from the first step on, eq. (21c); payload = that pressure. */
 TOBI_FN void sph_rest(const sph_view *v, int64_t i, double *totals)
 {
-    const tobi_still *w = &v->still;
+    const tobi_reference *w = &v->reference;
     const double *x = &v->position[i].x;
-    double depth = tobi_still_drop(w, x) - w->level;
+    double depth = tobi_reference_drop(w, x) - w->level;
     (void)totals;
-    v->pressure[i] = depth > 0 ? (float)(w->push*depth - tobi_still_pressure(w, x)) : 0;
+    v->pressure[i] = depth > 0 ? (float)(w->push*depth - tobi_reference_pressure(w, x)) : 0;
     v->record[i].w = v->pressure[i];
 }
 
@@ -18,13 +18,13 @@ TOBI_FN void sph_rest(const sph_view *v, int64_t i, double *totals)
    beside it loses that, eq. (21b). */
 TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
 {
-    const tobi_still *w = &v->still;
+    const tobi_reference *w = &v->reference;
     const double *x = &v->position[i].x;
     tobi_float4 u = v->velocity[i];
-    double held = w->push*tobi_still_share(w, x), sink = 0, rho = 1/v->inverse_density[v->fluid[i]];
+    double held = w->push*tobi_reference_share(w, x), sink = 0, rho = 1/v->inverse_density[v->fluid[i]];
     (void)totals;
     for (int c = 0; c < 3; c++) sink += (held*w->down[c] + rho*v->taken[c])*(&u.x)[c];
-    double rise = tobi_still_pressure(w, x) - tobi_still_pressure(&v->still_before, x);
+    double rise = tobi_reference_pressure(w, x) - tobi_reference_pressure(&v->reference_before, x);
     v->pressure[i] -= (float)(rise + v->dt*sink);
 }
 

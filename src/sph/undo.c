@@ -19,7 +19,7 @@ tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memo
     memcpy(u->gravity, s->gravity, sizeof u->gravity);
     u->dt = s->dt;
     u->body_speed = s->sim->body_speed;
-    u->still = sph_of(s)->still;
+    u->reference = sph_of(s)->reference;
     u->info = s->info;
     u->kept = 0;
     for (int k = 0; k < s->sim->body_count; k++)
@@ -71,7 +71,7 @@ void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
     memcpy(s->gravity, u->gravity, sizeof u->gravity);
     s->dt = u->dt;
     s->sim->body_speed = u->body_speed;
-    sph_of(s)->still = u->still;
+    sph_of(s)->reference = u->reference;
     s->info = u->info;
     for (int k = 0; k < s->sim->body_count; k++) {
         s->sim->bodies[k].rigid = u->body[k].rigid;

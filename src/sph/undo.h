@@ -1,14 +1,14 @@
 /* Taking back a step that the caller stops within: what it may have changed by then, as it was before. */
 #pragma once
 #include "core/system.h"
-#include "sph/still_water.h"
+#include "sph/reference_pressure.h"
 
 enum { SPH_UNDO_MEMORY = 8, SPH_UNDO_FIELDS = 8 };
 
 typedef struct sph_undo {
     double memory[SPH_UNDO_MEMORY];             /* of the method                                        */
     double dt, gravity[3], body_speed;
-    tobi_still still;
+    tobi_reference reference;
     tobi_step_info info;
     struct sph_undo_body *body;                 /* [body_count], owned                                  */
     int64_t rows;                               /* that the copies have room for                        */

@@ -3,7 +3,7 @@
 #include "core/wall_table.h"
 #include "exec/portable.h"
 #include "linear/grid.h"
-#include "sph/still_water.h"
+#include "sph/reference_pressure.h"
 
 enum { TOBI_MAX_FLUIDS = 8 };
 
@@ -58,7 +58,7 @@ typedef struct sph_view {
     float dt, inverse_dt;
     float gravity[3];
     float taken[3];                           /* m/s2, what a full vessel takes from gravity    */
-    tobi_still still, still_before;           /* the second: what `pressure` still refers to    */
+    tobi_reference reference, reference_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */

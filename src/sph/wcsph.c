@@ -9,7 +9,7 @@
 #include "sph/boundary.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
-#include "sph/still.h"
+#include "sph/reference.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -76,8 +76,8 @@ static void bind_view(tobi_system *s, wcsph *m)
     sph_view *v = &m->view;
     double d = s->smoothing.spacing;
     sph_bind_view(s, v, m->memory.vessel);
-    sph_still_set(s, m->memory.level);
-    v->still = sph_of(s)->still;
+    sph_reference_set(s, m->memory.level);
+    v->reference = sph_of(s)->reference;
     v->stiffness = (float)m->def.stiffness;
     v->exponent = (float)m->def.exponent;
     v->damping = (float)(m->def.damping*s->fluid[0].density*m->sound*d);
@@ -109,7 +109,7 @@ static double find_surface(tobi_system *s)
     sph_state *state = sph_of(s);
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.link[k].particle] = 0;
-    return sph_still_low(s);
+    return sph_reference_low(s);
 }
 
 /* Once, in a vessel just looked into. */
@@ -117,7 +117,7 @@ static void start_at_rest(tobi_system *s, wcsph *m)
 {
     if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
-    m->view.still_before = sph_of(s)->still;
+    m->view.reference_before = sph_of(s)->reference;
     launch(s, m, m->kernel->sph_rest, NULL);
 }
 
@@ -185,7 +185,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
     sph_drive_bodies(s, &clock);
-    sph_still_move(s, &m->view.still_before, m->def.still_water ? m->memory.low : 0,
+    sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
                    fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
@@ -241,12 +241,12 @@ static void follow_gravity(tobi_system *s, int loaded)
     wcsph *m = s->state;
     const sph_surface surface = { &m->memory.vessel, &m->memory.low, &m->memory.level, find_surface,
                                   m->def.still_water };
-    if (!loaded) sph_still_follow(s, &m->view, m->kernel, &surface);
+    if (!loaded) sph_reference_follow(s, &m->view, m->kernel, &surface);
 }
 
 static void free_state(void *state)
 {
-    if (state) tobi_near_free(&((wcsph *)state)->common.near);
+    if (state) tobi_boundary_links_free(&((wcsph *)state)->common.near);
     free(state);
 }
 

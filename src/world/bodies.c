@@ -1,3 +1,5 @@
+/* Prepares bodies for contact and describes the world to rigid/. Drawback: domains are boxes, so that
+   a vessel is a body. */
 #include "world/bodies.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"

@@ -1,3 +1,5 @@
+/* Points of a lattice, or scattered by a seed, inside a region, less those in bodies or behind planes.
+   Drawback: a lattice does not follow round walls; the first step relaxes it. */
 #include "world/fill.h"
 #include "base/error.h"
 #include "geom/seed.h"

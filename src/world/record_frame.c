@@ -2,7 +2,7 @@
    own, seen so that the box fits unless there is a camera. */
 #include "mpm/cuts.h"
 #include "mpm/particle_fields.h"
-#include "io/frame.h"
+#include "view/picture.h"
 #include "world/params.h"
 #include "world/record.h"
 #include "world/world.h"
@@ -16,7 +16,7 @@ static const float body_colors[][3] = {
 enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
 typedef struct tobi_drawing {
-    tobi_frame frame;                  /* of what follows                               */
+    tobi_picture frame;                  /* of what follows                               */
     char title[64];
     double *positions;                 /* n x 3                                         */
     float *values;                     /* n, speeds; with a palette the colour's number */
@@ -27,7 +27,7 @@ typedef struct tobi_drawing {
     uint8_t *tint;                     /* of each piece, or NULL: nothing can part      */
     uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
     int mesh_count;
-    tobi_frame_mesh *meshes;
+    tobi_picture_mesh *meshes;
 } tobi_drawing;
 
 void tobi_drawing_free(tobi_drawing *d)
@@ -226,8 +226,8 @@ static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapsho
     for (int b = 0; b < snapshot->surfaces; b++) {
         const tobi_body *body = &run->world->sim.bodies[b];
         if (!body->visible) continue;
-        tobi_frame_mesh *m = &d->meshes[d->mesh_count++];
-        *m = (tobi_frame_mesh){ .vertex_count = body->mesh.vertex_count,
+        tobi_picture_mesh *m = &d->meshes[d->mesh_count++];
+        *m = (tobi_picture_mesh){ .vertex_count = body->mesh.vertex_count,
                                 .vertices = (const double (*)[3])snapshot->surface[b],
                                 .triangle_count = body->mesh.triangle_count,
                                 .triangles = (const int32_t (*)[3])body->mesh.triangles };
@@ -249,8 +249,8 @@ static double color_speed(const tobi_world_def *def)
 static void set_frame(const tobi_run *run, tobi_drawing *d)
 {
     const tobi_world_def *def = &run->world->sim.def;
-    tobi_frame *frame = &d->frame;
-    *frame = tobi_default_frame();
+    tobi_picture *frame = &d->frame;
+    *frame = tobi_default_picture();
     frame->dimension = def->dimension;
     for (int a = 0; a < 3; a++) {
         frame->box_min[a] = def->domain_min[a];
@@ -292,7 +292,7 @@ tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error
 tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
 {
     char *path = tobi_record_path(run->dir, "frames/frame_%06lld.png", (long long)snapshot->number);
-    tobi_status status = path ? tobi_frame_write(path, &snapshot->drawing->frame, err)
+    tobi_status status = path ? tobi_picture_write(path, &snapshot->drawing->frame, err)
                               : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     free(path);
     return status;

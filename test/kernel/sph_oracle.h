@@ -40,7 +40,7 @@ typedef struct oracle {
     double tension[2], contact, band_depth;
     double stiffness, exponent, damping, relaxation;
     double isolated, sheet_limit, surface_gradient, core, push, background;
-    tobi_still still, still_before;
+    tobi_reference reference, reference_before;
 } oracle;
 
 /* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
@@ -153,7 +153,7 @@ static void oracle_walls(const oracle *o, const row *in, row *out, double *t)
 }
 
 /* Eq. (18), (19): the pressure of still water, a Hermite cubic between 0 and the straight line. */
-static double still_pressure(const tobi_still *w, const double *x, double shift)
+static double pressure_of(const tobi_reference *w, const double *x, double shift)
 {
     double s = shift - w->level, t = 0;
     for (int a = 0; a < 3; a++) s += w->down[a]*(x[a] - w->corner[a]);
@@ -163,12 +163,17 @@ static double still_pressure(const tobi_still *w, const double *x, double shift)
     return t > 0 ? w->push*(end*(3*t*t - 2*t*t*t) + w->ramp*(t*t*t - t*t)) : 0;
 }
 
+static double find_reference_slope(const oracle *o, const double *x)
+{
+    const double step = 1e-5*o->d;
+    return (pressure_of(&o->reference, x, step) - pressure_of(&o->reference, x, -step))/(2*step);
+}
+
 /* What of gravity it leaves, m/s2: less its slope over the density. */
 static double felt_gravity(const oracle *o, const row *in, int i, int axis)
 {
-    double step = 1e-5*o->d, *x = (double *)in[i] + POS;
-    double slope = (still_pressure(&o->still, x, step) - still_pressure(&o->still, x, -step))/(2*step);
-    return o->gravity[axis] - slope*o->still.down[axis]/o->rho0[o->fluid[i]];
+    const double slope = find_reference_slope(o, &in[i][POS]);
+    return o->gravity[axis] - slope*o->reference.down[axis]/o->rho0[o->fluid[i]];
 }
 
 /* Eq. (5b) by its three points: nothing, a lattice at a wall, half a space. */
@@ -291,7 +296,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         out[i][RHO] = rho;
         out[i][PROD] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
-        double still = still_pressure(&o->still, &in[i][POS], 0), drop = 0;
+        double still = pressure_of(&o->reference, &in[i][POS], 0), drop = 0;
         out[i][SURF] = div < o->surface_limit && still == 0;
         if (share == 0 && out[i][SURF] == 0) out[i][PRES] += o->smooth*(mean - in[i][PAYLOAD]);
         e = e > 0 ? e : out[i][SURF] > 0 ? 0 : -e;
@@ -299,7 +304,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         t[1] += out[i][SURF];
         t[2] += out[i][DIAG];
         t[3] += open > 0;
-        for (int a = 0; a < 3; a++) drop += o->still.down[a]*(in[i][POS + a] - o->still.corner[a]);
+        for (int a = 0; a < 3; a++) drop += o->reference.down[a]*(in[i][POS + a] - o->reference.corner[a]);
         out[i][DELTA] = open == 2 ? drop : 0;
         t[7] = fmax(t[7], out[i][DELTA]);
         t[6] = fmax(t[6], e);
@@ -326,7 +331,7 @@ static void oracle_laplacian(const oracle *o, const row *in, row *out, double *t
 static double wetness(const oracle *o, const row *in, int i)
 {
     double g = sqrt(o->gravity[0]*o->gravity[0] + o->gravity[1]*o->gravity[1] + o->gravity[2]*o->gravity[2]);
-    double p = in[i][PRES] + still_pressure(&o->still, &in[i][POS], 0);
+    double p = in[i][PRES] + pressure_of(&o->reference, &in[i][POS], 0);
     if (o->along && in[i][WALLED] > 0) return 0;
     return fmin(fmax(p/(2*o->d*g*o->rho0[o->fluid[i]]), 0), 1);
 }
@@ -386,9 +391,7 @@ static void oracle_wall_force(const oracle *o, const row *in, row *out, double *
 {
     (void)out;
     for (int i = 0; i < o->count; i++) {
-        double step = 1e-5*o->d, held = still_pressure(&o->still, &in[i][POS], step) -
-                                        still_pressure(&o->still, &in[i][POS], -step);
-        if (o->still.push > 0) t[3] += held/(2*step*o->still.push);
+        if (o->reference.push > 0) t[3] += find_reference_slope(o, &in[i][POS])/o->reference.push;
     }
     for (int i = 0; i < o->count; i++)
         for (int k = 0; k < o->plane_count; k++) {
@@ -476,34 +479,6 @@ static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
         t[0] += fabs(rate);
         t[1] += fabs(p);
         t[6] = fmax(t[6], fabs(rate));
-    }
-}
-
-/* Eq. (21c). */
-static void oracle_rest(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) {
-        const double *x = &in[i][POS];
-        double depth = -o->still.level;
-        for (int a = 0; a < 3; a++) depth += o->still.down[a]*(x[a] - o->still.corner[a]);
-        double all = o->still.push*fmax(depth, 0);
-        out[i][PRES] = out[i][PAYLOAD] = all - still_pressure(&o->still, x, 0);
-    }
-}
-
-/* Eq. (21b): the reference at the particle's place before and after its way. */
-static void oracle_carry(const oracle *o, const row *in, row *out, double *t)
-{
-    (void)t;
-    for (int i = 0; i < o->count; i++) {
-        const double *x = &in[i][POS], *u = &in[i][VEL];
-        double step = 1e-5*o->d, sink = 0, slope, gain;
-        slope = (still_pressure(&o->still, x, step) - still_pressure(&o->still, x, -step))/(2*step);
-        for (int a = 0; a < 3; a++)
-            sink += (slope*o->still.down[a] + o->rho0[o->fluid[i]]*o->taken[a])*u[a];
-        gain = still_pressure(&o->still, x, 0) - still_pressure(&o->still_before, x, 0);
-        out[i][PRES] -= gain + o->dt*sink;
     }
 }
 

@@ -109,7 +109,7 @@ static void oracle_density_residual(const oracle *o, const row *in, row *out, do
 {
     for (int i = 0; i < o->count; i++) {
         double e = in[i][RHO] - 1, surface = in[i][SURF];
-        double pace = still_pressure(&o->still, &in[i][POS], 0) > 0 ? 1 : 0.1;
+        double pace = pressure_of(&o->reference, &in[i][POS], 0) > 0 ? 1 : 0.1;
         e = e >= 0 ? fmin(e, 0.1) : surface > 0 ? 0 : pace*fmax(e, -0.02);
         out[i][PRES] = 0;
         begin_search(in, out, i, e/(o->dt*o->dt), in[i][DIAG] > o->isolated && (surface == 0 || e > 0), t);
@@ -164,9 +164,9 @@ static void oracle_warm_start(const oracle *o, const row *in, row *out, double *
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        double gained = still_pressure(&o->still, &in[i][POS], 0) -
-                        still_pressure(&o->still_before, &in[i][POS], 0);
-        out[i][PRES] -= o->still_before.push > 0 ? gained : 0;
+        double gained = pressure_of(&o->reference, &in[i][POS], 0) -
+                        pressure_of(&o->reference_before, &in[i][POS], 0);
+        out[i][PRES] -= o->reference_before.push > 0 ? gained : 0;
         if (in[i][DIAG] <= o->isolated) out[i][PRES] = 0;
         else if (in[i][SURF] > 0) out[i][PRES] = fmax(out[i][PRES], fmin(in[i][CAPILLARY], 0));
         out[i][PAYLOAD] = out[i][PRES];

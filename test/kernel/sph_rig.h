@@ -106,7 +106,7 @@ static void rig_bind_still(rig *g, const rig_case *k)
 {
     sph_view *v = &g->view;
     double g2 = 0, h = g->c.h;
-    tobi_still w = {.level = k->dimension*0.01, .cover = 0.3*h, .ramp = 1.2*h, .rest = 0.1*h};
+    tobi_reference w = {.level = k->dimension*0.01, .cover = 0.3*h, .ramp = 1.2*h, .rest = 0.1*h};
     for (int a = 0; a < k->dimension; a++) g2 += k->periodic[a] ? 0 : (double)v->gravity[a]*v->gravity[a];
     for (int a = 0; a < k->dimension; a++) {
         if (k->periodic[a]) continue;
@@ -114,10 +114,10 @@ static void rig_bind_still(rig *g, const rig_case *k)
         w.corner[a] = w.down[a] > 0 ? 0 : g->box.size[a];
     }
     if (k->fluids == 1 && g2 > 0) w.push = sqrt(g2)/v->inverse_density[0];
-    v->still = v->still_before = w;
-    v->still_before.level -= g->c.spacing;
-    g->o.still = v->still;
-    g->o.still_before = v->still_before;
+    v->reference = v->reference_before = w;
+    v->reference_before.level -= g->c.spacing;
+    g->o.reference = v->reference;
+    g->o.reference_before = v->reference_before;
 }
 
 /* A grid of 4 nodes along each axis: 3 cells, or 4 where the last meets the first. */

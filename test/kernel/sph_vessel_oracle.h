@@ -1,4 +1,5 @@
-/* The kernels of full vessels for sph_oracle.h, which includes this after what both use. */
+/* The kernels of full vessels and of the reference pressure for sph_oracle.h, which includes this after what
+   both use. */
 #pragma once
 
 /* Half a step times tr(grad v grad v), eq. (10d). */
@@ -66,4 +67,32 @@ static void oracle_filter_kick(const oracle *o, const row *in, row *out, double 
             for (int a = 0; a < 3; a++)
                 out[i][VEL + a] -= o->dt*o->filter*(leaning(o, in, j, x, r, -1)*in[j][ACC + a] -
                                                     leaning(o, in, i, x, r, 1)*in[i][ACC + a]);
+}
+
+/* Eq. (21c). */
+static void oracle_rest(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *x = &in[i][POS];
+        double depth = -o->reference.level;
+        for (int a = 0; a < 3; a++) depth += o->reference.down[a]*(x[a] - o->reference.corner[a]);
+        double all = o->reference.push*fmax(depth, 0);
+        out[i][PRES] = out[i][PAYLOAD] = all - pressure_of(&o->reference, x, 0);
+    }
+}
+
+/* Eq. (21b): the reference at the particle's place before and after its way. */
+static void oracle_carry(const oracle *o, const row *in, row *out, double *t)
+{
+    (void)t;
+    for (int i = 0; i < o->count; i++) {
+        const double *x = &in[i][POS], *u = &in[i][VEL];
+        const double slope = find_reference_slope(o, x),
+                     gain = pressure_of(&o->reference, x, 0) - pressure_of(&o->reference_before, x, 0);
+        double sink = 0;
+        for (int a = 0; a < 3; a++)
+            sink += (slope*o->reference.down[a] + o->rho0[o->fluid[i]]*o->taken[a])*u[a];
+        out[i][PRES] -= gain + o->dt*sink;
+    }
 }

@@ -295,7 +295,7 @@ static void pressure_keeps_momentum(void **state)
         create(&g, &cases[c]);
         const sph_kernels *table = sph_kernels_for(g.exec.isa, cases[c].shape);
         for (int a = 0; a < 3; a++) g.view.gravity[a] = 0;
-        g.view.still.push = 0;
+        g.view.reference.push = 0;
         for (int k = 0; k < g.view.plane_count; k++) g.view.plane[k].no_slip = 0;   /* pressure alone */
         tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
         double sum[3] = {0}, size = 0, t[TOBI_TOTALS];
@@ -447,7 +447,7 @@ static void walls_brake_by_their_law(void **state)
         double worst[2] = {0}, largest[2] = {0};
         memset(sph_fields_of(&g.p)->accel, 0, (size_t)g.p.count*sizeof *sph_fields_of(&g.p)->accel);
         for (int a = 0; a < 3; a++) g.view.gravity[a] = g.o.gravity[a] = a == 0 ? 1e-9f : 0;
-        g.view.still.push = g.o.still.push = 0;
+        g.view.reference.push = g.o.reference.push = 0;
         g.view.dt = g.o.dt = 1;        /* so that the change stands out of the rounding */
         rig_get(&g, in);
         memcpy(expected, in, (size_t)g.p.count*sizeof(row));

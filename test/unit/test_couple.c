@@ -192,7 +192,7 @@ static void sum_gradients(const void *view, int64_t begin, int64_t end, double *
 {
     const chosen *c = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_near_link *e = &sph_of(c->s)->near.link[k];
+        const tobi_boundary_link *e = &sph_of(c->s)->near.link[k];
         if (c->body >= 0 && e->body != c->body) continue;
         for (int a = 0; a < 3; a++) t[a] += e->gradient[a];
     }
@@ -205,7 +205,7 @@ static void sums_of_all_bodies_at_once(void **state)
     (void)state;
     tobi_world *w = make_boxes();
     tobi_system *s = &w->system[0];
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     double t[TOBI_TOTALS];
     assert_true(n->count > 5000 && n->count > s->particles.count);
     assert_int_equal(n->first[64], n->count);

@@ -34,7 +34,7 @@ static void step(tobi_rigid *r, double dt)
     tobi_rigid_drift(r, dt);
     memcpy(r->position, r->next_position, sizeof r->position);
     memcpy(r->orientation, r->next_orientation, sizeof r->orientation);
-    tobi_rigid_settle(r);
+    tobi_rigid_apply_locks(r);
 }
 
 /* docs/theory/rigid.md: momentum to round-off, energy to 1e-12 over 1e5 steps at omega dt = 0.05. */

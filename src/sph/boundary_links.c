@@ -34,7 +34,7 @@ static tobi_status grow_rows(void **p, int64_t *capacity, int64_t need, size_t s
 
 #define grow(array, capacity, need, err) grow_rows((void **)(array), capacity, need, sizeof **(array), err)
 
-static int bin_along(const tobi_near_bins *c, double width, int a, double x)
+static int bin_along(const tobi_boundary_bins *c, double width, int a, double x)
 {
     double k = floor((x - c->lower[a])/width);
     return k < 0 ? -1 : k >= c->n[a] ? c->n[a] : (int)k;
@@ -43,13 +43,13 @@ static int bin_along(const tobi_near_bins *c, double width, int a, double x)
 /* Lays the bins of all bodies out, cells of width h over the boxes. */
 static tobi_status plan_bins(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     const int bodies = s->sim->body_count;
     int64_t starts = 0, items = 0;
     TOBI_TRY(grow(&n->bins, &n->bins_capacity, bodies + 1, err));
     n->bin_width = s->smoothing.h;
     for (int k = 0; k < bodies; k++) {
-        tobi_near_bins *c = &n->bins[k];
+        tobi_boundary_bins *c = &n->bins[k];
         double lo[3], hi[3];
         int64_t total = 1;
         tobi_bvh_box(s->sim->bodies[k].bvh, lo, hi);
@@ -66,15 +66,15 @@ static tobi_status plan_bins(tobi_system *s, tobi_error *err)
         starts += total + 2;
         items += s->sim->bodies[k].point_count;
     }
-    n->bins[bodies] = (tobi_near_bins){.start = starts, .item = items};
+    n->bins[bodies] = (tobi_boundary_bins){.start = starts, .item = items};
     TOBI_TRY(grow(&n->bin_start, &n->start_capacity, starts, err));
     return grow(&n->bin_item, &n->item_capacity, items, err);
 }
 
 /* Sorts a body's points into its bins. */
-static void fill_bins(const tobi_near_bodies *n, int k, const tobi_body *b)
+static void fill_bins(const tobi_boundary_links *n, int k, const tobi_body *b)
 {
-    const tobi_near_bins *bins = &n->bins[k];
+    const tobi_boundary_bins *bins = &n->bins[k];
     int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     const int64_t total = bins[1].start - bins->start - 2;
     memset(start, 0, (size_t)(total + 2)*sizeof *start);
@@ -107,10 +107,10 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
 
 /* Calls visit for every point of the cells around x; stops early when it answers nonzero. */
 typedef int (*visit_fn)(void *user, int32_t point);
-static int visit_points(const tobi_near_bodies *n, int64_t body, const double x[3], visit_fn visit,
+static int visit_points(const tobi_boundary_links *n, int64_t body, const double x[3], visit_fn visit,
                         void *user)
 {
-    const tobi_near_bins *bins = &n->bins[body];
+    const tobi_boundary_bins *bins = &n->bins[body];
     const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int c[3];
     for (int a = 0; a < 3; a++) {
@@ -138,8 +138,8 @@ typedef struct look {
     const tobi_body *b;
     double x[3];
     double gravity[3];          /* m/s2, what the particle feels */
-    tobi_near_link *link;
-    tobi_near_entry *entry;
+    tobi_boundary_link *link;
+    tobi_boundary_entry *entry;
 } look;
 
 /* Distance to the tangent plane if the point is near and faces the particle, else -1. */
@@ -160,8 +160,8 @@ static int sees_any(void *user, int32_t point)
 /* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
 static int sees_body(look *l, int64_t body)
 {
-    const tobi_near_bodies *n = &sph_of(l->s)->near;
-    const tobi_near_bins *bins = &n->bins[body];
+    const tobi_boundary_links *n = &sph_of(l->s)->near;
+    const tobi_boundary_bins *bins = &n->bins[body];
     const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int64_t bin = 0;
     for (int a = 2; a >= 0; a--) {
@@ -176,7 +176,7 @@ static int sees_body(look *l, int64_t body)
 /* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way. */
 static int hidden(const look *l, int32_t point)
 {
-    const tobi_near_entry *e = l->entry;
+    const tobi_boundary_entry *e = l->entry;
     double d = l->s->smoothing.spacing, to[3], from_foot[3];
     for (int a = 0; a < 3; a++) {
         to[a] = l->b->point[point][a] + 1e-3*d*l->b->normal[point][a];
@@ -190,7 +190,7 @@ static int add_point(void *user, int32_t k)
     look *l = user;
     const tobi_body *b = l->b;
     const tobi_smoothing_constants *c = &l->s->smoothing;
-    tobi_near_entry *e = l->entry;
+    tobi_boundary_entry *e = l->entry;
     double r[3], s = faces(l, k, r);
     if (!(s > 0) || hidden(l, k)) return 0;
     __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
@@ -220,18 +220,18 @@ static int add_point(void *user, int32_t k)
 static void feel_gravity(look *l)
 {
     const tobi_system *s = l->s;
-    const tobi_still *still = &sph_of(s)->still;
-    double held = tobi_still_share(still, l->x)*still->push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*still->down[a];
+    const tobi_reference *reference = &sph_of(s)->reference;
+    double held = tobi_reference_share(reference, l->x)*reference->push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*reference->down[a];
 }
 
 static int look_at(look *l, int32_t i, int body)
 {
-    tobi_near_entry *e = l->entry;
+    tobi_boundary_entry *e = l->entry;
     tobi_bvh_hit hit;
     feel_gravity(l);
     memset(e, 0, sizeof *e);
-    *l->link = (tobi_near_link){.particle = i, .body = (int16_t)body};
+    *l->link = (tobi_boundary_link){.particle = i, .body = (int16_t)body};
     e->triangle = -1;
     if (!tobi_bvh_closest(l->b->bvh, l->x, 1.1*l->s->smoothing.h, &hit)) return 0;
     e->distance = hit.signed_distance;
@@ -260,10 +260,10 @@ static int cell_along(const tobi_cells *c, int axis, double x)
 static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits,
                            tobi_error *err)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     if (begin == end) return TOBI_OK;
     TOBI_TRY(grow(&n->row, &n->row_capacity, n->row_count + 1, err));
-    n->row[n->row_count++] = (tobi_near_row){body, (int32_t)begin, (int32_t)end, *hits};
+    n->row[n->row_count++] = (tobi_boundary_row){body, (int32_t)begin, (int32_t)end, *hits};
     *hits += end - begin;
     return TOBI_OK;
 }
@@ -304,10 +304,10 @@ static int is_far(const tobi_system *s, const double lo[3], const double hi[3], 
 static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
-        const tobi_near_row *row = &n->row[r];
+        const tobi_boundary_row *row = &n->row[r];
         int32_t *hit = n->hit + row->hit;
         look l = {.s = s, .b = &s->sim->bodies[row->body]};
         int64_t found = 0;
@@ -325,10 +325,10 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
 static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
-        const tobi_near_row *row = &n->row[r];
+        const tobi_boundary_row *row = &n->row[r];
         const int64_t stop = r + 1 < n->row_count ? n->found[r + 1] : n->count;
         const int32_t *hit = n->hit + row->hit;
         for (int64_t k = n->found[r]; k < stop; k++, hit++) {
@@ -341,11 +341,11 @@ static void fill_entries(const void *view, int64_t begin, int64_t end, double *t
 
 static void chain_entries(tobi_system *s)
 {
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     int32_t *near = sph_fields_of(&s->particles)->near;
     memset(near, 0xFF, (size_t)s->particles.count*sizeof *near);
     for (int64_t k = 0; k < n->count; k++) {
-        tobi_near_link *e = &n->link[k];
+        tobi_boundary_link *e = &n->link[k];
         e->previous = near[e->particle];
         near[e->particle] = (int32_t)k;
     }
@@ -354,7 +354,7 @@ static void chain_entries(tobi_system *s)
 /* Room for what is done with the entries before the next search. */
 static tobi_status reserve(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     const int64_t bodies = s->sim->body_count, blocks = s->particles.count/TOBI_BLOCK + 1;
     const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
     TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
@@ -368,7 +368,7 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
 /* Rows near each body are searched, not all particles for every body. */
 tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     tobi_exec *x = &s->sim->exec;
     const int bodies = s->sim->body_count;
     int64_t hits = 0;
@@ -393,7 +393,7 @@ tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 
 tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 {
-    tobi_near_bodies *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->near;
     TOBI_TRY(grow(&n->link, &n->link_capacity, n->count, err));
     TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
     tobi_launch_each(&s->sim->exec, TOBI_HOST(fill_entries, 0, 0), s, n->row_count, NULL);
@@ -402,13 +402,6 @@ tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
     TOBI_TRY(tobi_body_tree_reserve(&n->tree, s->sim->body_count, err));
     tobi_boundary_fill_gaps(s);
     return TOBI_OK;
-}
-
-static const tobi_near_entry *next_entry(const tobi_system *s, const tobi_near_entry *e)
-{
-    const tobi_near_bodies *n = &sph_of(s)->near;
-    const int32_t k = n->link[e - n->entry].previous;
-    return k >= 0 ? &n->entry[k] : NULL;
 }
 
 static void visit_entries(tobi_system *s, tobi_range visit)
@@ -421,13 +414,14 @@ static void visit_entries(tobi_system *s, tobi_range visit)
     for (int64_t k = begin; k < end; k++)                                                                  \
         for (int64_t i = sph_of(s)->near.link[k].particle,                                                 \
                      once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
-            for (const tobi_near_entry *e = &sph_of(s)->near.entry[k]; e; e = next_entry((s), e))
+            for (const tobi_boundary_entry *e = &sph_of(s)->near.entry[k]; e;                              \
+                 e = tobi_boundary_next(&sph_of(s)->near, e))
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
-    const tobi_near_bodies *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &f->wall[i];
         const double *g = n->link[e - n->entry].gradient;
@@ -440,7 +434,7 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
 void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
 /* Acceleration by lift and friction of one entry, for velocity u. */
-static void entry_accel(const tobi_system *s, int64_t i, const tobi_near_entry *e, const double u[3],
+static void entry_accel(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, const double u[3],
                         double lift[3], double drag[3])
 {
     const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
@@ -467,7 +461,7 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
         tobi_float4 *v = &s->particles.velocity[i];
         double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
         entry_accel(s, i, e, u, lift, drag);
-        tobi_near_entry *own = (tobi_near_entry *)e;   /* kept for the reaction */
+        tobi_boundary_entry *own = (tobi_boundary_entry *)e;   /* kept for the reaction */
         memcpy(own->lift, lift, sizeof lift);
         memcpy(own->friction, drag, sizeof drag);
         v->x += (float)(s->dt*(lift[0] + drag[0]));
@@ -481,8 +475,9 @@ void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
+    const tobi_boundary_links *n = &sph_of(s)->near;
     int32_t k = sph_fields_of(&s->particles)->near[i];
-    for (const tobi_near_entry *e = k >= 0 ? &sph_of(s)->near.entry[k] : NULL; e; e = next_entry(s, e)) {
+    for (const tobi_boundary_entry *e = k >= 0 ? &n->entry[k] : NULL; e; e = tobi_boundary_next(n, e)) {
         double lack = least - e->distance - dot(way, e->foot_normal);
         for (int a = 0; a < 3 && lack > 0; a++) way[a] += lack*e->foot_normal[a];
     }
@@ -516,7 +511,7 @@ void tobi_boundary_relax(tobi_system *s)
 static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_near_bodies *near = &sph_of(s)->near;
+    const tobi_boundary_links *near = &sph_of(s)->near;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -533,7 +528,7 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
 
 void tobi_boundary_turn_normals(tobi_system *s) { visit_entries(s, turn_normals); }
 
-int64_t tobi_near_bytes(const tobi_near_bodies *n)
+int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
 {
     return n->link_capacity*(int64_t)sizeof *n->link + n->capacity*(int64_t)sizeof *n->entry +
            n->first_capacity*(int64_t)sizeof *n->first +
@@ -546,7 +541,7 @@ int64_t tobi_near_bytes(const tobi_near_bodies *n)
            n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
 }
 
-void tobi_near_free(tobi_near_bodies *n)
+void tobi_boundary_links_free(tobi_boundary_links *n)
 {
     free(n->link);
     free(n->entry);

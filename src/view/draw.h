@@ -1,7 +1,7 @@
 /* The stages of a picture, between frame*.c. A canvas holds samples, several per pixel; view space has x to
    the right, y up and z away from the eye; colours are linear RGB. */
 #pragma once
-#include "io/frame.h"
+#include "view/picture.h"
 #include "exec/exec.h"
 #include <math.h>
 #include <stdbool.h>
@@ -104,7 +104,7 @@ static inline vec linear_color(const float srgb[3])
     return (vec){ to_linear(srgb[0]), to_linear(srgb[1]), to_linear(srgb[2]) };
 }
 
-/* frame_tiles.c: which items touch which square of samples, so that each square is one thread's. */
+/* tiles.c: which items touch which square of samples, so that each square is one thread's. */
 enum { TILE = 64 };
 typedef struct tiles {
     int      across, down;
@@ -124,18 +124,18 @@ static inline void tiles_rect(const tiles *t, const canvas *c, int64_t k, int re
     rect[3] = rect[1] + TILE <= c->height ? rect[1] + TILE - 1 : c->height - 1;
 }
 
-/* frame_solid.c */
-tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err);
-void draw_floor(canvas *c, const tobi_frame *frame);
-void draw_box(canvas *c, const tobi_frame *frame);
+/* solid.c */
+tobi_status draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err);
+void draw_floor(canvas *c, const tobi_picture *frame);
+void draw_box(canvas *c, const tobi_picture *frame);
 vec  sky_color(const canvas *c, vec direction);
 vec  shade_solid(const canvas *c, vec p, vec n, vec albedo);
 
-/* frame_shadow.c */
-tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err);
+/* shadow.c */
+tobi_status make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err);
 float lit_at(const canvas *c, vec point);
 
-/* frame_smooth.c: after particles were splatted. */
+/* smooth.c: after particles were splatted. */
 typedef enum look { WATER, GRAINS, DISCS } look;     /* how the particles of a pass look */
 typedef struct patch {
     int x, y, width, height; /* samples; width 0 = none */
@@ -143,18 +143,18 @@ typedef struct patch {
 /* *p: what is around the surface; nothing beyond it was changed. */
 tobi_status smooth_surface(canvas *c, float radius, look what, patch *p, tobi_error *err);
 
-/* frame_water.c. Solids first: they become part of what is opaque. */
-tobi_status draw_grains(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+/* water.c. Solids first: they become part of what is opaque. */
+tobi_status draw_grains(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                         tobi_error *err);
-tobi_status draw_water(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+tobi_status draw_water(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                        tobi_error *err);
-tobi_status draw_discs(canvas *c, const tobi_frame *frame, double value_min, double value_max,
+tobi_status draw_discs(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                        tobi_error *err);
 /* The usual map, and the canvas's own. */
 vec  map_color(float value);
 vec  water_color(const canvas *c, float value);
 
-/* frame_text.c: pixels, after the samples have been averaged. */
+/* text.c: pixels, after the samples have been averaged. */
 typedef struct image {
     int  width, height;
     vec *color;
@@ -162,5 +162,5 @@ typedef struct image {
 void draw_title(image *i, const char *text);
 void draw_color_bar(image *i, const char *label, double value_min, double value_max);
 
-/* frame_png.c */
+/* png.c */
 tobi_status write_png(const char *path, const image *i, tobi_error *err);

@@ -1,6 +1,6 @@
-/* Particles, of water or of solids: splatted into depth, thickness and value, smoothed by frame_smooth.c, and
+/* Particles, of water or of solids: splatted into depth, thickness and value, smoothed by smooth.c, and
    lit. */
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,7 +58,7 @@ static bool is_placed(const double p[3], double size)
 }
 
 typedef struct shrinking {
-    const tobi_frame *f;
+    const tobi_picture *f;
     splat *splats;
     const uint16_t *count;   /* particles in each cell */
     double size;             /* m, of a cell */
@@ -83,7 +83,7 @@ static void shrink_splats(const void *view, int64_t begin, int64_t end)
 /* Drops of spray would look like balls of the size of the smoothed water's spheres: a particle with
    little company within three cells of four radii is drawn smaller. Cells are hashed; a clash only
    adds company. */
-static void shrink_spray(const tobi_frame *f, splat *splats)
+static void shrink_spray(const tobi_picture *f, splat *splats)
 {
     const double size = 4*f->radius;
     uint16_t *count = calloc(CELLS, sizeof *count);
@@ -100,7 +100,7 @@ static void shrink_spray(const tobi_frame *f, splat *splats)
 
 typedef struct placing {
     const canvas *c;
-    const tobi_frame *f;
+    const tobi_picture *f;
     splat *splats;
     float radius;            /* m */
     double low, high;        /* of the values */
@@ -111,7 +111,7 @@ static void place_splats(const void *view, int64_t begin, int64_t end)
 {
     const placing *v = view;
     const canvas *c = v->c;
-    const tobi_frame *f = v->f;
+    const tobi_picture *f = v->f;
     for (int64_t i = begin; i < end; i++) {
         vec p = view_point(&c->camera, f->positions[i]);
         splat s = { 0 };
@@ -129,7 +129,7 @@ static void place_splats(const void *view, int64_t begin, int64_t end)
 }
 
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
-static splat *make_splats(const canvas *c, const tobi_frame *f, float radius, const double range[2],
+static splat *make_splats(const canvas *c, const tobi_picture *f, float radius, const double range[2],
                           look what)
 {
     splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
@@ -269,7 +269,7 @@ static void paint_tiles(const void *view, int64_t begin, int64_t end)
     }
 }
 
-static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius, const double range[2],
+static tobi_status splat_particles(canvas *c, const tobi_picture *f, float radius, const double range[2],
                                    look what, float bright, tobi_error *err)
 {
     splat *splats = make_splats(c, f, radius, range, what);
@@ -291,7 +291,7 @@ static tobi_status splat_particles(canvas *c, const tobi_frame *f, float radius,
     return status;
 }
 
-tobi_status draw_discs(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+tobi_status draw_discs(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     /* A darker ground that closes the gaps, then the particles. */
     TOBI_TRY(splat_particles(c, f, 1.45f*(float)f->radius, (double[2]){ low, high }, DISCS, 0.8f,
@@ -424,7 +424,7 @@ static void light_grains(canvas *c)
     tobi_loop(0, (int64_t)c->width*c->height, 0, harden_samples, &view);
 }
 
-tobi_status draw_grains(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+tobi_status draw_grains(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     float radius = grain_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, GRAINS, 1, err));
@@ -434,7 +434,7 @@ tobi_status draw_grains(canvas *c, const tobi_frame *f, double low, double high,
     return TOBI_OK;
 }
 
-tobi_status draw_water(canvas *c, const tobi_frame *f, double low, double high, tobi_error *err)
+tobi_status draw_water(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     float radius = water_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, WATER, 1, err));

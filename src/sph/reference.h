@@ -1,18 +1,18 @@
-/* Where the reference pressure of still water begins (sph/still_water.h), step by step. */
+/* Where the reference pressure of still water begins (sph/reference_pressure.h), step by step. */
 #pragma once
 #include "core/system.h"
 #include "sph/stages.h"
 
 /* Sets s->still to the reference below a drop of `low`, m; 0, a vessel without gravity across its walls and
    fluids of several densities have none. */
-void sph_still_set(tobi_system *s, double low);
+void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
    where it has no more. After sph_measure_density, which leaves the drops in particles.delta. */
-double sph_still_low(tobi_system *s);
+double sph_reference_low(tobi_system *s);
 /* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low`:
    down with it, by `speed` (m/s, of the fastest particle or body) at most, up slowly. *before: the reference
    that pressures refer to until then. */
-void sph_still_move(tobi_system *s, tobi_still *before, double low, double speed, double *level);
+void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double speed, double *level);
 
 /* What a method remembers of its free surface, and how it finds it. */
 typedef struct sph_surface {
@@ -24,4 +24,4 @@ typedef struct sph_surface {
 /* Gravity has changed (tobi_method.follow_gravity). Before the first step everything is found anew. Else the
    pressures stay what they are in sum, and refer to water at rest below the present surface under the new
    gravity. */
-void sph_still_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f);
+void sph_reference_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f);

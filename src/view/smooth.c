@@ -1,6 +1,6 @@
 /* The surface that particles were splatted into becomes smooth: its depth, thickness and value, filtered in
    screen space. Only the patch of the picture that has a surface is looked at. */
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <stdlib.h>
 #include <string.h>
 

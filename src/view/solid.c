@@ -1,7 +1,7 @@
 /* Bodies, floor and box lines. Triangles are clipped at the near plane, sorted into tiles and filled by
    edge functions; depth is linear in 1/z. Corners get the mean normal of their vertex where the surface is
    smooth there, and the triangle's own at edges, so that balls are round and boxes sharp. */
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <stdlib.h>
 
 typedef struct corner {
@@ -88,7 +88,7 @@ static void fill_triangle(canvas *c, const triangle *t, const int tile[4])
 }
 
 /* Angle-weighted vertex normals in view space (Thuermer & Wuethrich 1998). */
-static vec *make_normals(const tobi_frame_mesh *m, const vec *p)
+static vec *make_normals(const tobi_picture_mesh *m, const vec *p)
 {
     vec *normal = calloc((size_t)m->vertex_count + 1, sizeof *normal);
     if (!normal) return NULL;
@@ -135,7 +135,7 @@ static void clip_triangle(const canvas *c, triangle_list *list, const corner a[3
     if (n == 4) add_triangle(c, list, (corner[3]){ kept[0], kept[2], kept[3] }, color);
 }
 
-static bool add_mesh(const canvas *c, triangle_list *list, const tobi_frame_mesh *m)
+static bool add_mesh(const canvas *c, triangle_list *list, const tobi_picture_mesh *m)
 {
     const float smooth = 0.8f;      /* cosine between a corner's mean normal and the triangle's */
     vec *p = malloc(((size_t)m->vertex_count + 1)*sizeof *p);
@@ -169,7 +169,7 @@ static void fill_tiles(const void *view, int64_t begin, int64_t end)
     }
 }
 
-tobi_status draw_meshes(canvas *c, const tobi_frame *frame, tobi_error *err)
+tobi_status draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err)
 {
     triangle_list list = { 0 };
     for (int i = 0; i < frame->mesh_count; i++) list.room += 2*frame->meshes[i].triangle_count;
@@ -238,7 +238,7 @@ static double grid_step(double size)
 
 /* The side of the box that faces down: the axis nearest to up. Returns the axis; *level is its
  * coordinate. */
-static int find_floor(const tobi_frame *f, double *level)
+static int find_floor(const tobi_picture *f, double *level)
 {
     int axis = 2;
     if (f->up[0] != 0 || f->up[1] != 0 || f->up[2] != 0)
@@ -285,7 +285,7 @@ static void fill_floor(canvas *c, const vec p[4])
 }
 
 /* Lines on the floor at round coordinates: across[0] and across[1] are its axes. */
-static void draw_grid(canvas *c, const tobi_frame *f, int axis, double level, const int across[2])
+static void draw_grid(canvas *c, const tobi_picture *f, int axis, double level, const int across[2])
 {
     const vec mark = { 0.40f, 0.44f, 0.48f };
     double size = 0;
@@ -306,7 +306,7 @@ static void draw_grid(canvas *c, const tobi_frame *f, int axis, double level, co
 }
 
 /* 2-D: the box's area, a little lighter. 3-D: the box's bottom with a grid. */
-void draw_floor(canvas *c, const tobi_frame *f)
+void draw_floor(canvas *c, const tobi_picture *f)
 {
     double level = 0, at[3];
     int axis = f->dimension == 2 ? 2 : find_floor(f, &level), across[2] = { (axis + 1)%3, (axis + 2)%3 };
@@ -322,7 +322,7 @@ void draw_floor(canvas *c, const tobi_frame *f)
     if (f->dimension == 3) draw_grid(c, f, axis, level, across);
 }
 
-void draw_box(canvas *c, const tobi_frame *f)
+void draw_box(canvas *c, const tobi_picture *f)
 {
     vec color = { 0.05f, 0.07f, 0.10f };
     int corners = f->dimension == 2 ? 4 : 8;

@@ -1,4 +1,6 @@
-#include "io/frame_draw.h"
+/* Which items touch which square of samples, by counting, so that each square belongs to one thread
+   and the picture to no number of them. Drawback: an item is drawn once for each square it touches. */
+#include "view/draw.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -9,16 +9,16 @@
 #pragma once
 #include "base/error.h"
 
-typedef struct tobi_frame_mesh {
+typedef struct tobi_picture_mesh {
     int64_t vertex_count;
     const double (*vertices)[3];       /* m                            */
     int64_t triangle_count;
     const int32_t (*triangles)[3];
     float color[3];                    /* sRGB, 0 to 1                 */
-} tobi_frame_mesh;
+} tobi_picture_mesh;
 
-/* Everything borrowed for the call. Obtain from tobi_default_frame and change members. */
-typedef struct tobi_frame {
+/* Everything borrowed for the call. Obtain from tobi_default_picture and change members. */
+typedef struct tobi_picture {
     int width, height;                 /* pixels, 16 to 8192                                            */
     int samples;                       /* per pixel and axis, 1 to 4                                    */
     int dimension;                     /* 2 or 3                                                        */
@@ -39,16 +39,16 @@ typedef struct tobi_frame {
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
     double clarity;                    /* m of water after which 1/e of the light is left; 0 = automatic */
 
-    const tobi_frame_mesh *meshes;
+    const tobi_picture_mesh *meshes;
     int mesh_count;
 
     float background_top[3], background_bottom[3];   /* sRGB */
     const char *title;                 /* ASCII, upper left, "t = 0.25 s"; NULL = none                  */
     const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */
-} tobi_frame;
+} tobi_picture;
 
-tobi_frame tobi_default_frame(void);
+tobi_picture tobi_default_picture(void);
 
 /* TOBI_INVALID for sizes, ranges or indices out of bounds, TOBI_NO_MEMORY, TOBI_IO. The file appears whole
    or not at all. */
-tobi_status tobi_frame_write(const char *path, const tobi_frame *frame, tobi_error *err);
+tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err);

@@ -10,7 +10,7 @@
 #include <string.h>
 #include "calls.h"
 #include "sph/state.h"
-#include "sph/still.h"
+#include "sph/reference.h"
 #include "world/world.h"
 
 #define D 0.01
@@ -57,14 +57,14 @@ static void the_level_falls_no_faster_than_the_liquid(void **state)
     (void)state;
     const double speed = 0.5, void_below = 0.15;
     double level;
-    tobi_still before;
+    tobi_reference before;
     tobi_world *world = make_pool(0.1, 0);
     OK(tobi_world_step(world, 0, NULL, &err));
-    level = sph_of(&world->system[0])->still.level + 0.5*D;
+    level = sph_of(&world->system[0])->reference.level + 0.5*D;
     const double start = level;
-    for (int k = 1; k <= 3; k++) sph_still_move(&world->system[0], &before, void_below, speed, &level);
+    for (int k = 1; k <= 3; k++) sph_reference_move(&world->system[0], &before, void_below, speed, &level);
     assert_true(fabs(level - start - 3*speed*world->sim.dt) < 1e-9);
-    sph_still_move(&world->system[0], &before, start, speed, &level);
+    sph_reference_move(&world->system[0], &before, start, speed, &level);
     assert_true(level > start);                                                    /* up slowly */
     tobi_world_destroy(world);
 }

@@ -1,5 +1,7 @@
+/* Averages samples to pixels, converts to sRGB, and writes by libpng, whose errors jump. Drawback:
+   compression is on one thread. */
 #define _GNU_SOURCE 1
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include "io/file.h"
 #include <png.h>
 #include <setjmp.h>

@@ -1,6 +1,8 @@
+/* The level below which water counts as still follows the lowest part of the free surface: down at
+   once, up slowly. Drawback: one level for the whole vessel. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
-#include "sph/still.h"
+#include "sph/reference.h"
 #include <math.h>
 
 /* In support radii. COVER keeps clear of kernels that a surface cuts. The pressure of REST stays with the
@@ -8,11 +10,11 @@
 static const double COVER = 1, RAMP = 3, REST = 0.5;
 enum { DROPS = 1024 };
 
-void sph_still_set(tobi_system *s, double low)
+void sph_reference_set(tobi_system *s, double low)
 {
-    tobi_still *w = &sph_of(s)->still;
+    tobi_reference *w = &sph_of(s)->reference;
     double g2 = 0, h = s->smoothing.h;
-    *w = (tobi_still){.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
+    *w = (tobi_reference){.cover = COVER*h, .ramp = RAMP*h, .rest = REST*h};
     w->level = low - 0.5*s->smoothing.spacing;
     for (int a = 0; a < s->box.dimension; a++)
         if (!s->box.periodic[a]) g2 += s->gravity[a]*s->gravity[a];
@@ -39,7 +41,7 @@ static void count_drops(const void *view, int64_t begin, int64_t end)
         if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
 }
 
-double sph_still_low(tobi_system *s)
+double sph_reference_low(tobi_system *s)
 {
     sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
@@ -59,15 +61,15 @@ static double follow(const tobi_system *s, double before, double low, double spe
 {
     double g = 0;
     if (!(low > 0) || !(before > 0)) return low;
-    for (int a = 0; a < 3; a++) g += sph_of(s)->still.down[a]*s->gravity[a];
+    for (int a = 0; a < 3; a++) g += sph_of(s)->reference.down[a]*s->gravity[a];
     double rise = 0.1*sqrt(g*s->smoothing.spacing)*s->dt;
     return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
 
-void sph_still_move(tobi_system *s, tobi_still *before, double low, double speed, double *level)
+void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double speed, double *level)
 {
-    sph_still_set(s, *level);
-    *before = sph_of(s)->still;
+    sph_reference_set(s, *level);
+    *before = sph_of(s)->reference;
     *level = follow(s, *level, low, speed);
 }
 
@@ -81,7 +83,7 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const double x[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
-        f->pressure[i] += (float)(r->sign*tobi_still_pressure(&sph_of(r->s)->still, x));
+        f->pressure[i] += (float)(r->sign*tobi_reference_pressure(&sph_of(r->s)->reference, x));
     }
 }
 
@@ -89,18 +91,18 @@ static void add_range(const void *view, int64_t begin, int64_t end, double *tota
 static void add_reference(tobi_system *s, int sign)
 {
     const referring r = { s, sign };
-    if (sph_of(s)->still.push > 0)
+    if (sph_of(s)->reference.push > 0)
         tobi_launch(&s->sim->exec, TOBI_HOST(add_range, 0, 0), &r, 0, s->particles.count, NULL);
 }
 
 static void bind(tobi_system *s, sph_view *v, const sph_surface *f)
 {
     sph_bind_view(s, v, *f->vessel);
-    sph_still_set(s, *f->level);
-    v->still = sph_of(s)->still;
+    sph_reference_set(s, *f->level);
+    v->reference = sph_of(s)->reference;
 }
 
-void sph_still_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f)
+void sph_reference_follow(tobi_system *s, sph_view *v, const sph_kernels *k, const sph_surface *f)
 {
     const tobi_step_info kept = s->info;
     double clock = tobi_clock();

@@ -1,5 +1,5 @@
 /* What the bodies keep from the key light: their depth seen from the light, once per picture. */
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <stdlib.h>
 
 /* A block is wider than the reach of lit_at. */
@@ -28,7 +28,7 @@ static camera light_camera(const camera *view, const shadow *s, double radius)
 }
 
 /* Squares at the depth of the grains' middles: half a grain deep, so that none shades itself. */
-static void cast_grains(canvas *light, const tobi_frame *frame)
+static void cast_grains(canvas *light, const tobi_picture *frame)
 {
     int half = (int)clampf(1.2f*(float)frame->radius*light->camera.focal, 1, 40);
     for (int64_t i = 0; i < frame->particle_count; i++) {
@@ -69,7 +69,7 @@ static void find_ranges(shadow *s)
         }
 }
 
-tobi_status make_shadow(canvas *c, const tobi_frame *frame, tobi_error *err)
+tobi_status make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err)
 {
     if (frame->mesh_count == 0 && !frame->opaque) return TOBI_OK;
     double middle[3], size = 0;

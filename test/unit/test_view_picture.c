@@ -1,7 +1,7 @@
 /* Pictures: valid PNG, things where they belong, the same for any number of threads and far from the origin,
    nothing broken by strange input. */
 #define _GNU_SOURCE 1
-#include "io/frame.h"
+#include "view/picture.h"
 #include <math.h>
 #include <omp.h>
 #include <png.h>
@@ -31,12 +31,12 @@ static const int32_t side[12][3] = {
     { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 }
 };
-static const tobi_frame_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+static const tobi_picture_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f } };
 
 /* A unit box, half full of water, cube through the surface. */
-static tobi_frame make_frame(void)
+static tobi_picture make_frame(void)
 {
-    tobi_frame f = tobi_default_frame();
+    tobi_picture f = tobi_default_picture();
     f.width = W, f.height = H;
     for (int k = 0; k < 3; k++) f.box_max[k] = 1;
     f.positions = position, f.values = speed, f.particle_count = N;
@@ -70,11 +70,11 @@ static unsigned char *read_png(int *width, int *height)
     return pixels;
 }
 
-static unsigned char *draw(const tobi_frame *f)
+static unsigned char *draw(const tobi_picture *f)
 {
     tobi_error err = { 0 };
     int width, height;
-    tobi_status status = tobi_frame_write(path, f, &err);
+    tobi_status status = tobi_picture_write(path, f, &err);
     if (status != TOBI_OK) fail_msg("%s", err.text);
     unsigned char *pixels = read_png(&width, &height);
     assert_int_equal(width, f->width);
@@ -96,7 +96,7 @@ static double mean_difference(const unsigned char *a, const unsigned char *b)
 static void things_are_where_they_belong(void **state)
 {
     (void)state;
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     unsigned char *all = draw(&f);
     /* The camera looks level at the middle of the box: the cube's upper part is at the centre's top. */
     const unsigned char *dry = pixel(all, W/2, H/2 - 18), *wet = pixel(all, W/2, H/2 + 26);
@@ -131,7 +131,7 @@ static void solids_hide_what_is_behind(void **state)
     static uint8_t opaque[N];
     static float number[N];
     static const float palette[2][3] = { { 0.1f, 0.8f, 0.1f }, { 0.1f, 0.2f, 0.9f } };
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     f.opaque = opaque, f.values = number, f.palette = palette, f.palette_count = 2;
     for (int i = 0; i < N; i++) {
         opaque[i] = position[i][0] < 0.5;
@@ -159,7 +159,7 @@ static void solids_hide_what_is_behind(void **state)
 static void threads_do_not_matter(void **state)
 {
     (void)state;
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     int threads = omp_get_max_threads();
     omp_set_num_threads(1);
     unsigned char *one = draw(&f);
@@ -174,7 +174,7 @@ static void place_does_not_matter(void **state)
 {
     (void)state;
     static double moved[N][3], moved_cube[8][3];
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     f.has_camera = 0;
     unsigned char *here = draw(&f);
     for (int k = 0; k < 3; k++) {
@@ -182,7 +182,7 @@ static void place_does_not_matter(void **state)
         for (int i = 0; i < N; i++) moved[i][k] = position[i][k] + far_away[k];
         for (int i = 0; i < 8; i++) moved_cube[i][k] = cube[i][k] + far_away[k];
     }
-    tobi_frame_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+    tobi_picture_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f } };
     f.positions = moved, f.meshes = &m;
     unsigned char *there = draw(&f);
     double difference = mean_difference(here, there);
@@ -197,7 +197,7 @@ static void flat_scenes_are_discs(void **state)
     (void)state;
     static const double disc[2][3] = { { 0.5, 0.25, 0 }, { 1.5, 0.75, 0 } };
     static const float value[2] = { 0, 1 };
-    tobi_frame f = tobi_default_frame();
+    tobi_picture f = tobi_default_picture();
     f.width = W, f.height = H, f.dimension = 2;
     f.box_max[0] = 2, f.box_max[1] = 1;
     f.positions = disc, f.values = value, f.particle_count = 2, f.radius = 0.1, f.value_max = 1;
@@ -224,14 +224,14 @@ static void strange_input_is_drawn(void **state)
         for (int k = 0; k < 3; k++) wild[i][k] = odd[(i*7 + k*(i%5 + 1))%9];
     static float values[64];
     for (int i = 0; i < 64; i++) values[i] = (float)odd[i%9];
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     f.positions = wild, f.values = values, f.particle_count = 64;
     f.value_min = f.value_max = 0;
     free(draw(&f));
     double wild_cube[8][3];
     memcpy(wild_cube, cube, sizeof cube);
     wild_cube[0][0] = NAN, wild_cube[1][1] = 1e300, wild_cube[2][2] = -INFINITY, wild_cube[3][0] = 1e8;
-    tobi_frame_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN } };
+    tobi_picture_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN } };
     f.meshes = &m;
     free(draw(&f));
     f = make_frame();
@@ -256,30 +256,30 @@ static void wrong_arguments_are_refused(void **state)
     (void)state;
     tobi_error err;
     remove(path);
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     f.width = 8;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "8 x 180 pixels"));
     f = make_frame(), f.samples = 9;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), f.dimension = 4;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), f.box_max[1] = 0;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), f.radius = 0;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), f.positions = NULL;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), f.field_of_view = 0;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), memcpy(f.eye, f.target, sizeof f.eye);
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
-    tobi_frame_mesh m = { 7, cube, 12, side, { 0, 0, 0 } };
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
+    tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 } };
     f = make_frame(), f.meshes = &m;
-    assert_int_equal(tobi_frame_write(path, &f, &err), TOBI_INVALID);
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "uses vertex 7 of 7"));
     f = make_frame();
-    assert_int_equal(tobi_frame_write("/no/such/a.png", &f, &err), TOBI_IO);
+    assert_int_equal(tobi_picture_write("/no/such/a.png", &f, &err), TOBI_IO);
     assert_string_equal(err.text, "cannot write /no/such/a.png: No such file or directory");
     assert_int_not_equal(access(path, F_OK), 0);
 }
@@ -290,13 +290,13 @@ static void full_disk_leaves_nothing(void **state)
     signal(SIGXFSZ, SIG_IGN);
     struct rlimit before;
     getrlimit(RLIMIT_FSIZE, &before);
-    tobi_frame f = make_frame();
+    tobi_picture f = make_frame();
     remove(path);
     for (rlim_t size = 0; size < 10000; size += 2500) {
         struct rlimit limit = { size, before.rlim_max };
         tobi_error err;
         setrlimit(RLIMIT_FSIZE, &limit);
-        tobi_status status = tobi_frame_write(path, &f, &err);
+        tobi_status status = tobi_picture_write(path, &f, &err);
         setrlimit(RLIMIT_FSIZE, &before);
         assert_int_equal(status, TOBI_IO);
         assert_non_null(strstr(err.text, "a.png: File too large"));
@@ -328,5 +328,5 @@ int main(void)
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
-    return cmocka_run_group_tests_name("io/frame", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("view/picture", tests, set_up, tear_down);
 }

@@ -1,6 +1,6 @@
 /* Letters as strokes on a small grid, drawn with round pens; a title and a colour bar. */
 #define _GNU_SOURCE 1
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <stdio.h>
 #include <string.h>
 

@@ -1,18 +1,20 @@
+/* The order of drawing: bodies, shadows, particles, letters, each over one canvas in memory. Drawback:
+   everything is drawn on the processor. */
 #define _GNU_SOURCE 1
-#include "io/frame_draw.h"
+#include "view/draw.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-tobi_frame tobi_default_frame(void)
+tobi_picture tobi_default_picture(void)
 {
-    return (tobi_frame){
+    return (tobi_picture){
         .width = 1280, .height = 720, .samples = 2, .dimension = 3, .field_of_view = 30,
         .background_top = { 0.60f, 0.68f, 0.75f }, .background_bottom = { 0.90f, 0.92f, 0.93f }
     };
 }
 
-static tobi_status check_mesh(const char *path, const tobi_frame_mesh *m, int number, tobi_error *err)
+static tobi_status check_mesh(const char *path, const tobi_picture_mesh *m, int number, tobi_error *err)
 {
     for (int64_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++)
@@ -23,7 +25,7 @@ static tobi_status check_mesh(const char *path, const tobi_frame_mesh *m, int nu
     return TOBI_OK;
 }
 
-static tobi_status check_frame(const char *path, const tobi_frame *f, tobi_error *err)
+static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_error *err)
 {
     if (f->width < 16 || f->height < 16 || f->width > 8192 || f->height > 8192)
         return tobi_fail(err, TOBI_INVALID, "%s: a picture of %d x %d pixels, allowed are 16 to 8192", path,
@@ -91,14 +93,14 @@ static void choose_direction(const double up[3], double out[3])
         out[k] = cos(lift)*(cos(turn)*front[k] + sin(turn)*right[k]) + sin(lift)*up[k];
 }
 
-static void box_corner(const tobi_frame *f, int i, double out[3])
+static void box_corner(const tobi_picture *f, int i, double out[3])
 {
     for (int k = 0; k < 3; k++) out[k] = i >> k & 1 ? f->box_max[k] : f->box_min[k];
 }
 
 /* Moves the eye until the eight corners fill the picture with a margin: the distance from the tightest
    corner, the sideways place from the extent of the projections, a few times in turn. */
-static void fit_box(camera *c, const tobi_frame *f, double half_width, double half_height)
+static void fit_box(camera *c, const tobi_picture *f, double half_width, double half_height)
 {
     const double margin = 0.90;
     double target[3], distance = 0;
@@ -127,7 +129,7 @@ static void fit_box(camera *c, const tobi_frame *f, double half_width, double ha
     for (int k = 0; k < 3; k++) c->eye[k] = target[k] - distance*c->forward[k];
 }
 
-static tobi_status aim_camera(canvas *v, const char *path, const tobi_frame *f, tobi_error *err)
+static tobi_status aim_camera(canvas *v, const char *path, const tobi_picture *f, tobi_error *err)
 {
     camera *c = &v->camera;
     double up[3] = { f->up[0], f->up[1], f->up[2] }, half_width = 0.5*v->width, half_height = 0.5*v->height;
@@ -159,7 +161,7 @@ static tobi_status aim_camera(canvas *v, const char *path, const tobi_frame *f, 
 }
 
 /* 2-D: x to the right, y up, the box with a margin, more on the right where the colour bar stands. */
-static void aim_front(canvas *v, const tobi_frame *f)
+static void aim_front(canvas *v, const tobi_picture *f)
 {
     camera *c = &v->camera;
     double bar = f->label ? 0.09 : 0, top = f->title ? 0.06 : 0;
@@ -204,7 +206,7 @@ static void clear_rows(const void *view, int64_t begin, int64_t end)
         }
 }
 
-static tobi_status make_canvas(canvas *c, const tobi_frame *f, tobi_error *err)
+static tobi_status make_canvas(canvas *c, const tobi_picture *f, tobi_error *err)
 {
     *c = (canvas){ .width = f->width*f->samples, .height = f->height*f->samples,
                     .palette = f->palette, .palette_count = f->palette_count };
@@ -248,7 +250,7 @@ static void average_rows(const void *view, int64_t begin, int64_t end)
 }
 
 /* Averages the samples of each pixel. */
-static tobi_status develop(const canvas *c, const tobi_frame *f, image *out, tobi_error *err)
+static tobi_status develop(const canvas *c, const tobi_picture *f, image *out, tobi_error *err)
 {
     *out = (image){ f->width, f->height, malloc((size_t)f->width*(size_t)f->height*sizeof(vec)) };
     if (!out->color) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
@@ -257,7 +259,7 @@ static tobi_status develop(const canvas *c, const tobi_frame *f, image *out, tob
     return TOBI_OK;
 }
 
-static void find_range(const tobi_frame *f, double *low, double *high)
+static void find_range(const tobi_picture *f, double *low, double *high)
 {
     *low = f->value_min;
     *high = f->value_max;
@@ -271,7 +273,7 @@ static void find_range(const tobi_frame *f, double *low, double *high)
     if (!(*low < *high)) *high = *low + 1;
 }
 
-static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double low, double high,
+static tobi_status draw(canvas *c, const char *path, const tobi_picture *f, double low, double high,
                         tobi_error *err)
 {
     if (f->dimension == 2) {
@@ -291,7 +293,7 @@ static tobi_status draw(canvas *c, const char *path, const tobi_frame *f, double
     return TOBI_OK;
 }
 
-tobi_status tobi_frame_write(const char *path, const tobi_frame *frame, tobi_error *err)
+tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err)
 {
     TOBI_TRY(check_frame(path, frame, err));
     canvas c;
