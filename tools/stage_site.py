@@ -25,7 +25,8 @@ math [mathvariant^="bold"] { font-weight: bold; text-transform: none; }
 math [mathvariant="bold"], math [mathvariant="sans-serif"] { font-style: normal; }
 math [mathvariant="sans-serif"] { font-family: sans-serif; text-transform: none; }
 .md-grid { max-width: 80rem; }
-.md-typeset pre > code { font-size: 0.78em; }
+.md-typeset pre > code { font-size: 0.72em; }
+.md-typeset td:first-child code { white-space: nowrap; }
 """
 TEX = re.compile(r'<(span|div) class="arithmatex">\s*\\[(\[](.*?)\\[)\]]\s*</\1>', re.S)
 TAG = re.compile(r"\\tag\{([^}]*)\}")
