@@ -2,8 +2,10 @@
 # Installs what is missing, builds the release preset with its tests, runs them.
 # usage: ./test.sh                 everything, at most ten minutes with the build
 #        ./test.sh NAME            only the tests whose name matches (a regular expression)
-#        ./test.sh --slow [CASE] [--reference DIR]
+#        ./test.sh --slow [CASE] [--stale] [--reference DIR]
 #                                  physics cases at reference size; rows and plots go to docs/validation.
+#                                  --stale: those whose page is older than its method or case; says how long that
+#                                  takes. Stopped with Ctrl-C and started again, a case goes on where it was.
 #                                  DIR: published data (default: $TOBIUO_REFERENCE), curves of plots; without it the
 #                                  few values that stand in the cases' run.py
 # The exit code is 0 only if everything passed. Closing lines: those of ctest, then "N passed, N failed".
@@ -24,28 +26,29 @@ prepare() {
 }
 
 run_slow() {
-    local wanted=$1 passed=0 failed=0 found=0
-    for script in test/physics/*/run.py; do
-        local case
-        case=$(basename "$(dirname "$script")")
-        [ -e "$script" ] && { [ -z "$wanted" ] || [ "$wanted" = "$case" ]; } || continue
-        found=1
+    local passed=0 failed=0 case script
+    trap 'echo "test: stopped; the same command goes on"; exit 130' INT
+    for case in "$@"; do
+        script=$PWD/test/physics/$case/run.py
         echo "== $case"
         mkdir -p "build/slow/$case"
-        if (cd "build/slow/$case" && "$python" "$OLDPWD/$script" --tobiuo "$OLDPWD/build/release/tobiuo" \
-            --size reference ${reference:+--reference "$reference"}); then
+        if (cd "build/slow/$case" && "$python" "$script" --tobiuo "$OLDPWD/build/release/tobiuo" \
+            --size reference --out "$PWD/runs" --resume ${reference:+--reference "$reference"}); then
             passed=$((passed + 1))
         else
             failed=$((failed + 1))
             echo "== $case failed"
         fi
     done
-    if [ $found -eq 0 ]; then
-        echo "test: no physics case '$wanted'; there are:" >&2
-        for script in test/physics/*/run.py; do echo "  $(basename "$(dirname "$script")")" >&2; done
-        exit 2
-    fi
     close $passed $failed
+}
+
+list_cases() {      # [CASE]: names, or an error
+    local script
+    for script in test/physics/*/run.py; do
+        script=$(basename "$(dirname "$script")")
+        [ -n "${1:-}" ] && [ "$1" != "$script" ] || echo "$script"
+    done
 }
 
 run_fast() {
@@ -68,14 +71,15 @@ run_fast() {
 }
 
 case ${1:-} in
--h|--help) sed -n '2,9s/^# //p' "$0"; exit 0 ;;
+-h|--help) sed -n '2,11s/^# //p' "$0"; exit 0 ;;
 --slow)
     shift
-    wanted=
+    wanted= stale=0
     while [ $# -gt 0 ]; do
         case $1 in
         --reference) reference=${2:-}; shift ;;
         --reference=*) reference=${1#*=} ;;
+        --stale) stale=1 ;;
         -*) echo "test: unknown option $1 (see ./test.sh --help)" >&2; exit 2 ;;
         *) wanted=$1 ;;
         esac
@@ -84,8 +88,17 @@ case ${1:-} in
     if [ -n "$reference" ]; then
         reference=$(cd "$from" && cd "$reference" && pwd) || exit 2
     fi
+    cases=$(list_cases "$wanted")
+    if [ -z "$cases" ]; then
+        echo "test: no physics case '$wanted'; there are:" >&2
+        list_cases | sed 's/^/  /' >&2
+        exit 2
+    fi
+    if [ $stale -eq 1 ]; then
+        cases=$("$python" test/physics/validation.py list | grep -xF "$cases")
+    fi
     prepare
-    run_slow "$wanted"
+    run_slow $cases
     ;;
 -*) echo "test: unknown option $1 (see ./test.sh --help)" >&2; exit 2 ;;
 *) prepare; run_fast "${1:-}" ;;

@@ -9,10 +9,12 @@ if ! cmp -s docs/requirements.txt "$tools/requirements.txt"; then
     "$tools/bin/pip" install --quiet --disable-pip-version-check -r docs/requirements.txt
     cp docs/requirements.txt "$tools/"
 fi
+python3 tools/draw_benchmarks.py
 mkdir -p "$work"
 python3 tools/stage_site.py stage "$work"
 NO_MKDOCS_2_WARNING=1 "$tools/bin/mkdocs" build --quiet --clean --config-file "$work/mkdocs.yml"
+"$tools/bin/python" tools/stage_site.py equations "$work"
 python3 tools/stage_site.py check "$work"
 rm -rf build/site
 mv "$work/site" build/site
-echo "build/site/index.html"
+echo "build/site/index.html; search needs a server: python3 -m http.server -d build/site"

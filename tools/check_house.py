@@ -6,7 +6,8 @@ usage: check_house.py [ROOT]
 Files of at most 600 lines, functions of at most 80, lines of at most 110 columns, no tabs, no file
 named utils, common or misc, no path of somebody's machine in the sources, no OpenMP in the program outside
 src/exec. Pages: README of at most 120 lines, prose of at most 100 columns (not code, tables, equations), no
-passage about a program that was not kept; each decision has a number of its own and a status.
+passage about a program that was not kept; each decision has a number of its own and a status. Theory has
+sentences of at most 25 words; a formula counts as one word, a colon ends a sentence.
 """
 import ast
 import pathlib
@@ -29,6 +30,7 @@ README_LINES = 120
 PROSE_COLUMNS = 100
 NOT_PROSE = re.compile(r"\s*\||<!--")      # tables, comments
 NOT_KEPT = re.compile(r"\b(programs?|scenes?|runs?)\b.*\bnot kept\b", re.IGNORECASE)
+SENTENCE_WORDS = 25
 TEST_FOLDER = re.compile(r"/tmp/\w*XXXXXX")      # mkdtemp in a test
 
 
@@ -123,6 +125,21 @@ def prose_lines(text):
         before = line
 
 
+def long_sentences(text):
+    """Sentences of prose with too many words: (words, how it begins)."""
+    text = re.sub(r"```.*?```|^    .*$", "\n\n", text.split("\n## Sources")[0], flags=re.S | re.M)
+    text = re.sub(r"\$\$.*?\$\$", " EQUATION. ", text, flags=re.S)
+    text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", re.sub(r"\$[^$]*\$|`[^`]*`", "X", text))
+    text = re.sub(r"\[[^]]*\d{4}[^]]*\]", "X", text).replace("et al.", "et al").replace("eq.", "eq")
+    for paragraph in re.split(r"\n\s*\n|\n(?=[-*] |\d+\. |\|)", text):
+        if paragraph.strip().startswith(("|", "#")):
+            continue
+        for sentence in re.split(r"(?<=[.:;?!])\**\s+(?=[A-Z(*])|(?<=:)\s|EQUATION\.", " ".join(paragraph.split())):
+            words = sum(bool(re.search(r"\w", word)) for word in sentence.split())
+            if words > SENTENCE_WORDS:
+                yield words, sentence.strip()[:40]
+
+
 def check_page(root, path, errors):
     where = path.relative_to(root)
     text = path.read_text(encoding="utf-8")
@@ -133,6 +150,8 @@ def check_page(root, path, errors):
             errors.append(f"{where}:{number}: {len(line)} columns of prose, at most {PROSE_COLUMNS}")
         if NOT_KEPT.search(line):
             errors.append(f"{where}:{number}: tells of a program that was not kept; what nobody can repeat is no fact")
+    for words, begin in long_sentences(text) if where.parts[:2] == ("docs", "theory") else []:
+        errors.append(f"{where}: a sentence of {words} words, at most {SENTENCE_WORDS}: {begin}...")
     if where.parts[:2] == ("docs", "decisions") and not re.search(r"^Status: ", text, re.MULTILINE):
         errors.append(f"{where}:1: a decision without a line that begins with \"Status: \"")
 

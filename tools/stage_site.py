@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Prepares the pages for MkDocs, and checks the site that it built.
 
-usage: stage_site.py stage FOLDER    copies the pages, and what they link to, into FOLDER/pages
-       stage_site.py check FOLDER    every link and picture of FOLDER/site leads to a file
+usage: stage_site.py stage FOLDER       copies the pages, and what they link to, into FOLDER/pages
+       stage_site.py equations FOLDER   TeX in FOLDER/site becomes MathML, which browsers draw without a program
+       stage_site.py check FOLDER       every link and picture of FOLDER/site leads to a file; no page loads
+                                        anything from a network; no TeX is left
 
 The pages are written for GitHub. Python-Markdown wants a blank line before lists and around equations, and
 has no pages for folders: both are mended in the copy, and folders get an index of the titles of their pages.
 """
+import html
 import html.parser
 import pathlib
 import re
@@ -16,7 +19,17 @@ import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGES = ["*.md", "docs/*.md", "docs/*/*.md", "scenes/*.md", "scenes/*/*.md"]
-MATHJAX = 'window.MathJax = { tex: { inlineMath: [["\\\\(", "\\\\)"]], displayMath: [["\\\\[", "\\\\]"]] } };\n'
+STYLE = """.equation { display: flex; align-items: center; margin: 1em 0; }
+.equation math { flex: 1; overflow-x: auto; overflow-y: hidden; }
+math [mathvariant^="bold"] { font-weight: bold; text-transform: none; }
+math [mathvariant="bold"], math [mathvariant="sans-serif"] { font-style: normal; }
+math [mathvariant="sans-serif"] { font-family: sans-serif; text-transform: none; }
+.md-grid { max-width: 80rem; }
+.md-typeset pre > code { font-size: 0.72em; }
+.md-typeset td:first-child code { white-space: nowrap; }
+"""
+TEX = re.compile(r'<(span|div) class="arithmatex">\s*\\[(\[](.*?)\\[)\]]\s*</\1>', re.S)
+TAG = re.compile(r"\\tag\{([^}]*)\}")
 LINK = re.compile(r"(\]\()([^)\s#]+)([^)\s]*\))")
 
 
@@ -81,18 +94,40 @@ def stage(folder):
     for name in ("theory", "decisions"):
         if not (ROOT / "docs" / name / "README.md").exists():
             (pages / "docs" / name / "README.md").write_text(index(ROOT / "docs" / name, name.capitalize()))
-    (pages / "mathjax.js").write_text(MATHJAX)
+    (pages / "style.css").write_text(STYLE)
     shutil.copy(ROOT / "tools/mkdocs.yml", folder / "mkdocs.yml")
+
+
+def mathml(match):
+    from latex2mathml.converter import convert      # of docs/requirements.txt; the other steps do without it
+    tex, block = html.unescape(match.group(2)), match.group(1) == "div"
+    drawn = convert(TAG.sub("", tex), display="block" if block else "inline")
+    if not block:
+        return drawn
+    return f'<div class="equation">{drawn}' + "".join(f"<span>({tag})</span>" for tag in TAG.findall(tex)) + "</div>"
+
+
+def write_equations(folder):
+    count = 0
+    for page in (folder / "site").rglob("*.html"):
+        text, found = TEX.subn(mathml, page.read_text())
+        if found:
+            page.write_text(text)
+        count += found
+    print(f"{count} equations")
+    return 0 if count > 300 else 1
 
 
 class Links(html.parser.HTMLParser):
     def __init__(self):
         super().__init__()
-        self.found, self.names = [], set()
+        self.found, self.names, self.loaded = [], set(), []
 
     def handle_starttag(self, tag, attributes):
         values = dict(attributes)
         self.names.update(value for key, value in attributes if key in ("id", "name"))
+        self.loaded += [values[key] for key in ("href", "src") if re.match(r"(https?:)?//", values.get(key) or "") and
+                        (tag in ("script", "img", "iframe") or values.get("rel") == "stylesheet")]
         self.found += [values[key] for key in ("href", "src") if values.get(key)]
 
 
@@ -100,7 +135,12 @@ def check(folder):
     site, parsed, dead, count = folder / "site", {}, 0, 0
     for page in site.rglob("*.html"):
         parsed[page.resolve()] = reader = Links()
-        reader.feed(page.read_text())
+        text = page.read_text()
+        reader.feed(text)
+        faults = [f"loads {link}" for link in reader.loaded] + ["TeX is left"]*('"arithmatex"' in text)
+        for fault in faults:
+            print(f"{page.relative_to(site)}: {fault}")
+        dead += len(faults)
     for page, reader in parsed.items():
         if page.name == "404.html":
             continue                                # its links count from the root of a server
@@ -120,7 +160,7 @@ def check(folder):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3 or sys.argv[1] not in ("stage", "check"):
+    steps = {"stage": stage, "equations": write_equations, "check": check}
+    if len(sys.argv) != 3 or sys.argv[1] not in steps:
         sys.exit(__doc__)
-    where = pathlib.Path(sys.argv[2]).resolve()
-    sys.exit(check(where) if sys.argv[1] == "check" else stage(where))
+    sys.exit(steps[sys.argv[1]](pathlib.Path(sys.argv[2]).resolve()))

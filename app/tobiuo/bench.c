@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 enum { KEY_THREADS = KEY_OWN, KEY_STEPS, KEY_SETTLE, KEY_SCENE, KEY_PROJECT,
-       KEY_BODIES, KEY_SIZE, KEY_FIXED };
+       KEY_BODIES, KEY_SIZE, KEY_FIXED, KEY_CSV };
 enum { MORE_ITERATIONS = 12 };
 
 static const struct argp_option options[] = {
@@ -20,6 +20,7 @@ static const struct argp_option options[] = {
     { "bodies", KEY_BODIES, "N", 0, "bodies_in_water: how many bodies (1000)", 0 },
     { "size", KEY_SIZE, "X", 0, "bodies_in_water: edge of a body in spacings (2)", 0 },
     { "fixed", KEY_FIXED, NULL, 0, "bodies_in_water: bodies that do not move", 0 },
+    { "csv", KEY_CSV, "FILE", 0, "append a row per measurement to this table", 0 },
     { 0 }
 };
 
@@ -43,6 +44,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_BODIES: o->bodies = parse_count(state, "--bodies", value); break;
     case KEY_SIZE: o->size = parse_positive(state, "--size", value); break;
     case KEY_FIXED: o->fixed = 1; break;
+    case KEY_CSV: o->csv = value; break;
     case ARGP_KEY_ARG:
         if (o->which) argp_error(state, "one CASE only");
         o->which = value;
@@ -132,7 +134,7 @@ static int step_in_turn(bench_run *base, bench_run *more, int steps)
     return failed;
 }
 
-static int compare_tanks(tobi_world *world, tobi_world *second, int steps, int threads)
+static int compare_tanks(const bench_options *o, tobi_world *world, tobi_world *second, int steps)
 {
     bench_run base, more = { 0 };
     int failed = bench_begin(&base, world, steps);
@@ -143,12 +145,12 @@ static int compare_tanks(tobi_world *world, tobi_world *second, int steps, int t
     bench_end(&more);
     if (failed) return failed;
     const bench_result *r = &base.result;
-    bench_print(&base, threads);
-    print_iterations(r, &more.result, threads);
+    bench_print(&base, o->threads);
+    print_iterations(r, &more.result, o->threads);
     printf("wall force / weight    %.4f to %.4f, mean %.4f\n", r->force_least, r->force_most,
            r->force_mean);
     printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
-    return 0;
+    return bench_write(o, o->which, &base);
 }
 
 static int measure_tank(const bench_options *o, double spacing, int settle)
@@ -161,7 +163,7 @@ static int measure_tank(const bench_options *o, double spacing, int settle)
     tobi_world *world = make_tank(o, "dfsph", spacing, 0);
     tobi_world *more = world ? make_tank(o, "dfsph", spacing, MORE_ITERATIONS) : NULL;
     int failed = !more ? EXIT_ERROR : bench_settle(world, settle);
-    if (!failed) failed = compare_tanks(world, more, o->steps ? o->steps : 60, o->threads);
+    if (!failed) failed = compare_tanks(o, world, more, o->steps ? o->steps : 60);
     tobi_world_destroy(world);
     tobi_world_destroy(more);
     return failed;
@@ -184,6 +186,7 @@ static int measure_method(const bench_options *o, const char *method)
     if (!failed) {
         bench_print(&run, o->threads);
         printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
+        failed = bench_write(o, method, &run);
     }
     tobi_world_destroy(world);
     return failed;
@@ -212,6 +215,7 @@ static int run_fish(tobi_scene *scene, const bench_options *o)
         printf("state                  %016llx\n", (unsigned long long)tobi_world_hash(world));
         printf("projected to %.3g s     %s of wall clock, without output, if all steps were like "
                "these\n", end, duration_text(end / run.result.simulated * run.result.seconds, text));
+        failed = bench_write(o, o->which, &run);
     }
     tobi_world_destroy(world);
     return failed;
@@ -250,7 +254,7 @@ int tobiuo_bench(int argc, char **argv)
 {
     bench_options o = { 0 };
     parse_arguments(&bench_argp, argc, argv, &o);
-    const char *which = o.which ? o.which : "small";
+    const char *which = o.which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
     int cut = strcmp(which, "cut") == 0, other = !strcmp(which, "wcsph") || !strcmp(which, "isph");
@@ -260,7 +264,8 @@ int tobiuo_bench(int argc, char **argv)
                  "cut, bodies and bodies_in_water", which);
         return EXIT_USAGE;
     }
-    bench_print_machine(o.threads);
+    bench_find_machine(o.threads, &o.machine);
+    bench_print_machine(&o.machine);
     if (ball) return bench_ball(&o);
     if (cut) return bench_cut(&o);
     if (bodies) return bench_bodies(&o);

@@ -2,6 +2,14 @@
 #pragma once
 #include "app.h"
 
+/* What a figure must be read with. */
+typedef struct bench_machine {
+    char processor[256];
+    long cores, threads;
+    int isa;                 /* n of x86-64-vn; 0 elsewhere                  */
+    double load;             /* before the start; below 0: not known         */
+} bench_machine;
+
 typedef struct bench_options {
     const char *which;       /* the case                                     */
     const char *scene;       /* of the case fish                             */
@@ -12,6 +20,8 @@ typedef struct bench_options {
     int bodies;              /* of the case bodies_in_water; 0 = its own               */
     double size;             /* of a body of it, spacings; 0 = its own       */
     int fixed;               /* 1: they do not move                          */
+    const char *csv;         /* file that gets a row per measurement; NULL = none */
+    bench_machine machine;
 } bench_options;
 
 enum { BENCH_STAGES = 16 };
@@ -36,8 +46,9 @@ typedef struct bench_result {
     double force_least, force_mean, force_most;   /* wall force against gravity / weight      */
 } bench_result;
 
-/* bench_machine.c: processor, threads, instruction set, load: what a figure must be read with. */
-void bench_print_machine(int threads);
+/* bench_machine.c */
+void bench_find_machine(int threads, bench_machine *machine);
+void bench_print_machine(const bench_machine *machine);
 /* Bytes of the process at its largest. */
 double bench_peak_rss(void);
 
@@ -58,6 +69,8 @@ int bench_step(bench_run *run);
 void bench_end(bench_run *run);
 void bench_print(const bench_run *run, int threads);
 void bench_print_stages(const bench_run *run);
+/* bench_csv.c: appends the row of a measurement to o->csv, if there is one. */
+int bench_write(const bench_options *o, const char *name, const bench_run *run);
 
 /* bench_ball.c: the case of the material point method. */
 int bench_ball(const bench_options *o);

@@ -66,6 +66,7 @@ int bench_ball(const bench_options *o)
     for (int k = 0; k < steps && !failed; k++) failed = bench_step(&run);
     bench_end(&run);
     if (!failed) print_ball(&run, o->threads);
+    if (!failed) failed = bench_write(o, "ball", &run);
     tobi_world_destroy(world);
     return failed;
 }

@@ -88,6 +88,7 @@ int bench_bodies(const bench_options *o)
     for (int k = 0; k < steps && !failed; k++) failed = bench_step(&run);
     bench_end(&run);
     if (!failed) print_pile(&run);
+    if (!failed) failed = bench_write(o, "bodies", &run);
     tobi_world_destroy(world);
     return failed;
 }

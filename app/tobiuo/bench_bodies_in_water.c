@@ -113,6 +113,11 @@ int bench_bodies_in_water(const bench_options *o)
     for (int k = 0; k < 2; k++)
         if (p[k].world) bench_end(&p[k].run);
     if (!failed) print_pools(&p[0], &p[1]);
+    for (int k = 0; k < 2 && !failed; k++) {
+        char name[32];
+        snprintf(name, sizeof name, "%d_bodies_in_water", p[k].bodies);
+        failed = bench_write(o, name, &p[k].run);
+    }
     for (int k = 0; k < 2; k++) tobi_world_destroy(p[k].world);
     return failed;
 }

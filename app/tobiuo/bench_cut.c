@@ -119,6 +119,8 @@ int bench_cut(const bench_options *o)
     for (int k = 0; k < 2 && !failed; k++) failed = (world[k] = make_ball(o, k)) ? 0 : EXIT_ERROR;
     if (!failed) failed = step_both(run[BEFORE], world, (START + RADIUS)/SPEED, 0);
     if (!failed) failed = step_both(run[HALF], world, 0, steps);
+    if (!failed) failed = bench_write(o, "cut_alone", &run[HALF][0]);
+    if (!failed) failed = bench_write(o, "cut", &run[HALF][1]);
     const uint64_t half = failed ? 0 : tobi_world_hash(world[1]);
     if (!failed) failed = step_both(run[AFTER], world, 2*(START + RADIUS)/SPEED, 0);
     if (!failed) {

@@ -525,9 +525,13 @@ vtk "one list of all" solids/all.pvd \
 expect 1 "there is no field \"surface\"" check solids.json --set output.fields=surface
 expect 0 "" bench wcsph --spacing 0.04 --steps 3 --settle 1
 check "bench wcsph: a hash" grep -q "^state  *[0-9a-f]*$" out.txt
-expect 0 "" bench ball --spacing 0.04 --steps 3 --settle 1
+expect 0 "" bench ball --spacing 0.04 --steps 3 --settle 1 --csv bench.csv
 check "bench ball: ns" grep -q "ns per particle and step and core" out.txt
 check "bench ball: a hash" grep -q "^state  *[0-9a-f]*$" out.txt
+expect 0 "" bench small --spacing 0.04 --steps 3 --settle 1 --csv bench.csv
+check "bench --csv: a header and a row each" test "$(awk -F, '{ printf "%s ", $1 }' bench.csv)" = "case ball small "
+check "bench --csv: the hash that is printed" grep -q ",$(sed -n 's/^state *//p' out.txt)\$" bench.csv
+expect 1 "none/bench.csv: No such file or directory" bench ball --spacing 0.04 --steps 3 --settle 1 --csv none/bench.csv
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

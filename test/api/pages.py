@@ -107,7 +107,7 @@ def check_readme(program):
             print(f"{path}: the scene is not scenes/ball_drop")
             failed += 1
         shutil.rmtree("my_ball", ignore_errors=True)
-        commands = re.findall(r"^build/release/tobiuo (new|check|run|describe) ([^#\n]*)", text, re.M)
+        commands = re.findall(r"^tobiuo (new|check|run|describe) ([^#\n]*)", text, re.M)
         for command, rest in commands:
             words = re.sub(r"--frames|--out \S+", "", rest).split()
             result = call(program, "check" if command == "run" else command, *words)

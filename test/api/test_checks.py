@@ -41,6 +41,11 @@ CASES = [
     ("check_house.py", "docs/a.md", "| " + "word "*30 + "|\n```\n" + "word "*30 + "\n```\n$$" + "x "*80 + "$$\n\n    " +
      "word "*30 + "\n", None),
     ("check_house.py", "docs/a.md", "Seen with programs that were not kept.\n", "a.md:1: tells of a program"),
+    ("check_house.py", "docs/theory/a.md", "# A\n\n" + "word\n"*26, "theory/a.md: a sentence of 26 words"),
+    ("check_house.py", "docs/theory/a.md", "Word " + "word\n"*24 + "$a b c$.\nWord\n$$" + "x "*30 + "$$\n" + "word\n"*20 + "\n" +
+     "    " + "word "*30 + "\n", "theory/a.md: a sentence of 26 words"),
+    ("check_house.py", "docs/theory/a.md", "Word " + "word\n"*23 + "$a b c$.\nWord\n$$" + "x "*30 + "$$\n" + "word\n"*20 + "\n" +
+     "    " + "word "*30 + "\n", None),
     ("check_house.py", "docs/decisions/0001-a.md", "# 1. A\n", "0001-a.md:1: a decision without a line"),
     ("check_house.py", "docs/decisions/0001-a.md", "# 1. A\n\nStatus: accepted.\n", None),
     ("check_layers.py", "src/geom/a.c", '#include "exec/exec.h"\n', None),

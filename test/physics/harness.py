@@ -4,12 +4,13 @@ A case is a file test/physics/<case>/run.py with a Case. It prints each figure w
 MISS, and the exit code follows them and case.hold(): statements with a tolerance of their own, each
 justified where it stands. Figures for which the smoke size is too coarse are in coarse.csv (case, and
 text with * for numbers that are measured): they are judged at reference size only. There the rows and the
-plot go to docs/validation/<case>.{md,svg}. Only the standard library is needed.
+plot go to docs/validation/<case>.{md,svg} (validation.py). Only the standard library is needed.
 """
 import argparse
 import array
 import csv
 import fnmatch
+import hashlib
 import json
 import math
 import os
@@ -17,17 +18,19 @@ import pathlib
 import platform
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
-import textwrap
 import time
 import zlib
 
 import plots
+import validation
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 VALIDATION = ROOT / "docs" / "validation"
+INTERRUPTED = 130
 TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B"}
 
 
@@ -44,6 +47,8 @@ class Case:
         parser.add_argument("--reference", default=os.environ.get("TOBIUO_REFERENCE"), metavar="DIR",
                             help="folder of published reference data (default: $TOBIUO_REFERENCE; without "
                                  "one, the cases use the few values that stand in them)")
+        parser.add_argument("--resume", action="store_true",
+                            help="with --out: finished runs there are taken, interrupted ones go on; removed at the end")
         self.args = parser.parse_args()
         if self.args.reference and not os.path.isdir(self.args.reference):
             parser.error(f"--reference: there is no folder {self.args.reference}")
@@ -53,12 +58,14 @@ class Case:
         self.smoke = self.args.size == "smoke"
         if not self.smoke:
             self.commit, self.machine = self.args.commit or find_commit(), self.args.machine or find_machine()
+            self.program_hash = hashlib.sha256(pathlib.Path(self.program).read_bytes()).hexdigest()[:12]
         self.folder = pathlib.Path(__file__).resolve().parent / name
         self.begin = time.monotonic()
         with open(self.folder.parent / "coarse.csv", newline="") as file:
             self.coarse = {row["figure"]: 0 for row in csv.DictReader(file) if row["case"] == name}
         self.rows, self.broken, self.commands, self.plots = [], 0, [], []
         self.referred = self.writes_scenes = False
+        self.methods, self.earlier = set(), 0      # that ran; s that reused runs took
         self.temporary = None
         if self.args.out:
             self.out = pathlib.Path(self.args.out)
@@ -90,15 +97,64 @@ class Case:
         shown = [os.path.relpath(scene, ROOT) if pathlib.Path(scene).is_relative_to(ROOT) else f"{label}.json"]
         command = [str(o) for o in options]
         self.commands.append("tobiuo run " + shlex.join(shown + command))
-        done = subprocess.run([self.program, "run", str(scene), "--out", str(target), "--force", "--quiet",
-                               "--threads", str(self.args.threads)] + command, capture_output=True,
-                              text=True, timeout=100 if self.smoke else None)
-        if done.returncode:
-            print(f"{self.name}: the program failed ({done.returncode}): {done.stderr.strip()}", flush=True)
+        code, complaint = self.compute(scene, target, command)
+        if code:
+            print(f"{self.name}: the program failed ({code}): {complaint.strip()}", flush=True)
             if may_fail:
                 return None
             sys.exit(1)
+        if not self.smoke:
+            self.methods.add(json.loads((target / "resolved.json").read_text())["method"])
         return target
+
+    def compute(self, scene, target, command):
+        """Exit code and complaint of a run; with --resume only of what an earlier start left undone."""
+        words = ["run", str(scene), "--out", str(target), "--force", *command]
+        more = ["--quiet", "--threads", str(self.args.threads)]
+        if not self.args.resume:
+            return self.call(words + more)
+        note, key = target.with_name(target.name + ".note"), self.run_key(scene, command)
+        told = json.loads(note.read_text()) if note.exists() else {}
+        same = told.get("key") == key
+        saved = [path.stat().st_mtime for path in (target / "checkpoints").glob("*.json")]
+        if not same:
+            told = {"key": key, "seconds": 0, "done": False}
+        elif saved and not told["done"]:
+            told["seconds"] += max(max(saved) - note.stat().st_mtime, 0)
+            words = ["resume", str(target)]
+        self.earlier += told["seconds"]
+        if told["done"] or words[0] == "resume":
+            print(f"{self.name}: {target.name}: {'kept' if told['done'] else 'goes on'}", flush=True)
+        if told["done"]:
+            return 0, ""
+        note.parent.mkdir(parents=True, exist_ok=True)
+        note.write_text(json.dumps(told))
+        begin = time.monotonic()
+        code, complaint = self.call(words + more)
+        if code == 0:
+            note.write_text(json.dumps({"key": key, "seconds": told["seconds"] + time.monotonic() - begin, "done": True}))
+        elif code != INTERRUPTED:
+            note.unlink()
+        return code, complaint
+
+    def call(self, words):
+        """Ctrl-C reaches the program too: it is given the time to write its checkpoint."""
+        process = subprocess.Popen([self.program, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            complaint = process.communicate(timeout=100 if self.smoke else None)[1]
+            return process.returncode, complaint
+        except KeyboardInterrupt:
+            process.wait()
+            sys.exit(INTERRUPTED)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            raise
+
+    def run_key(self, scene, command):
+        """What decides the files of a run: the program, the case, the scene, the options."""
+        stamp = validation.Tree().case_stamp(self.name)
+        parts = [self.program_hash, stamp, pathlib.Path(scene).read_text(), *command]
+        return validation.digest(part.encode() for part in parts)
 
     def unit(self, name, *options):
         """What a unit test beside the program prints. Exits if it fails; 77, skipped, if there is none."""
@@ -162,34 +218,31 @@ class Case:
               f"{time.monotonic() - self.begin:.1f} s")
         if not self.smoke:
             self.write_page()
-            write_index()
+            validation.mark(validation.Tree())
         if self.temporary:
             self.temporary.cleanup()
+        elif self.args.resume:
+            shutil.rmtree(self.out, ignore_errors=True)
         sys.exit(1 if self.broken or missed else 0)
 
     def write_page(self):
         VALIDATION.mkdir(parents=True, exist_ok=True)
-        lines = [f"# {self.title}", "", fill(self.text), "", "| figure | value | goal | result |", "|---|---|---|---|"]
+        seconds = self.earlier + time.monotonic() - self.begin
+        made = validation.made_line(self.commit, self.machine, self.program_hash, seconds,
+                                    validation.Tree().stamps(self.name, self.methods))
+        lines = [f"# {self.title}", "", validation.fill(made), "", validation.fill(self.text), "",
+                 "| figure | value | goal | result |", "|---|---|---|---|"]
         lines += ["| %s |" % " | ".join(row) for row in self.rows]
         if self.plots:
             (VALIDATION / f"{self.name}.svg").write_text(plots.draw(self.plots))
             lines += ["", f"![plot]({self.name}.svg)"]
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
-                  *["    " + c for c in self.commands], "",
-                  *(["The scenes that it writes are left in DIR by", "",
-                     f"    test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR", ""]
-                    if self.writes_scenes else []),
-                  f"Commit: {self.commit}. Machine: {self.machine}."]
+                  *["    " + c for c in self.commands]]
+        if self.writes_scenes:
+            lines += ["", "The scenes that it writes are left in DIR by", "",
+                      f"    test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR"]
         (VALIDATION / f"{self.name}.md").write_text("\n".join(lines) + "\n")
-
-
-def fill(text):
-    """Paragraphs of at most 100 columns; lists and tables stay as they are."""
-    parts = text.strip().split("\n\n")
-    return "\n\n".join(part if re.match(r"\s*([-*|]|\d+\.)", part) else
-                       textwrap.fill(" ".join(part.split()), 100, break_long_words=False, break_on_hyphens=False)
-                       for part in parts)
 
 
 def find_commit():
@@ -206,37 +259,6 @@ def find_commit():
 def find_machine():
     name = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
     return f"{name[1] if name else platform.machine()}, {os.cpu_count()} cores"
-
-
-def write_index():
-    """docs/validation/README.md: how many goals each case page meets, and every goal that is missed."""
-    cases, misses, goals = [], [], [0, 0]
-    for page in sorted(VALIDATION.glob("*.md")):
-        text = page.read_text()
-        found = re.search(r"^Commit: (.*?)\. Machine: (.*)\.$", text, re.M)
-        if page.name == "README.md" or not found:
-            continue
-        link, title = f"[{page.stem}]({page.name})", text.splitlines()[0].lstrip("# ")
-        rows = re.findall(r"^\| (?!figure )(.* \| .* \| .*) \| (met|\*\*missed\*\*) \|$", text, re.M)
-        met = sum(result == "met" for _, result in rows)
-        goals = [goals[0] + met, goals[1] + len(rows)]
-        cases.append(f"| {link} | {title} | {met} of {len(rows)} | {found[1]} | {found[2]} |")
-        misses += [f"| {link} | {row} |" for row, result in rows if result != "met"]
-    lines = ["# Validation", "",
-             "Results at reference size, one page per case. Do not edit: `./test.sh --slow [CASE]",
-             "[--reference DIR]` writes them.", "",
-             "- A page has every figure, met, missed or without a goal, what it is compared with, and the",
-             "  commands.",
-             "- DIR (or $TOBIUO_REFERENCE) holds published data, which are not part of this repository.",
-             "  Without it, cases use the few values that stand in their run.py.",
-             f"- Of {goals[1]} goals {goals[0]} are met. The others stand below.", "",
-             "| case | | goals met | commit | machine |", "|---|---|---|---|---|", *cases, "",
-             "## Goals that are missed", "", "| case | figure | value | goal |", "|---|---|---|---|", *misses]
-    known = sorted(path.parent.name for path in (ROOT / "test" / "physics").glob("*/run.py"))
-    missing = [name for name in known if not (VALIDATION / f"{name}.md").exists()]
-    if missing:
-        lines += ["", f"Without a page, so not run to the end at reference size: {', '.join(missing)}."]
-    (VALIDATION / "README.md").write_text("\n".join(lines) + "\n")
 
 
 def read_table(path):

@@ -13,17 +13,14 @@ friction 0.5: x = x0 + 5/14 g sin t^2 (a disc in 2-D: 1/3 g sin t^2). Slip, fric
 of the centre of mass, its acceleration twice the slope of the way against t^2 over the run. Balls from a lattice have
 flats and roll over edges; those from shells are round: particles on spheres (circles) a spacing apart, each a fill of its own.
 
-At 16 cells in R in 3-D the inner seven eighths of the radius are a lattice, as a scene holds 255 x 256 fills; with 3 shells outside
-8 cells give 0.970 instead of 0.971.
+At 16 cells in R in 3-D the inner seven eighths of the radius are a lattice, as a scene holds 255 x 256 fills.
 
 What round balls lack is energy, on coarse grids most of it by the grid: the transfers take the same share of the way whatever the speed, as a force
 does; it falls with the strain in the contact (E) and with the cells in it (11 mm wide in 2-D, 27 in 3-D), and is more with flip and xpic.
 friction_work is that of the creep of a driven ball [Vermeulen & Johnson 1964; G, contact radius a, on a rigid plane],
 3 mu N (4 - 3 nu)/(32 G a^2) (1 - (1 - Q/mu N)^(1/3)) times Q, 0.27, 0.17, 0.12 % in 3-D at 1, 4, 10 MPa; at 1 MPa it is more: put down at once,
 the ball bounces on its dent of 1.8 mm, where the grid damps that little it nearly leaves the slope, and slips. With that creep, 0.3 % held
-by the dent and a spin 0.4 % too fast for its radius a real ball of 1 MPa would be about 1 % slower than the rigid one, too. At 16 cells that
-slip leaves the spin 2 % slow in 3-D, which helps the acceleration by about 1 %; at 4 MPa, where the ball is calmer, 16 cells have 0.989 of
-it with the spin right and 1.5 % of the energy lost (a run that is not one of the rows).""")
+by the dent and a spin 0.4 % too fast for its radius a real ball of 1 MPa would be about 1 % slower than the rigid one, too.""")
 
 R, ANGLE, GRAVITY, END, SMALL = 0.1, math.radians(30), 9.81, 0.6, 0.5
 
