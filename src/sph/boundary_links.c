@@ -361,7 +361,6 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
     TOBI_TRY(grow(&n->answer, &n->answer_capacity, bodies, err));
     TOBI_TRY(grow(&n->part, &n->part_capacity, parts > blocks ? parts : blocks, err));
     TOBI_TRY(grow(&n->caught, &n->caught_capacity, blocks*TOBI_BLOCK, err));
-    TOBI_TRY(grow(&n->nearest, &n->nearest_capacity, blocks*TOBI_BLOCK, err));
     return grow(&n->caught_block, &n->blocks_capacity, blocks, err);
 }
 
@@ -535,7 +534,6 @@ int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
            n->total_capacity*(int64_t)sizeof *n->total + n->answer_capacity*(int64_t)sizeof *n->answer +
            n->part_capacity*(int64_t)sizeof *n->part + n->caught_capacity*(int64_t)sizeof *n->caught +
            n->blocks_capacity*(int64_t)sizeof *n->caught_block +
-           n->nearest_capacity*(int64_t)sizeof *n->nearest +
            n->bins_capacity*(int64_t)sizeof *n->bins + n->start_capacity*(int64_t)sizeof *n->bin_start +
            n->item_capacity*(int64_t)sizeof *n->bin_item + n->row_capacity*(int64_t)sizeof *n->row +
            n->found_capacity*(int64_t)sizeof *n->found + n->hit_capacity*(int64_t)sizeof *n->hit;
@@ -551,7 +549,6 @@ void tobi_boundary_links_free(tobi_boundary_links *n)
     free(n->part);
     free(n->caught);
     free(n->caught_block);
-    free(n->nearest);
     free(n->bins);
     free(n->bin_start);
     free(n->bin_item);

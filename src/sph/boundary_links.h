@@ -30,7 +30,6 @@ typedef struct tobi_boundary_links {
     tobi_block_sum *part;     /* scratch of sums over the particles of each body                  */
     int32_t *caught;          /* [particles] of each block first those that bodies have caught    */
     tobi_caught_block *caught_block;
-    double *nearest;          /* [particles] distance to the nearest body, m, INFINITY without    */
     tobi_body_tree tree;
     /* scratch of the search */
     tobi_boundary_bins *bins;     /* [bodies + 1]                                                     */
@@ -41,7 +40,7 @@ typedef struct tobi_boundary_links {
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
     int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
-    int64_t nearest_capacity, bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity;
+    int64_t bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;
 } tobi_boundary_links;
 

@@ -20,9 +20,12 @@ static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 /* A body between two particles is not farther from both together than they are from each other. */
 static int may_separate(const tobi_system *s, int64_t i, int64_t j)
 {
-    const double *nearest = sph_of(s)->near.nearest, least = nearest[i] + nearest[j];
+    const int32_t *near = sph_fields_of(&s->particles)->near;
+    const tobi_boundary_link *link = sph_of(s)->near.link;
     double square = 0;
     int32_t fixed[3];
+    if (near[j] < 0) return 0;
+    const double least = (double)link[near[i]].nearest + link[near[j]].nearest;
     if (least > 1.001*s->smoothing.h) return 0;
     subtract(s, i, j, fixed);
     for (int a = 0; a < 3; a++) {
@@ -64,14 +67,17 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     return 0;
 }
 
-static void find_nearest(tobi_system *s)
+static void find_nearest(const void *view, int64_t begin, int64_t end)
 {
+    const tobi_system *s = view;
+    const int32_t *near = sph_fields_of(&s->particles)->near;
     const tobi_boundary_links *n = &sph_of(s)->near;
-    double *nearest = n->nearest;
-    for (int64_t i = 0; i < s->particles.count; i++) nearest[i] = INFINITY;
-    for (int64_t k = 0; k < n->count; k++) {
-        double *least = &nearest[n->link[k].particle];
-        *least = fmin(*least, fabs(n->entry[k].distance));
+    for (int64_t k = begin; k < end; k++) {
+        double least = INFINITY;
+        if (near[n->link[k].particle] != k) continue;      /* once per particle */
+        for (const tobi_boundary_entry *e = &n->entry[k]; e; e = tobi_boundary_next(n, e))
+            least = fmin(least, fabs(e->distance));
+        n->link[k].nearest = (float)least;
     }
 }
 
@@ -99,7 +105,7 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
     tobi_boundary_links *n = &sph_of(s)->near;
-    find_nearest(s);
+    tobi_loop(s->sim->exec.threads, n->count, 0, find_nearest, s);
     n->cut_pairs = 0;
     tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
     n->cut_pairs /= 2;      /* each was seen from both sides */
