@@ -28,7 +28,8 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
         out[0] = v->x; out[1] = v->y; out[2] = v->z;
     } else if (!strcmp(name, "pressure")) {
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
-        out[0] = f->product[i] + sph_hydrostatic(s, x);
+        /* that of isph is smooth as it is; an average would be one-sided at walls and surfaces */
+        out[0] = (sph_of(s)->mirrors ? f->pressure[i] : f->product[i]) + sph_hydrostatic(s, x);
     } else if (!strcmp(name, "density")) {
         out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
     } else {
