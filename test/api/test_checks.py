@@ -35,7 +35,7 @@ CASES = [
     ("check_house.py", "src/exec/a.c", "#include <math.h>\n", "a.c:1: no comment that says"),
     ("check_layers.py", "src/view/a.c", '#include "world/x.h"\n', "view includes world"),
     ("check_house.py", "README.md", "line\n"*121, "README.md:120: 121 lines, at most 120"),
-    ("check_house.py", "README.md", "line\n"*120, None),
+    ("check_house.py", "README.md", "Line.\n"*120, None),
     ("check_house.py", "docs/a.md", "word "*21 + "\n", "docs/a.md:1: 105 columns of prose"),
     ("check_house.py", "scenes/x/README.md", "- a\n  " + "word "*21 + "\n", "README.md:2: 107 columns of prose"),
     ("check_house.py", "docs/a.md", "| " + "word "*30 + "|\n```\n" + "word "*30 + "\n```\n$$" + "x "*80 + "$$\n\n    " +
