@@ -7,7 +7,7 @@ usage: validation.py list     cases to be made anew, a line each; on stderr how 
 
 A page records two kinds of stamps. Case: the files of test/physics/CASE and of the folders that its run.py names.
 Method: the state hashes of the golden scenes of that method (test/golden), which change exactly when its
-results do. Drawback: a change that no golden scene sees is not seen here either (decision 48).
+results do. Drawback: a change that no golden scene sees is not seen here either (decision 47).
 """
 import csv
 import fnmatch
