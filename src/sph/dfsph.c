@@ -89,11 +89,6 @@ static void bind_view(tobi_system *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
-    const sph_fields *p = sph_fields_of(&s->particles);
-    v->midway = v->exact;
-    v->moment[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
-    v->moment[1] = p->residual;
-    v->moment[2] = p->correction;
     sph_reference_set(s, m->memory.level);
     v->reference = sph_of(s)->reference;
 }
@@ -279,6 +274,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_SOLVE);
     m->view.pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_pressure_accel, NULL);
@@ -329,6 +325,7 @@ static int has_void(const tobi_system *s)
 static void correct_density(tobi_system *s, dfsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_CORRECT);
     m->view.pressure = sph_fields_of(&s->particles)->correction;
     launch(s, m, m->kernel->sph_density_residual, t);
     double mean = t[2]*s->dt*s->dt/(double)s->particles.count;
@@ -463,6 +460,8 @@ static void move(tobi_system *s)
 {
     dfsph *m = s->state;
     double clock = tobi_clock();
+    sph_stage(s, &m->view, SPH_MOVE);
+    m->view.pressure = sph_fields_of(&s->particles)->pressure;
     sph_measure_forces(s, &m->view, m->kernel, &clock);
     sph_add_hydrostatic(s);
     tobi_couple_correct(s);
