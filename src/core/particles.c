@@ -49,8 +49,8 @@ void *tobi_particles_rows(int64_t rows, size_t row)
 
 static int is_lent(const tobi_field *f) { return f->life != TOBI_STATE && f->life != TOBI_SCRATCH; }
 
-/* at[k]: where field k of the list, if it lives in stages, begins in a row of lent memory: in list order, each
-   at the lowest place that no field of the same stage has. Returns the bytes of a row. */
+/* at[k]: where field k of the list, if it lives in stages, begins in a row of lent memory: in list order,
+   each at the lowest place that no field of the same stage has. Returns the bytes of a row. */
 static size_t place_lent(const tobi_field_list *list, unsigned needs, size_t at[FIELD_LIMIT])
 {
     size_t row = 0;

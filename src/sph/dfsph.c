@@ -11,6 +11,7 @@
 #include "sph/dfsph.h"
 #include "sph/boundary.h"
 #include "linear/multigrid.h"
+#include "linear/solve.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
@@ -150,57 +151,74 @@ static double relative_residual(const tobi_system *s, const dfsph *m, const line
     return sqrt(rz/fmax(fmax(q->source, floor), 1e-300));
 }
 
-/* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
-static double precondition(tobi_system *s, dfsph *m, const linear_solve *q, double jacobi)
+/* The steps of conjugate gradients, in float. */
+typedef struct cg_run { tobi_system *s; dfsph *m; linear_solve *q; double *t; } cg_run;
+
+/* t: |r|^2/diagonal, |r|; largest |r|. */
+static int ends(void *user)
 {
-    const sph_fields *p = sph_fields_of(&s->particles);
-    if (!q->grid) return jacobi;
-    return jacobi + tobi_multigrid_apply(&m->grid, &s->sim->exec, p->residual, p->precondition);
+    const cg_run *c = user;
+    linear_solve *q = c->q;
+    q->error = c->t[1]*c->s->dt*c->s->dt/(double)c->s->particles.count;
+    q->worst = c->t[6];
+    q->relative = relative_residual(c->s, c->m, q, c->t[0]);
+    q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
+    return !(c->t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing ||
+           (q->converged && q->iterations >= q->min) || tobi_simulation_stops(c->s->sim);
 }
 
-/* Conjugate gradients until the residual at hand is small enough. t: |r|^2/diagonal, |r|; largest |r|. */
+static double precondition(void *user)
+{
+    const cg_run *c = user;
+    const sph_fields *p = sph_fields_of(&c->s->particles);
+    if (!c->q->grid) return c->t[0];
+    return c->t[0] + tobi_multigrid_apply(&c->m->grid, &c->s->sim->exec, p->residual, p->precondition);
+}
+
+static void turn(void *user, double beta)
+{
+    const cg_run *c = user;
+    c->m->view.beta = (float)beta;
+    launch(c->s, c->m, c->m->kernel->sph_cg_direction, c->t);
+    center(c->s, c->m, c->q, c->m->kernel->sph_center_direction, c->t[0], NULL);
+}
+
+static double apply(void *user)
+{
+    const cg_run *c = user;
+    launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
+    launch(c->s, c->m, c->m->kernel->sph_product, c->t);
+    if (c->q->coupled) tobi_couple_product(c->s, c->t);
+    center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
+    return c->t[0];
+}
+
+static void advance(void *user, double alpha)
+{
+    const cg_run *c = user;
+    c->m->view.alpha = (float)alpha;
+    launch(c->s, c->m, c->m->kernel->sph_cg_update, c->t);
+    c->q->iterations++;
+}
+
 static void iterate(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
-    const sph_kernels *k = m->kernel;
-    double rz = 0, scale = s->dt*s->dt/(double)s->particles.count;
-    m->view.beta = 0;
-    for (;; q->iterations++) {
-        q->error = t[1]*scale;
-        q->worst = t[6];
-        q->relative = relative_residual(s, m, q, t[0]);
-        q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
-        if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
-        if ((q->converged && q->iterations >= q->min) || tobi_simulation_stops(s->sim)) break;
-        double last = rz;
-        rz = precondition(s, m, q, t[0]);
-        m->view.beta = last > 0 ? (float)(rz/last) : 0;
-        launch(s, m, k->sph_cg_direction, t);
-        center(s, m, q, k->sph_center_direction, t[0], NULL);
-        launch(s, m, k->sph_pressure_accel, NULL);
-        launch(s, m, k->sph_product, t);
-        if (q->coupled) tobi_couple_product(s, t);
-        center(s, m, q, k->sph_center_product, t[1], t);
-        if (!(t[0] > 0)) break;
-        m->view.alpha = (float)(rz/t[0]);
-        launch(s, m, k->sph_cg_update, t);
-    }
+    static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
+    cg_run run = { s, m, q, t };
+    tobi_cg_iterate(&steps, &run);
 }
 
 /* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
    without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
 static int hold_pulling(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
-    const sph_kernels *k = m->kernel;
     double pull[TOBI_TOTALS];
+    cg_run run = { s, m, q, t };
     if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->sim->stopped) return 0;
-    launch(s, m, k->sph_hold, pull);
+    launch(s, m, m->kernel->sph_hold, pull);
     if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
-    launch(s, m, k->sph_pressure_accel, NULL);
-    launch(s, m, k->sph_product, t);
-    if (q->coupled) tobi_couple_product(s, t);
-    m->view.alpha = 1;
-    launch(s, m, k->sph_cg_update, t);
-    q->iterations++;
+    apply(&run);
+    advance(&run, 1);
     return 1;
 }
 
