@@ -1,6 +1,6 @@
-/* Preconditioned conjugate gradients (Hestenes & Stiefel 1952; Saad, Iterative Methods, alg. 9.1), once as steps
-   over vectors that others hold, and with them for vectors of doubles: three, z shares its memory with A q.
-   Drawback: two sums per iteration that wait for each other. */
+/* Preconditioned conjugate gradients (Hestenes & Stiefel 1952; Saad, Iterative Methods, alg. 9.1), once as
+   steps over vectors that others hold, and with them for vectors of doubles: three, z shares its memory with
+   A q. Drawback: two sums per iteration that wait for each other. */
 #include "linear/run.h"
 #include <math.h>
 
