@@ -195,11 +195,15 @@ tobi_status tobi_particles_fit(tobi_particles *p, tobi_error *err)
     return resize(p, p->count) ? TOBI_OK : give_up(p, p->count, err);
 }
 
+tobi_status tobi_particles_room(tobi_particles *p, int64_t rows, tobi_error *err)
+{
+    if (rows <= p->capacity || resize(p, rows + rows/8)) return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld more particles", (long long)(rows - p->count));
+}
+
 tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err)
 {
-    const int64_t rows = p->count + count;
-    if (rows > p->capacity && !resize(p, rows + rows/8))
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld more particles", (long long)count);
+    TOBI_TRY(tobi_particles_room(p, p->count + count, err));
     *first = p->count;
     for (int64_t k = 0; k < count; k++) tobi_particles_add(p);
     return TOBI_OK;

@@ -42,6 +42,8 @@ tobi_status tobi_particles_reserve(tobi_particles *p, const tobi_field_list *lis
 /* A new particle, all zero but its id: its row. There must be room. */
 int64_t tobi_particles_add(tobi_particles *p);
 tobi_status tobi_particles_fit(tobi_particles *p, tobi_error *err);
+/* Room for so many rows; arrays may move, rows stay. On failure nothing has changed. */
+tobi_status tobi_particles_room(tobi_particles *p, int64_t rows, tobi_error *err);
 /* `count` new particles behind the last, all zero but their ids: the first row into *first. Arrays may move;
    there must be no ghosts. On failure nothing has changed. */
 tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err);
