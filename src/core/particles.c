@@ -38,14 +38,7 @@ static void *get_array(const char *slot)
 
 static void set_array(char *slot, void *data) { memcpy(slot, &data, sizeof data); }
 
-static size_t bytes_of(int64_t rows, size_t row) { return (((size_t)rows + TOBI_PAD_ROWS)*row + 63)/64*64; }
-
-void *tobi_particles_rows(int64_t rows, size_t row)
-{
-    void *data = aligned_alloc(64, bytes_of(rows, row));
-    if (data) memset(data, 0, bytes_of(rows, row));
-    return data;
-}
+void *tobi_particles_rows(int64_t rows, size_t row) { return tobi_array_zero(rows + TOBI_PAD_ROWS, row); }
 
 static int is_lent(const tobi_field *f) { return f->life != TOBI_STATE && f->life != TOBI_SCRATCH; }
 
@@ -80,7 +73,7 @@ static int make_lent(tobi_particles *p, int64_t rows)
     if (row == 0) return 1;
     char *made = tobi_particles_rows((int64_t)lent_rows(rows), row);
     if (!made) return 0;
-    free(p->lent);
+    tobi_array_free(p->lent);
     p->lent = made;
     return 1;
 }
@@ -120,7 +113,7 @@ static int resize(tobi_particles *p, int64_t rows)
         void *made = tobi_particles_rows(rows, f->bytes), *old = get_array(slot);
         if (!made) return 0;
         if (old) memcpy(made, old, (size_t)p->count*f->bytes);
-        free(old);
+        tobi_array_free(old);
         set_array(slot, made);
     }
     p->capacity = rows;
@@ -153,8 +146,8 @@ void tobi_particles_free(tobi_particles *p)
 {
     char *slot;
     if (p->own) tobi_particles_stage(p, 0);
-    for (int k = 0; (k < COMMON || p->own) && find_field(p, k, &slot); k++) free(get_array(slot));
-    free(p->lent);
+    for (int k = 0; (k < COMMON || p->own) && find_field(p, k, &slot); k++) tobi_array_free(get_array(slot));
+    tobi_array_free(p->lent);
     free(p->own);
     memset(p, 0, sizeof *p);
 }
@@ -168,7 +161,7 @@ tobi_status tobi_particles_reserve(tobi_particles *p, const tobi_field_list *lis
         const tobi_field *f = find_field(p, k, &slot);
         if (!f) break;
         if (f->life != TOBI_STATE) continue;
-        void *made = aligned_alloc(64, bytes_of(capacity, f->bytes));
+        void *made = tobi_array_make(capacity + TOBI_PAD_ROWS, f->bytes);
         set_array(slot, made);
         good = made != NULL;
     }

@@ -400,10 +400,9 @@ static void restore_velocities(tobi_system *s, const tobi_float4 *kept)
 static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (s->step > 0) return TOBI_OK;
-    size_t bytes = (size_t)s->particles.count*sizeof(tobi_float4);
-    tobi_float4 *kept = malloc(bytes);
+    tobi_float4 *kept = tobi_array_make(s->particles.count, sizeof *kept);
     if (!kept) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the velocities of the start");
-    memcpy(kept, s->particles.velocity, bytes);
+    memcpy(kept, s->particles.velocity, (size_t)s->particles.count*sizeof *kept);
     tobi_status status = TOBI_OK;
     for (int k = 0; k < 2 && status == TOBI_OK; k++) {
         status = sph_see_walls(s, &m->view, m->kernel, clock, err);
@@ -417,7 +416,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         set_reference(s, m);
         bind_view(s, m);
     }
-    free(kept);
+    tobi_array_free(kept);
     return status;
 }
 
