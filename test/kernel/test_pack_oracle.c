@@ -69,7 +69,10 @@ static mpm_pack_view see(state *s)
     return (mpm_pack_view){ s->pack, s->node, s->weight, s->velocity, s->yield, s->push, s->moving };
 }
 
-static int node_of(const state *s, const contact *c, int n) { return (int)s->node[s->pack[c->pack].node + n]; }
+static int node_of(const state *s, const contact *c, int n)
+{
+    return (int)s->node[s->pack[c->pack].node + n];
+}
 
 static void close_to(double made, double expected, double size)
 {
