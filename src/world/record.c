@@ -1,6 +1,6 @@
 /* The life of a run: create or resume, step, output, finish. The files are made in record_*.c. */
 #include "base/plain.h"
-#include "io/file.h"
+#include "base/file.h"
 #include "world/params.h"
 #include "world/record.h"
 #include "world/world.h"

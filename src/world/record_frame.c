@@ -2,7 +2,7 @@
    own, seen so that the box fits unless there is a camera. */
 #include "mpm/cuts.h"
 #include "mpm/particle_fields.h"
-#include "view/picture.h"
+#include "tobiuo/picture.h"
 #include "world/params.h"
 #include "world/record.h"
 #include "world/world.h"
