@@ -22,7 +22,7 @@ RANK = {
     "scene": 6,
 }
 # Rooms that read the world through include/tobiuo alone, and the rooms below that they stand on.
-ONLY = {"view": {"base", "exec"}}
+ONLY = {"view": {"base", "exec"}, "scene": {"base", "geom"}}
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)

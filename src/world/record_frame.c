@@ -3,7 +3,7 @@
 #include "mpm/cuts.h"
 #include "mpm/particle_fields.h"
 #include "tobiuo/picture.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>
