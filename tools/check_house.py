@@ -24,6 +24,8 @@ CODE_SUFFIXES = C_SUFFIXES | {".py", ".sh", ".lua", ".cmake", ".txt", ".json"}
 SCRIPT_SUFFIXES = {".sh", ".py", ".txt", ".cmake"}
 FORBIDDEN = re.compile(r"(^|[_.-])(utils?|common|misc)([_.-]|$)", re.IGNORECASE)
 MACHINE_PATH = re.compile(r"""(?<![\w.$})/-])/(work|root|tmp|home)(/|\b)""")
+ARRAYS = re.compile(r"\b(malloc|realloc|aligned_alloc)\s*\(")
+ARRAY_FOLDERS = {("src", "sph"), ("src", "linear")}
 OPENMP = re.compile(r"pragma\s+omp|_Pragma\s*\(\s*\"\s*omp|\bomp_|\bomp\.h")
 OPENMP_FOLDERS = ("include", "src", "app", "bench")     # tests may call the library from threads of their own
 README_LINES = 120
@@ -81,6 +83,8 @@ def check_lines(where, suffix, lines, errors):
             errors.append(f"{where}:{number}: {len(line)} columns, at most {limit}")
         if where.parts[0] in OPENMP_FOLDERS and where.parts[:2] != ("src", "exec") and OPENMP.search(line):
             errors.append(f"{where}:{number}: names OpenMP; only src/exec may, see tobi_loop in exec/exec.h")
+        if where.parts[:2] in ARRAY_FOLDERS and ARRAYS.search(line):
+            errors.append(f"{where}:{number}: arrays of kernels belong to exec, see tobi_array_make in exec/exec.h")
         if suffix not in SCRIPT_SUFFIXES and MACHINE_PATH.search(line) and not TEST_FOLDER.search(line):
             errors.append(f"{where}:{number}: path of a machine: {line.strip()[:60]}")
         if line != line.rstrip() and suffix in C_SUFFIXES:

@@ -5,7 +5,6 @@
 #include "core/cells.k.h"
 #include "core/kernels.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { CACHED_CELLS = 700 };   /* cells of one layer of a strip that stay in a core's cache */
@@ -73,18 +72,18 @@ tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *
     const int64_t n = p->capacity, sort = scratch_entries(n, tobi_particles_widest(p)) + 16;
     const int64_t guess = n*36 + 4096, entries = sort > guess ? sort : guess;
     if (!c->record || c->rows < n) {
-        free(c->record);
-        free(c->list_start);
-        free(c->list_groups);
+        tobi_array_free(c->record);
+        tobi_array_free(c->list_start);
+        tobi_array_free(c->list_groups);
         c->rows = n;
         c->record = tobi_particles_rows(n, sizeof *c->record);
         c->list_start = tobi_particles_rows(n, sizeof *c->list_start);
         c->list_groups = tobi_particles_rows(n, sizeof *c->list_groups);
     }
     if (!c->list || c->list_capacity < entries) {
-        free(c->list);
+        tobi_array_free(c->list);
         c->list_capacity = entries;
-        c->list = aligned_alloc(64, (size_t)(entries*4 + 63)/64*64);
+        c->list = tobi_array_make(entries, sizeof *c->list);
     }
     return c->record && c->list_start && c->list_groups && c->list ? TOBI_OK : give_up(c, err);
 }
@@ -100,20 +99,20 @@ tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, cons
                              "support radii (%g m)",
                              box->size[a], "xyz"[a], 3 * h);
     choose_cells(c, box, h, p->capacity);
-    c->start = malloc((size_t)(c->total + 1)*sizeof *c->start);
-    c->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *c->histogram);
+    c->start = tobi_array_make(c->total + 1, sizeof *c->start);
+    c->histogram = tobi_array_make(tobi_sort_histogram_size(x), sizeof *c->histogram);
     if (!c->start || !c->histogram) return give_up(c, err);
     return tobi_cells_grow(c, p, err);
 }
 
 void tobi_cells_free(tobi_cells *c)
 {
-    free(c->start);
-    free(c->histogram);
-    free(c->list);
-    free(c->record);
-    free(c->list_start);
-    free(c->list_groups);
+    tobi_array_free(c->start);
+    tobi_array_free(c->histogram);
+    tobi_array_free(c->list);
+    tobi_array_free(c->record);
+    tobi_array_free(c->list_start);
+    tobi_array_free(c->list_groups);
     memset(c, 0, sizeof *c);
 }
 
@@ -165,9 +164,9 @@ tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, con
 static tobi_status grow_list(tobi_cells *c, tobi_error *err)
 {
     int64_t more = c->list_capacity + c->list_capacity/8;
-    int32_t *list = aligned_alloc(64, (size_t)(more*4 + 63)/64*64);
+    int32_t *list = tobi_array_make(more, sizeof *list);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
-    free(c->list);
+    tobi_array_free(c->list);
     c->list = list;
     c->list_capacity = more;
     return TOBI_OK;

@@ -8,16 +8,18 @@
 #pragma once
 #include "base/type.h"
 
-/* STATE fields survive a step: they are sorted with the particles and stored in checkpoints. SCRATCH fields
-   are computed anew in every step. */
-enum { TOBI_STATE, TOBI_SCRATCH };
+/* The life of a field. STATE fields survive a step: they are sorted with the particles and stored in
+   checkpoints. SCRATCH fields are computed anew in every step. Any other number is a set of stages, bits that
+   the method names: the field has memory in these stages only (tobi_particles_stage), which fields of other
+   stages use in theirs. */
+enum { TOBI_STATE = 0, TOBI_SCRATCH = -1 };
 
 typedef struct tobi_field {
     const char *name;
     tobi_type type;
     int components;                 /* numbers of that type in a row                                    */
     size_t bytes;                   /* of a row                                                         */
-    int life;                       /* TOBI_STATE, TOBI_SCRATCH                                         */
+    int life;                       /* TOBI_STATE, TOBI_SCRATCH or stages                               */
     unsigned need;                  /* 0: always there; else there if the method's `needs` has the bit  */
     size_t offset;                  /* of its pointer in the struct                                     */
     const char *unit, *doc;

@@ -3,14 +3,17 @@
    compiler. */
 #include "core/particles.h"
 #include "exec/exec.h"
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { DIGIT = 11 };
+enum { DIGIT = 11, FIELD_LIMIT = 64 };
 
 #define ROW(...) TOBI_FIELD_ROW(tobi_particles, __VA_ARGS__)
 static const tobi_field common[] = { TOBI_COMMON_FIELDS(ROW) };
 enum { COMMON = sizeof common/sizeof *common };
+
+static int is_there(const tobi_field *f, unsigned needs) { return !f->need || f->need & needs; }
 
 /* Field k of those that are there, and where its pointer is kept; NULL past the last. */
 static const tobi_field *find_field(const tobi_particles *p, int k, char **slot)
@@ -19,7 +22,7 @@ static const tobi_field *find_field(const tobi_particles *p, int k, char **slot)
     if (k < COMMON) return &common[k];
     for (int j = 0, at = COMMON; p->list && j < p->list->count; j++) {
         const tobi_field *f = &p->list->field[j];
-        if (f->need && !(f->need & p->needs)) continue;
+        if (!is_there(f, p->needs)) continue;
         *slot = (char *)p->own + f->offset;
         if (at++ == k) return f;
     }
@@ -35,13 +38,66 @@ static void *get_array(const char *slot)
 
 static void set_array(char *slot, void *data) { memcpy(slot, &data, sizeof data); }
 
-static size_t bytes_of(int64_t rows, size_t row) { return (((size_t)rows + TOBI_PAD_ROWS)*row + 63)/64*64; }
+void *tobi_particles_rows(int64_t rows, size_t row) { return tobi_array_zero(rows + TOBI_PAD_ROWS, row); }
 
-void *tobi_particles_rows(int64_t rows, size_t row)
+static int is_lent(const tobi_field *f) { return f->life != TOBI_STATE && f->life != TOBI_SCRATCH; }
+
+/* at[k]: where field k of the list, if it lives in stages, begins in a row of lent memory: in list order,
+   each at the lowest place that no field of the same stage has. Returns the bytes of a row. */
+static size_t place_lent(const tobi_field_list *list, unsigned needs, size_t at[FIELD_LIMIT])
 {
-    void *data = aligned_alloc(64, bytes_of(rows, row));
-    if (data) memset(data, 0, bytes_of(rows, row));
-    return data;
+    size_t row = 0;
+    for (int k = 0; list && k < list->count; k++) {
+        const tobi_field *f = &list->field[k];
+        if (!is_lent(f) || !is_there(f, needs)) continue;
+        at[k] = 0;
+        for (int j = 0; j < k; j++) {
+            const tobi_field *g = &list->field[j];
+            if (!is_lent(g) || !is_there(g, needs) || !(f->life & g->life)) continue;
+            if (at[k] >= at[j] + g->bytes || at[j] >= at[k] + f->bytes) continue;
+            at[k] = at[j] + g->bytes;
+            j = -1;                                    /* the ones before may be in the way now */
+        }
+        if (at[k] + f->bytes > row) row = at[k] + f->bytes;
+    }
+    return row;
+}
+
+/* Rows of lent arrays: each begins on a cache line, whatever its place. */
+static size_t lent_rows(int64_t rows) { return ((size_t)rows + TOBI_PAD_ROWS + 63)/64*64; }
+
+static int make_lent(tobi_particles *p, int64_t rows)
+{
+    size_t at[FIELD_LIMIT], row = place_lent(p->list, p->needs, at);
+    tobi_particles_stage(p, 0);
+    if (row == 0) return 1;
+    char *made = tobi_particles_rows((int64_t)lent_rows(rows), row);
+    if (!made) return 0;
+    tobi_array_free(p->lent);
+    p->lent = made;
+    return 1;
+}
+
+/* Values that nobody should read. */
+static inline int spoil(void *data, size_t bytes)
+{
+    memset(data, 0xff, bytes);
+    return 1;
+}
+
+void tobi_particles_stage(tobi_particles *p, int stages)
+{
+    size_t at[FIELD_LIMIT];
+    const size_t rows = lent_rows(p->capacity);
+    place_lent(p->list, p->needs, at);
+    for (int k = 0; p->list && k < p->list->count; k++) {
+        const tobi_field *f = &p->list->field[k];
+        char *slot = (char *)p->own + f->offset;
+        if (!is_lent(f) || !is_there(f, p->needs)) continue;
+        if (get_array(slot) && !(f->life & stages)) assert(spoil(get_array(slot), rows*f->bytes));
+        set_array(slot, f->life & stages ? p->lent + rows*at[k] : NULL);
+    }
+    p->stages = stages;
 }
 
 /* All arrays for so many rows, what was in them kept; one after the other, so that no more than one is there
@@ -49,13 +105,15 @@ void *tobi_particles_rows(int64_t rows, size_t row)
 static int resize(tobi_particles *p, int64_t rows)
 {
     char *slot;
+    if (!make_lent(p, rows)) return 0;
     for (int k = 0;; k++) {
         const tobi_field *f = find_field(p, k, &slot);
         if (!f) break;
+        if (is_lent(f)) continue;
         void *made = tobi_particles_rows(rows, f->bytes), *old = get_array(slot);
         if (!made) return 0;
         if (old) memcpy(made, old, (size_t)p->count*f->bytes);
-        free(old);
+        tobi_array_free(old);
         set_array(slot, made);
     }
     p->capacity = rows;
@@ -87,7 +145,9 @@ tobi_status tobi_particles_create(tobi_particles *p, const tobi_field_list *list
 void tobi_particles_free(tobi_particles *p)
 {
     char *slot;
-    for (int k = 0; (k < COMMON || p->own) && find_field(p, k, &slot); k++) free(get_array(slot));
+    if (p->own) tobi_particles_stage(p, 0);
+    for (int k = 0; (k < COMMON || p->own) && find_field(p, k, &slot); k++) tobi_array_free(get_array(slot));
+    tobi_array_free(p->lent);
     free(p->own);
     memset(p, 0, sizeof *p);
 }
@@ -101,7 +161,7 @@ tobi_status tobi_particles_reserve(tobi_particles *p, const tobi_field_list *lis
         const tobi_field *f = find_field(p, k, &slot);
         if (!f) break;
         if (f->life != TOBI_STATE) continue;
-        void *made = aligned_alloc(64, bytes_of(capacity, f->bytes));
+        void *made = tobi_array_make(capacity + TOBI_PAD_ROWS, f->bytes);
         set_array(slot, made);
         good = made != NULL;
     }
@@ -128,11 +188,15 @@ tobi_status tobi_particles_fit(tobi_particles *p, tobi_error *err)
     return resize(p, p->count) ? TOBI_OK : give_up(p, p->count, err);
 }
 
+tobi_status tobi_particles_room(tobi_particles *p, int64_t rows, tobi_error *err)
+{
+    if (rows <= p->capacity || resize(p, rows + rows/8)) return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld more particles", (long long)(rows - p->count));
+}
+
 tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err)
 {
-    const int64_t rows = p->count + count;
-    if (rows > p->capacity && !resize(p, rows + rows/8))
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld more particles", (long long)count);
+    TOBI_TRY(tobi_particles_room(p, p->count + count, err));
     *first = p->count;
     for (int64_t k = 0; k < count; k++) tobi_particles_add(p);
     return TOBI_OK;
@@ -150,11 +214,11 @@ void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to)
 
 int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs)
 {
-    size_t bytes = 0;
+    size_t bytes = 0, at[FIELD_LIMIT];
     for (int k = 0; k < COMMON; k++) bytes += common[k].bytes;
     for (int k = 0; list && k < list->count; k++)
-        if (!list->field[k].need || list->field[k].need & needs) bytes += list->field[k].bytes;
-    return (int64_t)bytes;
+        if (is_there(&list->field[k], needs) && !is_lent(&list->field[k])) bytes += list->field[k].bytes;
+    return (int64_t)(bytes + place_lent(list, needs, at));
 }
 
 int64_t tobi_particles_widest(const tobi_particles *p)

@@ -10,7 +10,7 @@
 
 #define TOBI_COMMON_FIELDS(X) \
     X(tobi_double3, TOBI_F64, 3, position, TOBI_STATE, 0, "m",   "position from the lower corner") \
-    X(tobi_float4,  TOBI_F32, 4, velocity, TOBI_STATE, 0, "m/s", "velocity; w: the method's own") \
+    X(tobi_float4,  TOBI_F32, 4, velocity, TOBI_STATE, 0, "m/s", "velocity; w: of mlsmpm, by contact") \
     X(int64_t,      TOBI_I64, 1, id,       TOBI_STATE, 0, "1",   "number that stays, of the system") \
     X(uint8_t,      TOBI_U8,  1, fluid,    TOBI_STATE, 0, "1",   "number of the fluid or solid")
 
@@ -24,6 +24,8 @@ typedef struct tobi_particles {
     const tobi_field_list *list;    /* of the method, NULL = none                                      */
     unsigned needs;                 /* bits of fields that are there though not always                 */
     void *own;                      /* the method's struct of pointers, owned                          */
+    char *lent;                     /* memory of the fields that live in stages, owned                 */
+    int stages;                     /* those at hand                                                   */
     TOBI_COMMON_FIELDS(TOBI_FIELD_POINTER)
 } tobi_particles;
 
@@ -40,11 +42,16 @@ tobi_status tobi_particles_reserve(tobi_particles *p, const tobi_field_list *lis
 /* A new particle, all zero but its id: its row. There must be room. */
 int64_t tobi_particles_add(tobi_particles *p);
 tobi_status tobi_particles_fit(tobi_particles *p, tobi_error *err);
+/* Room for so many rows; arrays may move, rows stay. On failure nothing has changed. */
+tobi_status tobi_particles_room(tobi_particles *p, int64_t rows, tobi_error *err);
 /* `count` new particles behind the last, all zero but their ids: the first row into *first. Arrays may move;
    there must be no ghosts. On failure nothing has changed. */
 tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err);
 /* Copies the state fields of row `from` over row `to`: rows are removed by keeping the others. */
 void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to);
+/* Begins stages: fields that live in none of them lose their memory (NULL; NaN in dev builds), those that
+   live in one have it. What lives on from the stages before keeps its values; the rest is undefined. */
+void tobi_particles_stage(tobi_particles *p, int stages);
 /* An array of so many rows of so many bytes, zero, padded, for cache lines; NULL without memory. */
 void *tobi_particles_rows(int64_t rows, size_t row);
 /* Bytes per particle, without neighbour lists. */

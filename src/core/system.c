@@ -30,17 +30,26 @@ void tobi_system_measure(tobi_system *s)
     s->info.weight = t[5]*sqrt(g2);
 }
 
+tobi_status tobi_system_room(tobi_system *s, int64_t rows, tobi_error *err)
+{
+    if (rows <= s->particles.capacity) return TOBI_OK;
+    TOBI_TRY(tobi_exec_reserve(&s->sim->exec, rows, err));
+    TOBI_TRY(tobi_particles_room(&s->particles, rows, err));
+    if (s->method->inserted) s->method->inserted(s);
+    return s->method->solids ? TOBI_OK : tobi_cells_grow(&s->cells, &s->particles, err);
+}
+
 tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, tobi_error *err)
 {
     tobi_particles *p = &s->particles;
     tobi_simulation *w = s->sim;
-    TOBI_TRY(tobi_exec_reserve(&w->exec, p->count + count, err));
+    TOBI_TRY(tobi_system_room(s, p->count + count, err));
     p->next_id = w->next_id - s->first_id;
     TOBI_TRY(tobi_particles_insert(p, count, first, err));
     w->next_id += count;
     s->info.fluid_particles = p->count;
     if (s->method->inserted) s->method->inserted(s);
-    return s->method->solids ? TOBI_OK : tobi_cells_grow(&s->cells, p, err);
+    return TOBI_OK;
 }
 
 double tobi_system_speed_scale(const tobi_system *s)

@@ -40,6 +40,7 @@ typedef struct tobi_system {
     double start_head;              /* m2/s2, g times the height of the fluid at the start   */
     tobi_step_info info;            /* of the last step                                      */
     int64_t first_id;               /* of the world's ids; particles.id count from there     */
+    int64_t started;                /* particles that it began with                          */
     int32_t *row_of;                /* owned: rows in id order, for reading; see world/read.c */
     int64_t row_capacity;
 } tobi_system;
@@ -138,6 +139,8 @@ typedef struct tobi_method {
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);
+/* Room for so many rows, lists and all; nothing else changes, also on failure. */
+tobi_status tobi_system_room(tobi_system *s, int64_t rows, tobi_error *err);
 /* `count` new particles between two steps of a world that has started: the first row into *first, all zero
    but their ids, which go on from the world's. The caller places them (position, velocity, fluid) and calls
    method->place. On failure no particle is new. */

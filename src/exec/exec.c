@@ -49,6 +49,28 @@ void tobi_exec_free(tobi_exec *x)
     x->partial_blocks = 0;
 }
 
+static size_t bytes_of(int64_t count, size_t size) { return ((size_t)count*size + 127)/64*64; }
+
+void *tobi_array_make(int64_t count, size_t size) { return aligned_alloc(64, bytes_of(count, size)); }
+
+void *tobi_array_zero(int64_t count, size_t size)
+{
+    void *array = tobi_array_make(count, size);
+    if (array) memset(array, 0, bytes_of(count, size));
+    return array;
+}
+
+void *tobi_array_grow(void *array, int64_t kept, int64_t count, size_t size)
+{
+    void *more = tobi_array_make(count, size);
+    if (!more) return NULL;
+    if (array) memcpy(more, array, (size_t)kept*size);
+    free(array);
+    return more;
+}
+
+void tobi_array_free(void *array) { free(array); }
+
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err)
 {
     int64_t blocks = (n + TOBI_BLOCK - 1)/TOBI_BLOCK + 1;

@@ -41,6 +41,14 @@ void tobi_exec_free(tobi_exec *x);
 /* Makes room for sums over n items, so that launches never allocate. */
 tobi_status tobi_exec_reserve(tobi_exec *x, int64_t n, tobi_error *err);
 
+/* Arrays that kernels reach live where exec keeps them: today in host memory, beginning on a cache line.
+   `count` items of `size` bytes, undefined or zero; NULL without memory. Only tobi_array_free takes them. */
+void *tobi_array_make(int64_t count, size_t size);
+void *tobi_array_zero(int64_t count, size_t size);
+/* A longer one in its place, with the first `kept` items; on failure NULL, and the old one stays. */
+void *tobi_array_grow(void *array, int64_t kept, int64_t count, size_t size);
+void tobi_array_free(void *array);
+
 /* Threads for a loop (tobi_loop): waking one costs some 10 us, so each gets at least `worth` items.
    The result must not depend on them. */
 static inline int tobi_team(const tobi_exec *x, int64_t items, int64_t worth)

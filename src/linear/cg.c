@@ -1,28 +1,66 @@
-/* Preconditioned conjugate gradients (Hestenes & Stiefel 1952; Saad, Iterative Methods, alg. 9.1). Three
-   vectors: z shares its memory with A s. Drawback: two sums per iteration that wait for each other. */
+/* Preconditioned conjugate gradients (Hestenes & Stiefel 1952; Saad, Iterative Methods, alg. 9.1), once as
+   steps over vectors that others hold, and with them for vectors of doubles: three, z shares its memory with
+   A q. Drawback: two sums per iteration that wait for each other. */
 #include "linear/run.h"
 #include <math.h>
 
+int tobi_cg_iterate(const tobi_cg_steps *steps, void *user)
+{
+    double last = 0;
+    while (!steps->ends(user)) {
+        const double rz = steps->precondition(user);
+        if (!(rz > 0) || !isfinite(rz)) return 1;
+        steps->turn(user, last > 0 ? rz/last : 0);
+        last = rz;
+        const double qq = steps->apply(user);
+        if (!(qq > 0) || !isfinite(qq) || !isfinite(rz/qq)) return 1;
+        steps->advance(user, rz/qq);
+    }
+    return 0;
+}
+
+static double *direction(const tobi_linear_run *run) { return run->work; }
+static double *product(const tobi_linear_run *run) { return run->work + run->a->rows; }
+
+static int ends(void *user)
+{
+    tobi_linear_run *run = user;
+    return run->norm <= run->goal || tobi_run_ends(run);
+}
+
+static double precondition(void *user)
+{
+    const tobi_linear_run *run = user;
+    tobi_run_precondition(run, product(run), run->r);
+    return tobi_run_dot(run, run->r, product(run));
+}
+
+static void turn(void *user, double beta)
+{
+    const tobi_linear_run *run = user;
+    if (beta > 0) tobi_run_blend(run, direction(run), product(run), beta);
+    else tobi_run_scale(run, direction(run), 1, product(run));
+}
+
+static double apply(void *user)
+{
+    const tobi_linear_run *run = user;
+    tobi_run_apply(run, product(run), direction(run));
+    return tobi_run_dot(run, direction(run), product(run));
+}
+
+static void advance(void *user, double alpha)
+{
+    tobi_linear_run *run = user;
+    tobi_run_add(run, run->x, alpha, direction(run));
+    run->norm = sqrt(tobi_run_add(run, run->r, -alpha, product(run)));
+    run->report.iterations++;
+}
+
 static void run_round(tobi_linear_run *run)
 {
-    const int64_t n = run->a->rows;
-    double *s = run->work, *z = s + n, *q = z, last = 0;
-    while (run->norm > run->goal && !tobi_run_ends(run)) {
-        tobi_run_precondition(run, z, run->r);
-        const double rz = tobi_run_dot(run, run->r, z);
-        run->broken = !(rz > 0) || !isfinite(rz);
-        if (run->broken) return;
-        if (last > 0) tobi_run_blend(run, s, z, rz/last);
-        else tobi_run_scale(run, s, 1, z);
-        last = rz;
-        tobi_run_apply(run, q, s);
-        const double sq = tobi_run_dot(run, s, q);
-        run->broken = !(sq > 0) || !isfinite(sq) || !isfinite(rz/sq);
-        if (run->broken) return;
-        tobi_run_add(run, run->x, rz/sq, s);
-        run->norm = sqrt(tobi_run_add(run, run->r, -rz/sq, q));
-        run->report.iterations++;
-    }
+    static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
+    run->broken = tobi_cg_iterate(&steps, run);
 }
 
 int64_t tobi_cg_work(int64_t rows) { return 3*rows; }

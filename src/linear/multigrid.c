@@ -5,7 +5,6 @@
 #include "linear/multigrid.h"
 #include "linear/grid_view.h"
 #include "linear/kernels.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum { THREADED = 8000 };      /* nodes from which a sweep is worth sharing */
@@ -42,8 +41,8 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
     m->wide = wide;
     m->visits = visits;
     const int64_t total = plan(m), cells = (int64_t)m->cells[0]*m->cells[1]*m->cells[2];
-    m->memory = calloc((size_t)total*7, sizeof *m->memory);
-    m->corner = calloc((size_t)cells, sizeof *m->corner);
+    m->memory = tobi_array_zero(total*7, sizeof *m->memory);
+    m->corner = tobi_array_zero(cells, sizeof *m->corner);
     if (!m->memory || !m->corner) {
         tobi_multigrid_free(m);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a grid of %lld nodes", (long long)total);
@@ -60,8 +59,8 @@ tobi_status tobi_multigrid_create(tobi_multigrid *m, const tobi_cell_points *p, 
 
 void tobi_multigrid_free(tobi_multigrid *m)
 {
-    free(m->memory);
-    free(m->corner);
+    tobi_array_free(m->memory);
+    tobi_array_free(m->corner);
     memset(m, 0, sizeof *m);
 }
 

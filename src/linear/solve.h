@@ -45,6 +45,18 @@ typedef struct tobi_linear_report {
 int64_t tobi_cg_work(int64_t rows);
 tobi_linear_report tobi_cg(tobi_exec *exec, const tobi_linear_system *a, const tobi_linear_settings *s,
                            const double *b, double *x, double *work);
+/* The same iteration over vectors that only the caller knows, of any type and place, so that he may fuse the
+   work on them. From a residual r; all return what the step needs: */
+typedef struct tobi_cg_steps {
+    int (*ends)(void *user);                         /* 1: r is small enough, or enough is done     */
+    double (*precondition)(void *user);              /* z = M r: r . z                              */
+    void (*turn)(void *user, double beta);           /* q = z + beta q; beta 0: what q was is void  */
+    double (*apply)(void *user);                     /* A q: q . A q                                */
+    void (*advance)(void *user, double alpha);       /* x += alpha q, r -= alpha A q                */
+} tobi_cg_steps;
+/* 0: it ended; 1: broken down, see TOBI_LINEAR_BROKEN_DOWN. */
+int tobi_cg_iterate(const tobi_cg_steps *steps, void *user);
+
 /* Any A: two products per iteration. */
 int64_t tobi_bicgstab_work(int64_t rows);
 tobi_linear_report tobi_bicgstab(tobi_exec *exec, const tobi_linear_system *a, const tobi_linear_settings *s,

@@ -16,7 +16,7 @@ static const double OPPOSED = -0.5;
 
 void mpm_cross_free(mpm_cross *c)
 {
-    free(c->doubt);
+    tobi_array_free(c->doubt);
     free(c->at);
     free(c->pair);
     memset(c, 0, sizeof *c);

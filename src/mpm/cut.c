@@ -14,14 +14,14 @@
 
 void mpm_cut_free(mpm_cut *c)
 {
-    free(c->side);
-    free(c->cut_face);
-    free(c->tile);
-    free(c->face);
-    for (int l = 0; l < MPM_LEVELS; l++) free(c->hidden[l]);
-    free(c->member);
-    free(c->members);
-    free(c->extent);
+    tobi_array_free(c->side);
+    tobi_array_free(c->cut_face);
+    tobi_array_free(c->tile);
+    tobi_array_free(c->face);
+    for (int l = 0; l < MPM_LEVELS; l++) tobi_array_free(c->hidden[l]);
+    tobi_array_free(c->member);
+    tobi_array_free(c->members);
+    tobi_array_free(c->extent);
     free(c->rows);
     mpm_cross_free(&c->cross);
     memset(c, 0, sizeof *c);
@@ -33,32 +33,32 @@ static tobi_status reserve(mpm_cut *c, const mpm_grid *g, int64_t particles, tob
 {
     int64_t nodes = g->patch_room*nodes_of(g);
     if (nodes > c->node_room) {
-        free(c->side);
-        free(c->cut_face);
-        free(c->cross.doubt);
-        c->cross.doubt = malloc((size_t)g->patch_room*sizeof *c->cross.doubt);
-        c->side = malloc((size_t)nodes*sizeof *c->side);
-        c->cut_face = malloc((size_t)nodes*sizeof *c->cut_face);
+        tobi_array_free(c->side);
+        tobi_array_free(c->cut_face);
+        tobi_array_free(c->cross.doubt);
+        c->cross.doubt = tobi_array_make(g->patch_room, sizeof *c->cross.doubt);
+        c->side = tobi_array_make(nodes, sizeof *c->side);
+        c->cut_face = tobi_array_make(nodes, sizeof *c->cut_face);
         c->node_room = c->side && c->cut_face && c->cross.doubt ? nodes : 0;
     }
     if (particles > c->particle_room) {
         int hidden = 1;
-        free(c->face);
-        free(c->member);
+        tobi_array_free(c->face);
+        tobi_array_free(c->member);
         for (int l = 0; l < MPM_LEVELS; l++) {
-            free(c->hidden[l]);
-            c->hidden[l] = calloc((size_t)particles, sizeof *c->hidden[l]);
+            tobi_array_free(c->hidden[l]);
+            c->hidden[l] = tobi_array_zero(particles, sizeof *c->hidden[l]);
             hidden &= c->hidden[l] != NULL;
         }
-        c->member = malloc((size_t)particles*sizeof *c->member);
-        c->face = malloc((size_t)particles*sizeof *c->face);
+        c->member = tobi_array_make(particles, sizeof *c->member);
+        c->face = tobi_array_make(particles, sizeof *c->face);
         c->particle_room = c->face && hidden && c->member ? particles : 0;
     }
     if (g->block_room > c->block_room) {
-        free(c->members);
-        free(c->extent);
-        c->members = malloc((size_t)g->block_room*sizeof *c->members);
-        c->extent = malloc((size_t)g->block_room*sizeof *c->extent);
+        tobi_array_free(c->members);
+        tobi_array_free(c->extent);
+        c->members = tobi_array_make(g->block_room, sizeof *c->members);
+        c->extent = tobi_array_make(g->block_room, sizeof *c->extent);
         c->block_room = c->members && c->extent ? g->block_room : 0;
     }
     if (c->node_room >= nodes && c->particle_room >= particles && c->block_room >= g->block_room)
@@ -266,9 +266,9 @@ static tobi_status find_split(mpm_cut *c, mpm_grid *g, const mpm_view *v, const 
         c->tile_count += count_tiles(b->levels);
     }
     if (c->tile_count > c->tile_room) {
-        free(c->tile);
+        tobi_array_free(c->tile);
         c->tile_room = c->tile_count + c->tile_count/4 + 8;
-        c->tile = calloc((size_t)c->tile_room*MPM_SIDES, sizeof *c->tile);
+        c->tile = tobi_array_zero(c->tile_room*MPM_SIDES, sizeof *c->tile);
         if (!c->tile) {
             c->tile_room = 0;
             return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the cuts of %lld blocks",

@@ -4,7 +4,6 @@
 #include "mpm/particle_fields.h"
 #include "base/error.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { BLOCK = 4, CELL_BITS = 6 };
@@ -24,14 +23,15 @@ tobi_status mpm_grid_create(mpm_grid *g, int dimension, int layers, const tobi_e
     memset(g, 0, sizeof *g);
     g->dimension = dimension;
     g->layers = layers;
-    g->histogram = malloc((size_t)tobi_sort_histogram_size(x)*sizeof *g->histogram);
+    g->histogram = tobi_array_make(tobi_sort_histogram_size(x), sizeof *g->histogram);
     return g->histogram ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for the grid");
 }
 
 void mpm_grid_free(mpm_grid *g)
 {
-    free(g->block); free(g->patch); free(g->reach); free(g->block_key); free(g->patch_key);
-    free(g->node); free(g->old); free(g->wave); free(g->scratch); free(g->histogram); free(g->begin);
+    void *const arrays[] = { g->block, g->patch, g->reach, g->block_key, g->patch_key, g->node,
+                             g->old, g->wave, g->scratch, g->histogram, g->begin };
+    for (size_t k = 0; k < sizeof arrays/sizeof *arrays; k++) tobi_array_free(arrays[k]);
     memset(g, 0, sizeof *g);
 }
 
@@ -46,8 +46,8 @@ int64_t mpm_grid_bytes(const mpm_grid *g)
 /* Makes *array hold `count` items; its content is lost. */
 static int grow(void **array, int64_t count, size_t size)
 {
-    free(*array);
-    *array = aligned_alloc(64, ((size_t)count*size + 127)/64*64);
+    tobi_array_free(*array);
+    *array = tobi_array_make(count, size);
     return *array != NULL;
 }
 
@@ -86,7 +86,7 @@ static int extend(void **array, int64_t used, int64_t count, size_t size)
     *array = NULL;
     const int grown = grow(array, count, size);
     if (grown && used > 0) memcpy(*array, before, (size_t)used*size);
-    free(before);
+    tobi_array_free(before);
     return grown;
 }
 

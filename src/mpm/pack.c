@@ -3,16 +3,15 @@
    threads busy. */
 #include "mpm/pack.h"
 #include "base/error.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum { BACK = 8 };                     /* packs of a run that a contact may still join             */
 
 void mpm_packs_free(mpm_packs *p)
 {
-    free(p->pack);
-    free(p->run);
-    free(p->weight);
+    tobi_array_free(p->pack);
+    tobi_array_free(p->run);
+    tobi_array_free(p->weight);
     memset(p, 0, sizeof *p);
 }
 
@@ -25,11 +24,11 @@ static tobi_status fail_memory(int64_t contacts, tobi_error *err)
 static tobi_status reserve(mpm_packs *p, int64_t contacts, tobi_error *err)
 {
     if (contacts <= p->room) return TOBI_OK;
-    free(p->pack);
-    free(p->run);
+    tobi_array_free(p->pack);
+    tobi_array_free(p->run);
     p->room = contacts + contacts/4 + 64;
-    p->pack = malloc((size_t)p->room*sizeof *p->pack);
-    p->run = malloc((size_t)p->room*2*sizeof *p->run);         /* as found, and by colour */
+    p->pack = tobi_array_make(p->room, sizeof *p->pack);
+    p->run = tobi_array_make(p->room*2, sizeof *p->run);         /* as found, and by colour */
     if (p->pack && p->run) return TOBI_OK;
     p->room = 0;
     return fail_memory(contacts, err);
@@ -38,9 +37,9 @@ static tobi_status reserve(mpm_packs *p, int64_t contacts, tobi_error *err)
 static tobi_status reserve_weights(mpm_packs *p, int64_t contacts, tobi_error *err)
 {
     if (p->weight_count <= p->weight_room) return TOBI_OK;
-    free(p->weight);
+    tobi_array_free(p->weight);
     p->weight_room = p->weight_count + p->weight_count/4 + 4096;
-    p->weight = malloc((size_t)p->weight_room*sizeof *p->weight);
+    p->weight = tobi_array_make(p->weight_room, sizeof *p->weight);
     if (p->weight) return TOBI_OK;
     p->weight_room = 0;
     return fail_memory(contacts, err);

@@ -3,7 +3,6 @@
    alone, so that building cannot fail. Drawback: long bodies that lie askew have large boxes. */
 #include "sph/body_tree.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { LEAF = 4 };
@@ -12,9 +11,9 @@ tobi_status tobi_body_tree_reserve(tobi_body_tree *t, int bodies, tobi_error *er
 {
     if (bodies <= t->capacity) return TOBI_OK;
     tobi_body_tree_free(t);
-    t->box = malloc((size_t)bodies*sizeof *t->box);
-    t->node = malloc(2*(size_t)bodies*sizeof *t->node);
-    t->body = malloc((size_t)bodies*sizeof *t->body);
+    t->box = tobi_array_make(bodies, sizeof *t->box);
+    t->node = tobi_array_make(2*bodies, sizeof *t->node);
+    t->body = tobi_array_make(bodies, sizeof *t->body);
     t->capacity = bodies;
     if (t->box && t->node && t->body) return TOBI_OK;
     tobi_body_tree_free(t);
@@ -23,9 +22,9 @@ tobi_status tobi_body_tree_reserve(tobi_body_tree *t, int bodies, tobi_error *er
 
 void tobi_body_tree_free(tobi_body_tree *t)
 {
-    free(t->box);
-    free(t->node);
-    free(t->body);
+    tobi_array_free(t->box);
+    tobi_array_free(t->node);
+    tobi_array_free(t->body);
     memset(t, 0, sizeof *t);
 }
 

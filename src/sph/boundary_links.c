@@ -6,7 +6,6 @@
 #include "sph/state.h"
 #include "sph/wall_law.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
@@ -23,7 +22,7 @@ static tobi_status grow_rows(void **p, int64_t *capacity, int64_t need, size_t s
 {
     if (need <= *capacity) return TOBI_OK;
     int64_t more = need + need/2 + 64;
-    void *q = realloc(*p, (size_t)more*size);
+    void *q = tobi_array_grow(*p, *capacity, more, size);
     if (!q)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld entries near bodies",
                          (long long)more);
@@ -541,20 +540,20 @@ int64_t tobi_boundary_links_bytes(const tobi_boundary_links *n)
 
 void tobi_boundary_links_free(tobi_boundary_links *n)
 {
-    free(n->link);
-    free(n->entry);
-    free(n->first);
-    free(n->total);
-    free(n->answer);
-    free(n->part);
-    free(n->caught);
-    free(n->caught_block);
-    free(n->bins);
-    free(n->bin_start);
-    free(n->bin_item);
-    free(n->row);
-    free(n->found);
-    free(n->hit);
+    tobi_array_free(n->link);
+    tobi_array_free(n->entry);
+    tobi_array_free(n->first);
+    tobi_array_free(n->total);
+    tobi_array_free(n->answer);
+    tobi_array_free(n->part);
+    tobi_array_free(n->caught);
+    tobi_array_free(n->caught_block);
+    tobi_array_free(n->bins);
+    tobi_array_free(n->bin_start);
+    tobi_array_free(n->bin_item);
+    tobi_array_free(n->row);
+    tobi_array_free(n->found);
+    tobi_array_free(n->hit);
     tobi_body_tree_free(&n->tree);
     memset(n, 0, sizeof *n);
 }

@@ -11,6 +11,7 @@
 #include "sph/dfsph.h"
 #include "sph/boundary.h"
 #include "linear/multigrid.h"
+#include "linear/solve.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
@@ -89,11 +90,6 @@ static void bind_view(tobi_system *s, dfsph *m)
 {
     sph_view *v = &m->view;
     sph_bind_view(s, v, m->memory.vessel);
-    const sph_fields *p = sph_fields_of(&s->particles);
-    v->midway = v->exact;
-    v->moment[0] = v->exact ? p->precondition : NULL;     /* free until the solves, as are these */
-    v->moment[1] = p->residual;
-    v->moment[2] = p->correction;
     sph_reference_set(s, m->memory.level);
     v->reference = sph_of(s)->reference;
 }
@@ -155,57 +151,74 @@ static double relative_residual(const tobi_system *s, const dfsph *m, const line
     return sqrt(rz/fmax(fmax(q->source, floor), 1e-300));
 }
 
-/* r . z for the residual at hand, jacobi = |r|^2/diagonal. */
-static double precondition(tobi_system *s, dfsph *m, const linear_solve *q, double jacobi)
+/* The steps of conjugate gradients, in float. */
+typedef struct cg_run { tobi_system *s; dfsph *m; linear_solve *q; double *t; } cg_run;
+
+/* t: |r|^2/diagonal, |r|; largest |r|. */
+static int ends(void *user)
 {
-    const sph_fields *p = sph_fields_of(&s->particles);
-    if (!q->grid) return jacobi;
-    return jacobi + tobi_multigrid_apply(&m->grid, &s->sim->exec, p->residual, p->precondition);
+    const cg_run *c = user;
+    linear_solve *q = c->q;
+    q->error = c->t[1]*c->s->dt*c->s->dt/(double)c->s->particles.count;
+    q->worst = c->t[6];
+    q->relative = relative_residual(c->s, c->m, q, c->t[0]);
+    q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
+    return !(c->t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing ||
+           (q->converged && q->iterations >= q->min) || tobi_simulation_stops(c->s->sim);
 }
 
-/* Conjugate gradients until the residual at hand is small enough. t: |r|^2/diagonal, |r|; largest |r|. */
+static double precondition(void *user)
+{
+    const cg_run *c = user;
+    const sph_fields *p = sph_fields_of(&c->s->particles);
+    if (!c->q->grid) return c->t[0];
+    return c->t[0] + tobi_multigrid_apply(&c->m->grid, &c->s->sim->exec, p->residual, p->precondition);
+}
+
+static void turn(void *user, double beta)
+{
+    const cg_run *c = user;
+    c->m->view.beta = (float)beta;
+    launch(c->s, c->m, c->m->kernel->sph_cg_direction, c->t);
+    center(c->s, c->m, c->q, c->m->kernel->sph_center_direction, c->t[0], NULL);
+}
+
+static double apply(void *user)
+{
+    const cg_run *c = user;
+    launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
+    launch(c->s, c->m, c->m->kernel->sph_product, c->t);
+    if (c->q->coupled) tobi_couple_product(c->s, c->t);
+    center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
+    return c->t[0];
+}
+
+static void advance(void *user, double alpha)
+{
+    const cg_run *c = user;
+    c->m->view.alpha = (float)alpha;
+    launch(c->s, c->m, c->m->kernel->sph_cg_update, c->t);
+    c->q->iterations++;
+}
+
 static void iterate(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
-    const sph_kernels *k = m->kernel;
-    double rz = 0, scale = s->dt*s->dt/(double)s->particles.count;
-    m->view.beta = 0;
-    for (;; q->iterations++) {
-        q->error = t[1]*scale;
-        q->worst = t[6];
-        q->relative = relative_residual(s, m, q, t[0]);
-        q->converged = q->error <= q->tolerance && q->relative <= q->relative_tolerance;
-        if (!(t[0] > 0) || q->iterations >= q->max || q->error <= q->nothing) break;
-        if ((q->converged && q->iterations >= q->min) || tobi_simulation_stops(s->sim)) break;
-        double last = rz;
-        rz = precondition(s, m, q, t[0]);
-        m->view.beta = last > 0 ? (float)(rz/last) : 0;
-        launch(s, m, k->sph_cg_direction, t);
-        center(s, m, q, k->sph_center_direction, t[0], NULL);
-        launch(s, m, k->sph_pressure_accel, NULL);
-        launch(s, m, k->sph_product, t);
-        if (q->coupled) tobi_couple_product(s, t);
-        center(s, m, q, k->sph_center_product, t[1], t);
-        if (!(t[0] > 0)) break;
-        m->view.alpha = (float)(rz/t[0]);
-        launch(s, m, k->sph_cg_update, t);
-    }
+    static const tobi_cg_steps steps = { ends, precondition, turn, apply, advance };
+    cg_run run = { s, m, q, t };
+    tobi_cg_iterate(&steps, &run);
 }
 
 /* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
    without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
 static int hold_pulling(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
-    const sph_kernels *k = m->kernel;
     double pull[TOBI_TOTALS];
+    cg_run run = { s, m, q, t };
     if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->sim->stopped) return 0;
-    launch(s, m, k->sph_hold, pull);
+    launch(s, m, m->kernel->sph_hold, pull);
     if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
-    launch(s, m, k->sph_pressure_accel, NULL);
-    launch(s, m, k->sph_product, t);
-    if (q->coupled) tobi_couple_product(s, t);
-    m->view.alpha = 1;
-    launch(s, m, k->sph_cg_update, t);
-    q->iterations++;
+    apply(&run);
+    advance(&run, 1);
     return 1;
 }
 
@@ -279,6 +292,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
 {
     const sph_kernels *k = m->kernel;
     double t[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_SOLVE);
     m->view.pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, m, k->sph_warm_start, NULL);
     launch(s, m, k->sph_pressure_accel, NULL);
@@ -329,6 +343,7 @@ static int has_void(const tobi_system *s)
 static void correct_density(tobi_system *s, dfsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_CORRECT);
     m->view.pressure = sph_fields_of(&s->particles)->correction;
     launch(s, m, m->kernel->sph_density_residual, t);
     double mean = t[2]*s->dt*s->dt/(double)s->particles.count;
@@ -385,10 +400,9 @@ static void restore_velocities(tobi_system *s, const tobi_float4 *kept)
 static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
     if (s->step > 0) return TOBI_OK;
-    size_t bytes = (size_t)s->particles.count*sizeof(tobi_float4);
-    tobi_float4 *kept = malloc(bytes);
+    tobi_float4 *kept = tobi_array_make(s->particles.count, sizeof *kept);
     if (!kept) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the velocities of the start");
-    memcpy(kept, s->particles.velocity, bytes);
+    memcpy(kept, s->particles.velocity, (size_t)s->particles.count*sizeof *kept);
     tobi_status status = TOBI_OK;
     for (int k = 0; k < 2 && status == TOBI_OK; k++) {
         status = sph_see_walls(s, &m->view, m->kernel, clock, err);
@@ -402,7 +416,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         set_reference(s, m);
         bind_view(s, m);
     }
-    free(kept);
+    tobi_array_free(kept);
     return status;
 }
 
@@ -463,6 +477,8 @@ static void move(tobi_system *s)
 {
     dfsph *m = s->state;
     double clock = tobi_clock();
+    sph_stage(s, &m->view, SPH_MOVE);
+    m->view.pressure = sph_fields_of(&s->particles)->pressure;
     sph_measure_forces(s, &m->view, m->kernel, &clock);
     sph_add_hydrostatic(s);
     tobi_couple_correct(s);

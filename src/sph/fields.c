@@ -29,7 +29,7 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     } else if (!strcmp(name, "pressure")) {
         const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
         /* that of isph is smooth as it is; an average would be one-sided at walls and surfaces */
-        out[0] = (sph_of(s)->mirrors ? f->pressure[i] : f->product[i]) + sph_hydrostatic(s, x);
+        out[0] = (sph_of(s)->mirrors ? f->pressure[i] : f->mean[i]) + sph_hydrostatic(s, x);
     } else if (!strcmp(name, "density")) {
         out[0] = f->density[i]*s->fluid[p->fluid[i]].density;
     } else {

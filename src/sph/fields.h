@@ -5,6 +5,12 @@
 /* Scenes with surface tension; liquids with bodies in them. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2 };
 
+/* Stages of a step: boundaries and density; forces; the pressure by an equation, or by that of state; the
+   correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
+enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 16, SPH_MOVE = 32,
+       SPH_DERIVE = 64,
+       SPH_AFTER_SEEING = SPH_FORCES | SPH_SOLVE | SPH_TAIT | SPH_CORRECT | SPH_MOVE | SPH_DERIVE };
+
 #define SPH_FIELDS(X) \
     X(float,       TOBI_F32, 1, pressure,     TOBI_STATE,   0, "Pa",   "pressure") \
     X(tobi_float4, TOBI_F32, 4, accel,        TOBI_SCRATCH, 0, "m/s2", "acceleration of the pass") \
@@ -16,11 +22,21 @@ enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2 };
       "1: it or a neighbour sees a body") \
     X(float,       TOBI_F32, 1, density,      TOBI_SCRATCH, 0, "1",    "density over rest density") \
     X(float,       TOBI_F32, 1, diagonal,     TOBI_SCRATCH, 0, "m/kg", "diagonal of the pressure operator") \
-    X(float,       TOBI_F32, 1, precondition, TOBI_SCRATCH, 0, "kg/m", "1/diagonal, 0 where p is held") \
-    X(float,       TOBI_F32, 1, residual,     TOBI_SCRATCH, 0, "1/s2", "residual of the pressure equation") \
-    X(float,       TOBI_F32, 1, product,      TOBI_SCRATCH, 0, "1/s2", "A q in a solve; else mean pressure") \
-    X(float,       TOBI_F32, 1, delta,        TOBI_SCRATCH, 0, "Pa",   "pressure change of this solve") \
-    X(float,       TOBI_F32, 1, correction,   TOBI_SCRATCH, 0, "Pa",   "of the position correction") \
+    X(float,       TOBI_F32, 1, mean,         SPH_SEE | SPH_DERIVE, 0, "Pa", "kernel average of p") \
+    X(float,       TOBI_F32, 1, drop,         SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
+    X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, SPH_NEED_WETTED, "1/m", "eq. (13b)") \
+    X(float,       TOBI_F32, 1, midway,       SPH_FORCES | SPH_SOLVE, SPH_NEED_WETTED, "1/s", \
+      "eq. (10d)") \
+    X(float,       TOBI_F32, 1, wetness,      SPH_AFTER_SEEING, 0, "1", "eq. (6b)") \
+    X(float,       TOBI_F32, 1, precondition, SPH_SOLVE | SPH_CORRECT, 0, "kg/m", \
+      "1/diagonal, 0: p is held") \
+    X(float,       TOBI_F32, 1, residual,     SPH_SOLVE | SPH_CORRECT, 0, "1/s2", \
+      "of the pressure equation") \
+    X(float,       TOBI_F32, 1, product,      SPH_SOLVE | SPH_CORRECT, 0, "1/s2", "A q") \
+    X(float,       TOBI_F32, 1, delta,        SPH_SOLVE | SPH_CORRECT, 0, "Pa",   "change of the pressure") \
+    X(float,       TOBI_F32, 1, correction,   SPH_CORRECT, 0, "Pa", "pressure that corrects positions") \
+    X(float,       TOBI_F32, 1, damped,       SPH_TAIT | SPH_MOVE, 0, "Pa", "pressure and damping of sound") \
+    X(tobi_float4, TOBI_F32, 4, kept,         SPH_DERIVE, 0, "m/s", "velocity meanwhile, then its kick") \
     X(tobi_float4, TOBI_F32, 4, normal,       TOBI_SCRATCH, SPH_NEED_TENSION, "1", \
       "normal of the surface; w = weight") \
     X(float,       TOBI_F32, 1, capillary,    TOBI_SCRATCH, SPH_NEED_TENSION, "Pa", \

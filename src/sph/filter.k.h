@@ -11,7 +11,8 @@ typedef struct sph_filter_acc { sph_laplacian_acc sum; lane x, y, z; } sph_filte
 TOBI_FN void sph_filter_begin(const sph_view *v, int64_t i, sph_filter_acc *a, const tobi_float4 *field)
 {
     sph_laplacian_begin(&a->sum, field, i);
-    a->x = lane_set(v->moment[0][i]); a->y = lane_set(v->moment[1][i]); a->z = lane_set(v->moment[2][i]);
+    tobi_float4 c = v->moment[i];
+    a->x = lane_set(c.x); a->y = lane_set(c.y); a->z = lane_set(c.z);
 }
 TOBI_FN void sph_filter_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
@@ -31,14 +32,6 @@ TOBI_FN void sph_filter_finish(const sph_view *v, int64_t i, sph_filter_acc *a, 
     sph_laplacian_finish(v, i, &a->sum, totals);
 }
 
-/* One number of each neighbour. */
-TOBI_FN lane sph_of_neighbors(const float *from, const int32_t *j)
-{
-    float to[TOBI_LANES];
-    for (int k = 0; k < TOBI_LANES; k++) to[k] = from[j[k]];
-    return lane_load(to);
-}
-
 typedef sph_filter_acc sph_filter_kick_acc;
 TOBI_FN void sph_filter_kick_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
@@ -48,8 +41,8 @@ TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_near 
                            const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
-    lane cx = sph_of_neighbors(v->moment[0], n->j), cy = sph_of_neighbors(v->moment[1], n->j),
-         cz = sph_of_neighbors(v->moment[2], n->j);
+    lane cx, cy, cz;
+    lane_load_float4(v->moment, n->j, &cx, &cy, &cz, &w);
     lane own = f*(1 + (a->x*n->dx + a->y*n->dy + a->z*n->dz)),
          other = f*(1 - (cx*n->dx + cy*n->dy + cz*n->dz));
     (void)i;

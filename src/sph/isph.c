@@ -178,9 +178,9 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
 static void measure_forces(tobi_system *s, isph *m, double *clock)
 {
     double friction[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_MOVE);
     sph_view without = m->view;
-    without.pressure = sph_fields_of(&s->particles)->residual;
-    memset(without.pressure, 0, (size_t)s->particles.count*sizeof *without.pressure);
+    without.pressure = NULL;
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];

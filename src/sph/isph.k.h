@@ -120,7 +120,6 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
     for (int a = 0; a < v->dimension; a++) (&v->velocity[i].x)[a] += (float)v->dt*v->gravity[a];
-    v->velocity[i].w = 0;           /* eq. (6b) of boundaries.md: images leave nothing to make up */
     v->record[i].w = v->scale[i];
 }
 

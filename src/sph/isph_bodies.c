@@ -5,7 +5,6 @@
 #include "sph/isph_bodies.h"
 #include "sph/state.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Share of the kernel with particles in it below which a point of a body is dry. */
@@ -53,7 +52,7 @@ tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
     if (!v->near) return TOBI_OK;
     if (n->count > m->mirrors) {
         const int64_t room = n->count + n->count/2 + 64;
-        isph_mirror *more = realloc(m->mirror, (size_t)room*sizeof *more);
+        isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
         m->mirror = more;
         m->mirrors = room;

@@ -5,7 +5,6 @@
 #include "sph/fields.h"
 #include "sph/isph_surface.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Of the sweeps on the particles before and after the grid. */
@@ -33,9 +32,9 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
 {
     if (p->capacity <= m->rows) return TOBI_OK;
     const int64_t n = p->capacity + TOBI_PAD_ROWS;
-    free(m->memory);
+    tobi_array_free(m->memory);
     m->rows = 0;
-    char *at = m->memory = calloc((size_t)n, (size_t)row_bytes());
+    char *at = m->memory = tobi_array_zero(n, (size_t)row_bytes());
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the rows of %lld particles", (long long)n);
 #define X(type, pointer) pointer = (void *)at; at += n*(int64_t)sizeof(type);
     ARRAYS(X)
@@ -73,7 +72,7 @@ void isph_solver_begin(isph_solver *m, tobi_system *s)
 static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi_error *err)
 {
     if (cells->list_capacity <= m->entries) return TOBI_OK;
-    float *more = realloc(m->view.entry, (size_t)cells->list_capacity*sizeof *more);
+    float *more = tobi_array_grow(m->view.entry, 0, cells->list_capacity, sizeof *more);
     if (!more)
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a matrix of %lld entries",
                          (long long)cells->list_capacity);
@@ -155,7 +154,7 @@ int64_t isph_solver_bytes(const isph_solver *m)
 void isph_solver_free(isph_solver *m)
 {
     tobi_multigrid_free(&m->grid);
-    free(m->view.entry);
-    free(m->mirror);
-    free(m->memory);
+    tobi_array_free(m->view.entry);
+    tobi_array_free(m->mirror);
+    tobi_array_free(m->memory);
 }

@@ -132,7 +132,7 @@ TOBI_FN void sph_midway_finish(const sph_view *v, int64_t i, sph_midway_acc *a, 
     (void)totals;
     for (int k = 0; k < 9; k++) g[k] = v->slope*lane_sum(a->g[k]);
     float squares = g[0]*g[0] + g[4]*g[4] + g[8]*g[8], mixed = g[1]*g[3] + g[5]*g[7] + g[6]*g[2];
-    v->delta[i] = 0.5f*v->dt*(squares + 2*mixed);
+    v->midway[i] = 0.5f*v->dt*(squares + 2*mixed);
 }
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
@@ -168,7 +168,7 @@ TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, s
 TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, double *totals)
 {
     float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
-    if (v->midway) rate += v->delta[i];
+    if (v->exact) rate += v->midway[i];
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));

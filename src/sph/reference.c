@@ -46,7 +46,7 @@ double sph_reference_low(tobi_system *s)
     sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
     double scale = DROPS/(1.0001*state->lowest);
-    const counting view = { sph_fields_of(&s->particles)->delta, scale, n };
+    const counting view = { sph_fields_of(&s->particles)->drop, scale, n };
     if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));

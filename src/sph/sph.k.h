@@ -94,9 +94,8 @@ TOBI_FN void sph_find_moment(const sph_view *v, int64_t i, const sph_matrix *inv
 {
     tobi_float4 c = sph_matrix_times(inverse, g);
     float size = v->slope*v->h*sqrtf(c.x*c.x + c.y*c.y + c.z*c.z), k = -v->slope*(size > 3 ? 3/size : 1);
-    v->moment[0][i] = k*c.x;
-    v->moment[1][i] = k*c.y;
-    v->moment[2][i] = k*c.z;
+    const tobi_float4 moment = {k*c.x, k*c.y, k*c.z, 0};
+    v->moment[i] = moment;
 }
 
 /* T of a particle: (7c), or (7b) at walls where that is not asked for or has no answer, as on the rim of a
@@ -112,7 +111,7 @@ TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_densi
         sph_matrix b = {0, 0, 0, 0, 0, 0};
         if (v->dimension == 2) m.zz = 1;
         made = sph_invert(&m, &b) && !open && sph_tilt(&m, &b, v->wall[i], share, &t);
-        if (v->moment[0]) sph_find_moment(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
+        sph_find_moment(v, i, &b, lane_sum4(a->gx, a->gy, a->gz, lane_set(0)));
     }
     if (!made && walled) t = sph_along_wall(v->wall[i], sph_wall_density(v, share), v->dimension);
     sph_tensor_store(v, i, &t, walled);
@@ -150,10 +149,10 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
     double drop = sure && flagged ? tobi_reference_drop(&v->reference, &v->position[i].x) : 0;
-    v->delta[i] = (float)drop;      /* free until the solve */
+    v->drop[i] = (float)drop;
     totals[7] = drop > totals[7] ? drop : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
-    v->product[i] = mean;
+    v->mean_pressure[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
     v->density[i] = rho;
     sph_matrix t = sph_make_tensor(v, i, a, share, sure);
@@ -273,7 +272,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
             if (c != axis) add[c] -= rate*(speed[c] - v->plane[p].velocity[c]);
     }
     u.x += v->dt*add[0]; u.y += v->dt*add[1]; u.z += v->dt*add[2];
-    u.w = wet;      /* the walls' reaction needs the same */
+    v->wetness[i] = wet;      /* the walls' reaction needs the same */
     v->velocity[i] = u;
 }
 
@@ -300,7 +299,7 @@ TOBI_FN void sph_wall_force(const sph_view *v, int64_t i, double *totals)
     }
     if (!touched) return;
     double mass = v->volume/v->inverse_density[v->fluid[i]];
-    float push = v->pressure[i] - sph_capillary(v, i), wet = v->velocity[i].w, g[3];
+    float push = (v->pressure ? v->pressure[i] : 0) - sph_capillary(v, i), wet = v->wetness[i], g[3];
     sph_gravity(v, i, g);
     for (int k = 0; k < v->plane_count; k++) {
         if (!(sigma[k] > 0)) continue;

@@ -45,6 +45,21 @@ static double band_depth(const tobi_smoothing_constants *c)
     return sum/weight;
 }
 
+static void bind_stage(sph_view *v, const sph_fields *f)
+{
+    v->mean_pressure = f->mean; v->drop = f->drop;
+    v->wetness = f->wetness; v->damped = f->damped;
+    v->precondition = f->precondition; v->residual = f->residual; v->product = f->product;
+    v->delta = f->delta;
+    v->moment = f->moment; v->midway = f->midway;
+}
+
+void sph_stage(tobi_system *s, sph_view *v, int stage)
+{
+    tobi_particles_stage(&s->particles, stage);
+    bind_stage(v, sph_fields_of(&s->particles));
+}
+
 void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
 {
     const tobi_particles *p = &s->particles;
@@ -56,11 +71,11 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->wall = f->wall; v->normal = f->normal; v->capillary = f->capillary;
     v->density = f->density;
     v->diagonal = f->diagonal;
-    v->precondition = f->precondition;
-    v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
+    v->surface = f->surface;
     v->full = vessel == SPH_VESSEL_FULL;
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
+    bind_stage(v, f);
     v->near = s->sim->body_count > 0 ? f->near : NULL;
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list;
@@ -136,6 +151,7 @@ tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err)
 {
+    sph_stage(s, v, SPH_SEE);
     launch(s, v, k->sph_walls, NULL);
     if (s->sim->body_count > 0) {
         tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
@@ -218,8 +234,9 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
-    if (v->midway) launch(s, v, k->sph_midway, NULL);
-    if (v->moment[0]) apply_filter(s, v, k);
+    sph_stage(s, v, SPH_FORCES);
+    if (v->exact) launch(s, v, k->sph_midway, NULL);
+    if (v->exact) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
@@ -230,7 +247,6 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
 void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     double t[TOBI_TOTALS];
-    v->pressure = sph_fields_of(&s->particles)->pressure;
     launch(s, v, k->sph_wall_force, t);
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
     sph_of(s)->reference_volume = t[3]*s->smoothing.volume;
@@ -264,16 +280,15 @@ void sph_finish(tobi_system *s)
     tobi_stage_end(&s->sim->stages, "motion", &clock);
 }
 
-/* The kick over one second, then taken back, and the pressure. Scratch of the solves keeps the velocity
-   meanwhile. */
+/* The kick over one second, then taken back, and the pressure. */
 static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
     tobi_particles *p = &s->particles;
     const sph_fields *f = sph_fields_of(&s->particles);
-    float *kept[3] = {f->residual, f->delta, f->correction}, dt = v->dt;
-    double step = s->dt;
-    for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) kept[a][i] = (&p->velocity[i].x)[a];
+    const float dt = v->dt;
+    const double step = s->dt;
+    sph_stage(s, v, SPH_DERIVE);
+    memcpy(f->kept, p->velocity, (size_t)p->count*sizeof *f->kept);
     s->dt = v->dt = 1;
     v->filter = 0;
     launch(s, v, k->sph_laplacian, NULL);
@@ -282,16 +297,15 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     apply_tension(s, v, k);
     s->dt = step;
     v->dt = dt;
-    for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) {
-            float kick = (&p->velocity[i].x)[a] - kept[a][i];
-            (&p->velocity[i].x)[a] = kept[a][i];
-            kept[a][i] = kick;
-            s->cells.record[i].w = f->pressure[i];
-        }
+    for (int64_t i = 0; i < p->count; i++) {
+        const tobi_float4 u = p->velocity[i], before = f->kept[i];
+        p->velocity[i] = before;
+        f->kept[i] = (tobi_float4){u.x - before.x, u.y - before.y, u.z - before.z, 0};
+        s->cells.record[i].w = f->pressure[i];
+    }
     launch(s, v, k->sph_pressure_accel, NULL);
     for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += kept[a][i];
+        for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += (&f->kept[i].x)[a];
 }
 
 void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field)

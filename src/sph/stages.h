@@ -8,6 +8,8 @@ enum { SPH_VESSEL_UNKNOWN, SPH_VESSEL_OPEN, SPH_VESSEL_FULL };
 
 /* Everything of a view that does not belong to one method; after each sort. vessel: SPH_VESSEL_*. */
 void sph_bind_view(const tobi_system *s, sph_view *v, double vessel);
+/* Begins a stage (sph/fields.h): its fields into v. What v had of others is gone. */
+void sph_stage(tobi_system *s, sph_view *v, int stage);
 /* 0.25 sqrt(d/g): the longest step that gravity allows, s. */
 double sph_gravity_dt(const tobi_system *s);
 /* 0.8/(nu rate): the longest step of explicit viscosity at a no-slip wall, s; without it INFINITY. */

@@ -52,7 +52,7 @@ TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *
     if (v->surface[i] && p < least) p = least;
     if (v->surface[i] && push < least) push = least;
     v->pressure[i] = p;
-    v->delta[i] = push;
+    v->damped[i] = push;
     v->record[i].w = push;
     totals[0] += size;
     totals[1] += fabsf(p);

@@ -44,7 +44,7 @@ static int changes(const tobi_system *s, const char *field)
 tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
 {
     for (int k = 0; u->rows < s->particles.count && k < SPH_UNDO_FIELDS; k++) {
-        free(u->field[k]);
+        tobi_array_free(u->field[k]);
         u->field[k] = NULL;
     }
     if (u->rows < s->particles.count) u->rows = s->particles.capacity;
@@ -52,11 +52,11 @@ tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
         void *data;
         const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
         if (!f || !changes(s, f->name)) {
-            free(u->field[k]);
+            tobi_array_free(u->field[k]);
             u->field[k] = NULL;
             continue;
         }
-        if (!u->field[k]) u->field[k] = malloc((size_t)(u->rows + 1)*f->bytes);
+        if (!u->field[k]) u->field[k] = tobi_array_make(u->rows + 1, f->bytes);
         if (!u->field[k]) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to take back a step");
         copying c = { u->field[k], data, f->bytes };
         tobi_launch(&s->sim->exec, TOBI_HOST(copy_range, 0, 0), &c, 0, s->particles.count, NULL);
@@ -87,6 +87,6 @@ void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n)
 void sph_undo_free(sph_undo *u)
 {
     free(u->body);
-    for (int k = 0; k < SPH_UNDO_FIELDS; k++) free(u->field[k]);
+    for (int k = 0; k < SPH_UNDO_FIELDS; k++) tobi_array_free(u->field[k]);
     memset(u, 0, sizeof *u);
 }

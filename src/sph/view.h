@@ -20,11 +20,14 @@ typedef struct sph_view {
     tobi_float4 *TOBI_RESTRICT stretch, *TOBI_RESTRICT shear;   /* T, eq. (7b), (7c); they and beside: */
     const uint8_t *TOBI_RESTRICT beside;                        /* NULL without it     */
     const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
-    float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal, *TOBI_RESTRICT precondition;
-    float *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
-    float *moment[3];                           /* 1/m, eq. (13b); NULL: the filter is that of (13)   */
+    float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal;
+    /* of stages, see sph/fields.h; NULL in others */
+    float *TOBI_RESTRICT mean_pressure, *TOBI_RESTRICT drop, *TOBI_RESTRICT wetness, *TOBI_RESTRICT damped;
+    float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
+    float *TOBI_RESTRICT midway;              /* it and moment: with `exact`                          */
+    tobi_float4 *TOBI_RESTRICT moment;
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
-    float *TOBI_RESTRICT pressure;            /* of the solve at hand */
+    float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
     uint8_t *TOBI_RESTRICT surface;
     const uint8_t *TOBI_RESTRICT fluid;
     /* neighbour list */
@@ -38,8 +41,7 @@ typedef struct sph_view {
     float spacing, volume;
     int   dimension;
     int   full;                               /* 1: a vessel without a free surface          */
-    int   exact;                              /* 1: eq. (7c), linear flows are exact         */
-    int   midway;                             /* 1: divergence-free in the middle of the way, (10d) */
+    int   exact;                              /* 1: eq. (7c), (10d), (13b): linear flows are exact */
     float open_limit;                         /* div x below this: neighbours are missing       */
     float surface_limit;                      /* the same, but never in a full vessel           */
     float sheet_limit;                        /* below this a surface beyond doubt     */
@@ -62,7 +64,7 @@ typedef struct sph_view {
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */
     float filter;                             /* coefficient of L L v, m4/s                      */
-    float mean;                               /* taken from residual or product               */
+    float mean;                               /* of residual, product, direction or result    */
     float isolated;                           /* m/kg: a smaller diagonal carries no pressure   */
     float core;                               /* m: pairs nearer than this are pushed apart     */
     float push;                               /* share of their overlap taken per step and side */

@@ -108,7 +108,7 @@ static double find_surface(tobi_system *s)
 {
     sph_state *state = sph_of(s);
     const sph_fields *f = sph_fields_of(&s->particles);
-    for (int64_t k = 0; k < state->near.count; k++) f->delta[state->near.link[k].particle] = 0;
+    for (int64_t k = 0; k < state->near.count; k++) f->drop[state->near.link[k].particle] = 0;
     return sph_reference_low(s);
 }
 
@@ -150,6 +150,7 @@ static void apply_forces(tobi_system *s, wcsph *m, double *clock)
 static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
 {
     double t[TOBI_TOTALS];
+    sph_stage(s, &m->view, SPH_TAIT);
     launch(s, m, m->kernel->sph_carry, NULL);
     launch(s, m, m->kernel->sph_tait, t);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
@@ -160,12 +161,13 @@ static void apply_pressure(tobi_system *s, wcsph *m, double *clock)
     tobi_stage_end(&s->sim->stages, "pressure", clock);
 }
 
-/* Walls feel the pressure with its damping, which stands in delta. */
+/* Walls feel the pressure with its damping. */
 static void measure_forces(tobi_system *s, wcsph *m, double *clock)
 {
     sph_fields *f = sph_fields_of(&s->particles);
     float *state = f->pressure;
-    f->pressure = f->delta;
+    sph_stage(s, &m->view, SPH_MOVE);
+    m->view.pressure = f->pressure = f->damped;
     sph_measure_forces(s, &m->view, m->kernel, clock);
     m->view.pressure = f->pressure = state;
 }

@@ -53,6 +53,7 @@ tobi_status tobi_system_put(tobi_system *s, int number, tobi_store *f, tobi_erro
     TOBI_TRY(tobi_store_put(f, name_entry(number, "memory").name, TOBI_F64, n, 1, memory, err));
     TOBI_TRY(put_rows(s, number, f, err));
     TOBI_TRY(tobi_store_put_int(f, name_entry(number, "next_id").name, s->particles.next_id, err));
+    TOBI_TRY(tobi_store_put_int(f, name_entry(number, "started").name, s->started, err));
     for (int k = 0;; k++) {
         void *data;
         const tobi_field *r = tobi_particles_state(&s->particles, k, &data);
@@ -70,7 +71,7 @@ void tobi_loaded_system_free(tobi_loaded_system *l)
 }
 
 static tobi_status check_scene(const tobi_system *s, int number, tobi_store *f, const char *path,
-                               const tobi_loaded_system *l, tobi_error *err)
+                               tobi_error *err)
 {
     double spacing;
     char *method = NULL;
@@ -86,10 +87,11 @@ static tobi_status check_scene(const tobi_system *s, int number, tobi_store *f, 
         return tobi_fail(err, TOBI_INVALID,
                          "the checkpoint is of another scene: its spacing is %g m, the scene's %g m", spacing,
                          s->smoothing.spacing);
-    if (l->count > s->particles.capacity)
-        return tobi_fail(err, TOBI_INVALID, "%s: holds %lld particles, the scene at most %lld", path,
-                         (long long)l->count, (long long)s->particles.capacity);
-    return TOBI_OK;
+    int64_t started;
+    TOBI_TRY(tobi_store_get_int(f, name_entry(number, "started").name, &started, err));
+    if (started == s->started) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s: is of another scene: that began with %lld particles, this one "
+                     "with %lld", path, (long long)started, (long long)s->started);
 }
 
 static tobi_status read_clock(int number, tobi_store *f, tobi_loaded_system *l, tobi_error *err)
@@ -193,6 +195,12 @@ static int64_t find_twin(const int64_t *id, int64_t count)
     return twin;
 }
 
+static tobi_status refuse_row(const char *path, int64_t row, const char *field, tobi_error *err)
+{
+    return tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can have", path,
+                     (long long)row, field);
+}
+
 static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loaded_system *l,
                                 tobi_error *err)
 {
@@ -203,9 +211,7 @@ static tobi_status check_fields(tobi_system *s, const char *path, const tobi_loa
         for (int64_t i = 0; i < l->count && bad < 0; i++)
             if (is_bad_row(s, field, l->field[k], i, l->next_id)) bad = i;
         if (bad < 0 && strcmp(field->name, "id") == 0) bad = find_twin(l->field[k], l->count);
-        if (bad >= 0)
-            return tobi_fail(err, TOBI_DAMAGED, "%s: row %lld of '%s' is none that this scene can have", path,
-                             (long long)bad, field->name);
+        if (bad >= 0) return refuse_row(path, bad, field->name, err);
     }
     return TOBI_OK;
 }
@@ -215,12 +221,14 @@ tobi_status tobi_system_get(tobi_system *s, int number, tobi_store *f, const cha
 {
     TOBI_TRY(tobi_store_rows(f, name_entry(number, "id").name, &l->count, err));
     TOBI_TRY(tobi_store_get_int(f, name_entry(number, "next_id").name, &l->next_id, err));
-    TOBI_TRY(check_scene(s, number, f, path, l, err));
+    TOBI_TRY(check_scene(s, number, f, path, err));
+    if (l->count > l->next_id || l->count > INT32_MAX) return refuse_row(path, l->next_id, "id", err);
     TOBI_TRY(read_clock(number, f, l, err));
     TOBI_TRY(read_memory(s, number, f, path, l, err));
     TOBI_TRY(read_fields(s, number, f, path, l, err));
     TOBI_TRY(check_fields(s, path, l, err));
-    return read_rows(s, number, f, l, err);
+    TOBI_TRY(read_rows(s, number, f, l, err));
+    return tobi_system_room(s, l->count, err);
 }
 
 void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
@@ -233,6 +241,7 @@ void tobi_system_take(tobi_system *s, const tobi_loaded_system *l)
     }
     s->particles.count = l->count;
     s->particles.next_id = l->next_id;
+    if (s->first_id + l->next_id > s->sim->next_id) s->sim->next_id = s->first_id + l->next_id;
     s->method->memory(s, &memory);
     memcpy(memory, l->memory, (size_t)l->memory_count*sizeof *memory);
     s->info = l->info;

@@ -207,7 +207,7 @@ static void number_particles(tobi_world *w)
     int64_t first = 0;
     for (int k = 0; k < w->system_count; k++) {
         w->system[k].first_id = first;
-        first += w->system[k].particles.count;
+        first += w->system[k].started = w->system[k].particles.count;
     }
     w->sim.body_first_id = first;
     for (int k = 0; k < w->sim.body_count; k++) first += w->sim.bodies[k].particle_count;

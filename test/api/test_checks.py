@@ -31,6 +31,7 @@ CASES = [
     ("check_house.py", "src/core/a.h", '#define F \\\n  _Pragma("omp for")\n', "a.h:2: names OpenMP"),
     ("check_house.py", "app/tobiuo/a.c", "int n = omp_get_max_threads();\n", "a.c:1: names OpenMP"),
     ("check_house.py", "src/io/a.c", "#include <omp.h>\n", "a.c:1: names OpenMP"),
+    ("check_house.py", "src/sph/a.c", "float *q = malloc(4);\n", "a.c:1: arrays of kernels belong to exec"),
     ("check_house.py", "src/exec/a.c", "/* Loops. */\n#pragma omp parallel for\n", None),
     ("check_house.py", "src/exec/a.c", "#include <math.h>\n", "a.c:1: no comment that says"),
     ("check_layers.py", "src/view/a.c", '#include "world/x.h"\n', "view includes world; it may include base, exec, include/tobiuo"),

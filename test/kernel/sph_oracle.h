@@ -10,14 +10,15 @@
 enum {
     POS, PAYLOAD = POS + 3, VEL, ACC = VEL + 3, BAND = ACC + 3, NORMAL, NORMAL_BAND = NORMAL + 3, WALL,
     FLUX = WALL + 3, CAPILLARY, RHO, DIAG, PRE, RES, PROD, DELTA, PRES, SURF, WET,
-    TENSOR, WALLED = TENSOR + 6, CORRECTION, COLUMNS
+    TENSOR, WALLED = TENSOR + 6, MOMENT, MEAN = MOMENT + 3, DROP, MIDWAY, DAMPED, COLUMNS
 };
 typedef double row[COLUMNS];
 static const char *const column_name[COLUMNS] = {
     "x", "y", "z", "payload", "vx", "vy", "vz", "ax", "ay", "az", "band", "nx", "ny", "nz",
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
-    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled", "correction"
+    "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled",
+    "cx", "cy", "cz", "mean pressure", "drop", "midway", "damped"
 };
 
 enum { TABLE = 4000 };
@@ -250,7 +251,7 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i, int o
     out[i][WALLED] = walled;
 }
 
-static void oracle_lean(const oracle *o, const row *in, row *out, int i);
+static void oracle_moment(const oracle *o, const row *in, row *out, int i);
 
 /* 1: beyond doubt at a surface or on the rim of a cavity, 2: even beside walls. */
 static int oracle_open(const oracle *o, const row *in, int i)
@@ -277,7 +278,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         double tilted[3];
         const int open = oracle_open(o, in, i);
         if (o->along) oracle_tensor(o, in, out, i, open == 2);
-        if (o->along == 1) oracle_lean(o, in, out, i);
+        if (o->along == 1) oracle_moment(o, in, out, i);
         for (int a = 0; a < 3; a++) own[a] = 2*in[i][WALL + a];
         EACH_NEIGHBOUR(o, in, i, j, x, r) {
             rho += ww*oracle_w(o, r);
@@ -294,7 +295,7 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         rho += oracle_fill(o, share);
         double e = rho - 1;
         out[i][RHO] = rho;
-        out[i][PROD] = mean;
+        out[i][MEAN] = mean;
         out[i][DIAG] = (own[0]*own[0] + own[1]*own[1] + own[2]*own[2] + rest)/o->rho0[o->fluid[i]];
         double still = pressure_of(&o->reference, &in[i][POS], 0), drop = 0;
         out[i][SURF] = div < o->surface_limit && still == 0;
@@ -305,8 +306,8 @@ static void oracle_density(const oracle *o, const row *in, row *out, double *t)
         t[2] += out[i][DIAG];
         t[3] += open > 0;
         for (int a = 0; a < 3; a++) drop += o->reference.down[a]*(in[i][POS + a] - o->reference.corner[a]);
-        out[i][DELTA] = open == 2 ? drop : 0;
-        t[7] = fmax(t[7], out[i][DELTA]);
+        out[i][DROP] = open == 2 ? drop : 0;
+        t[7] = fmax(t[7], out[i][DROP]);
         t[6] = fmax(t[6], e);
     }
 }
@@ -475,7 +476,7 @@ static void oracle_tait(const oracle *o, const row *in, row *out, double *t)
         if (in[i][SURF] > 0) push = fmax(push, fmin(in[i][CAPILLARY], 0));
         if (in[i][DIAG] <= o->isolated) p = push = 0;
         out[i][PRES] = p;
-        out[i][DELTA] = out[i][PAYLOAD] = push;
+        out[i][DAMPED] = out[i][PAYLOAD] = push;
         t[0] += fabs(rate);
         t[1] += fabs(p);
         t[6] = fmax(t[6], fabs(rate));

@@ -47,7 +47,7 @@ static void rig_fill(rig *g, const rig_case *k, const int n[3])
                 for (int a = 0; a < 3; a++)
                     q[a] = a < k->dimension ? (at[a] + 0.5 + k->jitter*rig_random())*d : 0;
                 for (int a = 0; a < k->dimension; a++) (&g->p.velocity[i].x)[a] = (float)rig_random();
-                g->p.velocity[i].w = (float)(0.5 + 0.5*rig_random());
+                sph_fields_of(&g->p)->wetness[i] = (float)(0.5 + 0.5*rig_random());
                 sph_fields_of(&g->p)->pressure[i] = (float)(1000*rig_random() + 500);
                 g->p.id[i] = i;
                 g->p.fluid[i] = (uint8_t)(k->fluids > 1 && x%3 == 0);
@@ -62,6 +62,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->count = p->count;
     v->position = p->position; v->record = g->cells.record; v->velocity = p->velocity; v->accel = f->accel;
     v->wall = f->wall; v->density = f->density; v->diagonal = f->diagonal; v->precondition = f->precondition;
+    v->mean_pressure = f->mean; v->drop = f->drop; v->wetness = f->wetness; v->damped = f->damped;
     v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
     v->pressure = f->pressure; v->fluid = p->fluid;
     v->list = g->cells.list; v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
@@ -94,8 +95,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
-    v->beside = f->beside; v->near = f->near; v->full = v->exact = v->midway = k->along == 1;
-    v->moment[0] = f->precondition; v->moment[1] = f->residual; v->moment[2] = f->correction;
+    v->beside = f->beside; v->near = f->near; v->full = v->exact = k->along == 1;
+    v->midway = f->midway; v->moment = f->moment;
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -188,6 +189,8 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     static const int size3[3] = {9, 8, 8}, size2[3] = {26, 24, 1};
     const int *n = k->dimension == 3 ? size3 : size2;
     const double rho[2] = {1000, 800}, nu[2] = {2e-3, 5e-6};   /* kg/m3, m2/s: both of (14), (14b) */
+    static tobi_field field[64];
+    static tobi_field_list list = { .field = field, .size = sizeof(sph_fields) };
     double d = 0.01, lower[3], upper[3];
     memset(g, 0, sizeof *g);
     rig_state = 1234567;
@@ -200,7 +203,12 @@ static int rig_create(rig *g, const rig_case *k, int threads, tobi_error *err)
     tobi_box_init(&g->box, k->dimension, lower, upper, k->periodic, g->c.h);
     int64_t count = (int64_t)n[0]*n[1]*n[2];
     const unsigned all = SPH_NEED_TENSION | SPH_NEED_WETTED;
-    if (tobi_particles_create(&g->p, &sph_field_list, all, count, err)) return 1;
+    list.count = sph_field_list.count;
+    for (int f = 0; f < list.count; f++) {
+        field[f] = sph_field_list.field[f];
+        if (field[f].life != TOBI_STATE) field[f].life = TOBI_SCRATCH;       /* all at once */
+    }
+    if (tobi_particles_create(&g->p, &list, all, count, err)) return 1;
     if (tobi_cells_create(&g->cells, &g->box, g->c.h, &g->p, &g->exec, err)) return 1;
     if (tobi_exec_reserve(&g->exec, count, err)) return 1;
     rig_fill(g, k, n);
@@ -241,7 +249,9 @@ static void rig_get(const rig *g, row *s)
         s[i][RHO] = f->density[i]; s[i][DIAG] = f->diagonal[i]; s[i][PRE] = f->precondition[i];
         s[i][RES] = f->residual[i]; s[i][PROD] = f->product[i]; s[i][DELTA] = f->delta[i];
         s[i][PRES] = f->pressure[i]; s[i][SURF] = f->surface[i];
-        s[i][WET] = p->velocity[i].w; s[i][CORRECTION] = f->correction[i];
+        s[i][WET] = f->wetness[i]; s[i][MEAN] = f->mean[i]; s[i][DROP] = f->drop[i];
+        s[i][MIDWAY] = f->midway[i]; s[i][DAMPED] = f->damped[i];
+        for (int a = 0; a < 3; a++) s[i][MOMENT + a] = (&f->moment[i].x)[a];
     }
 }
 
@@ -255,7 +265,9 @@ static void rig_set(rig *g, const row *s)
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
             (&f->accel[i].x)[a] = (float)s[i][ACC + a];
         }
-        p->velocity[i].w = (float)s[i][WET]; f->correction[i] = (float)s[i][CORRECTION];
+        f->wetness[i] = (float)s[i][WET]; f->mean[i] = (float)s[i][MEAN]; f->drop[i] = (float)s[i][DROP];
+        f->midway[i] = (float)s[i][MIDWAY]; f->damped[i] = (float)s[i][DAMPED];
+        for (int a = 0; a < 3; a++) (&f->moment[i].x)[a] = (float)s[i][MOMENT + a];
         for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];
         for (int a = 0; a < 4; a++) (&f->stretch[i].x)[a] = (float)s[i][TENSOR + a];

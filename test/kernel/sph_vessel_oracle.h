@@ -15,12 +15,12 @@ static void oracle_midway(const oracle *o, const row *in, row *out, double *t)
             for (int a = 0; a < 9; a++) g[a/3][a%3] += f*own[a/3]*(in[i][VEL + a%3] - in[j][VEL + a%3]);
         }
         for (int a = 0; a < 9; a++) sum += g[a/3][a%3]*g[a%3][a/3];
-        out[i][DELTA] = o->dt/2*sum;
+        out[i][MIDWAY] = o->dt/2*sum;
     }
 }
 
 /* c of eq. (13b): M^-1 times the sum of V F x_ji. */
-static void oracle_lean(const oracle *o, const row *in, row *out, int i)
+static void oracle_moment(const oracle *o, const row *in, row *out, int i)
 {
     double m[3][3] = {{0}}, sum[3] = {0}, c[3], size = 0;
     EACH_NEIGHBOUR(o, in, i, j, x, r) {
@@ -35,15 +35,13 @@ static void oracle_lean(const oracle *o, const row *in, row *out, int i)
         size += c[a]*c[a];
     }
     double cut = fmin(1, 3/(o->h*fmax(sqrt(size), 1e-30)));
-    out[i][PRE] = cut*c[0];
-    out[i][RES] = cut*c[1];
-    out[i][CORRECTION] = cut*c[2];
+    for (int a = 0; a < 3; a++) out[i][MOMENT + a] = cut*c[a];
 }
 
 /* The weight of neighbour j in L' at i, eq. (13b). */
-static double leaning(const oracle *o, const row *in, int i, const double x[3], double r, double side)
+static double weigh_by_moment(const oracle *o, const row *in, int i, const double x[3], double r, double side)
 {
-    double c[3] = {in[i][PRE], in[i][RES], in[i][CORRECTION]};
+    double c[3] = {in[i][MOMENT], in[i][MOMENT + 1], in[i][MOMENT + 2]};
     return o->volume*o->g_scale*oracle_f(o, r)*(1 + side*(c[0]*x[0] + c[1]*x[1] + c[2]*x[2]));
 }
 
@@ -54,7 +52,7 @@ static void oracle_filter(const oracle *o, const row *in, row *out, double *t)
         for (int a = 0; a < 3; a++) out[i][ACC + a] = 0;
         EACH_NEIGHBOUR(o, in, i, j, x, r)
             for (int a = 0; a < 3; a++)
-                out[i][ACC + a] += leaning(o, in, i, x, r, 1)*(in[j][VEL + a] - in[i][VEL + a]);
+                out[i][ACC + a] += weigh_by_moment(o, in, i, x, r, 1)*(in[j][VEL + a] - in[i][VEL + a]);
     }
 }
 
@@ -65,8 +63,8 @@ static void oracle_filter_kick(const oracle *o, const row *in, row *out, double 
     for (int i = 0; i < o->count; i++)
         EACH_NEIGHBOUR(o, in, i, j, x, r)
             for (int a = 0; a < 3; a++)
-                out[i][VEL + a] -= o->dt*o->filter*(leaning(o, in, j, x, r, -1)*in[j][ACC + a] -
-                                                    leaning(o, in, i, x, r, 1)*in[i][ACC + a]);
+                out[i][VEL + a] -= o->dt*o->filter*(weigh_by_moment(o, in, j, x, r, -1)*in[j][ACC + a] -
+                                                    weigh_by_moment(o, in, i, x, r, 1)*in[i][ACC + a]);
 }
 
 /* Eq. (21c). */

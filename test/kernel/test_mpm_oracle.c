@@ -420,7 +420,7 @@ static void energies_match_sums(void **state)
     }
 }
 
-/* Where each kernel over blocks meets its oracle; packs of contacts meet theirs in test_solid_contact.c. */
+/* Where each kernel over blocks meets its oracle; packs of contacts meet theirs in test_pack_oracle.c. */
 #define oracle_of_scatter transfers_match_the_oracle
 #define oracle_of_collect transfers_match_the_oracle
 #define oracle_of_gather transfers_match_the_oracle

@@ -38,6 +38,7 @@ static void fill(pool *p, int dimension, int n, int threads)
     assert_int_equal(tobi_particles_create(&s->particles, &sph_field_list, 0, count, &err), TOBI_OK);
     assert_int_equal(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &p->sim.exec, &err),
                      TOBI_OK);
+    tobi_particles_stage(&s->particles, SPH_SOLVE);
     assert_int_equal(tobi_exec_reserve(&p->sim.exec, count, &err), TOBI_OK);
     seed = 11;
     for (int64_t i = 0; i < count; i++) {

@@ -374,7 +374,6 @@ static double divergence_error(int dimension, int along, double *ripple)
     tobi_launch(&g.exec, table->sph_walls, &g.view, 0, g.p.count, NULL);
     tobi_launch(&g.exec, table->sph_density, &g.view, 0, g.p.count, NULL);
     tobi_launch(&g.exec, along ? table->sph_filter : table->sph_laplacian, &g.view, 0, g.p.count, NULL);
-    g.view.midway = 0;
     tobi_launch(&g.exec, table->sph_source, &g.view, 0, g.p.count, NULL);
     *ripple = 0;
     for (int64_t i = 0; i < g.p.count; i++) {

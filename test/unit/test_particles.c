@@ -101,11 +101,51 @@ static void rows_are_ordered_by_id(void **state)
     tobi_particles_free(&p);
 }
 
+enum { EARLY = 1, LATE = 2 };
+typedef struct staged { double *first, *both, *last; float *wide; } staged;
+#define STAGED(X) \
+    X(double, TOBI_F64, 1, first, EARLY, 0, "1", "") \
+    X(double, TOBI_F64, 1, both, EARLY | LATE, 0, "1", "") \
+    X(double, TOBI_F64, 1, last, LATE, 0, "1", "") \
+    X(float, TOBI_F32, 1, wide, TOBI_SCRATCH, 0, "1", "")
+#define STAGED_ROW(...) TOBI_FIELD_ROW(staged, __VA_ARGS__)
+
+/* A field has memory in its stages only, shared with those of other stages, and keeps its values through
+   them, also when rows are added. */
+static void fields_of_stages_share_memory(void **state)
+{
+    static const tobi_field fields[] = { STAGED(STAGED_ROW) };
+    const tobi_field_list list = { fields, 4, sizeof(staged) };
+    tobi_particles p;
+    tobi_error err;
+    int64_t first;
+    (void)state;
+    assert_int_equal(tobi_particles_row_bytes(&list, 0) - tobi_particles_row_bytes(NULL, 0), 8 + 8 + 4);
+    assert_int_equal(tobi_particles_create(&p, &list, 0, 100, &err), TOBI_OK);
+    p.count = 100;
+    const staged *f = p.own;
+    assert_true(!f->first && !f->both && !f->last && f->wide);
+    tobi_particles_stage(&p, EARLY);
+    assert_true(f->first && f->both && !f->last && f->first != f->both);
+    const double *place = f->first;
+    for (int i = 0; i < 100; i++) f->first[i] = f->both[i] = i;
+    tobi_particles_stage(&p, LATE);
+    assert_true(!f->first && f->last == place);
+    for (int i = 0; i < 100; i++) f->last[i] = -i;
+    for (int i = 0; i < 100; i++) assert_true(f->both[i] == i);
+    assert_int_equal(tobi_particles_insert(&p, 50, &first, &err), TOBI_OK);
+    assert_true(!f->both && !f->last);
+    tobi_particles_stage(&p, LATE);
+    for (int i = 0; i < 150; i++) f->last[i] = f->both[i] = i;
+    tobi_particles_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_tell_the_truth),
         cmocka_unit_test(optional_fields_are_there_if_needed),
+        cmocka_unit_test(fields_of_stages_share_memory),
         cmocka_unit_test(rows_come_and_go),
         cmocka_unit_test(rows_are_ordered_by_id),
     };

@@ -204,7 +204,18 @@ static void rows_can_be_inserted(void **state)
                     fail_msg("%s: %g %g after %g", methods[m], v[3*k], v[3*k + 2], fallen);
             free(v);
             hash[threads - 1] = tobi_world_hash(world);
+            OK(tobi_world_save(world, "inserted.h5", &err));
+            tobi_world *later = make_world(methods[m], m == 2 ? BLOCK : POOL, threads);
+            OK(tobi_world_load(later, "inserted.h5", &err));
+            remove("inserted.h5");
+            for (int k = 0; k < 2; k++) {
+                tobi_world *w = k ? later : world;
+                insert_cube(&w->system[0], m == 2 ? 0.2 : 0.05);
+                for (int n = 0; n < 3; n++) OK(tobi_world_step(w, 0, NULL, &err));
+            }
+            assert_true(tobi_world_hash(later) == tobi_world_hash(world));
             tobi_world_destroy(world);
+            tobi_world_destroy(later);
         }
         assert_true(hash[0] == hash[1]);
     }

@@ -267,7 +267,7 @@ static void checkpoints_of_others(void **state)
     world = make_world(&def, 0);
     assert_int_equal(tobi_world_add_fluid(world, &fluid, &small, 1, NULL), TOBI_OK);
     REFUSED(tobi_world_load(world, "other.h5", &err), TOBI_INVALID,
-            "other.h5: holds 150 particles, the scene at most 60");
+            "other.h5: is of another scene: that began with 150 particles, this one with 60");
     tobi_store *store;
     assert_int_equal(tobi_store_create("other.h5", &store, NULL), TOBI_OK);
     assert_int_equal(tobi_store_put_int(store, "format", 1000, NULL), TOBI_OK);
