@@ -17,11 +17,12 @@ RANK = {
     "exec": 1, "comm": 1,
     "geom": 2, "linear": 2,
     "core": 3,
-    "sph": 4, "mpm": 4, "rigid": 4, "io": 4,
-    "view": 5,
-    "world": 6,
-    "scene": 7,
+    "sph": 4, "mpm": 4, "rigid": 4, "io": 4, "view": 4,
+    "world": 5,
+    "scene": 6,
 }
+# Rooms that read the world through include/tobiuo alone, and the rooms below that they stand on.
+ONLY = {"view": {"base", "exec"}, "scene": {"base", "geom"}}
 PUBLIC = "tobiuo"            # include/tobiuo: allowed everywhere
 SUFFIXES = {".c", ".h", ".cu", ".def", ".inc"}
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -56,6 +57,9 @@ def check_room_file(root, path, errors):
             continue
         if other not in RANK:
             errors.append(f"{where}:{number}: \"{target}\" is not in a room; write \"<room>/<file>\"")
+        elif other not in ONLY.get(room, RANK):
+            allowed = ", ".join([*sorted(ONLY[room]), "include/tobiuo"])
+            errors.append(f"{where}:{number}: {room} includes {other}; it may include {allowed}")
         elif RANK[other] > RANK[room]:
             errors.append(f"{where}:{number}: {room} includes {other}, which is above it")
         elif RANK[other] == RANK[room]:

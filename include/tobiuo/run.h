@@ -101,6 +101,17 @@ TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_er
    resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
+/* The tables of a run; probes.csv has columns of points and of levels. */
+typedef enum tobi_table {
+    TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL
+} tobi_table;
+typedef struct tobi_column {
+    const char *name, *unit;        /* "1": without a unit                                      */
+    const char *doc;                /* "": as the column before                                 */
+} tobi_column;
+/* The columns of a table by index, NULL past the end. In probes.csv the names follow the probe's and "_". */
+TOBI_API const tobi_column *tobi_run_column(tobi_table table, int index);
+
 #ifdef __cplusplus
 }
 #endif

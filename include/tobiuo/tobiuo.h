@@ -79,8 +79,10 @@ TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_de
 /* What was repaired or looks odd in the meshes of bodies and fluids, a sentence each, by index; NULL past
    the end. Owned by the world, valid until it is destroyed. */
 TOBI_API const char *tobi_world_note(const tobi_world *world, int note);
+/* Adds a note of the caller's own, a copy. */
+TOBI_API tobi_status tobi_world_add_note(tobi_world *world, const char *text, tobi_error *err);
 
-/* Counts particles and bytes without allocating them. */
+/* Counts particles and bytes without allocating them, and notes a fixed time step that will be cut. */
 TOBI_API tobi_status tobi_world_estimate(tobi_world *world, int64_t *fluid_particles,
                                          int64_t *body_particles, int64_t *bytes, tobi_error *err);
 /* Places the particles; no fluid or body may be added after it. Called by the first step if not
@@ -139,8 +141,12 @@ TOBI_API const char *tobi_world_probe_name(const tobi_world *world, int probe, t
 typedef enum tobi_set { TOBI_FLUID, TOBI_BODIES } tobi_set;
 TOBI_API int64_t tobi_world_count(const tobi_world *world, tobi_set set);
 /* Names of all fields by index, NULL past the end; components is 1, 3, 6 (xx, yy, zz, xy, yz, zx) or 9 (by
-   rows). Which of them a method and bodies have says docs/scene.md; tobi_world_read refuses the others. */
+   rows). tobi_world_read refuses those that the method, or bodies, do not have. */
 TOBI_API const char *tobi_world_field_name(int field, int *components, const char **unit);
+/* The names of the fields of a method by index, of all fields if it is unknown; NULL past the end. */
+TOBI_API const char *tobi_method_field(const char *method, int index);
+/* 1 if the particles of bodies have the field, by the number of tobi_world_field_name. */
+TOBI_API int tobi_body_has_field(int field);
 /* Copies a field into buffer (count x components doubles, row-major, id order). "id" is another name of
    "particle_id". */
 TOBI_API tobi_status tobi_world_read(tobi_world *world, tobi_set set, const char *field,

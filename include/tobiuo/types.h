@@ -16,6 +16,12 @@ extern "C" {
    becomes faster has diverged. */
 #define TOBI_SPEED_LIMIT 1e6
 
+/* At most so many in a world; regions are those of all fluids and solids. */
+enum {
+    TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_REGION_LIMIT = 2048,
+    TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024
+};
+
 typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
 typedef enum tobi_compression {

@@ -1,5 +1,5 @@
 /* Defaults, range checks and look-up by name over parameter tables: one reading of a table serves
-   every use. Drawback: a rule between two members of a definition is not in its table (world/rules.h). */
+   every use. Drawback: a rule between two members of a definition is not in its table (world/rules.c). */
 #include "base/param.h"
 #include <math.h>
 #include <string.h>
@@ -55,4 +55,22 @@ tobi_status tobi_param_check(const tobi_param_table *table, const void *def, tob
         for (i = 0; i < n; i++) TOBI_TRY(check_value(table, p, v[i], err));
     }
     return TOBI_OK;
+}
+
+const char *tobi_choice_word(const char *choices, int i, int *length)
+{
+    for (const char *word = choices; word; i--) {
+        const char *bar = strchr(word, '|');
+        *length = (int)(bar ? (size_t)(bar - word) : strlen(word));
+        if (i == 0) return word;
+        word = bar ? bar + 1 : NULL;
+    }
+    return NULL;
+}
+
+int tobi_choice_count(const char *choices)
+{
+    int count = 1;
+    for (const char *c = choices; *c; c++) count += *c == '|';
+    return count;
 }

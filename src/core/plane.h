@@ -1,8 +1,6 @@
 /* Fixed planes in the domain, beside its sides: solids and rigid bodies stay before them. */
 #pragma once
 
-enum { TOBI_PLANE_LIMIT = 26 };
-
 typedef struct tobi_fixed_plane {
     double normal[3], offset;        /* 1, m: behind is normal . x < offset, x from the lower corner  */
     int    kind;                     /* tobi_plane_kind                                               */

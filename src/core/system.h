@@ -5,7 +5,7 @@
 #include "core/simulation.h"
 #include "core/smoothing.h"
 
-enum { TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
+enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 
 typedef struct tobi_fluid {
     char name[64];

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE 1
 #include "io/csv.h"
 #include "base/plain.h"
-#include "io/file.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* PLY and OBJ written directly: both are a header and numbers. Drawback: OBJ is text, three times the
    size of its numbers. */
 #include "io/exchange.h"
-#include "io/file.h"
+#include "base/file.h"
 
 tobi_status tobi_ply_write(const char *path, int64_t n, const double (*points)[3], tobi_error *err)
 {

@@ -1,5 +1,5 @@
 /* Plain files for other programs: PLY of points, OBJ of triangles. In metres; each appears whole or not at
-   all (io/file.h). Failures: TOBI_IO with path and reason, TOBI_NO_MEMORY. Arrays are borrowed. */
+   all (base/file.h). Failures: TOBI_IO with path and reason, TOBI_NO_MEMORY. Arrays are borrowed. */
 #pragma once
 #include "base/error.h"
 

@@ -2,7 +2,7 @@
    a tail. Drawback: some 110 bytes of memory per entry for as long as the run goes on. */
 #define _GNU_SOURCE 1
 #include "io/pvd.h"
-#include "io/file.h"
+#include "base/file.h"
 #include "io/xml.h"
 #include <locale.h>
 #include <stdio.h>

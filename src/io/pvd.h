@@ -17,6 +17,6 @@ typedef struct tobi_pvd_entry {
 
 /* TOBI_NO_MEMORY: the list is as it was. Names are UTF-8 and may hold any character. */
 tobi_status tobi_pvd_add(tobi_pvd *list, const tobi_pvd_entry *entry, tobi_error *err);
-/* The file appears whole or not at all (io/file.h). */
+/* The file appears whole or not at all (base/file.h). */
 tobi_status tobi_pvd_write(const char *path, const tobi_pvd *list, tobi_error *err);
 void tobi_pvd_free(tobi_pvd *list);

@@ -4,7 +4,7 @@
 #define _GNU_SOURCE 1
 #include "io/store.h"
 #include "base/plain.h"
-#include "io/file.h"
+#include "base/file.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <inttypes.h>

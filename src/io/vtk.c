@@ -4,7 +4,7 @@
 #define _GNU_SOURCE 1
 #include "io/vtk.h"
 #include "exec/exec.h"
-#include "io/file.h"
+#include "base/file.h"
 #include "io/xml.h"
 #include <inttypes.h>
 #include <lz4.h>

@@ -2,7 +2,7 @@
 
    VTU and VTP hold appended raw binary with a UInt64 header, optionally compressed in blocks by
    zlib or LZ4, or ASCII. Source: the VTK XML file format as its own readers define it. Every file
-   appears whole or not at all (io/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for
+   appears whole or not at all (base/file.h). Failures: TOBI_IO with path and reason, TOBI_INVALID for
    arguments that no file can hold. Arrays are borrowed for the call. Names and file names are UTF-8
    and may hold any character. */
 #pragma once

@@ -1,6 +1,5 @@
 /* The kinds of motion behind one type. Three are formulas, evaluated here; others ask a script or rows of
    a file. All rigid kinds end in one place: pose a point about a pivot. */
-#include "rigid/motion.h"
 #include "rigid/keyframes.h"
 #include "rigid/script.h"
 #include <math.h>
@@ -55,7 +54,9 @@ static tobi_status set_direction(const char *what, const double v[3], double out
 tobi_status tobi_motion_script(const char *path, const char *params_json, tobi_motion **out,
                                tobi_error *err)
 {
+    TOBI_NEED(out, "where the motion goes");
     *out = NULL;
+    TOBI_NEED(path, "the path");
     tobi_script *script = NULL;
     TOBI_TRY(tobi_script_load(path, params_json, TOBI_MOTION_SCRIPT, &script, err));
     tobi_status status = make(KIND_SCRIPT, out, err);
@@ -66,7 +67,9 @@ tobi_status tobi_motion_script(const char *path, const char *params_json, tobi_m
 
 tobi_status tobi_motion_translation(const double velocity[3], tobi_motion **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the motion goes");
     *out = NULL;
+    TOBI_NEED(velocity, "the velocity");
     TOBI_TRY(check_finite("velocity", velocity, 3, err));
     TOBI_TRY(make(KIND_TRANSLATION, out, err));
     for (int a = 0; a < 3; a++) (*out)->vector[a] = velocity[a];
@@ -76,7 +79,9 @@ tobi_status tobi_motion_translation(const double velocity[3], tobi_motion **out,
 tobi_status tobi_motion_rotation(const double centre[3], const double axis[3],
                                  double rate_deg_per_s, tobi_motion **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the motion goes");
     *out = NULL;
+    TOBI_NEED(centre && axis, "the centre or the axis");
     double unit[3];
     TOBI_TRY(check_finite("centre", centre, 3, err));
     TOBI_TRY(check_finite("rate", &rate_deg_per_s, 1, err));
@@ -94,7 +99,9 @@ tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_
                                     double frequency_hz, double phase_deg, tobi_motion **out,
                                     tobi_error *err)
 {
+    TOBI_NEED(out, "where the motion goes");
     *out = NULL;
+    TOBI_NEED(direction, "the direction");
     double unit[3], numbers[3] = { amplitude_m, frequency_hz, phase_deg };
     TOBI_TRY(check_finite("amplitude, frequency and phase", numbers, 3, err));
     TOBI_TRY(set_direction("direction", direction, unit, err));
@@ -109,7 +116,9 @@ tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_
 tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_motion **out,
                                   tobi_error *err)
 {
+    TOBI_NEED(out, "where the motion goes");
     *out = NULL;
+    TOBI_NEED(path && pivot, "the path or the pivot");
     tobi_keyframes *frames = NULL;
     TOBI_TRY(check_finite("pivot", pivot, 3, err));
     TOBI_TRY(tobi_keyframes_load(path, &frames, err));
@@ -133,7 +142,7 @@ void tobi_motion_free(tobi_motion *motion)
 
 int tobi_motion_is_rigid(const tobi_motion *motion)
 {
-    return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
+    return motion && (motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script));
 }
 
 /* Rodrigues' formula as a matrix; axis is a unit vector. The angle is brought to (-360, 360) first,
@@ -187,6 +196,7 @@ static void move_points(const tobi_pose *pose, int64_t n, const double (*rest)[3
 tobi_status tobi_motion_positions(void *user, double t, int64_t n, const double (*rest)[3],
                                   double (*position)[3], tobi_error *err)
 {
+    TOBI_NEED(user, "the motion");
     const tobi_motion *motion = user;
     tobi_pose pose = { .axis = { 0.0, 0.0, 1.0 } };
     switch (motion->kind) {

@@ -208,7 +208,11 @@ static tobi_script *create(const char *path, tobi_script_role role, double secon
 tobi_status tobi_script_load_within(const char *path, const char *params_json, tobi_script_role role,
                                     double seconds, tobi_script **out, tobi_error *err)
 {
+    TOBI_NEED(out, "where the script goes");
     *out = NULL;
+    TOBI_NEED(path, "the path");
+    if (role != TOBI_MOTION_SCRIPT && role != TOBI_CONTROL_SCRIPT && role != TOBI_FLOW_SCRIPT)
+        return tobi_fail(err, TOBI_INVALID, "script %s: there is no role %d", path, (int)role);
     json_error_t where;
     json_t *params = json_loads(params_json ? params_json : "{}", 0, &where);
     if (!json_is_object(params)) {
@@ -294,6 +298,7 @@ tobi_status tobi_script_deform(tobi_script *s, double t, int64_t n, const double
 tobi_status tobi_script_flow(void *user, int64_t n, const double (*place)[3], double (*velocity)[3],
                              tobi_error *err)
 {
+    TOBI_NEED(user, "the script");
     tobi_script *s = user;
     int64_t i;
     const char *why;
@@ -345,6 +350,7 @@ tobi_status tobi_script_place(tobi_script *s, double t, tobi_pose *pose, tobi_er
 tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_control_output *out,
                                 tobi_error *err)
 {
+    TOBI_NEED(user, "the script");
     tobi_script *s = user;
     double from[23] = { in->time }, into[7] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);

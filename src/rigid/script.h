@@ -1,4 +1,5 @@
-/* A script of the user: a text file in Lua. A motion script defines exactly one of
+/* A script of the user: a text file in Lua; loading, control and flow are in tobiuo/motion.h. A motion script
+   defines exactly one of
 
      function deform(x, y, z, t)        -- rest position (m) and time (s)
          return x, y, z                 -- position (m)
@@ -46,9 +47,7 @@
    reason. */
 #pragma once
 #include "base/error.h"
-#include "tobiuo/types.h"
-
-typedef struct tobi_script tobi_script;
+#include "tobiuo/motion.h"
 
 /* A rigid placement; axis has unit length. */
 typedef struct tobi_pose {
@@ -58,17 +57,9 @@ typedef struct tobi_pose {
     double pivot[3];      /* m        */
 } tobi_pose;
 
-typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT, TOBI_FLOW_SCRIPT } tobi_script_role;
-
-/* Starts a process for the script, which loads and runs the file once. Errors as in tobi_motion_script;
-   TOBI_IO too where no process can be started. Calls must come from the process that loaded it, from
-   any of its threads, one at a time. */
-tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
-                             tobi_script **out, tobi_error *err);
-/* With another limit of processor time, for tests. */
+/* tobi_script_load with another limit of processor time, for tests. */
 tobi_status tobi_script_load_within(const char *path, const char *params_json, tobi_script_role role,
                                     double seconds, tobi_script **out, tobi_error *err);
-void tobi_script_free(tobi_script *script);
 
 /* 1 when the script defines place(), 0 when it defines deform(). */
 int tobi_script_is_rigid(const tobi_script *script);
@@ -78,9 +69,3 @@ tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const d
                                double (*position)[3], tobi_error *err);
 /* Calls place(). */
 tobi_status tobi_script_place(tobi_script *script, double t, tobi_pose *pose, tobi_error *err);
-/* Calls velocity() for n places: a tobi_flow_fn, user is the script. */
-tobi_status tobi_script_flow(void *script, int64_t n, const double (*place)[3], double (*velocity)[3],
-                             tobi_error *err);
-/* Calls control(): a tobi_control_fn, user is the script. TOBI_SCRIPT when it fails or answers nonsense. */
-tobi_status tobi_script_control(void *script, const tobi_control_input *in, tobi_control_output *out,
-                                tobi_error *err);

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
 #include "tobiuo/scene.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,12 +2,7 @@
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
 #include "tobiuo/scene.h"
-#include "mpm/damage.h"
-#include "world/methods.h"
-#include "mpm/mlsmpm.h"
-#include "world/params.h"
-#include "world/rules.h"
-#include "world/world.h"
+#include "base/param.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -108,50 +103,50 @@ static int is_empty(const tobi_scene *scene, const char *key)
 /* What the method moves must be there, and what it does not know must not. */
 static void check_matter(const tobi_scene *scene, tobi_source *source)
 {
-    const tobi_method *method = tobi_method_find(scene->world.method);
+    tobi_method_info method;
     tobi_place fluids = { &root, "fluids", 0 }, solids = { &root, "solids", 0 };
     tobi_place probes = { &root, "probes", 0 }, planes = { &root, "planes", 0 };
-    if (!method) return;
-    if (!method->planes && !is_empty(scene, "planes"))
+    if (!tobi_method_describe(scene->world.method, &method)) return;
+    if (!method.planes && !is_empty(scene, "planes"))
         tobi_source_mistake(source, &planes, "are for solids and bodies of mlsmpm; %s knows sides of the "
-                            "domain and bodies", method->name);
-    if (!method->solids) {
+                            "domain and bodies", method.name);
+    if (!method.solids) {
         if (!is_empty(scene, "solids"))
             tobi_source_mistake(source, &solids, "%s takes fluids; solids need \"method\": \"mlsmpm\"",
-                                method->name);
+                                method.name);
         else if (is_empty(scene, "fluids"))
             tobi_source_mistake(source, &fluids, "is missing or empty: a scene needs at least one fluid");
         return;
     }
     if (!is_empty(scene, "fluids"))
         tobi_source_mistake(source, &fluids, "%s takes no fluids; write a solid of \"model\": \"liquid\" "
-                            "into solids, or \"method\": \"dfsph\"", method->name);
+                            "into solids, or \"method\": \"dfsph\"", method.name);
     else if (is_empty(scene, "solids") && is_empty(scene, "bodies"))
         tobi_source_mistake(source, &solids, "is missing or empty: a scene of %s needs at least one solid or "
-                            "body", method->name);
+                            "body", method.name);
     if (!is_empty(scene, "probes"))
         tobi_source_mistake(source, &probes, "measure fluids of the SPH methods; %s has no probes",
-                            method->name);
+                            method.name);
 }
 
 /* The methods carry one material: tobi_world_add_fluid would say the same, but not where. */
 static void check_material(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
 {
     const tobi_scene_fluid *first = &scene->fluids[0], *fluid = &scene->fluids[entry->index];
-    const tobi_method *method = tobi_method_find(scene->world.method);
+    tobi_method_info method;
     const struct { const char *key, *unit; double value, other; } values[] = {
         { "density", "kg/m3", fluid->def.density, first->def.density },
         { "viscosity", "Pa s", fluid->def.viscosity, first->def.viscosity },
         { "surface_tension", "N/m", fluid->def.surface_tension, first->def.surface_tension },
     };
-    if (!method || method->solids || fluid->bound.good != fluid->bound.given ||
-        first->bound.good != first->bound.given) return;
+    if (!tobi_method_describe(scene->world.method, &method) || method.solids ||
+        fluid->bound.good != fluid->bound.given || first->bound.good != first->bound.given) return;
     for (size_t k = 0; k < sizeof values/sizeof *values; k++) {
         tobi_place place = { entry, values[k].key, 0 };
         if (values[k].value == values[k].other) continue;
         tobi_source_mistake(source, &place, "is %.10g %s and that of fluids[0] is %.10g %s; %s carries one "
                             "material, so all fluids have the same %s", values[k].value, values[k].unit,
-                            values[k].other, values[k].unit, method->name, values[k].key);
+                            values[k].other, values[k].unit, method.name, values[k].key);
         return;                        /* others may follow from it, as in translated scenes */
     }
 }
@@ -187,21 +182,24 @@ static void check_solid(const tobi_scene *scene, tobi_source *source, const tobi
     }
 }
 
-/* Strength and fracture energy must fit each other and the cells: tobi_world_add_solid would say the same,
-   but not where. */
-static void check_strength(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+typedef struct spot { tobi_source *source; const tobi_place *entry; } spot;
+
+static void tell_solid(void *user, const char *key, const tobi_error *why)
+{
+    const spot *at = user;
+    tobi_place place = { at->entry, key, 0 };
+    tobi_source_mistake_at_key(at->source, &place, "%s", why->text);
+}
+
+/* What must fit the cells, as strength and fracture energy: where all numbers are known. */
+static void check_cells(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
 {
     const tobi_scene_solid *solid = &scene->solids[entry->index];
-    const tobi_mlsmpm_def *method = scene->method_def;
-    const char *key;
-    char note[200];
-    tobi_error err = { 0 };
-    if (scene->method != &tobi_mlsmpm_table || solid->bound.good != solid->bound.given ||
-        !tobi_solid_uses(solid->def.model, "strength") ||
+    spot at = { source, entry };
+    const tobi_rules rules = { .tell = tell_solid, .user = &at };
+    if (solid->bound.good != solid->bound.given ||
         !tobi_bind_has(&tobi_world_table, scene->world_bound.good, "spacing")) return;
-    if (mpm_damage_check(&solid->def, method->cell*scene->world.spacing, &key, note, &err) == TOBI_OK) return;
-    tobi_place place = { entry, key, 0 };
-    tobi_source_mistake_at_key(source, &place, "%s", err.text);
+    tobi_rules_solid(&rules, &scene->world, scene->method_def, &solid->def);
 }
 
 static void check_solids(const tobi_scene *scene, tobi_source *source)
@@ -211,7 +209,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
         tobi_place entry = { &solids, NULL, (size_t)i };
         check_name(scene, source, &entry, SOLIDS);
         check_solid(scene, source, &entry);
-        check_strength(scene, source, &entry);
+        check_cells(scene, source, &entry);
         tobi_check_fills(scene, source, &entry, scene->solids[i].fills, scene->solids[i].fill_count);
     }
 }
@@ -317,8 +315,10 @@ static void check_probes(const tobi_scene *scene, tobi_source *source)
 static void check_field(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
                         const char *field)
 {
-    const char *names[TOBI_WORLD_FIELDS];
-    int count = tobi_world_list_fields(scene->world.method, names);
+    enum { FIELDS = 32 };
+    const char *names[FIELDS];
+    int count = 0;
+    while (count < FIELDS && (names[count] = tobi_method_field(scene->world.method, count))) count++;
     char all[512] = "";
     if (strcmp(field, "usual") == 0) return;
     for (int k = 0; k < count; k++)
@@ -344,10 +344,10 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
         tobi_source_mistake(source, &interval,
                             "is %.10g s and makes more than %d outputs until end_time, %.10g s",
                             scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
-    const tobi_method *method = tobi_method_find(scene->world.method);
+    tobi_method_info method;
     tobi_place grid = { &output, "grid", 0 };
-    if (scene->output.grid && method && !method->nodes)
-        tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method->name);
+    if (scene->output.grid && tobi_method_describe(scene->world.method, &method) && !method.grid)
+        tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method.name);
     tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
     if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)

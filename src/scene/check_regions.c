@@ -1,6 +1,6 @@
 /* Checks of what fills a scene at the start: boxes, spheres, meshes. */
 #include "scene/scene.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The programs of a scene that are not motions, Lua files: the `control` of a body, which answers a force
    and a torque, and the `flow` of a region, which answers a velocity. */
 #pragma once
-#include "rigid/script.h"
+#include "tobiuo/motion.h"
 #include "scene/bind.h"
 
 typedef struct tobi_control_def {

@@ -6,7 +6,7 @@
 #include "scene/manual.h"
 #include "scene/motions.h"
 #include "scene/parts.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "tobiuo/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,8 +4,7 @@
 #include "scene/describe.h"
 #include "scene/manual.h"
 #include "scene/parts.h"
-#include "world/record.h"
-#include "world/world.h"
+#include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 #include <stdlib.h>
 #include <string.h>
@@ -94,9 +93,9 @@ static void add_all(words *w)
         for (const tobi_param *row = table->rows; row->key; row++) add_words(w, row->key);
     for (int i = 0; tobi_part_at(i, &part); i++) add_words(w, part.key);
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) add_words(w, name);
-    const tobi_table_column *c;
+    const tobi_column *c;
     for (tobi_table t = TOBI_TABLE_HISTORY; t <= TOBI_TABLE_LEVEL; t++)
-        for (int i = 0; (c = tobi_tables_column(t, i)); i++) add_words(w, c->name);
+        for (int i = 0; (c = tobi_run_column(t, i)); i++) add_words(w, c->name);
 }
 
 char *tobi_scene_suggest(const char *word)

@@ -3,7 +3,7 @@
    stands here and must be kept true by hand. */
 #define _GNU_SOURCE 1
 #include "scene/manual.h"
-#include "world/record.h"
+#include "tobiuo/run.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,15 +65,15 @@ enum { TABLES = sizeof tables/sizeof *tables };
 /* The meaning of a column stands once for the components of a vector. */
 static const char *find_meaning(tobi_table table, int index)
 {
-    while (index > 0 && !*tobi_tables_column(table, index)->doc) index--;
-    return tobi_tables_column(table, index)->doc;
+    while (index > 0 && !*tobi_run_column(table, index)->doc) index--;
+    return tobi_run_column(table, index)->doc;
 }
 
-static int is_above(const tobi_table_column *c) { return !*c->doc; }
+static int is_above(const tobi_column *c) { return !*c->doc; }
 
 static void print_column(FILE *out, tobi_table table, int index)
 {
-    const tobi_table_column *c = tobi_tables_column(table, index);
+    const tobi_column *c = tobi_run_column(table, index);
     fprintf(out, "  %-27s %-7s %s\n", c->name, c->unit, is_above(c) ? "(as above)" : c->doc);
 }
 
@@ -83,17 +83,17 @@ int tobi_tables_describe(FILE *out, const char *topic)
     for (int k = 0; k < TABLES; k++) {
         if (strcmp(tables[k].topic, topic) != 0) continue;
         fprintf(out, "%s%s\n", found++ ? "\n" : "", tables[k].doc);
-        for (int i = 0; tobi_tables_column(tables[k].table, i); i++) print_column(out, tables[k].table, i);
+        for (int i = 0; tobi_run_column(tables[k].table, i); i++) print_column(out, tables[k].table, i);
     }
     return found;
 }
 
 int tobi_tables_find(FILE *out, const char *name)
 {
-    const tobi_table_column *c;
+    const tobi_column *c;
     int found = 0;
     for (int k = 0; k < TABLES; k++)
-        for (int i = 0; (c = tobi_tables_column(tables[k].table, i)); i++) {
+        for (int i = 0; (c = tobi_run_column(tables[k].table, i)); i++) {
             if (strcmp(c->name, name) != 0) continue;
             fprintf(out, "%s: column of %s, unit %s\n      %s\n", name, tables[k].file, c->unit,
                     find_meaning(tables[k].table, i));
@@ -116,12 +116,12 @@ const char *tobi_tables_topic(int index, const char **doc)
 /* Components of a vector share a row: `position_x`, `_y`, `_z`. */
 static void write_rows(FILE *out, tobi_table table)
 {
-    const tobi_table_column *c, *next;
+    const tobi_column *c, *next;
     fputs("| column | unit | meaning |\n|---|---|---|\n", out);
-    for (int i = 0; (c = tobi_tables_column(table, i)); i++) {
+    for (int i = 0; (c = tobi_run_column(table, i)); i++) {
         const char *doc = c->doc;
         fprintf(out, "| `%s`", c->name);
-        while ((next = tobi_tables_column(table, i + 1)) && !*next->doc) {
+        while ((next = tobi_run_column(table, i + 1)) && !*next->doc) {
             fprintf(out, ", `%s`", strrchr(next->name, '_'));
             i++;
         }

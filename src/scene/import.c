@@ -3,7 +3,7 @@
 #include "scene/import.h"
 #include "tobiuo/scene.h"
 #include "scene/write.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>

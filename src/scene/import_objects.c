@@ -3,7 +3,6 @@
 #include "scene/import.h"
 #include "tobiuo/scene.h"
 #include "geom/mesh.h"
-#include "world/world.h"
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>

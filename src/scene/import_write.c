@@ -1,6 +1,6 @@
 /* Writing a translated scene to a file of its own. */
 #define _GNU_SOURCE 1
-#include "io/file.h"
+#include "base/file.h"
 #include "scene/import.h"
 #include "scene/scene.h"
 #include "scene/write.h"

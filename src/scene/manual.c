@@ -5,8 +5,7 @@
 #include "scene/bind.h"
 #include "scene/motions.h"
 #include "scene/parts.h"
-#include "world/params.h"
-#include "world/world.h"
+#include "base/param.h"
 #include "tobiuo/tobiuo.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -242,11 +241,11 @@ static void write_fields(FILE *out)
           "| field | components | unit | of |\n|---|---|---|---|\n", out);
     for (int i = 0; (name = tobi_world_field_name(i, &components, &unit)); i++) {
         fprintf(out, "| `%s` | %d | %s |", name, components, unit);
-        const char *method, *known[TOBI_WORLD_FIELDS];
+        const char *method, *known;
         for (int m = 0; (method = tobi_method_name(m)); m++)
-            for (int k = tobi_world_list_fields(method, known) - 1; k >= 0; k--)
-                if (known[k] == name) fprintf(out, " %s", method);
-        fputs(tobi_world_bodies_have(i) ? " bodies |\n" : " |\n", out);
+            for (int k = 0; (known = tobi_method_field(method, k)); k++)
+                if (known == name) fprintf(out, " %s", method);
+        fputs(tobi_body_has_field(i) ? " bodies |\n" : " |\n", out);
     }
     fputs("\n`bodies` are the particles in `bodies.pvd`, which has only fields of theirs. Their `density`\n"
           "is the scene's; `object_id` is 0 in fluids and solids and from 1 in bodies.\n\n"

@@ -6,7 +6,7 @@
 #include "tobiuo/scene.h"
 #include "scene/write.h"
 #include "base/param_rows.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

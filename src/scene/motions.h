@@ -1,7 +1,7 @@
 /* The `motion` of a body in a scene: a script, keyframes, or translation, rotation, oscillation by
    numbers. */
 #pragma once
-#include "rigid/motion.h"
+#include "tobiuo/motion.h"
 #include "scene/bind.h"
 
 typedef struct tobi_translation_def { double velocity[3]; } tobi_translation_def;

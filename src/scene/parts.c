@@ -2,8 +2,7 @@
    (scene/check.c). */
 #include "scene/parts.h"
 #include "scene/controls.h"
-#include "world/params.h"
-#include "world/world.h"
+#include "base/param.h"
 #include <assert.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* Data that a scene names for comparison. The engine never opens it; `tobiuo plot` does. */
 #define _GNU_SOURCE 1
 #include "scene/scene.h"
+#include "tobiuo/run.h"
 #include "tobiuo/scene.h"
-#include "world/record.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,9 +26,9 @@ static void check_column(tobi_source *source, const tobi_place *entry, tobi_tabl
     const char *names[COLUMNS];
     char near[200];
     int count = 0;
-    const tobi_table_column *c;
+    const tobi_column *c;
     tobi_place place = { entry, "column", 0 };
-    for (; count < COLUMNS && (c = tobi_tables_column(table, count)); count++)
+    for (; count < COLUMNS && (c = tobi_run_column(table, count)); count++)
         if (strcmp(names[count] = c->name, column) == 0) return;
     suggest(column, names, count, near);
     tobi_source_mistake(source, &place, "there is no column \"%s\" in %s%s", column, where[table],

@@ -6,8 +6,7 @@
 #include "scene/override.h"
 #include "scene/parts.h"
 #include "scene/write.h"
-#include "world/params.h"
-#include "world/world.h"
+#include "base/param.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -421,10 +420,10 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
     const char *named = json_string_value(json_object_get(scene->stand_ins, def->name));
     TOBI_TRY(tobi_world_add_body(world, def, err));
     if (!named || !def->mesh || !strstr(def->mesh, TOBI_STAND_IN)) return TOBI_OK;
-    char text[512];
-    snprintf(text, sizeof text, "there is no mesh %.300s, so the fish that comes with Tobiuo is taken\n",
-             named);
-    return tobi_world_add_notes(world, "body", def->name, text, err);
+    char text[560];
+    snprintf(text, sizeof text, "body '%.150s': there is no mesh %.300s, so the fish that comes with "
+             "Tobiuo is taken", def->name, named);
+    return tobi_world_add_note(world, text, err);
 }
 
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
@@ -445,7 +444,6 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = tobi_world_add_plane(world, &scene->planes[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
-    if (status == TOBI_OK) status = tobi_world_note_time_step(world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);
     return status;

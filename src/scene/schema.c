@@ -6,8 +6,7 @@
 #include "scene/motions.h"
 #include "scene/parts.h"
 #include "scene/write.h"
-#include "world/methods.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "tobiuo/tobiuo.h"
 #include <math.h>
 #include <stdio.h>
@@ -282,10 +281,11 @@ static json_t *make_table(const tobi_param_table *table)
 static void require_matter(json_t *schema)
 {
     json_t *names = json_array();
+    tobi_method_info method;
     json_t *none = json_pack("{s:i}", "maxItems", 0), *some = json_pack("{s:i}", "minItems", 1);
     for (int i = 0; tobi_method_name(i); i++)
-        if (tobi_method_at(i)->solids)
-            json_array_append_new(names, json_string(tobi_method_at(i)->name));
+        if (tobi_method_describe(tobi_method_name(i), &method) && method.solids)
+            json_array_append_new(names, json_string(method.name));
     json_object_set_new(schema, "if", json_pack("{s:[s],s:{s:{s:o}}}", "required", "method", "properties",
                                                 "method", "enum", names));
     json_object_set_new(schema, "then",

@@ -2,10 +2,7 @@
    misleads. One list serves the check, which reports those that are given, and resolved.json, which leaves
    them out. The section of a method that is not chosen plainly waits for another run and is let be. */
 #include "scene/scene.h"
-#include "world/methods.h"
-#include "mpm/mlsmpm.h"
-#include "world/params.h"
-#include "world/world.h"
+#include "base/param.h"
 #include <string.h>
 
 typedef enum reader {
@@ -21,46 +18,52 @@ typedef enum reader {
 #define UNMOVED "is for free and controlled bodies, this one is prescribed"
 
 static const struct {
-    const tobi_param_table *table;
-    const char *key;
+    const char *table, *key;
     reader reader;
     const char *why;
 } keys[] = {
-    { &tobi_world_table, "cfl", SPH, "is for the SPH methods; mlsmpm has its own, mlsmpm.cfl" },
-    { &tobi_world_table, "domain.contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no "
+    { "world", "cfl", SPH, "is for the SPH methods; mlsmpm has its own, mlsmpm.cfl" },
+    { "world", "domain.contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no "
                                                       "surface tension" },
-    { &tobi_world_table, "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "
+    { "world", "domain.friction", SOLIDS, "is for solids of mlsmpm; what liquids do at a side say "
                                                     "domain.walls and their viscosity" },
-    { &tobi_body_table, "friction", SPH, "is for liquids of the SPH methods; solids of mlsmpm rub by its "
+    { "body", "friction", SPH, "is for liquids of the SPH methods; solids of mlsmpm rub by its "
                                          "friction_coefficient" },
-    { &tobi_body_table, "contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no surface "
+    { "body", "contact_angle", SPH, "is for liquids of the SPH methods; mlsmpm has no surface "
                                               "tension" },
-#define MOVED(key) { &tobi_body_table, key, FORCES, UNMOVED }
+#define MOVED(key) { "body", key, FORCES, UNMOVED }
     MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),
     MOVED("locked"),
 #undef MOVED
-#define EDGE(key) { &tobi_body_table, key, BLADE, "is for a blade, which this body is not" }
+#define EDGE(key) { "body", key, BLADE, "is for a blade, which this body is not" }
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),
 #undef EDGE
-#define RISING(key) { &tobi_solid_table, key, RISE, "is for a friction_rise, which this solid has not" }
+#define RISING(key) { "solid", key, RISE, "is for a friction_rise, which this solid has not" }
     RISING("grain_diameter"), RISING("inertial_number"),
 #undef RISING
-    { &tobi_solid_table, "friction_angle", SLOPE, "is for a strength, which this solid has not" },
-    { &tobi_mlsmpm_table, "flip", FLIP, "is for \"transfer\": \"flip\"" },
-    { &tobi_mlsmpm_table, "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
+    { "solid", "friction_angle", SLOPE, "is for a strength, which this solid has not" },
+    { "mlsmpm", "flip", FLIP, "is for \"transfer\": \"flip\"" },
+    { "mlsmpm", "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
+
+/* The parameters of mlsmpm, NULL if the scene has another method. */
+static const tobi_mlsmpm_def *find_mlsmpm(const tobi_scene *scene)
+{
+    return scene->method && strcmp(scene->method->name, "mlsmpm") == 0 ? scene->method_def : NULL;
+}
 
 /* def: of the body or solid whose keys are asked for, else NULL. */
 static int is_there(const tobi_scene *scene, const void *def, reader who)
 {
     const tobi_body_def *body = def;
     const tobi_solid_def *solid = def;
-    const tobi_method *method = tobi_method_find(scene->world.method);
-    const tobi_mlsmpm_def *solids = scene->method == &tobi_mlsmpm_table ? scene->method_def : NULL;
+    const tobi_mlsmpm_def *solids = find_mlsmpm(scene);
+    tobi_method_info method;
+    tobi_method_describe(scene->world.method, &method);
     switch (who) {
-    case SPH: return !method->solids;
-    case SOLIDS: return method->solids;
+    case SPH: return !method.solids;
+    case SOLIDS: return method.solids;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;
@@ -84,7 +87,7 @@ void tobi_unused_drop(const tobi_scene *scene, const tobi_param_table *table, co
     char outer[32];
     const char *inner;
     for (int k = 0; k < KEYS; k++) {
-        if (keys[k].table != table || is_there(scene, def, keys[k].reader)) continue;
+        if (strcmp(keys[k].table, table->name) != 0 || is_there(scene, def, keys[k].reader)) continue;
         split(keys[k].key, outer, &inner);
         json_object_del(outer[0] ? json_object_get(object, outer) : object, inner);
     }
@@ -97,7 +100,7 @@ static void check(const tobi_scene *scene, tobi_source *source, const tobi_param
     char outer[32];
     const char *inner;
     for (int k = 0; bound.given == bound.good && k < KEYS; k++) {
-        if (keys[k].table != table || !tobi_bind_has(table, bound.given, keys[k].key) ||
+        if (strcmp(keys[k].table, table->name) != 0 || !tobi_bind_has(table, bound.given, keys[k].key) ||
             is_there(scene, def, keys[k].reader)) continue;
         split(keys[k].key, outer, &inner);
         tobi_place middle = { place, outer, 0 }, key = { outer[0] ? &middle : place, inner, 0 };
@@ -119,7 +122,7 @@ static void check_friction(const tobi_scene *scene, tobi_source *source, const t
 {
     tobi_place domain = { root, "domain", 0 }, friction = { &domain, "friction", 0 };
     tobi_place planes = { root, "planes", 0 };
-    if (scene->method != &tobi_mlsmpm_table) return;
+    if (!find_mlsmpm(scene)) return;
     if (scene->world.friction > 0 && !has_separate_side(&scene->world))
         tobi_source_mistake_at_key(source, &friction, "is for \"separate\" sides, and no side in "
                                    "domain.walls is one");

@@ -2,7 +2,7 @@
    the scene are lost. */
 #define _GNU_SOURCE 1
 #include "scene/write.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,9 @@
-/* The stages of a picture, between frame*.c. A canvas holds samples, several per pixel; view space has x to
-   the right, y up and z away from the eye; colours are linear RGB. */
+/* The stages of a picture, shared by the files of this room. A canvas holds samples, several per pixel; view
+   space has x to the right, y up and z away from the eye; colours are linear RGB. */
 #pragma once
-#include "view/picture.h"
+#include "base/error.h"
 #include "exec/exec.h"
+#include "tobiuo/picture.h"
 #include <math.h>
 #include <stdbool.h>
 
@@ -113,11 +114,11 @@ typedef struct tiles {
 } tiles;
 /* Samples that item i touches: {x0, y0, x1, y1}, both ends included; false = none. */
 typedef bool (*tile_rect)(const void *items, int64_t i, int rect[4]);
-tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
+tobi_status view_tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
                         tobi_error *err);
-void tiles_free(tiles *t);
+void view_tiles_free(tiles *t);
 /* The samples of tile k: {x0, y0, x1, y1}, both ends included. */
-static inline void tiles_rect(const tiles *t, const canvas *c, int64_t k, int rect[4])
+static inline void view_tiles_rect(const tiles *t, const canvas *c, int64_t k, int rect[4])
 {
     rect[0] = (int)(k%t->across)*TILE, rect[1] = (int)(k/t->across)*TILE;
     rect[2] = rect[0] + TILE <= c->width ? rect[0] + TILE - 1 : c->width - 1;
@@ -125,42 +126,42 @@ static inline void tiles_rect(const tiles *t, const canvas *c, int64_t k, int re
 }
 
 /* solid.c */
-tobi_status draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err);
-void draw_floor(canvas *c, const tobi_picture *frame);
-void draw_box(canvas *c, const tobi_picture *frame);
-vec  sky_color(const canvas *c, vec direction);
-vec  shade_solid(const canvas *c, vec p, vec n, vec albedo);
+tobi_status view_draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err);
+void view_draw_floor(canvas *c, const tobi_picture *frame);
+void view_draw_box(canvas *c, const tobi_picture *frame);
+vec  view_sky_color(const canvas *c, vec direction);
+vec  view_shade_solid(const canvas *c, vec p, vec n, vec albedo);
 
 /* shadow.c */
-tobi_status make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err);
-float lit_at(const canvas *c, vec point);
+tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err);
+float view_lit_at(const canvas *c, vec point);
 
 /* smooth.c: after particles were splatted. */
-typedef enum look { WATER, GRAINS, DISCS } look;     /* how the particles of a pass look */
+typedef enum particle_kind { WATER, GRAINS, DISCS } particle_kind;     /* what the particles of a pass are */
 typedef struct patch {
     int x, y, width, height; /* samples; width 0 = none */
 } patch;
 /* *p: what is around the surface; nothing beyond it was changed. */
-tobi_status smooth_surface(canvas *c, float radius, look what, patch *p, tobi_error *err);
+tobi_status view_smooth_surface(canvas *c, float radius, particle_kind what, patch *p, tobi_error *err);
 
 /* water.c. Solids first: they become part of what is opaque. */
-tobi_status draw_grains(canvas *c, const tobi_picture *frame, double value_min, double value_max,
+tobi_status view_draw_grains(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                         tobi_error *err);
-tobi_status draw_water(canvas *c, const tobi_picture *frame, double value_min, double value_max,
+tobi_status view_draw_water(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                        tobi_error *err);
-tobi_status draw_discs(canvas *c, const tobi_picture *frame, double value_min, double value_max,
+tobi_status view_draw_discs(canvas *c, const tobi_picture *frame, double value_min, double value_max,
                        tobi_error *err);
 /* The usual map, and the canvas's own. */
-vec  map_color(float value);
-vec  water_color(const canvas *c, float value);
+vec  view_map_color(float value);
+vec  view_water_color(const canvas *c, float value);
 
 /* text.c: pixels, after the samples have been averaged. */
 typedef struct image {
     int  width, height;
     vec *color;
 } image;
-void draw_title(image *i, const char *text);
-void draw_color_bar(image *i, const char *label, double value_min, double value_max);
+void view_draw_title(image *i, const char *text);
+void view_draw_color_bar(image *i, const char *label, double value_min, double value_max);
 
 /* png.c */
-tobi_status write_png(const char *path, const image *i, tobi_error *err);
+tobi_status view_write_png(const char *path, const image *i, tobi_error *err);

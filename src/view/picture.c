@@ -16,6 +16,8 @@ tobi_picture tobi_default_picture(void)
 
 static tobi_status check_mesh(const char *path, const tobi_picture_mesh *m, int number, tobi_error *err)
 {
+    if ((m->vertex_count > 0 && !m->vertices) || (m->triangle_count > 0 && !m->triangles))
+        return tobi_fail(err, TOBI_INVALID, "%s: body %d has no vertices or no triangles", path, number);
     for (int64_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++)
             if (m->triangles[t][k] < 0 || m->triangles[t][k] >= m->vertex_count)
@@ -47,6 +49,11 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
     if (f->dimension == 3 && !(f->field_of_view >= 1 && f->field_of_view <= 150))
         return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path,
                          f->field_of_view);
+    if (f->palette && f->palette_count < 1)
+        return tobi_fail(err, TOBI_INVALID, "%s: a palette of %d colours, at least 1", path,
+                         f->palette_count);
+    if (f->mesh_count < 0 || (f->mesh_count > 0 && !f->meshes))
+        return tobi_fail(err, TOBI_INVALID, "%s: %d bodies cannot be drawn", path, f->mesh_count);
     for (int i = 0; i < f->mesh_count; i++) TOBI_TRY(check_mesh(path, &f->meshes[i], i, err));
     return TOBI_OK;
 }
@@ -278,23 +285,25 @@ static tobi_status draw(canvas *c, const char *path, const tobi_picture *f, doub
 {
     if (f->dimension == 2) {
         aim_front(c, f);
-        draw_floor(c, f);
-        TOBI_TRY(draw_discs(c, f, low, high, err));
-        TOBI_TRY(draw_meshes(c, f, err));
+        view_draw_floor(c, f);
+        TOBI_TRY(view_draw_discs(c, f, low, high, err));
+        TOBI_TRY(view_draw_meshes(c, f, err));
     } else {
         TOBI_TRY(aim_camera(c, path, f, err));
-        TOBI_TRY(make_shadow(c, f, err));
-        draw_floor(c, f);
-        TOBI_TRY(draw_meshes(c, f, err));
-        if (f->opaque) TOBI_TRY(draw_grains(c, f, low, high, err));
-        if (f->particle_count > 0) TOBI_TRY(draw_water(c, f, low, high, err));
+        TOBI_TRY(view_make_shadow(c, f, err));
+        view_draw_floor(c, f);
+        TOBI_TRY(view_draw_meshes(c, f, err));
+        if (f->opaque) TOBI_TRY(view_draw_grains(c, f, low, high, err));
+        if (f->particle_count > 0) TOBI_TRY(view_draw_water(c, f, low, high, err));
     }
-    draw_box(c, f);
+    view_draw_box(c, f);
     return TOBI_OK;
 }
 
 tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err)
 {
+    TOBI_NEED(path, "the path");
+    TOBI_NEED(frame, "the picture");
     TOBI_TRY(check_frame(path, frame, err));
     canvas c;
     image i = { 0 };
@@ -305,9 +314,9 @@ tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi
     if (status == TOBI_OK) status = develop(&c, frame, &i, err);
     free_canvas(&c);
     if (status == TOBI_OK) {
-        if (frame->title) draw_title(&i, frame->title);
-        if (frame->label) draw_color_bar(&i, frame->label, low, high);
-        status = write_png(path, &i, err);
+        if (frame->title) view_draw_title(&i, frame->title);
+        if (frame->label) view_draw_color_bar(&i, frame->label, low, high);
+        status = view_write_png(path, &i, err);
     }
     free(i.color);
     return status;

@@ -2,7 +2,7 @@
    compression is on one thread. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
-#include "io/file.h"
+#include "base/file.h"
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -65,7 +65,7 @@ static void encode_colors(const image *i, unsigned char *bytes)
     }
 }
 
-tobi_status write_png(const char *path, const image *i, tobi_error *err)
+tobi_status view_write_png(const char *path, const image *i, tobi_error *err)
 {
     unsigned char *bytes = malloc((size_t)i->width*(size_t)i->height*3);
     if (!bytes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);

@@ -2,7 +2,7 @@
 #include "view/draw.h"
 #include <stdlib.h>
 
-/* A block is wider than the reach of lit_at. */
+/* A block is wider than the reach of view_lit_at. */
 enum { SIDE = 1024, BLOCK = 8, ACROSS = SIDE/BLOCK };
 
 static vec turn(const shadow *s, vec p)
@@ -69,7 +69,7 @@ static void find_ranges(shadow *s)
         }
 }
 
-tobi_status make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err)
+tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err)
 {
     if (frame->mesh_count == 0 && !frame->opaque) return TOBI_OK;
     double middle[3], size = 0;
@@ -90,13 +90,13 @@ tobi_status make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err)
     for (size_t k = 0; k < (size_t)SIDE*SIDE; k++) light.depth[k] = INFINITY;
     s->focal = light.camera.focal;
     if (frame->opaque) cast_grains(&light, frame);
-    TOBI_TRY(draw_meshes(&light, frame, err));
+    TOBI_TRY(view_draw_meshes(&light, frame, err));
     find_ranges(s);
     return TOBI_OK;
 }
 
 /* Share of the light that reaches a view point: 16 samples around it, softer edges than the map's. */
-float lit_at(const canvas *c, vec p)
+float view_lit_at(const canvas *c, vec p)
 {
     const shadow *s = &c->shadow;
     if (!s->depth) return 1;

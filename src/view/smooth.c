@@ -278,7 +278,7 @@ static float find_size(const canvas *c, float radius)
     return n ? radius*scale_at(&c->camera, (float)(sum/(double)n)) : 1;
 }
 
-static void smooth_patch(canvas *c, filter *f, float radius, look what, const patch *p, float *room)
+static void smooth_patch(canvas *c, filter *f, float radius, particle_kind what, const patch *p, float *room)
 {
     const float size = find_size(c, radius);
     f->reach = clampf(0.5f*size, 1, 60);
@@ -295,7 +295,7 @@ static void smooth_patch(canvas *c, filter *f, float radius, look what, const pa
     filter_square(c, p, c->surface, room, (int)clampf(0.35f*size, 1, 5), 0.6f*radius);
 }
 
-tobi_status smooth_surface(canvas *c, float radius, look what, patch *p, tobi_error *err)
+tobi_status view_smooth_surface(canvas *c, float radius, particle_kind what, patch *p, tobi_error *err)
 {
     *p = find_patch(c);
     if (p->width == 0) return TOBI_OK;

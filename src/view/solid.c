@@ -20,7 +20,7 @@ typedef struct triangle_list {
 } triangle_list;
 
 /* Light from above and from around, without a lamp. */
-vec sky_color(const canvas *c, vec direction)
+vec view_sky_color(const canvas *c, vec direction)
 {
     float t = clampf(0.5f + 0.5f*vec_dot(direction, c->sky_up), 0, 1);
     vec ground = {0.30f, 0.29f, 0.27f}, horizon = {0.88f, 0.92f, 0.95f},
@@ -29,11 +29,11 @@ vec sky_color(const canvas *c, vec direction)
     return vec_mix(horizon, zenith, 2*t - 1);
 }
 
-vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
+vec view_shade_solid(const canvas *c, vec p, vec n, vec albedo)
 {
     vec eye = to_eye(&c->camera, p);
     if (vec_dot(n, eye) < 0) n = vec_scale(-1, n);
-    float lit = lit_at(c, vec_add(p, vec_scale(2/c->shadow.focal, n)));
+    float lit = view_lit_at(c, vec_add(p, vec_scale(2/c->shadow.focal, n)));
     float lambert = lit*fmaxf(vec_dot(n, c->light), 0), fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec half = vec_unit(vec_add(c->light, eye));
     float shine = lit*0.22f*powf(fmaxf(vec_dot(n, half), 0), 48);
@@ -41,7 +41,7 @@ vec shade_solid(const canvas *c, vec p, vec n, vec albedo)
     vec ambient = vec_mix((vec){ 0.20f, 0.19f, 0.19f }, (vec){ 0.42f, 0.46f, 0.52f }, fill);
     vec light = vec_add(ambient, vec_scale(0.85f*lambert, (vec){ 1, 0.97f, 0.92f }));
     vec color = vec_add(vec_mul(albedo, light), (vec){ shine, shine, shine });
-    return vec_add(color, vec_scale(0.10f*rim, sky_color(c, n)));
+    return vec_add(color, vec_scale(0.10f*rim, view_sky_color(c, n)));
 }
 
 static bool triangle_rect(const void *items, int64_t i, int rect[4])
@@ -83,7 +83,7 @@ static void fill_triangle(canvas *c, const triangle *t, const int tile[4])
             if (!c->color) continue;
             vec n = vec_unit(vec_add(vec_add(vec_scale(b[0]*w[0], t->n[0]), vec_scale(b[1]*w[1], t->n[1])),
                                      vec_scale(b[2]*w[2], t->n[2])));
-            c->color[k] = shade_solid(c, unproject(&c->camera, px, py, z), n, t->color);
+            c->color[k] = view_shade_solid(c, unproject(&c->camera, px, py, z), n, t->color);
         }
 }
 
@@ -163,13 +163,13 @@ static void fill_tiles(const void *view, int64_t begin, int64_t end)
     const tiles *t = f->t;
     for (int64_t k = begin; k < end; k++) {
         int rect[4];
-        tiles_rect(t, f->c, k, rect);
+        view_tiles_rect(t, f->c, k, rect);
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
             fill_triangle(f->c, &f->list->item[t->item[i]], rect);
     }
 }
 
-tobi_status draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err)
+tobi_status view_draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err)
 {
     triangle_list list = { 0 };
     for (int i = 0; i < frame->mesh_count; i++) list.room += 2*frame->meshes[i].triangle_count;
@@ -177,12 +177,12 @@ tobi_status draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err)
     bool enough = list.item != NULL;
     for (int i = 0; i < frame->mesh_count && enough; i++) enough = add_mesh(c, &list, &frame->meshes[i]);
     tiles t;
-    tobi_status status = enough ? tiles_build(&t, c, list.count, list.item, triangle_rect, err)
+    tobi_status status = enough ? view_tiles_build(&t, c, list.count, list.item, triangle_rect, err)
                                 : tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
     if (status == TOBI_OK) {
         const filling view = { c, &t, &list };
         tobi_loop(0, (int64_t)t.across*t.down, 1, fill_tiles, &view);
-        tiles_free(&t);
+        view_tiles_free(&t);
     }
     free(list.item);
     return status;
@@ -254,7 +254,7 @@ static vec floor_tint(const canvas *c, float x, float y, const corner *plane)
     vec tint = { 0.80f, 0.82f, 0.83f }, ray = unproject(&c->camera, x, y, 1);
     if (c->camera.orthographic) return tint;
     float t = vec_dot(plane->p, plane->n)/vec_dot(ray, plane->n);
-    return vec_scale(0.45f + 0.55f*lit_at(c, vec_scale(t, ray)), tint);
+    return vec_scale(0.45f + 0.55f*view_lit_at(c, vec_scale(t, ray)), tint);
 }
 
 typedef struct flooring { canvas *c; spot s[4]; corner plane; } flooring;
@@ -306,7 +306,7 @@ static void draw_grid(canvas *c, const tobi_picture *f, int axis, double level, 
 }
 
 /* 2-D: the box's area, a little lighter. 3-D: the box's bottom with a grid. */
-void draw_floor(canvas *c, const tobi_picture *f)
+void view_draw_floor(canvas *c, const tobi_picture *f)
 {
     double level = 0, at[3];
     int axis = f->dimension == 2 ? 2 : find_floor(f, &level), across[2] = { (axis + 1)%3, (axis + 2)%3 };
@@ -322,7 +322,7 @@ void draw_floor(canvas *c, const tobi_picture *f)
     if (f->dimension == 3) draw_grid(c, f, axis, level, across);
 }
 
-void draw_box(canvas *c, const tobi_picture *f)
+void view_draw_box(canvas *c, const tobi_picture *f)
 {
     vec color = { 0.05f, 0.07f, 0.10f };
     int corners = f->dimension == 2 ? 4 : 8;

@@ -103,7 +103,7 @@ static float letter_unit(const image *i)
     return fmaxf(fminf((float)i->height, (float)i->width)/300, 1);
 }
 
-void draw_title(image *i, const char *text)
+void view_draw_title(image *i, const char *text)
 {
     float unit = 1.15f*letter_unit(i);
     draw_text(i, 9*unit, 14*unit, unit, text, ink);
@@ -116,7 +116,7 @@ static double tick_step(double range)
 }
 
 /* On the right: colours from low to high, ticks at round values. */
-void draw_color_bar(image *i, const char *label, double low, double high)
+void view_draw_color_bar(image *i, const char *label, double low, double high)
 {
     float unit = 0.9f*letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
     float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
@@ -124,7 +124,7 @@ void draw_color_bar(image *i, const char *label, double low, double high)
         for (int column = 0; column < (int)width; column++) {
             int px = (int)x + column, py = (int)bottom - 1 - row;
             bool edge = row == 0 || row == (int)height - 1 || column == 0 || column == (int)width - 1;
-            vec color = edge ? ink : map_color((float)row/(height - 1));
+            vec color = edge ? ink : view_map_color((float)row/(height - 1));
             i->color[(size_t)py*(size_t)i->width + (size_t)px] = color;
         }
     double step = tick_step(high - low);

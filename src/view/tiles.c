@@ -19,7 +19,7 @@ static bool find_tiles(const tiles *t, const canvas *c, const void *items, int64
 }
 
 /* A counting sort: sizes, offsets, then the items in their order. */
-tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
+tobi_status view_tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
                         tobi_error *err)
 {
     *t = (tiles){ .across = (c->width + TILE - 1)/TILE, .down = (c->height + TILE - 1)/TILE };
@@ -39,7 +39,7 @@ tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items,
     }
     if (!t->item) {
         free(next);
-        tiles_free(t);
+        view_tiles_free(t);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
     }
     for (int64_t i = 0; i < n; i++) {
@@ -51,7 +51,7 @@ tobi_status tiles_build(tiles *t, const canvas *c, int64_t n, const void *items,
     return TOBI_OK;
 }
 
-void tiles_free(tiles *t)
+void view_tiles_free(tiles *t)
 {
     free(t->first);
     free(t->item);

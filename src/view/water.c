@@ -13,7 +13,7 @@ typedef struct splat {
 static const float water_radius = 1.7f, grain_radius = 1.55f;
 
 /* From deep blue over light blue to white. */
-vec map_color(float value)
+vec view_map_color(float value)
 {
     static const float stop[5][3] = {
         { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f }, { 0.62f, 0.85f, 0.96f },
@@ -24,10 +24,10 @@ vec map_color(float value)
     return vec_mix(linear_color(stop[i]), linear_color(stop[i + 1]), t - (float)i);
 }
 
-vec water_color(const canvas *c, float value)
+vec view_water_color(const canvas *c, float value)
 {
     int last = c->palette_count - 1;
-    if (!c->palette) return map_color(value);
+    if (!c->palette) return view_map_color(value);
     float t = clampf(value, 0, 1)*(float)last;
     int i = t < (float)last ? (int)t : last, next = i < last ? i + 1 : last;
     return vec_mix(linear_color(c->palette[i]), linear_color(c->palette[next]), t - (float)i);
@@ -104,7 +104,7 @@ typedef struct placing {
     splat *splats;
     float radius;            /* m */
     double low, high;        /* of the values */
-    look what;
+    particle_kind what;
 } placing;
 
 static void place_splats(const void *view, int64_t begin, int64_t end)
@@ -130,7 +130,7 @@ static void place_splats(const void *view, int64_t begin, int64_t end)
 
 /* Particles in samples; what is behind the eye, far off the canvas or not finite has radius 0. */
 static splat *make_splats(const canvas *c, const tobi_picture *f, float radius, const double range[2],
-                          look what)
+                          particle_kind what)
 {
     splat *splats = malloc(((size_t)f->particle_count + 1)*sizeof *splats);
     if (!splats) return NULL;
@@ -142,7 +142,7 @@ static splat *make_splats(const canvas *c, const tobi_picture *f, float radius, 
 /* What a tile's loops need. */
 typedef struct brush {
     canvas *c;
-    look    what;
+    particle_kind    what;
     float   radius;       /* m */
     float   weight;       /* of a sphere's chord as thickness */
     float   bright;       /* of discs */
@@ -237,7 +237,7 @@ static void splat_value(const brush *b, const splat *s, const int tile[4])
 static void splat_disc(const brush *b, const splat *s, const int tile[4])
 {
     canvas *c = b->c;
-    vec color = vec_scale(b->bright, water_color(c, s->value));
+    vec color = vec_scale(b->bright, view_water_color(c, s->value));
     int y0, y1, x0, x1;
     clip_rows(s, tile, &y0, &y1);
     for (int y = y0; y <= y1; y++) {
@@ -256,7 +256,7 @@ static void paint_tiles(const void *view, int64_t begin, int64_t end)
     const tiles *t = p->t;
     for (int64_t k = begin; k < end; k++) {
         int rect[4];
-        tiles_rect(t, b->c, k, rect);
+        view_tiles_rect(t, b->c, k, rect);
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
             const splat *s = &p->splats[t->item[i]];
             if (b->what == DISCS) splat_disc(b, s, rect);
@@ -270,7 +270,7 @@ static void paint_tiles(const void *view, int64_t begin, int64_t end)
 }
 
 static tobi_status splat_particles(canvas *c, const tobi_picture *f, float radius, const double range[2],
-                                   look what, float bright, tobi_error *err)
+                                   particle_kind what, float bright, tobi_error *err)
 {
     splat *splats = make_splats(c, f, radius, range, what);
     if (!splats)
@@ -278,20 +278,20 @@ static tobi_status splat_particles(canvas *c, const tobi_picture *f, float radiu
                          (long long)f->particle_count);
     if (what != DISCS) shrink_spray(f, splats);
     tiles t;
-    tobi_status status = tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
+    tobi_status status = view_tiles_build(&t, c, f->particle_count, splats, splat_rect, err);
     if (status == TOBI_OK) {
         /* Chords of spheres of radius R at one per (2 r)^3 add up to this much per metre of water. */
         float r = (float)f->radius, per_meter = 4.0f/3*(float)3.14159265*radius*radius*radius/(8*r*r*r);
         brush b = { c, what, radius, 1/per_meter, bright };
         const painting view = { &b, &t, splats };
         tobi_loop(0, (int64_t)t.across*t.down, 1, paint_tiles, &view);
-        tiles_free(&t);
+        view_tiles_free(&t);
     }
     free(splats);
     return status;
 }
 
-tobi_status draw_discs(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
+tobi_status view_draw_discs(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     /* A darker ground that closes the gaps, then the particles. */
     TOBI_TRY(splat_particles(c, f, 1.45f*(float)f->radius, (double[2]){ low, high }, DISCS, 0.8f,
@@ -326,7 +326,7 @@ static vec surface_normal(const canvas *c, int x, int y, vec eye)
 
 /* Which sample lies behind the water: the picture shifted by the surface's tilt, the less the thinner the
    water is, here or there, so that a body near the surface is not seen twice. */
-static size_t look_through(const canvas *c, int x, int y, vec n)
+static size_t find_behind(const canvas *c, int x, int y, vec n)
 {
     size_t k = (size_t)y*(size_t)c->width + (size_t)x, s = k;
     float bend = 0.12f*scale_at(&c->camera, c->surface[k]), most = 0.012f*(float)c->width, shift = most;
@@ -345,23 +345,23 @@ static vec shade_water(const canvas *c, const vec *back, int x, int y, float cla
     size_t k = (size_t)y*(size_t)c->width + (size_t)x;
     vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
     vec eye = to_eye(&c->camera, p), n = surface_normal(c, x, y, eye);
-    size_t seen = look_through(c, x, y, n);
+    size_t seen = find_behind(c, x, y, n);
     float thickness = fmaxf(c->thickness[seen], 0), facing = clampf(vec_dot(n, eye), 0, 1);
     float value = c->value[k];
     float foam = c->palette ? 0.25f : 0.75f*value*value;      /* hides */
     float path = thickness/clarity, veil = 0.18f + foam;
     vec pass = { expf(-1.5f*path), expf(-1.0f*path), expf(-0.85f*path) };
     pass = vec_scale(1 - veil, pass);
-    float lit = lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1);
+    float lit = view_lit_at(c, p), wrap = lit*clampf(0.35f + 0.65f*vec_dot(n, c->light), 0, 1);
     float fill = 0.5f + 0.5f*vec_dot(n, c->sky_up);
     vec light = vec_add(vec_scale(0.75f*wrap, (vec){ 1, 0.98f, 0.94f }),
                         vec_scale(0.20f + 0.30f*fill, (vec){ 0.85f, 0.95f, 1 }));
-    vec scatter = vec_mul(water_color(c, value), light);
+    vec scatter = vec_mul(view_water_color(c, value), light);
     vec color = vec_add(vec_mul(pass, back[seen]), vec_mul(vec_sub((vec){ 1, 1, 1 }, pass), scatter));
     /* Schlick 1994, water. */
     float mirror = 0.02f + 0.98f*powf(1 - facing, 5);
     vec r = vec_sub(vec_scale(2*vec_dot(n, eye), n), eye), half = vec_unit(vec_add(c->light, eye));
-    color = vec_mix(color, sky_color(c, r), 0.75f*mirror);
+    color = vec_mix(color, view_sky_color(c, r), 0.75f*mirror);
     float shine = lit*powf(clampf(vec_dot(n, half), 0, 1), 140);
     *through = (pass.x + pass.y + pass.z)/3;
     return vec_add(color, vec_scale(0.55f*shine, (vec){ 1, 1, 1 }));
@@ -402,7 +402,7 @@ static void light_grain_rows(const void *view, int64_t begin, int64_t end)
             if (!(c->surface[k] < INFINITY)) continue;
             vec p = unproject(&c->camera, (float)x + 0.5f, (float)y + 0.5f, c->surface[k]);
             vec n = surface_normal(c, x, y, to_eye(&c->camera, p));
-            c->color[k] = shade_solid(c, p, n, water_color(c, c->value[k]));
+            c->color[k] = view_shade_solid(c, p, n, view_water_color(c, c->value[k]));
         }
 }
 
@@ -424,22 +424,22 @@ static void light_grains(canvas *c)
     tobi_loop(0, (int64_t)c->width*c->height, 0, harden_samples, &view);
 }
 
-tobi_status draw_grains(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
+tobi_status view_draw_grains(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     float radius = grain_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, GRAINS, 1, err));
     patch p;
-    TOBI_TRY(smooth_surface(c, radius, GRAINS, &p, err));
+    TOBI_TRY(view_smooth_surface(c, radius, GRAINS, &p, err));
     if (p.width > 0) light_grains(c);
     return TOBI_OK;
 }
 
-tobi_status draw_water(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
+tobi_status view_draw_water(canvas *c, const tobi_picture *f, double low, double high, tobi_error *err)
 {
     float radius = water_radius*(float)f->radius;
     TOBI_TRY(splat_particles(c, f, radius, (double[2]){ low, high }, WATER, 1, err));
     patch p;
-    TOBI_TRY(smooth_surface(c, radius, WATER, &p, err));
+    TOBI_TRY(view_smooth_surface(c, radius, WATER, &p, err));
     if (p.width == 0) return TOBI_OK;
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);

@@ -4,7 +4,7 @@
    some millions of points are not tried. */
 #include "world/note_pieces.h"
 #include "geom/bvh.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,8 +8,6 @@
 #include "sph/wcsph.h"
 #include "tobiuo/tobiuo.h"
 #include "world/methods.h"
-#include "world/params.h"
-#include <string.h>
 
 #define WALL(key_, member_, axis_, doc_)                                              \
     { .key = key_, CHOICE("slip|no-slip|periodic|separate|open", 5),                                \
@@ -95,28 +93,18 @@ const char *tobi_method_name(int index)
     return tobi_method_at(index) ? tobi_method_at(index)->name : NULL;
 }
 
+int tobi_method_describe(const char *method, tobi_method_info *info)
+{
+    const tobi_method *m = tobi_method_find(method);
+    if (info) *info = (tobi_method_info){ 0 };
+    if (info && m) *info = (tobi_method_info){ m->name, m->doc, m->solids, m->planes, m->nodes != NULL };
+    return m != NULL;
+}
+
 const tobi_param_table *tobi_method_table(const char *method)
 {
     const tobi_method *m = tobi_method_find(method);
     return m ? m->params : NULL;
-}
-
-const char *tobi_choice_word(const char *choices, int i, int *length)
-{
-    for (const char *word = choices; word; i--) {
-        const char *bar = strchr(word, '|');
-        *length = (int)(bar ? (size_t)(bar - word) : strlen(word));
-        if (i == 0) return word;
-        word = bar ? bar + 1 : NULL;
-    }
-    return NULL;
-}
-
-int tobi_choice_count(const char *choices)
-{
-    int count = 1;
-    for (const char *c = choices; *c; c++) count += *c == '|';
-    return count;
 }
 
 #define DEFAULT(noun)                                        \

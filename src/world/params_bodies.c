@@ -1,6 +1,6 @@
 /* Parameters of bodies and planes. */
 #include "base/param_rows.h"
-#include "world/params.h"
+#include "base/param.h"
 
 static const tobi_param body_rows[] = {
     { .key = "name", TEXT, AT(tobi_body_def, name), .unit = "name", .text = "body",

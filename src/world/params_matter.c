@@ -1,6 +1,6 @@
 /* Parameters of fluids, solids and the regions that they fill. */
 #include "base/param_rows.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <stdio.h>
 #include <string.h>
 

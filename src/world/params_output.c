@@ -1,6 +1,6 @@
 /* Parameters of what a run measures and writes, and of what it is compared with. */
 #include "base/param_rows.h"
-#include "world/params.h"
+#include "base/param.h"
 
 static const tobi_param probe_rows[] = {
     { .key = "name", TEXT, AT(tobi_probe_def, name), .unit = "name", .text = "probe", .required = true,

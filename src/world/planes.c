@@ -1,6 +1,6 @@
 /* The world's fixed planes. */
 #include "base/error.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/world.h"
 #include <math.h>
 

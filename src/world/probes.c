@@ -1,7 +1,7 @@
 /* The world's probes: added by definition, read by number. */
 #include "base/error.h"
 #include "sph/probe.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>

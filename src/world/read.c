@@ -45,14 +45,11 @@ static const tobi_output *find_any(int k)
     return NULL;
 }
 
-int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS])
+const char *tobi_method_field(const char *method, int index)
 {
     const tobi_method *m = tobi_method_find(method);
-    const tobi_output *o;
-    int count = 0;
-    while (count < TOBI_WORLD_FIELDS && (o = m ? find_output(m, count) : find_any(count)))
-        names[count++] = o->name;
-    return count;
+    const tobi_output *o = index < 0 ? NULL : m ? find_output(m, index) : find_any(index);
+    return o ? o->name : NULL;
 }
 
 const char *tobi_world_field_name(int field, int *components, const char **unit)
@@ -64,9 +61,9 @@ const char *tobi_world_field_name(int field, int *components, const char **unit)
     return o->name;
 }
 
-int tobi_world_bodies_have(int field)
+int tobi_body_has_field(int field)
 {
-    return field < COMMON && strcmp(common[field].name, "pressure") != 0;
+    return field >= 0 && field < COMMON && strcmp(common[field].name, "pressure") != 0;
 }
 
 int64_t tobi_world_count(const tobi_world *w, tobi_set set)
@@ -241,7 +238,7 @@ static tobi_status find_field(tobi_world *w, tobi_set set, const char *field, co
     *found = find_in_world(w, name);
     if (!*found)
         return tobi_fail(err, TOBI_NOT_FOUND, "%s has no field '%s'", w->system[0].method->name, field);
-    if (set == TOBI_BODIES && !tobi_world_bodies_have(k))
+    if (set == TOBI_BODIES && !tobi_body_has_field(k))
         return tobi_fail(err, TOBI_NOT_FOUND, "bodies have no field '%s'", field);
     TOBI_TRY(tobi_world_start(w, err));
     if (count < tobi_world_count(w, set))

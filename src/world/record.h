@@ -112,15 +112,6 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 /* The row of probes.csv that is due after the step from `before`, if any. */
 tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
-typedef enum tobi_table {
-    TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL
-} tobi_table;
-typedef struct tobi_table_column {
-    const char *name, *unit;      /* "1": without a unit                                */
-    const char *doc;              /* "": as the column before                           */
-} tobi_table_column;
-/* NULL past the end. In probes.csv the names follow the probe's and "_". */
-const tobi_table_column *tobi_tables_column(tobi_table table, int index);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 

@@ -2,8 +2,8 @@
    own, seen so that the box fits unless there is a camera. */
 #include "mpm/cuts.h"
 #include "mpm/particle_fields.h"
-#include "view/picture.h"
-#include "world/params.h"
+#include "tobiuo/picture.h"
+#include "base/param.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>

@@ -26,7 +26,7 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
     for (int k = 0; (known = tobi_world_field_name(k, &field->components, &unit)); k++) {
         if (strlen(known) != length || memcmp(known, name, length) != 0) continue;
         field->name = known;
-        field->bodies = tobi_world_bodies_have(k);
+        field->bodies = tobi_body_has_field(k);
         field->type = strcmp(known, "particle_id") == 0 ? TOBI_I64 : is_number(known) ? TOBI_I32 : TOBI_F32;
         return TOBI_OK;
     }
@@ -36,13 +36,13 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
 /* A name twice counts once. */
 static tobi_status add_field(tobi_run *run, const char *name, size_t length, tobi_error *err)
 {
-    const char *known[TOBI_WORLD_FIELDS];
+    const char *known;
     tobi_record_field field = { 0 };
     const tobi_world *w = run->world;
     int has = 0;
     for (int n = 0; n < w->system_count && find_field(name, length, &field) == TOBI_OK; n++)
-        for (int k = tobi_world_list_fields(w->system[n].method->name, known) - 1; k >= 0; k--)
-            has |= known[k] == field.name;
+        for (int k = 0; (known = tobi_method_field(w->system[n].method->name, k)); k++)
+            has |= known == field.name;
     if (!has)
         return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s' of %s",
                          (int)length, name, w->system[0].method->name);

@@ -3,7 +3,7 @@
    One factor per kind of compression turns bytes in memory into bytes on the disk: numbers in motion are
    noise in their lower bits, so that little depends on the scene. Drawback: fields that stand still, or
    are 0, take less than is told: bodies that hardly move half. */
-#include "world/params.h"
+#include "base/param.h"
 #include "world/record.h"
 #include "world/world.h"
 

@@ -8,7 +8,7 @@
    that waits for what other programs have written there, too; but outputs never wait. */
 #define _GNU_SOURCE 1
 #include "base/plain.h"
-#include "io/file.h"
+#include "base/file.h"
 #include "world/record.h"
 #include <errno.h>
 #include <jansson.h>

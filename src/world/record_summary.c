@@ -1,5 +1,5 @@
 /* summary.json: the totals of a run, over all its sessions. */
-#include "io/file.h"
+#include "base/file.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <jansson.h>

@@ -76,24 +76,24 @@ static const tobi_csv_column body_columns[] = { { "time", NULL }, { "name", NULL
 #undef B
 
 #define H(name, unit, kind, value, doc) { name, unit, doc },
-static const tobi_table_column history[] = { HISTORY(H) };
+static const tobi_column history[] = { HISTORY(H) };
 #undef H
 #define B(name, unit, value, doc) { name, unit, doc },
-static const tobi_table_column body[] = {
+static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B) };
 #undef B
 #define P(name, unit, doc) { name, unit, doc },
-static const tobi_table_column point[] = { POINT(P) }, level[] = { LEVEL(P) };
+static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) };
 #undef P
 
-static const struct { const tobi_table_column *columns; int count; } tables[] = {
+static const struct { const tobi_column *columns; int count; } tables[] = {
 #define LIST(columns) { columns, (int)(sizeof columns / sizeof *columns) }
     [TOBI_TABLE_HISTORY] = LIST(history), [TOBI_TABLE_BODIES] = LIST(body),
     [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level),
 #undef LIST
 };
 
-const tobi_table_column *tobi_tables_column(tobi_table table, int index)
+const tobi_column *tobi_run_column(tobi_table table, int index)
 {
     return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
 }
@@ -110,9 +110,9 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
     for (int k = 0; columns && names && k < probes; k++) {
         tobi_probe_kind kind;
         const char *name = tobi_world_probe_name(run->world, k, &kind);
-        const tobi_table_column *column;
+        const tobi_column *column;
         tobi_table table = kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
-        for (int v = 0; (column = tobi_tables_column(table, v)); v++, count++) {
+        for (int v = 0; (column = tobi_run_column(table, v)); v++, count++) {
             snprintf(names[count], NAME, "%s_%s", name, column->name);
             columns[count].name = names[count];
         }

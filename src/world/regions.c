@@ -1,6 +1,6 @@
 /* What fills the world at the start: fluids and solids with their regions. */
 #include "base/error.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>

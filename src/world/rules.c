@@ -1,7 +1,9 @@
 /* Rules of what a world may not combine. Each is one function, which tells every breach and never stops at
-   one. Drawback: rules of fluids, solids and bodies are still told by the calls that add them, and by scenes
-   in their own words. */
-#include "world/rules.h"
+   one. Drawback: rules of fluids, bodies and most of solids are still told by the calls that add
+   them, and by scenes in their own words. */
+#include "tobiuo/params.h"
+#include "mpm/damage.h"
+#include "mpm/mlsmpm.h"
 #include "world/limits.h"
 #include "world/methods.h"
 #include <stdarg.h>
@@ -89,10 +91,23 @@ static void check_iterations(const tobi_rules *r, const char *solve, int least, 
     tell(r, &why, "dfsph.%s_iterations_min", solve);
 }
 
+void tobi_rules_solid(const tobi_rules *r, const tobi_world_def *d, const void *method_def,
+                      const tobi_solid_def *solid)
+{
+    const tobi_mlsmpm_def *m = method_def;
+    const char *key;
+    char note[200];
+    tobi_error why = { 0 };
+    if (!r || !d || !solid || !m || tobi_method_find(d->method) != &tobi_mlsmpm ||
+        !tobi_solid_uses(solid->model, "strength")) return;
+    if (mpm_damage_check(solid, m->cell*d->spacing, &key, note, &why) != TOBI_OK) tell(r, &why, "%s", key);
+}
+
 void tobi_rules_world(const tobi_rules *r, const tobi_world_def *d, const void *method_def)
 {
-    const tobi_method *method = tobi_method_find(d->method);
+    const tobi_method *method = tobi_method_find(d ? d->method : NULL);
     const tobi_dfsph_def *m = method_def;
+    if (!r || !d) return;
     if (method && m && strcmp(method->name, "dfsph") == 0) {
         check_iterations(r, "density", m->density_iterations_min, m->density_iterations_max);
         check_iterations(r, "divergence", m->divergence_iterations_min, m->divergence_iterations_max);

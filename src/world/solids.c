@@ -1,6 +1,6 @@
 /* What a world tells about its solids. */
 #include "base/error.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -68,7 +68,8 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
     const double wish = w->sim.def.time_step, stable = tobi_world_stable_step(w), rest = find_step(w, 0),
                  parts = ceil(wish/stable*(1 - 1e-9));
     char text[240], speed[80] = "";
-    if (!(stable > 0) || wish <= stable) return TOBI_OK;
+    if (w->step_noted || !(stable > 0) || wish <= stable) return TOBI_OK;
+    w->step_noted = 1;
     if (w->system[0].solid_count == 0) {
         snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that sound in the liquid allows: the "
                  "run may run away\n", wish, stable);

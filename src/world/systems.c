@@ -2,8 +2,7 @@
    the definition's method and one for solids beside fluids. */
 #include "base/error.h"
 #include "world/fit.h"
-#include "world/params.h"
-#include "world/rules.h"
+#include "base/param.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -155,7 +154,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
     }
     for (int k = 0; k < w->sim.body_count; k++) *body_particles += w->sim.bodies[k].particle_count;
     *bytes += *body_particles*48;
-    return TOBI_OK;
+    return w->started ? TOBI_OK : tobi_world_note_time_step(w, err);
 }
 
 /* The hydrostatic head of the common box of a system's regions. */

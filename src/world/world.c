@@ -7,8 +7,7 @@
 #include "world/fit.h"
 #include "world/limits.h"
 #include "world/note_pieces.h"
-#include "world/params.h"
-#include "world/rules.h"
+#include "base/param.h"
 #include "world/step.h"
 #include <math.h>
 #include <stdio.h>
@@ -85,21 +84,35 @@ void tobi_world_destroy(tobi_world *w)
     free(w);
 }
 
+static tobi_status keep_note(tobi_world *w, char *text, tobi_error *err)
+{
+    char **more = text ? realloc(w->notes, (size_t)(w->note_count + 1)*sizeof *more) : NULL;
+    if (!more) {
+        free(text);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a note");
+    }
+    w->notes = more;
+    w->notes[w->note_count++] = text;
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_add_note(tobi_world *w, const char *text, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(text, "the note");
+    return keep_note(w, strdup(text), err);
+}
+
 tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,
                                  tobi_error *err)
 {
     for (const char *end; (end = strchr(notes, '\n')) != NULL; notes = end + 1) {
-        char **more = realloc(w->notes, (size_t)(w->note_count + 1)*sizeof *more);
         size_t room = (size_t)(end - notes) + strlen(kind) + strlen(name ? name : "") + 8;
         char *text = malloc(room);
-        if (more) w->notes = more;
-        if (!more || !text) {
-            free(text);
-            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a note");
-        }
-        snprintf(text, room, name ? "%s '%s': %.*s" : "%s %s%.*s", kind, name ? name : "", (int)(end - notes),
-                 notes);
-        w->notes[w->note_count++] = text;
+        if (text)
+            snprintf(text, room, name ? "%s '%s': %.*s" : "%s %s%.*s", kind, name ? name : "",
+                     (int)(end - notes), notes);
+        TOBI_TRY(keep_note(w, text, err));
     }
     return TOBI_OK;
 }

@@ -6,8 +6,6 @@
 #include "world/methods.h"
 #include <assert.h>
 
-enum { TOBI_REGION_LIMIT = 2048, TOBI_BODY_LIMIT = 1024, TOBI_PROBE_LIMIT = 1024 };
-
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
 enum { TOBI_ALIVE = 0x70b10 };
@@ -25,6 +23,7 @@ struct tobi_world {
     int probe_count;
     char **notes;                  /* owned texts                                            */
     int note_count;
+    int step_noted;                /* 1: a note tells of a fixed time step that will be cut       */
     int started, fresh;            /* fresh: derived fields match the present positions       */
     tobi_error failure;            /* of a step that could not be taken back; TOBI_OK: none   */
     int idle_steps;                /* in a row that were too short to lead anywhere           */
@@ -73,7 +72,7 @@ tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);
 /* Notes blades whose motion ends their cut at a side before the last layer of particles is parted. */
 tobi_status tobi_world_note_edges(tobi_world *w, tobi_error *err);
-/* Adds a note if the definition's fixed time step will be cut. */
+/* Adds a note if the definition's fixed time step will be cut, once. */
 tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err);
 
 /* The hydrostatic head of the common box of a system's regions, m2/s2. */
@@ -87,12 +86,6 @@ tobi_status tobi_world_step_towards(tobi_world *w, double t, double end, tobi_er
 
 /* Brings derived fields and the id order up to date. */
 tobi_status tobi_world_refresh(tobi_world *w, tobi_error *err);
-
-/* The names of the fields that a method has, all if it is unknown; returns how many. */
-enum { TOBI_WORLD_FIELDS = 32 };
-int tobi_world_list_fields(const char *method, const char *names[TOBI_WORLD_FIELDS]);
-/* Whether the particles of bodies have it too, by the number of tobi_world_field_name. */
-int tobi_world_bodies_have(int field);
 
 void tobi_world_free_grid(tobi_world *w);
 

@@ -3,7 +3,7 @@
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 #include "world/methods.h"
-#include "world/params.h"
+#include "base/param.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

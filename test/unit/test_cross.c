@@ -15,7 +15,6 @@
 #include "base/param.h"
 #include "mpm/cuts.h"
 #include "geom/vec3.h"
-#include "world/params.h"
 #include "world/world.h"
 
 enum { SIDE = 14, MOST = SIDE*SIDE*SIDE, PLANES = 3 };

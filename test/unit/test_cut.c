@@ -15,7 +15,6 @@
 #include "calls.h"
 #include "mpm/particle_fields.h"
 #include "base/param.h"
-#include "world/params.h"
 #include "world/world.h"
 
 #define CELL (0.6/128)

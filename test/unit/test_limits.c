@@ -14,7 +14,7 @@
 #include "mpm/mlsmpm.h"
 #include "sph/dfsph.h"
 #include "sph/wcsph.h"
-#include "world/params.h"
+#include "base/param.h"
 #include "world/world.h"
 
 enum { ROOM = 1000 };

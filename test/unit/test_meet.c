@@ -11,7 +11,6 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/param.h"
-#include "world/params.h"
 #include "world/world.h"
 
 #define SPACING 0.01

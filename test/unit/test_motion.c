@@ -1,6 +1,6 @@
 /* Motions: formulas against their definition, scripts against the same formulas in C, and
    everything a script may not do. Limits of scripts are in test_script.c. */
-#include "rigid/motion.h"
+#include "tobiuo/motion.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* The flying fish's motion against the formulas it was written from, and its smoothness: a mesh
    that follows it must not tear. */
-#include "rigid/motion.h"
+#include "tobiuo/motion.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

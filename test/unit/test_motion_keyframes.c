@@ -1,6 +1,6 @@
 /* Keyframes: what the columns mean, exact figures where the curve is exact, smooth rates, and what is said
    about bad files. */
-#include "rigid/motion.h"
+#include "tobiuo/motion.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

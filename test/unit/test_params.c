@@ -13,7 +13,7 @@
 #include "sph/dfsph.h"
 #include "sph/isph.h"
 #include "sph/wcsph.h"
-#include "world/params.h"
+#include "base/param.h"
 
 static size_t member_size(const tobi_param *row)
 {

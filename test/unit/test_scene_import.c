@@ -13,7 +13,7 @@
 #include "calls.h"
 #include "geom/mesh.h"
 #include "scene/scene.h"
-#include "world/params.h"
+#include "base/param.h"
 
 #define OLD TOBI_SOURCE_DIR "/test/scenes/taichi/"
 

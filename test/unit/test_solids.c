@@ -109,6 +109,7 @@ static void a_long_time_step_is_told(void **state)
     tobi_world *world;
     tobi_error err = { 0 };
     assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
+    assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
     const char *note = tobi_world_note(world, 0);
     assert_non_null(note);
     assert_non_null(strstr(note, "0.1 s is longer than the"));

@@ -1,7 +1,8 @@
 /* Pictures: valid PNG, things where they belong, the same for any number of threads and far from the origin,
    nothing broken by strange input. */
 #define _GNU_SOURCE 1
-#include "view/picture.h"
+#include "calls.h"
+#include "tobiuo/picture.h"
 #include <math.h>
 #include <omp.h>
 #include <png.h>
@@ -17,7 +18,7 @@
 
 enum { SIDE = 24, N = SIDE*SIDE*SIDE, W = 320, H = 180 };
 
-static char folder[] = "/tmp/tobi_io_frame_XXXXXX";
+static char folder[] = "/tmp/tobi_view_picture_XXXXXX";
 static char path[64];
 static double position[N][3];
 static float speed[N];
@@ -278,6 +279,14 @@ static void wrong_arguments_are_refused(void **state)
     f = make_frame(), f.meshes = &m;
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "uses vertex 7 of 7"));
+    REFUSED(tobi_picture_write(NULL, &f, &err), TOBI_INVALID, "the path is NULL");
+    REFUSED(tobi_picture_write(path, NULL, &err), TOBI_INVALID, "the picture is NULL");
+    f = make_frame(), f.palette = &red_cube.color, f.palette_count = 0;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "a palette of 0 colours, at least 1");
+    f = make_frame(), f.meshes = NULL;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "1 bodies cannot be drawn");
+    m.triangles = NULL, f = make_frame(), f.meshes = &m;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "body 0 has no vertices or no triangles");
     f = make_frame();
     assert_int_equal(tobi_picture_write("/no/such/a.png", &f, &err), TOBI_IO);
     assert_string_equal(err.text, "cannot write /no/such/a.png: No such file or directory");

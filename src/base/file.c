@@ -1,7 +1,7 @@
 /* Writes beside the target and renames at the end; the error is kept until then. Drawback: a result
    takes its room on the disk twice for a moment. */
 #define _GNU_SOURCE 1
-#include "io/file.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>

@@ -1,6 +1,6 @@
 /* Files that appear whole or not at all: only plain files are replaced, and no link is followed. */
 #define _GNU_SOURCE 1
-#include "io/file.h"
+#include "base/file.h"
 #include "io/csv.h"
 #include "io/store.h"
 #include <fcntl.h>
@@ -108,5 +108,5 @@ int main(void)
         cmocka_unit_test(only_plain_files_are_replaced),
         cmocka_unit_test(what_stands_in_the_way_is_removed),
     };
-    return cmocka_run_group_tests_name("io/file", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("base/file", tests, set_up, tear_down);
 }

@@ -1,13 +1,18 @@
 /* A PNG picture of a moment, drawn in software: particles as the surfaces of water or of solids, bodies, the
-   domain's box.
+   domain's box. It is drawn from arrays alone: tobi_world_read and tobi_world_surface give those of a world.
 
    3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen
    space, lit, and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009;
    smoothing: the narrow-range filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by
    value. The same input gives the same picture for any number of threads. Needs about 40 bytes per
    sample of the picture (width x height x samples^2) and 30 per particle while it runs. */
-#pragma once
-#include "base/error.h"
+#ifndef TOBIUO_PICTURE_H
+#define TOBIUO_PICTURE_H
+#include "tobiuo/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct tobi_picture_mesh {
     int64_t vertex_count;
@@ -47,8 +52,13 @@ typedef struct tobi_picture {
     const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */
 } tobi_picture;
 
-tobi_picture tobi_default_picture(void);
+TOBI_API tobi_picture tobi_default_picture(void);
 
-/* TOBI_INVALID for sizes, ranges or indices out of bounds, TOBI_NO_MEMORY, TOBI_IO. The file appears whole
-   or not at all. */
-tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err);
+/* TOBI_INVALID for sizes, ranges or indices out of bounds and for NULL where something must stand,
+   TOBI_NO_MEMORY, TOBI_IO. The file appears whole or not at all. */
+TOBI_API tobi_status tobi_picture_write(const char *path, const tobi_picture *picture, tobi_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,84 @@
+/* Prescribed motion of a body: a user's Lua script, translation, rotation, oscillation, or keyframes from a
+   CSV file; and scripts that control a body or set a fluid in motion. docs/scripts.md says what a script may
+   define, docs/scene.md which columns keyframes have.
+
+   A motion is a pure function of time and rest position, so that rates by central difference, a
+   restart and any order of evaluation give the same numbers. One motion belongs to one body; it is
+   not safe to evaluate the same motion from two threads at once:
+
+     tobi_motion_rotation(centre, axis, 90, &motion, &err);
+     body.motion = tobi_motion_positions, body.motion_user = motion;
+     body.motion_rigid = tobi_motion_is_rigid(motion);
+
+   A script runs in a process of its own, so that a mistake in it is an error text here. Calls must come from
+   the process that loaded it, from any of its threads, one at a time. */
+#ifndef TOBIUO_MOTION_H
+#define TOBIUO_MOTION_H
+#include "tobiuo/types.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tobi_motion tobi_motion;
+
+/* Loads a motion script, which defines deform() or place(). params_json is the text of a JSON
+   object that the script sees as the table `params`; NULL means {}. On failure *out is NULL and err
+   names file and line: TOBI_NOT_FOUND no such file, TOBI_IO unreadable, TOBI_INVALID broken
+   params_json, TOBI_SCRIPT an error in the script itself. */
+TOBI_API tobi_status tobi_motion_script(const char *path, const char *params_json, tobi_motion **out,
+                               tobi_error *err);
+
+/* position = rest + velocity t, velocity in m/s. */
+TOBI_API tobi_status tobi_motion_translation(const double velocity[3], tobi_motion **out, tobi_error *err);
+
+/* Turns about the line through centre (m) along axis (any length but zero) by rate t, degrees/s,
+   right-handed. */
+TOBI_API tobi_status tobi_motion_rotation(const double centre[3], const double axis[3],
+                                 double rate_deg_per_s, tobi_motion **out, tobi_error *err);
+
+/* position = rest + direction/|direction| amplitude sin(2 pi frequency t + phase). */
+TOBI_API tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_m,
+                                    double frequency_hz, double phase_deg, tobi_motion **out,
+                                    tobi_error *err);
+
+/* Rows of a CSV file: position = pivot + shift + R (rest - pivot), cubic
+   between the rows. Errors name file and line:
+   TOBI_NOT_FOUND, TOBI_IO, TOBI_INVALID, TOBI_NO_MEMORY. */
+TOBI_API tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_motion **out,
+                                  tobi_error *err);
+
+/* Frees a motion; NULL is fine. */
+TOBI_API void tobi_motion_free(tobi_motion *motion);
+
+/* Positions (m) of n points at time t (s) from their rest positions (m). A tobi_motion_fn: `motion`
+   is the tobi_motion. rest and position must not overlap. TOBI_SCRIPT when the script fails,
+   answers nonsense or runs without end; position is then undefined. */
+TOBI_API tobi_status tobi_motion_positions(void *motion, double t, int64_t n, const double (*rest)[3],
+                                  double (*position)[3], tobi_error *err);
+
+/* 1 when all points move by one rigid transform, 0 when the body deforms. */
+TOBI_API int tobi_motion_is_rigid(const tobi_motion *motion);
+
+typedef struct tobi_script tobi_script;
+/* The function that a script must define: deform() or place(), control(), velocity(). */
+typedef enum tobi_script_role { TOBI_MOTION_SCRIPT, TOBI_CONTROL_SCRIPT, TOBI_FLOW_SCRIPT } tobi_script_role;
+
+/* Loads a script of control or flow, and runs the file once. Errors as in tobi_motion_script; TOBI_IO too
+   where no process can be started. */
+TOBI_API tobi_status tobi_script_load(const char *path, const char *params_json, tobi_script_role role,
+                                      tobi_script **out, tobi_error *err);
+/* NULL is fine. */
+TOBI_API void tobi_script_free(tobi_script *script);
+/* Calls control(): a tobi_control_fn, `script` is the tobi_script. TOBI_SCRIPT when it fails or answers
+   nonsense. */
+TOBI_API tobi_status tobi_script_control(void *script, const tobi_control_input *in, tobi_control_output *out,
+                                         tobi_error *err);
+/* Calls velocity() for n places: a tobi_flow_fn. */
+TOBI_API tobi_status tobi_script_flow(void *script, int64_t n, const double (*place)[3],
+                                      double (*velocity)[3], tobi_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
