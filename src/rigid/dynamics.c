@@ -378,6 +378,18 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
     }
 }
 
+/* What a body leans on is there in the next step as well; a blow is not. */
+static void keep_lean(tobi_body *b)
+{
+    tobi_rigid *r = &b->rigid;
+    for (int a = 0; a < 6; a++) {
+        const double now = a < 3 ? b->info.contact_force[a] : b->info.contact_torque[a - 3],
+                     last = r->leaned[a];
+        r->held[a] = now*last > 0 ? copysign(fmin(fabs(now), fabs(last)), now) : 0;
+        r->leaned[a] = now;
+    }
+}
+
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
@@ -396,6 +408,7 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
         tobi_body *b = &d->bodies[k];
         const tobi_rigid *r = &b->rigid;
         if (r->kind == TOBI_PRESCRIBED) continue;
+        keep_lean(b);
         if (!isfinite(vec3_dot(r->velocity, r->velocity) + vec3_dot(r->momentum, r->momentum)))
             return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: body '%s' has a "
                              "velocity that is no number", t, b->name);

@@ -56,6 +56,13 @@ void tobi_boundary_load(struct tobi_system *s);
 /* A solve for the pressure has tobi_couple_product after each product; an equation of state has it known from
    tobi_couple_begin, and the step bounded by tobi_couple_softness (docs/theory/wcsph.md, eq. 25). */
 
+/* Whether any body moves by forces. */
+int tobi_couple_any(const struct tobi_system *s);
+/* Into near.answer of a body: by how much force and torque f (N, N m), with gravity and what else it feels,
+   change its velocities in this step; 0 for a body that does not move by forces. */
+void tobi_couple_foresee(struct tobi_system *s, int body, const double f[6]);
+/* Into near.answer of a body that was foreseen: its accelerations by f alone. */
+void tobi_couple_answer(struct tobi_system *s, int body, const double f[6]);
 /* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are,
    into particles.wall. */
 void tobi_couple_begin(struct tobi_system *s);

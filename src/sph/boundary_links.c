@@ -104,10 +104,8 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
     }
 }
 
-/* Calls visit for every point of the cells around x; stops early when it answers nonzero. */
-typedef int (*visit_fn)(void *user, int32_t point);
-static int visit_points(const tobi_boundary_links *n, int64_t body, const double x[3], visit_fn visit,
-                        void *user)
+int tobi_boundary_visit(const tobi_boundary_links *n, int64_t body, const double x[3],
+                        int (*visit)(void *user, int32_t point), void *user)
 {
     const tobi_boundary_bins *bins = &n->bins[body];
     const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
@@ -169,7 +167,7 @@ static int sees_body(look *l, int64_t body)
     }
     for (int32_t k = start[bin]; k < start[bin + 1]; k++)
         if (sees_any(l, item[k])) return 1;
-    return visit_points(n, body, l->x, sees_any, l);
+    return tobi_boundary_visit(n, body, l->x, sees_any, l);
 }
 
 /* Hidden if it lies behind the tangent plane of the nearest point and the body is in the way. */
@@ -239,7 +237,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    visit_points(&sph_of(l->s)->near, body, l->x, add_point, l);
+    tobi_boundary_visit(&sph_of(l->s)->near, body, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }

@@ -11,28 +11,51 @@
 
 static int moves(const tobi_body *b) { return b->rigid.kind != TOBI_PRESCRIBED; }
 
-static int any_moves(const tobi_system *s)
+int tobi_couple_any(const tobi_system *s)
 {
     for (int k = 0; k < s->sim->body_count; k++)
         if (moves(&s->sim->bodies[k])) return 1;
     return 0;
 }
 
-/* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control and
-   contact, which the next step knows from the velocities it starts with. */
+/* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control, and with
+   what contact has held for two steps; the rest of contact the next step knows from its first velocities. */
 static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
 {
     tobi_rigid *r = &b->rigid;
     double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
     tobi_rigid_inverse(r, shift, turn);
     for (int a = 0; a < 3; a++) {
-        double force = r->mass*s->sim->def.gravity[a] + r->force[a] + f[a];
+        double force = r->mass*s->sim->def.gravity[a] + r->force[a] + r->held[a] + f[a];
         r->foreseen[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
-        momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + f[3 + a]));
+        momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + r->held[3 + a] + f[3 + a]));
         r->mobility[a] = keep*shift[a];
         for (int c = 0; c < 3; c++) r->turn_mobility[a][c] = keep*turn[a][c];
     }
     for (int a = 0; a < 3; a++) r->foreseen_spin[a] = vec3_dot(turn[a], momentum);
+}
+
+void tobi_couple_foresee(tobi_system *s, int k, const double f[6])
+{
+    tobi_body *b = &s->sim->bodies[k];
+    double *answer = sph_of(s)->near.answer[k];
+    memset(answer, 0, 6*sizeof *answer);
+    if (!moves(b)) return;
+    foresee(s, b, f);
+    vec3_sub(answer, b->rigid.foreseen, b->rigid.velocity);
+    vec3_sub(answer + 3, b->rigid.foreseen_spin, b->rigid.angular_velocity);
+}
+
+void tobi_couple_answer(tobi_system *s, int k, const double f[6])
+{
+    const tobi_rigid *r = &s->sim->bodies[k].rigid;
+    double *answer = sph_of(s)->near.answer[k];
+    memset(answer, 0, 6*sizeof *answer);
+    if (!moves(&s->sim->bodies[k])) return;
+    for (int a = 0; a < 3; a++) {
+        answer[a] = r->mobility[a]*f[a];
+        answer[3 + a] = vec3_dot(r->turn_mobility[a], f + 3);
+    }
 }
 
 static tobi_couple_view see_entries(const tobi_system *s)
@@ -64,19 +87,13 @@ static void sum_known_forces(tobi_system *s)
 void tobi_couple_begin(tobi_system *s)
 {
     const tobi_couple_view v = see_entries(s);
-    if (!any_moves(s)) return;
+    if (!tobi_couple_any(s)) return;
     sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body *b = &s->sim->bodies[k];
-        tobi_rigid *r = &b->rigid;
-        double f[6], *answer = sph_of(s)->near.answer[k];
-        memcpy(f, answer, sizeof f);
-        memset(answer, 0, sizeof f);
-        if (!moves(b)) continue;
-        sph_body_hydrostatic(s, k, f);
-        foresee(s, b, f);
-        vec3_sub(answer, r->foreseen, r->velocity);
-        vec3_sub(answer + 3, r->foreseen_spin, r->angular_velocity);
+        double f[6];
+        memcpy(f, sph_of(s)->near.answer[k], sizeof f);
+        if (moves(&s->sim->bodies[k])) sph_body_hydrostatic(s, k, f);
+        tobi_couple_foresee(s, k, f);
     }
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
 }
@@ -96,18 +113,12 @@ void tobi_couple_product(tobi_system *s, double *totals)
     const tobi_couple_view v = see_entries(s);
     const pressing p = {s, kernels_of(s)->couple_pressure, &v};
     double t[TOBI_TOTALS];
-    if (!any_moves(s)) return;
+    if (!tobi_couple_any(s)) return;
     tobi_boundary_sum(s, TOBI_HOST(sum_pressure, p.kernel.sums, p.kernel.maxima), &p, 1);
     for (int k = 0; k < s->sim->body_count; k++) {
-        const tobi_rigid *r = &s->sim->bodies[k].rigid;
-        double *answer = n->answer[k];
-        if (!moves(&s->sim->bodies[k])) continue;
         memcpy(t, n->total[k], sizeof t);
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
-        for (int a = 0; a < 3; a++) {
-            answer[a] = r->mobility[a]*t[a];
-            answer[3 + a] = vec3_dot(r->turn_mobility[a], t + 3);
-        }
+        tobi_couple_answer(s, k, t);
     }
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_product, &v, 0, s->particles.count, t);
     if (!totals) return;

@@ -5,7 +5,7 @@
    Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
 #include "sph/boundary.h"
 #include "sph/isph.h"
-#include "sph/isph_bodies.h"
+#include "sph/isph_forces.h"
 #include "sph/isph_solve.h"
 #include "sph/kernels.h"
 #include "sph/stages.h"
@@ -50,14 +50,11 @@ static tobi_status create(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the isph state");
-    for (int k = 0; k < s->sim->body_count; k++)
-        if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "isph does not move bodies by forces yet, as it would "
-                             "'%s': give the body a motion, hold it, or take dfsph", s->sim->bodies[k].name);
     m->def = *(const tobi_isph_def *)s->def;
     m->common.mirrors = 1;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     isph_solver_begin(&m->solver, s);
+    m->solver.coupled = tobi_couple_any(s);
     m->solver.view.volume_gain = m->def.volume_gain;
     return TOBI_OK;
 }
@@ -76,7 +73,7 @@ static double choose_dt(tobi_system *s)
     const double fixed = s->sim->def.time_step, most = s->sim->def.time_step_max;
     const double speed = fmax(m->memory.speed, s->sim->body_speed);
     m->motion_dt = fmin(s->sim->def.cfl*s->smoothing.spacing/fmax(speed, 1e-12), sph_gravity_dt(s));
-    const double dt = fmin(m->motion_dt, fmin(sph_viscous_dt(s), sph_tension_dt(s)));
+    const double dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
     return fixed > 0 ? fixed : most > 0 ? fmin(dt, most) : dt;
 }
 
@@ -100,6 +97,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     TOBI_TRY(isph_bodies_see(&m->solver, s, err));
+    TOBI_TRY(isph_forces_see(&m->solver, s, err));
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;
 }
@@ -163,10 +161,12 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     const tobi_linear_settings settings = { .tolerance = m->def.tolerance, .max = m->def.iterations_max };
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    isph_forces_foresee(&m->solver, s);
     const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
+    isph_forces_follow(&m->solver, s);
     launch(s, m, m->kernel->isph_kick, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
     memcpy(m->side_force, t + 1, sizeof m->side_force);
@@ -185,7 +185,8 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
     tobi_boundary_load(s);
-    isph_bodies_press(&m->solver, s);
+    isph_forces_press(&m->solver, s);
+    tobi_couple_correct(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 

@@ -208,6 +208,23 @@ TOBI_FN void isph_multiply(const isph_view *v, int64_t i, double *totals)
     v->out[i] = v->excess[i]*own + (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])));
 }
 
+/* Over entries of what particles see of bodies: eq. (13). */
+TOBI_FN void isph_grip(const isph_view *v, int64_t k, double *totals)
+{
+    const double p = v->in[v->link[k].particle];
+    for (int a = 0; a < 6; a++) totals[a] += v->grip[k].f[a]*p;
+}
+
+/* The row of the accelerations that bodies answer with, eq. (14). */
+TOBI_FN void isph_yield(const isph_view *v, int64_t i, double *totals)
+{
+    double sum = 0;
+    (void)totals;
+    for (int32_t k = v->near[i]; k >= 0; k = v->link[k].previous)
+        for (int a = 0; a < 6; a++) sum += v->grip[k].f[a]*v->answer[v->link[k].body][a];
+    if (v->near[i] >= 0) v->out[i] += v->density/v->volume*sum;
+}
+
 /* The answer of the solve, for neighbours to read. */
 TOBI_FN void isph_answer(const isph_view *v, int64_t i, double *totals)
 {

@@ -6,5 +6,5 @@
 tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err);
 /* Takes back what sph_apply_forces gave for the weight of images: those of the pressure equation know it. */
 void isph_bodies_unlift(tobi_system *s);
-/* The pressure's force and torque on each body; friction is there already. */
-void isph_bodies_press(isph_solver *m, tobi_system *s);
+/* Adds dt times near.answer to the velocities of the mirrors at bodies that move by forces. */
+void isph_bodies_push(isph_solver *m, tobi_system *s, double dt);

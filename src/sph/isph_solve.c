@@ -3,6 +3,7 @@
    list, which a product that computes them anew would not. */
 #include "sph/isph_solve.h"
 #include "sph/fields.h"
+#include "sph/isph_forces.h"
 #include "sph/isph_surface.h"
 #include <math.h>
 #include <string.h>
@@ -49,7 +50,6 @@ void isph_solver_begin(isph_solver *m, tobi_system *s)
     const tobi_smoothing_constants *c = &s->smoothing;
     isph_view *v = &m->view;
     m->exec = &s->sim->exec;
-    m->sim = s->sim;
     v->dimension = c->dimension;
     m->kernel = sph_kernels_for(s->sim->exec.isa, c->shape);
     v->inverse_h = (float)(1/c->h);
@@ -106,7 +106,8 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-static void apply(void *user, double *y, const double *x)
+/* The liquid's part. */
+static void multiply(void *user, double *y, const double *x)
 {
     isph_solver *m = user;
     m->view.in = x;
@@ -114,16 +115,23 @@ static void apply(void *user, double *y, const double *x)
     tobi_launch(m->exec, m->kernel->isph_multiply, &m->view, 0, m->view.count, NULL);
 }
 
+static void apply(void *user, double *y, const double *x)
+{
+    multiply(user, y, x);
+    isph_forces_yield(user, y, x);
+}
+
 static int ask_stop(void *user)
 {
     isph_solver *m = user;
-    return tobi_simulation_stops(m->sim);
+    return tobi_simulation_stops(m->system->sim);
 }
 
+/* Of the liquid alone: the answer of a light body is no small change of the matrix, but of low rank. */
 static void precondition(void *user, double *z, const double *r)
 {
     isph_solver *m = user;
-    const tobi_linear_system system = { .rows = m->view.count, .user = m, .apply = apply };
+    const tobi_linear_system system = { .rows = m->view.count, .user = m, .apply = multiply };
     tobi_multigrid_cycle(&m->grid, m->exec, &system, m->view.inverse_diagonal, DAMPING, m->scratch, z, r);
 }
 
@@ -131,6 +139,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 {
     double t[TOBI_TOTALS];
     const int64_t n = m->view.count;
+    m->system = s;
     m->view.kick = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
@@ -148,13 +157,14 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 int64_t isph_solver_bytes(const isph_solver *m)
 {
     return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
-           m->mirrors*(int64_t)sizeof *m->mirror;
+           m->mirrors*(int64_t)sizeof *m->mirror + isph_forces_bytes(m);
 }
 
 void isph_solver_free(isph_solver *m)
 {
     tobi_multigrid_free(&m->grid);
     tobi_array_free(m->view.entry);
+    isph_forces_free(m);
     tobi_array_free(m->mirror);
     tobi_array_free(m->memory);
 }

@@ -5,11 +5,15 @@
 #include "sph/isph_view.h"
 #include "sph/kernels.h"
 
+/* A point of a body's surface: sum of the weights of the particles before it (INFINITY: dry), and of those
+   times the hydrostatic pressure from particle to point, Pa. */
+typedef struct isph_point { double weight, rise; } isph_point;
+
 typedef struct isph_solver {
     isph_view view;
     const sph_kernels *kernel;
     tobi_exec *exec;
-    tobi_simulation *sim;            /* asked whether to stop                                       */
+    tobi_system *system;             /* during a solve                                              */
     tobi_multigrid grid;
     void *memory;                    /* all arrays of the view but the entries, and those below     */
     double *scratch, *work;
@@ -17,6 +21,12 @@ typedef struct isph_solver {
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */
     int64_t mirrors;                 /* room for them                                               */
+    int coupled;                     /* 1: bodies move by forces                                    */
+    isph_grips *grip;                /* of s->near, see isph_forces.h                               */
+    isph_point *point;               /* of all bodies                                               */
+    isph_grips *still;               /* of each body: what water at rest adds, N, N m               */
+    int64_t grips, points;           /* room for them                                               */
+    int bodies;
 } isph_solver;
 
 /* The constants of the system; memory is made when it is first bound. */

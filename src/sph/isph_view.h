@@ -3,6 +3,7 @@
 #pragma once
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
+#include "sph/couple.k.h"
 
 /* Symmetric. */
 typedef struct isph_tensor { float xx, yy, zz, xy, yz, zx; } isph_tensor;
@@ -14,6 +15,9 @@ typedef struct isph_mirror {
     double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
     double share;                    /* 1: how much of the half space behind is body, 0 to 1        */
 } isph_mirror;
+
+/* Force and torque on a body, about its centre, by one pascal of a particle: m2, m3; eq. (13). */
+typedef struct isph_grips { double f[6]; } isph_grips;
 
 typedef struct isph_view {
     int64_t count;
@@ -43,6 +47,9 @@ typedef struct isph_view {
     const uint16_t *list_groups;
     const int32_t *near;             /* last mirror of each particle, < 0: none; NULL: no bodies    */
     const isph_mirror *mirror;
+    const tobi_boundary_link *link;  /* which particle sees which body; mirror and grip go with it  */
+    const isph_grips *grip;
+    const double (*answer)[6];       /* of each body: accelerations, m/s2 and rad/s2                */
     float *behind;                   /* 1: share of the kernel in and behind bodies                 */
     /* the method's own: geometry, eq. (2) to (5) */
     isph_tensor *inverse;            /* 1: B                                                        */

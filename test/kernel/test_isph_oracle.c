@@ -29,6 +29,9 @@ static int bodies;
 static tobi_double3 *shifted;
 static int32_t *near_body;
 static isph_mirror *mirror;
+static tobi_boundary_link *links;
+static isph_grips *grips;
+static const double answers[1][6] = {{0.3, -0.2, 0.1, 0.7, -0.4, 0.2}};
 
 static void put_body(void)
 {
@@ -37,10 +40,13 @@ static void put_body(void)
     for (int64_t i = 0; i < view.count; i++) {
         shifted[i] = pool.p.position[i];
         near_body[i] = -1;
+        links[i] = (tobi_boundary_link){.particle = (int32_t)i, .body = 0, .previous = -1};
+        for (int a = 0; a < 6; a++) grips[i].f[a] = poisson_random();
         if (!bodies) continue;
         shifted[i].x += away;
         if (pool.p.position[i].x >= view.h) continue;
         near_body[i] = count;
+        links[count].particle = (int32_t)i;
         mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .offset = {pool.p.position[i].x, 0, 0},
                                         .normal = {1, 0, 0}, .velocity = {FLOW, 0.3, 0}, .share = 1};
     }
@@ -80,6 +86,9 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.mirror = mirror = calloc((size_t)count, sizeof *mirror);
     view.position = shifted = calloc((size_t)count, sizeof *shifted);
     near_body = calloc((size_t)count, sizeof *near_body);
+    view.link = links = calloc((size_t)count, sizeof *links);
+    view.grip = grips = calloc((size_t)count, sizeof *grips);
+    view.answer = answers;
     view.record = pool.cells.record;
     view.list = pool.cells.list;
     view.list_start = pool.cells.list_start;
@@ -102,6 +111,8 @@ static void close_pool(void)
     free(mirror);
     free(shifted);
     free(near_body);
+    free(links);
+    free(grips);
     poisson_drop(&pool);
 }
 
@@ -309,6 +320,31 @@ static void oracle_isph_use_change(check *c, int64_t i, const sums *s)
         compare(c, (&view.velocity[i].x)[a], (&before.x)[a] + (&view.change[i].x)[a], 1);
 }
 
+/* One sum over all entries: check_grip. */
+static void oracle_isph_grip(check *c, int64_t i, const sums *s)
+{
+    (void)c; (void)i; (void)s;
+}
+
+static void check_grip(check *c, const double *t)
+{
+    for (int a = 0; a < 6; a++) {
+        double force = 0;
+        for (int64_t k = 0; k < view.count; k++) force += grips[k].f[a]*view.in[links[k].particle];
+        compare(c, t[a], force, 1);
+    }
+}
+
+/* Adds to what isph_multiply made. */
+static void oracle_isph_yield(check *c, int64_t i, const sums *s)
+{
+    double flux = 0;
+    if (near_body[i] >= 0)
+        for (int a = 0; a < 6; a++) flux += grips[near_body[i]].f[a]*answers[0][a];
+    compare(c, view.out[i], s->product + view.excess[i]*view.in[i] + view.density/view.volume*flux,
+            view.full + view.density/view.volume);
+}
+
 typedef struct entry {
     const char *name;
     size_t offset;
@@ -335,6 +371,7 @@ static tobi_kernel kernel_at(const sph_kernels *table, int k)
 static void prepare(int k)
 {
     view.kick = !strcmp(kernels[k].name, "isph_rows") ? (float)view.dt : 0;
+    view.near = bodies || !strcmp(kernels[k].name, "isph_yield") ? near_body : NULL;
     if (!strcmp(kernels[k].name, "isph_answer"))
         for (int64_t i = 0; i < view.count; i++) view.solution[i] *= 0.9;
 }
@@ -362,6 +399,7 @@ static void follow_the_equations(int scalar)
             if (!strcmp(kernels[n].name, "isph_kick"))
                 for (int a = 0; a < 3; a++) compare(&c, t[1 + a], force[a], 1e4*view.volume/view.h);
             if (!strcmp(kernels[n].name, "isph_shift")) compare(&c, t[0], div, div + 1);
+            if (!strcmp(kernels[n].name, "isph_grip")) check_grip(&c, t);
             if (!strcmp(kernels[n].name, "isph_rows")) assert_true((t[0] > 0) == view.open);
             if (!(c.worst < 2e-5)) fail_msg("case %d, %s: off by %g", k, c.name, c.worst);
             free(old);
