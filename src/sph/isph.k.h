@@ -6,6 +6,15 @@
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
 #define ISPH_GATE_BEGIN 0.05
 #define ISPH_GATE_OPEN 0.15
+/* What is missing towards a body is no free surface while the gap is narrow: distance of the particle from the
+   body, in spacings, up to which the gate is shut, and from which it is free; the same of what is missing
+   elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
+#define ISPH_GAP_SHUT 1.0
+#define ISPH_GAP_FREE 1.5
+#define ISPH_GAP_LACK_SHUT 0.15
+#define ISPH_GAP_LACK_FREE 0.25
+#define ISPH_GAP_LOSS_SHUT 0.3
+#define ISPH_GAP_LOSS_FREE 0.4
 /* Least share of a row that is missing where the gate is open, per relative loss of neighbours: clusters
    whose rows are fuller than the lattice would float otherwise. */
 #define ISPH_EXCESS_FLOOR 0.5
@@ -91,6 +100,30 @@ TOBI_FN tobi_float4 isph_weigh_lack(const isph_view *v, tobi_float4 c, double tr
     return c;
 }
 
+/* 1 up to a, 0 from b. */
+TOBI_FN double isph_fade(double x, double a, double b) { return isph_clamp((b - x)/(b - a), 0, 1); }
+
+/* How surely the loss of neighbours is a narrow gap between i and a body: 0 to 1. c: sum of V grad W, which
+   points away from what is missing. */
+TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, double loss)
+{
+    double gap = 0;
+    for (int32_t k = v->near ? v->near[i] : -1; k >= 0; k = v->mirror[k].previous) {
+        const isph_mirror *m = &v->mirror[k];
+        double along = 0, s2 = 0, rest2 = 0;
+        for (int a = 0; a < 3; a++) along += (&c->x)[a]*m->normal[a];
+        along = isph_larger(along, 0);
+        for (int a = 0; a < 3; a++) {
+            const double rest = (&c->x)[a] - along*m->normal[a];
+            rest2 += rest*rest;
+            s2 += m->offset[a]*m->offset[a];
+        }
+        gap = isph_larger(gap, m->share*isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE)*
+                                   isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_LACK_SHUT, ISPH_GAP_LACK_FREE));
+    }
+    return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
+}
+
 TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_acc *a, double *totals)
 {
     const double k = v->slope;
@@ -102,9 +135,9 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     const double sum = m[0] + m[1] + m[2],
                  trace = isph_larger(sum, sum - k*off.w + v->dimension*v->behind[i]);
     const double loss = 1 - trace/v->dimension;
-    const double gate =
-        v->open ? isph_clamp((loss - ISPH_GATE_BEGIN)/(ISPH_GATE_OPEN - ISPH_GATE_BEGIN), 0, 1) : 0;
     tobi_float4 lack = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
+    const double gate = !v->open ? 0 :
+        isph_clamp((loss - ISPH_GATE_BEGIN)/(ISPH_GATE_OPEN - ISPH_GATE_BEGIN), 0, 1)*(1 - isph_gap(v, i, &lack, loss));
     (void)totals;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
