@@ -14,11 +14,12 @@ static tobi_status allocate(tobi_body *b, tobi_error *err)
 {
     size_t v = (size_t)b->mesh.vertex_count, n = (size_t)b->surface.count, p = (size_t)b->particle_count;
     void **arrays[] = {(void **)&b->vertex,          (void **)&b->next,
-                       (void **)&b->vertex_velocity, (void **)&b->piece,
+                       (void **)&b->vertex_velocity, (void **)&b->vertex_before,
+                       (void **)&b->point_before, (void **)&b->piece,
                        (void **)&b->piece_normal,    (void **)&b->piece_velocity,
                        (void **)&b->point,           (void **)&b->normal,
                        (void **)&b->point_velocity,  (void **)&b->particle};
-    size_t rows[] = {v, v, v, n, n, n, n, n, n, p};
+    size_t rows[] = {v, v, v, v, n, n, n, n, n, n, n, p};
     int failed = 0;
     for (size_t k = 0; k < sizeof rows/sizeof *rows; k++) {
         *arrays[k] = calloc(rows[k] + 1, 3*sizeof(double));
@@ -431,6 +432,8 @@ void tobi_body_free(tobi_body *b)
     tobi_bvh_free(b->bvh);
     tobi_surface_free(&b->surface);
     free(b->vertex); free(b->next); free(b->vertex_velocity);
+    free(b->vertex_before);
+    free(b->point_before);
     free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
     free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight); free(b->wet);
     free(b->particle_rest); free(b->particle);
@@ -477,6 +480,8 @@ static void drive_points(const tobi_rigid *r, const double velocity[3], const do
 
 void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3])
 {
+    memcpy(b->rigid.driven, velocity, 3*sizeof *velocity);
+    memcpy(b->rigid.driven + 3, spin, 3*sizeof *spin);
     drive_points(&b->rigid, velocity, spin, b->mesh.vertex_count, (const double (*)[3])b->vertex,
                  b->vertex_velocity);
     drive_points(&b->rigid, velocity, spin, b->point_count, (const double (*)[3])b->point, b->point_velocity);
@@ -517,12 +522,21 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
     return TOBI_OK;
 }
 
+static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (*point)[3])
+{
+    tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex, b->piece_velocity);
+    gather_points(b, (const double (*)[3])b->piece_velocity, point);
+    divide_by_weight(b, point);
+}
+
 void tobi_body_drive_points(tobi_body *b)
 {
-    tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles,
-                             (const double (*)[3])b->vertex_velocity, b->piece_velocity);
-    gather_points(b, (const double (*)[3])b->piece_velocity, b->point_velocity);
-    divide_by_weight(b, b->point_velocity);
+    interpolate_points(b, (const double (*)[3])b->vertex_velocity, b->point_velocity);
+}
+
+void tobi_body_recall_points(tobi_body *b)
+{
+    interpolate_points(b, (const double (*)[3])b->vertex_before, b->point_before);
 }
 
 static void swap_vertices(tobi_body *b)
@@ -551,10 +565,12 @@ static void advance_free(tobi_body *b)
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err)
 {
     if (b->rigid.kind != TOBI_PRESCRIBED) {
+        memcpy(b->rigid.before, b->rigid.driven, sizeof b->rigid.before);
         advance_free(b);
         return TOBI_OK;
     }
     if (!b->motion) return TOBI_OK;
+    memcpy(b->vertex_before, b->vertex_velocity, (size_t)b->mesh.vertex_count*sizeof *b->vertex_before);
     double old_centre[3], old_frame[3][3];
     memcpy(old_centre, b->centre, sizeof old_centre);
     memcpy(old_frame, b->frame, sizeof old_frame);

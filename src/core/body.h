@@ -61,6 +61,7 @@ typedef struct tobi_body {
     double (*vertex)[3];             /* now                                                    */
     double (*next)[3];               /* at the end of the step                                 */
     double (*vertex_velocity)[3];    /* mean over the step                                     */
+    double (*vertex_before)[3];      /* of a body with a motion, in the step before; first 0   */
     tobi_bvh *bvh;                   /* of `vertex`; of a rigid body, as the quadrature points, only
                                         where tobi_body_place or tobi_body_bring_surface last put
                                         it: contact uses rest_bvh */
@@ -71,6 +72,7 @@ typedef struct tobi_body {
     int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */
     int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
+    double (*point_before)[3];       /* velocities by vertex_before, by tobi_body_recall_points */
     uint8_t *wet;                    /* [points] TOBI_WET_*                                    */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
@@ -119,6 +121,8 @@ void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3
 /* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
    vertices. */
 void tobi_body_drive_points(tobi_body *b);
+/* Gives them, as point_before, those that the vertices had in the step before. Before tobi_body_drive_points. */
+void tobi_body_recall_points(tobi_body *b);
 /* Brings the quadrature points and the tree of a rigid body to its present pose. */
 void tobi_body_bring_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */

@@ -31,6 +31,7 @@ typedef struct tobi_rigid {
     double pull[3], pull_torque[3];  /* m/s2, N m: constant over the next drift; 0 where contact holds  */
     double leaned[6];                /* N, N m: of contact with bodies and sides, mean over the last step    */
     double held[6];                  /* N, N m: what was so in both of the last two steps               */
+    double before[6];                /* m/s, rad/s: that a liquid was made to follow in the last step   */
     double phase, phase_start;       /* of the control program; s                                       */
     double cut;                      /* number of the cut that a blade is making, 0 = none              */
     double hold;                     /* bits like `locked`, asked for by the control program            */
@@ -40,6 +41,7 @@ typedef struct tobi_rigid {
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
     /* Within the step of a liquid, sph/boundary.h: */
+    double driven[6];                             /* m/s, rad/s: by tobi_body_drive, last               */
     double foreseen[3], foreseen_spin[3];         /* m/s, rad/s: at the end of the step                 */
     double mobility[3], turn_mobility[3][3];      /* 1/kg, 1/(kg m2): velocities per impulse            */
 } tobi_rigid;

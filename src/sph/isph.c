@@ -119,6 +119,8 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     isph *m = s->state;
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
+    for (int k = 0; k < s->sim->body_count; k++)
+        if (s->sim->bodies[k].motion) tobi_body_recall_points(&s->sim->bodies[k]);
     sph_drive_bodies(s, &clock);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));

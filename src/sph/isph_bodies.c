@@ -15,13 +15,22 @@ static double behind_plane(const tobi_smoothing_constants *c, double distance)
     return c->plane.lambda[k] + (at - k)*((double)c->plane.lambda[k + 1] - c->plane.lambda[k]);
 }
 
-static void move_foot(const tobi_body *b, const tobi_boundary_entry *e, double velocity[3])
+static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const double (*vertex)[3], double out[3])
 {
     const int32_t *t = b->mesh.triangles[e->triangle];
     for (int a = 0; a < 3; a++) {
-        velocity[a] = 0;
-        for (int c = 0; c < 3; c++) velocity[a] += e->barycentric[c]*b->vertex_velocity[t[c]][a];
+        out[a] = 0;
+        for (int c = 0; c < 3; c++) out[a] += e->barycentric[c]*vertex[t[c]][a];
     }
+}
+
+/* Velocity of the closest point of the surface by those of the whole body. */
+static void turn(const tobi_body *b, const tobi_boundary_entry *e, const double u[6], double out[3])
+{
+    double arm[3];
+    for (int a = 0; a < 3; a++) arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
+    vec3_cross(out, u + 3, arm);
+    for (int a = 0; a < 3; a++) out[a] += u[a];
 }
 
 static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *link,
@@ -36,7 +45,12 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
     memcpy(m.offset, e->offset, sizeof m.offset);
     for (int a = 0; a < 3; a++) m.normal[a] = faces ? e->offset[a]/e->distance : e->foot_normal[a];
-    move_foot(&s->sim->bodies[link->body], e, m.velocity);
+    const tobi_body *b = &s->sim->bodies[link->body];
+    double before[3];
+    interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
+    if (b->rigid.kind != TOBI_PRESCRIBED) turn(b, e, b->rigid.before, before);
+    else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
+    for (int a = 0; a < 3; a++) m.change[a] = m.velocity[a] - before[a];
     return m;
 }
 
@@ -80,11 +94,12 @@ void isph_bodies_push(isph_solver *m, tobi_system *s, double dt)
     for (int64_t k = 0; k < n->count; k++) {
         const tobi_boundary_entry *e = &n->entry[k];
         const tobi_body *b = &s->sim->bodies[n->link[k].body];
-        const double *u = n->answer[n->link[k].body];
-        double arm[3], turn[3];
+        double u[3];
         if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
-        for (int a = 0; a < 3; a++) arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
-        vec3_cross(turn, u + 3, arm);
-        for (int a = 0; a < 3; a++) m->mirror[k].velocity[a] += dt*(u[a] + turn[a]);
+        turn(b, e, n->answer[n->link[k].body], u);
+        for (int a = 0; a < 3; a++) {
+            m->mirror[k].velocity[a] += dt*u[a];
+            m->mirror[k].change[a] += dt*u[a];
+        }
     }
 }

@@ -8,7 +8,7 @@ enum { ISPH_BODIES = 4 };            /* that a pair sees at once                
 
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {
-    double normal[3], velocity[3];
+    double normal[3], velocity[3], change[3];
     double sum[3];                   /* m, of the offsets of both particles                         */
     double weight;
 } isph_plane;
@@ -25,7 +25,7 @@ typedef struct isph_walk {
     int taken;                       /* images in the group                                         */
     int32_t index[8];
     int64_t entry[8];
-    float x[3][8], away[3][8], sign[3][8], normal[3][8], flow[8], weight[8];
+    float x[3][8], away[3][8], sign[3][8], normal[3][8], flow[8], change[8], weight[8];
 } isph_walk;
 
 /* Where both share of the body is below a half there is next to none between a particle and the image. */
@@ -38,6 +38,7 @@ TOBI_FN void isph_join(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
     for (int c = 0; c < 3; c++) {
         p->normal[c] = a->normal[c] + b->normal[c];
         p->velocity[c] = 0.5*(a->velocity[c] + b->velocity[c]);
+        p->change[c] = 0.5*(a->change[c] + b->change[c]);
         p->sum[c] = a->offset[c] + b->offset[c];
         size += p->normal[c]*p->normal[c];
     }
@@ -79,7 +80,7 @@ TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3]
 {
     const isph_view *v = w->v;
     const int k = w->taken;
-    double x[3], normal[3], size = 0, own = 0, other = 0, flow = 0, r2 = 0;
+    double x[3], normal[3], size = 0, own = 0, other = 0, flow = 0, change = 0, r2 = 0;
     for (int a = 0; a < 3; a++) {
         const double wall = side[a] == 1 ? v->size[a] : 0;
         x[a] = side[a] < 0 ? w->offset[a] : 2*((&v->position[w->i].x)[a] - wall) - w->offset[a];
@@ -92,6 +93,7 @@ TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3]
         own += 0.5*(b->sum[a] + w->offset[a])*normal[a];
         other += 0.5*(b->sum[a] - w->offset[a])*normal[a];
         flow += b->velocity[a]*normal[a];
+        change += b->change[a]*normal[a];
     }
     if (!(own > 0) || !(other > 0)) return;
     for (int a = 0; a < 3; a++) {
@@ -106,6 +108,7 @@ TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3]
         w->normal[a][k] = (float)normal[a];
     }
     w->flow[k] = (float)flow;
+    w->change[k] = (float)change;
     w->weight[k] = (float)b->weight;
     w->index[k] = (int32_t)w->j;
     w->entry[k] = w->k > 0 ? w->first + w->k - 1 : -1;
@@ -140,7 +143,7 @@ TOBI_FN void isph_walk_load(isph_walk *w, tobi_near *n, isph_image *m)
         w->index[k] = (int32_t)w->i;
         w->entry[k] = -1;
         w->x[0][k] = 2*(float)w->v->h;
-        w->x[1][k] = w->x[2][k] = w->flow[k] = w->weight[k] = 0;
+        w->x[1][k] = w->x[2][k] = w->flow[k] = w->change[k] = w->weight[k] = 0;
         for (int a = 0; a < 3; a++) w->away[a][k] = w->sign[a][k] = w->normal[a][k] = 0;
     }
     n->j = w->index;
@@ -154,6 +157,7 @@ TOBI_FN void isph_walk_load(isph_walk *w, tobi_near *n, isph_image *m)
         m->normal[a] = lane_load(w->normal[a]);
     }
     m->flow = lane_load(w->flow);
+    m->change = lane_load(w->change);
     m->weight = lane_load(w->weight);
     m->entry = w->entry;
 }

@@ -47,6 +47,7 @@ static void add_cell(const look *q, int64_t k, int64_t cell, isph_point *sum)
         measure(q, k, &v->position[i], x);
         const double w = weigh(q, k, x);
         sum->weight += w;
+        sum->away += w*vec3_dot(x, body_of(q)->normal[k]);
         for (int a = 0; a < v->dimension; a++) sum->rise -= w*v->density*v->gravity[a]*x[a];
     }
 }
@@ -66,7 +67,7 @@ static isph_point look_around(const look *q, int64_t k)
 {
     const int deep = q->v->dimension == 3;
     double x[3] = { 0 };
-    isph_point sum = { 0, 0 };
+    isph_point sum = { 0, 0, 0 };
     for (int a = 0; a < q->v->dimension; a++) x[a] = body_of(q)->point[k][a];
     for (int z = -deep; z <= deep; z++)
         for (int y = -1; y <= 1; y++)
@@ -77,29 +78,44 @@ static isph_point look_around(const look *q, int64_t k)
     return sum;
 }
 
-/* Force and torque by a push along the normal at a point. */
-static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
+/* Force and torque of a push of 1 along the normal at a point. */
+static void find_lever(const tobi_body *b, int64_t k, double lever[6])
 {
-    const double *n = b->normal[k];
-    double arm[3], turn[3];
+    double arm[3];
     for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
-    vec3_cross(turn, arm, n);
-    for (int a = 0; a < 3; a++) {
-        f[a] += push*n[a];
-        f[3 + a] += push*turn[a];
-    }
+    memcpy(lever, b->normal[k], 3*sizeof *lever);
+    vec3_cross(lever + 3, arm, b->normal[k]);
 }
 
-/* totals: the force of liquid at rest beyond the pressures of the particles. */
+static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
+{
+    double lever[6];
+    find_lever(b, k, lever);
+    for (int a = 0; a < 6; a++) f[a] += push*lever[a];
+}
+
+/* m/s2: of a point of a driven body along its normal. */
+static double accelerate(const look *q, int64_t k)
+{
+    const tobi_body *b = body_of(q);
+    double sum = 0;
+    if (b->rigid.kind != TOBI_PRESCRIBED || !b->motion) return 0;
+    for (int a = 0; a < 3; a++) sum += b->normal[k][a]*(b->point_velocity[k][a] - b->point_before[k][a]);
+    return sum/q->v->dt;
+}
+
+/* totals: the force of what pressure the surface has beyond that of the particles: of water at rest, and of
+   that which the surface of a driven body accelerates. */
 static void weigh_points(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const look *q = view;
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        *p = b->area[k] > 0 ? look_around(q, k) : (isph_point){ 0, 0 };
+        *p = b->area[k] > 0 ? look_around(q, k) : (isph_point){ 0, 0, 0 };
         if (!(p->weight > DRY)) p->weight = INFINITY;
-        add_push(b, k, -b->area[k]*p->rise/p->weight, totals);
+        const double more = p->rise + q->v->density*p->away*accelerate(q, k);
+        add_push(b, k, -b->area[k]*more/p->weight, totals);
     }
 }
 
@@ -150,9 +166,9 @@ static tobi_status reserve(isph_solver *m, const tobi_boundary_links *n, int bod
         m->points = points;
     }
     if (bodies > m->bodies) {
-        isph_grips *more = tobi_array_grow(m->still, 0, bodies, sizeof *more);
+        isph_body *more = tobi_array_grow(m->body, 0, bodies, sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d bodies", bodies);
-        m->still = more;
+        m->body = more;
         m->bodies = bodies;
     }
     return TOBI_OK;
@@ -171,7 +187,7 @@ tobi_status isph_forces_see(isph_solver *m, tobi_system *s, tobi_error *err)
         q.point = m->point + n->bins[q.body].item;
         if (n->first[q.body] < n->first[q.body + 1])
             tobi_launch(m->exec, TOBI_HOST(weigh_points, 6, 0), &q, 0, body_of(&q)->point_count, t);
-        memcpy(m->still[q.body].f, t, sizeof m->still->f);
+        memcpy(m->body[q.body].still, t, sizeof m->body->still);
     }
     const all u = { &q, m, n };
     tobi_launch(m->exec, TOBI_HOST(grip_bodies, 0, 0), &u, 0, n->count, NULL);
@@ -189,15 +205,98 @@ static void sum_grips(isph_solver *m, tobi_system *s, const double *pressure)
     tobi_boundary_sum(s, m->kernel->isph_grip, &v, 1);
 }
 
+/* A column of the inertia of the water between particles and surface, eq. (15). */
+typedef struct column { look q; int number; } column;
+
+static void sum_column(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const column *c = view;
+    const tobi_body *b = body_of(&c->q);
+    for (int64_t k = begin; k < end; k++) {
+        const isph_point *p = &c->q.point[k];
+        double lever[6];
+        find_lever(b, k, lever);
+        const double mass = c->q.v->density*b->area[k]*p->away/p->weight*lever[c->number];
+        for (int a = 0; a < 6; a++) totals[a] += mass*lever[a];
+    }
+}
+
+static void find_inertia(isph_solver *m, tobi_system *s, int k)
+{
+    const tobi_boundary_links *n = &sph_of(s)->near;
+    column c = { { .s = s, .v = &m->view, .body = k, .point = m->point + n->bins[k].item }, 0 };
+    double t[TOBI_TOTALS] = { 0 };
+    for (; c.number < 6; c.number++) {
+        if (n->first[k] < n->first[k + 1])
+            tobi_launch(m->exec, TOBI_HOST(sum_column, 6, 0), &c, 0, s->sim->bodies[k].point_count, t);
+        for (int a = 0; a < 6; a++) m->body[k].inertia[a][c.number] = t[a];
+    }
+}
+
+/* out = x^-1; x is overwritten. Its pivots are 1 or more: 1 + M^-1 K with K >= 0. */
+static void invert(double x[6][6], double out[6][6])
+{
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) out[i][j] = i == j;
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) {
+            const double share = x[j][i]/x[i][i];
+            for (int k = 0; k < 6 && j != i; k++) {
+                x[j][k] -= share*x[i][k];
+                out[j][k] -= share*out[i][k];
+            }
+        }
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) out[i][k] /= x[i][i];
+}
+
+static void multiply(const double x[6][6], double y[6])
+{
+    double out[6] = { 0 };
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) out[i] += x[i][j]*y[j];
+    memcpy(y, out, sizeof out);
+}
+
+/* follow = (1 + M^-1 K)^-1. */
+static void find_follow(const tobi_rigid *r, isph_body *b)
+{
+    double x[6][6];
+    for (int j = 0; j < 6; j++)
+        for (int i = 0; i < 3; i++) {
+            const double turn[3] = { b->inertia[3][j], b->inertia[4][j], b->inertia[5][j] };
+            x[i][j] = r->mobility[i]*b->inertia[i][j] + (i == j);
+            x[3 + i][j] = vec3_dot(r->turn_mobility[i], turn) + (3 + i == j);
+        }
+    invert(x, b->follow);
+}
+
+/* What the body would change without the water at its surface, as an acceleration from the last step's
+   velocities on, less what that water takes of it. */
+static void foresee(isph_solver *m, tobi_system *s, int k)
+{
+    const tobi_rigid *r = &s->sim->bodies[k].rigid;
+    isph_body *b = &m->body[k];
+    double f[6], *answer = sph_of(s)->near.answer[k];
+    for (int a = 0; a < 6; a++) f[a] = sph_of(s)->near.total[k][a] + b->still[a];
+    tobi_couple_foresee(s, k, f);
+    if (r->kind == TOBI_PRESCRIBED) return;
+    find_inertia(m, s, k);
+    find_follow(r, b);
+    for (int a = 0; a < 6; a++) {
+        const double now = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
+        f[a] = now + answer[a] - r->before[a];
+        b->known[a] = r->before[a] - now;
+    }
+    multiply((const double (*)[6])b->follow, f);
+    for (int a = 0; a < 6; a++) answer[a] = b->known[a] += f[a];
+}
+
 void isph_forces_foresee(isph_solver *m, tobi_system *s)
 {
     if (!m->coupled) return;
     tobi_boundary_known_forces(s, 1);
-    for (int k = 0; k < s->sim->body_count; k++) {
-        double f[6];
-        for (int a = 0; a < 6; a++) f[a] = sph_of(s)->near.total[k][a] + m->still[k].f[a];
-        tobi_couple_foresee(s, k, f);
-    }
+    for (int k = 0; k < s->sim->body_count; k++) foresee(m, s, k);
     isph_bodies_push(m, s, 1);
 }
 
@@ -205,7 +304,11 @@ void isph_forces_foresee(isph_solver *m, tobi_system *s)
 static void answer(isph_solver *m, tobi_system *s, const double *pressure)
 {
     sum_grips(m, s, pressure);
-    for (int k = 0; k < s->sim->body_count; k++) tobi_couple_answer(s, k, sph_of(s)->near.total[k]);
+    for (int k = 0; k < s->sim->body_count; k++) {
+        tobi_couple_answer(s, k, sph_of(s)->near.total[k]);
+        if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
+            multiply((const double (*)[6])m->body[k].follow, sph_of(s)->near.answer[k]);
+    }
 }
 
 void isph_forces_yield(isph_solver *m, double *product, const double *pressure)
@@ -224,25 +327,41 @@ void isph_forces_follow(isph_solver *m, tobi_system *s)
     isph_bodies_push(m, s, s->dt);
 }
 
+/* Less what the water at the surface of a body takes that moves by forces: eq. (15). */
+static void take_inertia(const isph_solver *m, const tobi_system *s, int k, double f[6])
+{
+    const tobi_rigid *r = &s->sim->bodies[k].rigid;
+    const isph_body *b = &m->body[k];
+    double a[6];
+    if (r->kind == TOBI_PRESCRIBED) return;
+    for (int i = 0; i < 6; i++) {
+        const double now = i < 3 ? r->velocity[i] : r->angular_velocity[i - 3];
+        a[i] = (now + b->known[i] - r->before[i])/s->dt + sph_of(s)->near.answer[k][i];
+    }
+    multiply((const double (*)[6])b->inertia, a);
+    for (int i = 0; i < 6; i++) f[i] -= a[i];
+}
+
 void isph_forces_press(isph_solver *m, tobi_system *s)
 {
     if (s->sim->body_count == 0) return;
     sum_grips(m, s, m->view.solution);
-    for (int k = 0; k < s->sim->body_count; k++)
-        for (int a = 0; a < 6; a++)
-            s->sim->bodies[k].load[s->number].pressure[a] =
-                sph_of(s)->near.total[k][a] + m->still[k].f[a];
+    for (int k = 0; k < s->sim->body_count; k++) {
+        double *f = s->sim->bodies[k].load[s->number].pressure;
+        for (int a = 0; a < 6; a++) f[a] = sph_of(s)->near.total[k][a] + m->body[k].still[a];
+        take_inertia(m, s, k, f);
+    }
 }
 
 int64_t isph_forces_bytes(const isph_solver *m)
 {
     return m->grips*(int64_t)sizeof *m->grip + m->points*(int64_t)sizeof *m->point +
-           m->bodies*(int64_t)sizeof *m->still;
+           m->bodies*(int64_t)sizeof *m->body;
 }
 
 void isph_forces_free(isph_solver *m)
 {
     tobi_array_free(m->grip);
     tobi_array_free(m->point);
-    tobi_array_free(m->still);
+    tobi_array_free(m->body);
 }

@@ -14,7 +14,7 @@ typedef struct isph_image {
     /* bodies only */
     const int64_t *entry;            /* of each pair, in place of k                                 */
     lane weight;                     /* 1; less at edges                                            */
-    lane normal[3], flow;            /* 1, m/s: velocity of the surface along the normal            */
+    lane normal[3], flow, change;    /* 1, m/s: velocity of the surface along the normal, its change */
 } isph_image;
 
 /* V F over slope: V grad W = -V F x_ij. 0 out of reach. */
@@ -43,7 +43,7 @@ TOBI_FN void isph_velocity(const isph_view *v, const tobi_near *n, const isph_im
     for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->kick*v->gravity[a]);
     if (kind == ISPH_SIDE) return;
     for (int a = 0; a < 3; a++) across += 2*(u[a] - v->kick*v->gravity[a])*m->normal[a];
-    across -= 2*m->flow;
+    across -= 2*(m->flow - (v->kick > 0 ? m->change : lane_set(0)));
     for (int a = 0; a < 3; a++) u[a] -= across*m->normal[a];
 }
 
@@ -51,8 +51,11 @@ TOBI_FN void isph_velocity(const isph_view *v, const tobi_near *n, const isph_im
 TOBI_FN lane isph_lift(const isph_view *v, const isph_image *m, const int kind)
 {
     if (kind == ISPH_PLAIN) return lane_set(0);
-    return (float)v->density*(v->gravity[0]*m->away[0] + v->gravity[1]*m->away[1] +
-                              v->gravity[2]*m->away[2]);
+    const lane still = (float)v->density*(v->gravity[0]*m->away[0] + v->gravity[1]*m->away[1] +
+                                          v->gravity[2]*m->away[2]);
+    if (kind == ISPH_SIDE) return still;
+    return still - (float)(v->density/v->dt)*m->change*(m->normal[0]*m->away[0] + m->normal[1]*m->away[1] +
+                                                       m->normal[2]*m->away[2]);
 }
 
 /* m2, out of reach of every kernel. */

@@ -6,8 +6,16 @@
 #include "sph/kernels.h"
 
 /* A point of a body's surface: sum of the weights of the particles before it (INFINITY: dry), and of those
-   times the hydrostatic pressure from particle to point, Pa. */
-typedef struct isph_point { double weight, rise; } isph_point;
+   times the hydrostatic pressure from particle to point, Pa, and times the distance from the surface, m. */
+typedef struct isph_point { double weight, rise, away; } isph_point;
+
+/* What a body does with pressure: in the order of its velocities, then turns. */
+typedef struct isph_body {
+    double still[6];                 /* N, N m: what is not linear in the particles' pressures      */
+    double known[6];                 /* m/s, rad/s: what all but the pressure changes               */
+    double inertia[6][6];            /* kg: of the water between particles and surface              */
+    double follow[6][6];             /* 1: what of its own acceleration is left with that           */
+} isph_body;
 
 typedef struct isph_solver {
     isph_view view;
@@ -24,7 +32,7 @@ typedef struct isph_solver {
     int coupled;                     /* 1: bodies move by forces                                    */
     isph_grips *grip;                /* of s->near, see isph_forces.h                               */
     isph_point *point;               /* of all bodies                                               */
-    isph_grips *still;               /* of each body: what water at rest adds, N, N m               */
+    isph_body *body;
     int64_t grips, points;           /* room for them                                               */
     int bodies;
 } isph_solver;

@@ -13,6 +13,7 @@ typedef struct isph_mirror {
     int32_t body, previous;          /* previous: the particle's plane for an earlier body, -1 = none */
     double offset[3];                /* m, from the closest point of the surface to the particle    */
     double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
+    double change[3];                /* m/s, of that velocity since the step before                 */
     double share;                    /* 1: how much of the half space behind is body, 0 to 1        */
 } isph_mirror;
 

@@ -79,6 +79,8 @@ static tobi_status put_place(const tobi_body *b, int k, tobi_store *f, tobi_erro
     memcpy(place.frame, b->frame, sizeof place.frame);
     tobi_world_name_body(k, "_vertex", name);
     TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->mesh.vertex_count, 3, b->vertex, err));
+    tobi_world_name_body(k, "_before", name);
+    TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->mesh.vertex_count, 3, b->vertex_before, err));
     tobi_world_name_body(k, "_place", name);
     return tobi_store_put(f, name, TOBI_F64, 4, 3, &place, err);
 }

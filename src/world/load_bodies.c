@@ -13,7 +13,7 @@ struct tobi_loaded_body {
     double state[TOBI_RIGID_DOUBLES];
     double load[7];                  /* N, N m: its constant force and torque; 1: its motion was set */
     tobi_body_info info;
-    double (*vertex)[3];             /* of a body with a motion, owned                            */
+    double (*vertex)[3], (*before)[3];   /* of a body with a motion, owned                        */
     tobi_body_at place;
     double (*edge_share)[3];         /* [piece_count] of a blade, owned until taken               */
     tobi_edge_foot *edge_foot;
@@ -63,13 +63,17 @@ static tobi_status read_place(const tobi_body *b, int k, tobi_store *f, tobi_loa
     const int64_t count = b->mesh.vertex_count;
     char name[32];
     l->vertex = malloc((size_t)(count + 1)*sizeof *l->vertex);
-    if (!l->vertex) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
+    l->before = malloc((size_t)(count + 1)*sizeof *l->before);
+    if (!l->vertex || !l->before) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
     tobi_world_name_body(k, "_vertex", name);
     TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->vertex, err));
+    tobi_world_name_body(k, "_before", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->before, err));
     tobi_world_name_body(k, "_place", name);
     TOBI_TRY(tobi_store_get(f, name, TOBI_F64, 4, 3, &l->place, err));
     int good = 1;
-    for (int64_t i = 0; i < count; i++) good &= isfinite(l->vertex[i][0] + l->vertex[i][1] + l->vertex[i][2]);
+    for (int64_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) good &= isfinite(l->vertex[i][a]) && isfinite(l->before[i][a]);
     for (int a = 0; a < 3; a++) {
         good &= isfinite(l->place.centre[a]) != 0;
         for (int i = 0; i < 3; i++) good &= isfinite(l->place.frame[i][a]) != 0;
@@ -122,7 +126,10 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
     rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);
     rigid.hold = (int)fmin(fmax(rigid.hold, 0), 63) & 63;
     b->rigid = rigid;
-    if (b->motion) tobi_body_restore(b, (const double (*)[3])l->vertex, &l->place);
+    if (b->motion) {
+        tobi_body_restore(b, (const double (*)[3])l->vertex, &l->place);
+        memcpy(b->vertex_before, l->before, (size_t)b->mesh.vertex_count*sizeof *l->before);
+    }
     else tobi_body_place(b, 0, NULL);      /* by its state, or at rest: neither can fail */
     b->rigid = rigid;                      /* placing a body at rest forgets its velocities */
     b->info = l->info;
@@ -141,6 +148,7 @@ void tobi_loaded_bodies_free(tobi_loaded_bodies *l)
 {
     for (int k = 0; l->body && k < l->count; k++) {
         free(l->body[k].vertex);
+        free(l->body[k].before);
         free(l->body[k].edge_share);
         free(l->body[k].edge_foot);
     }

@@ -24,7 +24,7 @@ static int shape;
 
 /* In cases with a body its face is where the lower side along x was; that is FAR supports further down. */
 enum { FAR = 10 };
-static const double FLOW = 0.7;      /* m/s, of the face along x */
+static const double FLOW = 0.7, CHANGE = 0.2;      /* m/s, of the face along x, and since the last step */
 static int bodies;
 static tobi_double3 *shifted;
 static int32_t *near_body;
@@ -47,8 +47,9 @@ static void put_body(void)
         if (pool.p.position[i].x >= view.h) continue;
         near_body[i] = count;
         links[count].particle = (int32_t)i;
-        mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .offset = {pool.p.position[i].x, 0, 0},
-                                        .normal = {1, 0, 0}, .velocity = {FLOW, 0.3, 0}, .share = 1};
+        mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .share = 1, .normal = {1, 0, 0},
+                                        .offset = {pool.p.position[i].x, 0, 0},
+                                        .velocity = {FLOW, 0.3, 0}, .change = {CHANGE, 0.1, 0}};
     }
     view.size[0] = pool.box.size[0] + (bodies ? away : 0);
     view.near = bodies ? near_body : NULL;
@@ -140,13 +141,14 @@ static double weight(double r)
     return view.weight*(shape == TOBI_SHAPE_WENDLAND ? t*t*t*t*(1 + 4*q) : 2*t*t*t - 8*u*u*u);
 }
 
-/* Velocity of an image: its part across a wall is mirrored, less what gravity gave (kick). */
+/* Velocity of an image: its part across a wall is mirrored, less what gravity gave, and its wall took (kick). */
 static void image_velocity(const image *m, double u[3])
 {
     for (int a = 0; a < 3; a++) {
-        const double kick = (double)view.kick*view.gravity[a];
+        const int face = bodies && a == 0 && m->flip[a] == 1;
+        const double kick = (double)view.kick*view.gravity[a] - (face && view.kick > 0 ? CHANGE : 0);
         u[a] = (&view.velocity[m->j].x)[a];
-        if (m->flip[a]) u[a] = -(u[a] - kick) + kick + (bodies && a == 0 && m->flip[a] == 1 ? 2*FLOW : 0);
+        if (m->flip[a]) u[a] = -(u[a] - kick) + kick + (face ? 2*FLOW : 0);
     }
 }
 
@@ -160,6 +162,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
               image = side || m->flip[0], face = bodies && m->flip[0] == 1;
     double u[3], lift = 0;
     for (int k = 0; k < view.dimension; k++) lift += view.density*view.gravity[k]*m->away[k];
+    if (face) lift -= view.density/view.dt*CHANGE*m->away[0];
     image_velocity(m, u);
     s->filled += weight(m->r);
     s->product += a*(view.in[i] - view.in[m->j]);
@@ -214,11 +217,21 @@ static double loss_of(const sums *s)
 {
     return 1 - (s->moment[0] + s->moment[1] + s->moment[2])/view.dimension;
 }
-static double gate_of(const sums *s) { return view.open ? fmin(fmax((loss_of(s) - 0.05)/0.1, 0), 1) : 0; }
+static double clip(double x) { return fmin(fmax(x, 0), 1); }
+
+/* The face has the normal x: c_x > 0 says that neighbours are missing towards it. */
+static double gate_of(int64_t i, const sums *s)
+{
+    const double *c = s->lack, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
+                 rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
+    double gap = clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1);
+    gap *= near_body[i] >= 0 ? clip((1.5 - mirror[near_body[i]].offset[0]/d)/0.5) : 0;
+    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap) : 0;
+}
 
 static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
 {
-    const double trace = view.dimension*(1 - loss_of(s)), gate = gate_of(s);
+    const double trace = view.dimension*(1 - loss_of(s)), gate = gate_of(i, s);
     const isph_tensor b = view.inverse[i];
     const double made[6] = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx};
     double m[6], missing = sqrt(s->lack[0]*s->lack[0] + s->lack[1]*s->lack[1] + s->lack[2]*s->lack[2]);
@@ -253,9 +266,9 @@ static void oracle_isph_gravity(check *c, int64_t i, const sums *s)
     compare(c, view.record[i].w, view.scale[i], 1);
 }
 
-static double excess_of(const sums *s)
+static double excess_of(int64_t i, const sums *s)
 {
-    return 2*gate_of(s)*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
+    return 2*gate_of(i, s)*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
 }
 
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)
@@ -264,7 +277,7 @@ static void oracle_isph_rows(check *c, int64_t i, const sums *s)
     const double source = s->lift - view.density/view.dt*s->divergence +
                           view.density*0.1*e/(view.dt*view.motion_dt);
     compare(c, view.source[i], source, view.density/view.dt/view.dt);
-    compare(c, view.excess[i], excess_of(s), 10*view.full);
+    compare(c, view.excess[i], excess_of(i, s), 10*view.full);
     compare(c, view.solution[i], view.pressure[i], 1000);
     assert_true(view.inverse_diagonal[i] > 0);
 }

@@ -61,15 +61,16 @@ static void a_body_mirrors_as_a_side_does(void **state)
     if (worst > 2e-4) fail_msg("particles differ by %g m", worst);     /* a fiftieth of a spacing */
 }
 
-/* A box of a hundredth of the water's density, let go under it: it rises at about g at most, since it moves
-   its added mass, and no step throws it. */
+/* A box of a hundredth of the water's density, let go under it: it rises, with its added mass, at a half of g
+   or so from the first step on, and no step throws it. */
 static void a_light_body_answers_within_the_solve(void **state)
 {
     (void)state;
     tobi_world *world;
     tobi_world_def w = make_def(0.3);
     tobi_body_def body = tobi_default_body_def();
-    tobi_body_info info;
+    tobi_body_info info = { 0 };
+    w.time_step = 2e-3;
     OK(tobi_world_create(&w, NULL, &world, &err));
     add_water(world);
     body.name = "box";
@@ -78,15 +79,13 @@ static void a_light_body_answers_within_the_solve(void **state)
     body.dynamics = TOBI_FREE;
     body.density = 10;
     OK(tobi_world_add_body(world, &body, &err));
-    for (int step = 0; step < 20; step++) {
-        const double before = step ? info.velocity[1] : 0;
-        tobi_step_info done;
-        OK(tobi_world_step(world, 0, &done, &err));
+    for (int step = 0; step < 15; step++) {
+        const double before = info.velocity[1];
+        OK(tobi_world_step(world, 0, NULL, &err));
         OK(tobi_world_body(world, 0, &info));
-        if (!(fabs(info.velocity[1] - before) < 2*9.81*done.dt)) fail_msg("step %d: %g m/s", step, info.velocity[1]);
+        const double rate = (info.velocity[1] - before)/w.time_step;
+        if (!(rate > 0.2*9.81 && rate < 9.81)) fail_msg("step %d: %g m/s2", step, rate);
     }
-    const double t = tobi_world_time(world);
-    if (!(info.velocity[1] > 0.2*9.81*t)) fail_msg("after %g s: %g m/s", t, info.velocity[1]);
     tobi_world_destroy(world);
 }
 
@@ -166,8 +165,8 @@ static void solves_converge_around_an_odd_grid(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_mirrors_as_a_side_does),  cmocka_unit_test(a_light_body_answers_within_the_solve),
-        cmocka_unit_test(flat_surfaces_are_exact),        cmocka_unit_test(a_failed_solve_is_told),
+        cmocka_unit_test(a_body_mirrors_as_a_side_does), cmocka_unit_test(a_light_body_answers_within_the_solve),
+        cmocka_unit_test(flat_surfaces_are_exact),       cmocka_unit_test(a_failed_solve_is_told),
         cmocka_unit_test(solves_converge_around_an_odd_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
