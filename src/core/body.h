@@ -121,7 +121,7 @@ void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3
 /* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
    vertices. */
 void tobi_body_drive_points(tobi_body *b);
-/* Gives them, as point_before, those that the vertices had in the step before. Before tobi_body_drive_points. */
+/* Gives them, as point_before, those of the step before. To be called before tobi_body_drive_points. */
 void tobi_body_recall_points(tobi_body *b);
 /* Brings the quadrature points and the tree of a rigid body to its present pose. */
 void tobi_body_bring_surface(tobi_body *b);

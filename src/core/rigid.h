@@ -29,7 +29,7 @@ typedef struct tobi_rigid {
     double impulse[3], twist[3];     /* N s, N m s about the centre: of particles in this step          */
     double contact_force[3], contact_torque[3];   /* N, N m: mean over the last step                    */
     double pull[3], pull_torque[3];  /* m/s2, N m: constant over the next drift; 0 where contact holds  */
-    double leaned[6];                /* N, N m: of contact with bodies and sides, mean over the last step    */
+    double leaned[6];                /* N, N m: of contact with bodies and sides in the last step       */
     double held[6];                  /* N, N m: what was so in both of the last two steps               */
     double before[6];                /* m/s, rad/s: that a liquid was made to follow in the last step   */
     double phase, phase_start;       /* of the control program; s                                       */

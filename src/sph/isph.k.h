@@ -6,9 +6,9 @@
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
 #define ISPH_GATE_BEGIN 0.05
 #define ISPH_GATE_OPEN 0.15
-/* What is missing towards a body is no free surface while the gap is narrow: distance of the particle from the
-   body, in spacings, up to which the gate is shut, and from which it is free; the same of what is missing
-   elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
+/* What is missing towards a body is no free surface while the gap is narrow: distance of the particle from
+   the body, in spacings, up to which the gate is shut, and from which it is free; the same of what is
+   missing elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
 #define ISPH_GAP_SHUT 1.0
 #define ISPH_GAP_FREE 1.5
 #define ISPH_GAP_LACK_SHUT 0.15
@@ -136,8 +136,8 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
                  trace = isph_larger(sum, sum - k*off.w + v->dimension*v->behind[i]);
     const double loss = 1 - trace/v->dimension;
     tobi_float4 lack = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
-    const double gate = !v->open ? 0 :
-        isph_clamp((loss - ISPH_GATE_BEGIN)/(ISPH_GATE_OPEN - ISPH_GATE_BEGIN), 0, 1)*(1 - isph_gap(v, i, &lack, loss));
+    const double gate = v->open ? (1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN))*
+                                      (1 - isph_gap(v, i, &lack, loss)) : 0;
     (void)totals;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
@@ -248,7 +248,7 @@ TOBI_FN void isph_grip(const isph_view *v, int64_t k, double *totals)
     for (int a = 0; a < 6; a++) totals[a] += v->grip[k].f[a]*p;
 }
 
-/* The row of the accelerations that bodies answer with, eq. (14). */
+/* The row of the accelerations that bodies answer with, eq. (15). */
 TOBI_FN void isph_yield(const isph_view *v, int64_t i, double *totals)
 {
     double sum = 0;

@@ -15,7 +15,8 @@ static double behind_plane(const tobi_smoothing_constants *c, double distance)
     return c->plane.lambda[k] + (at - k)*((double)c->plane.lambda[k + 1] - c->plane.lambda[k]);
 }
 
-static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const double (*vertex)[3], double out[3])
+static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const double (*vertex)[3],
+                        double out[3])
 {
     const int32_t *t = b->mesh.triangles[e->triangle];
     for (int a = 0; a < 3; a++) {

@@ -205,7 +205,7 @@ static void sum_grips(isph_solver *m, tobi_system *s, const double *pressure)
     tobi_boundary_sum(s, m->kernel->isph_grip, &v, 1);
 }
 
-/* A column of the inertia of the water between particles and surface, eq. (15). */
+/* A column of the inertia of the water between particles and surface, eq. (14). */
 typedef struct column { look q; int number; } column;
 
 static void sum_column(const void *view, int64_t begin, int64_t end, double *totals)
@@ -327,7 +327,7 @@ void isph_forces_follow(isph_solver *m, tobi_system *s)
     isph_bodies_push(m, s, s->dt);
 }
 
-/* Less what the water at the surface of a body takes that moves by forces: eq. (15). */
+/* Less what the water at the surface of a body takes that moves by forces: eq. (14). */
 static void take_inertia(const isph_solver *m, const tobi_system *s, int k, double f[6])
 {
     const tobi_rigid *r = &s->sim->bodies[k].rigid;

@@ -8,7 +8,7 @@ tobi_status isph_forces_see(isph_solver *m, tobi_system *s, tobi_error *err);
 /* Bodies that move by forces: their mirrors get the velocities that all but the pressure makes. After
    friction is known, before the solve. */
 void isph_forces_foresee(isph_solver *m, tobi_system *s);
-/* product += how they answer pressures, Pa, one per particle, eq. (14). */
+/* product += how they answer pressures, Pa, one per particle, eq. (15). */
 void isph_forces_yield(isph_solver *m, double *product, const double *pressure);
 /* After the solve: their mirrors get the velocities that the pressure makes. */
 void isph_forces_follow(isph_solver *m, tobi_system *s);

@@ -64,7 +64,8 @@ static tobi_status read_place(const tobi_body *b, int k, tobi_store *f, tobi_loa
     char name[32];
     l->vertex = malloc((size_t)(count + 1)*sizeof *l->vertex);
     l->before = malloc((size_t)(count + 1)*sizeof *l->before);
-    if (!l->vertex || !l->before) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
+    if (!l->vertex || !l->before)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
     tobi_world_name_body(k, "_vertex", name);
     TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->vertex, err));
     tobi_world_name_body(k, "_before", name);

@@ -141,7 +141,7 @@ static double weight(double r)
     return view.weight*(shape == TOBI_SHAPE_WENDLAND ? t*t*t*t*(1 + 4*q) : 2*t*t*t - 8*u*u*u);
 }
 
-/* Velocity of an image: its part across a wall is mirrored, less what gravity gave, and its wall took (kick). */
+/* Velocity of an image: its part across a wall is mirrored, less what gravity gave and its wall took. */
 static void image_velocity(const image *m, double u[3])
 {
     for (int a = 0; a < 3; a++) {

@@ -165,8 +165,10 @@ static void solves_converge_around_an_odd_grid(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_mirrors_as_a_side_does), cmocka_unit_test(a_light_body_answers_within_the_solve),
-        cmocka_unit_test(flat_surfaces_are_exact),       cmocka_unit_test(a_failed_solve_is_told),
+        cmocka_unit_test(a_body_mirrors_as_a_side_does),
+        cmocka_unit_test(a_light_body_answers_within_the_solve),
+        cmocka_unit_test(flat_surfaces_are_exact),
+        cmocka_unit_test(a_failed_solve_is_told),
         cmocka_unit_test(solves_converge_around_an_odd_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
