@@ -17,6 +17,7 @@ static const command commands[] = {
     { "import", "SCENE", "translate a scene of the Taichi program into a native one", tobiuo_import,
       &import_argp },
     { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot, &plot_argp },
+    { "movie", "DIR", "make a movie of the pictures of a run", tobiuo_movie, &movie_argp },
     { "describe", "[WORD]", "tell any key, field, column or topic: unit, default, range", tobiuo_describe,
       &describe_argp },
     { "bench", "[CASE]", "measure the speed of this machine", tobiuo_bench, &bench_argp },

@@ -5,14 +5,10 @@
 #include "table.h"
 #include <errno.h>
 #include <math.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-extern char **environ;
 
 typedef struct plot_options { const char *dir, *format, *scene; } plot_options;
 
@@ -332,26 +328,12 @@ static int draw_comparison(plotter *plot, int index)
     return code;
 }
 
-/* Runs gnuplot in the folder, without a shell and without the user's settings. */
+/* In the folder, without a shell and without the user's settings. */
 static int run_gnuplot(const plotter *plot)
 {
     char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
-    posix_spawn_file_actions_t actions;
-    pid_t child;
-    int state = 0;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addchdir_np(&actions, plot->folder);
-    int failed = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed == ENOENT)
-        return complain("gnuplot is missing, and it draws the pictures. On Debian: "
-                        "apt-get install gnuplot-nox");
-    if (failed) return complain("gnuplot does not start: %s", strerror(failed));
-    while (waitpid(child, &state, 0) < 0)
-        if (errno != EINTR) return complain("gnuplot: %s", strerror(errno));
-    if (!WIFEXITED(state) || WEXITSTATUS(state) != 0)
-        return complain("gnuplot failed on %s/plots.gnuplot", plot->folder);
-    return 0;
+    const int code = run_tool(plot->folder, arguments, "draws the pictures", "gnuplot-nox", 0);
+    return code < 0 ? complain("gnuplot failed on %s/plots.gnuplot", plot->folder) : code;
 }
 
 static int write_script(plotter *plot)

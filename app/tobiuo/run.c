@@ -6,12 +6,12 @@
 #include <string.h>
 
 typedef struct run_options {
-    const char *scene, *out;
+    const char *scene, *out, *movie;
     overrides set;
     int force, quiet;
 } run_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FRAMES };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
@@ -19,6 +19,7 @@ static const struct argp_option options[] = {
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR, and write however much", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
+    { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm or .gif", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
     { 0 }
 };
@@ -34,6 +35,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case 't': overrides_add(&o->set, "threads=%d", parse_threads(state, value)); break;
     case 'q': o->quiet = 1; break;
     case KEY_FRAMES: overrides_add(&o->set, "output.frames=true"); break;
+    case KEY_MOVIE:
+        if (movie_objection(value)) argp_error(state, "--movie: '%s' %s", value, movie_objection(value));
+        overrides_add(&o->set, "output.frames=true");
+        o->movie = value;
+        break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
@@ -91,7 +97,9 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
     int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
+    if (code == 0 && o->movie) code = prepare_movie(o->movie, o->force);
     if (code == 0) code = record(scene, world, o, dir);
+    if (code == 0 && o->movie) code = make_movie(dir, o->movie, 1, o->force);
     free(dir);
     tobi_world_destroy(world);
     return code;

@@ -31,6 +31,8 @@ typedef enum tobi_compression {
     TOBI_ASCII
 } tobi_compression;
 
+typedef enum tobi_krylov { TOBI_CG, TOBI_BICGSTAB, TOBI_GMRES } tobi_krylov;
+typedef enum tobi_preconditioner { TOBI_MULTIGRID, TOBI_JACOBI } tobi_preconditioner;
 typedef enum tobi_transfer { TOBI_APIC, TOBI_FLIP, TOBI_XPIC } tobi_transfer;
 /* Of the weights, where stress pushes the grid; automatic: spline where nothing is cut or breaks. */
 typedef enum tobi_gradient { TOBI_GRADIENT_AUTOMATIC, TOBI_GRADIENT_SPLINE, TOBI_GRADIENT_MLS } tobi_gradient;
@@ -89,6 +91,9 @@ typedef struct tobi_wcsph_def {
 typedef struct tobi_isph_def {
     int    kernel;                    /* tobi_smoothing                                               */
     int    iterations_max;            /* of the pressure solve                                        */
+    int    solver;                    /* tobi_krylov                                                  */
+    int    restart;                   /* directions that gmres keeps                                  */
+    int    preconditioner;            /* tobi_preconditioner                                          */
     double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double tolerance;                 /* 1, true relative residual of the pressure equation           */
     double volume_gain;               /* 1, share of the error of volume in the source of pressure    */

@@ -27,6 +27,7 @@ static const char head[] =
     "| `frames/` | a picture per output, with `--frames` |\n"
     "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
     "| `history.csv`, `bodies.csv`, `probes.csv` | the tables below |\n"
+    "| `movie.mp4` | those pictures as a movie, after `tobiuo movie` |\n"
     "| `plots/` | the tables as pictures, after `tobiuo plot` |\n"
     "| `checkpoints/` | what `tobiuo resume` goes on from |\n"
     "| `resolved.json` | the scene with every default explicit; gives the same bits again |\n"

@@ -12,7 +12,8 @@ typedef enum reader {
     BLADE,           /* bodies that cut                           */
     RISE,            /* sand whose friction rises with its flow   */
     SLOPE,           /* solids that break; sand always has one    */
-    FLIP, XPIC       /* ways to the grid and back                 */
+    FLIP, XPIC,      /* ways to the grid and back                 */
+    GMRES            /* the solver of isph                        */
 } reader;
 
 #define UNMOVED "is for free and controlled bodies, this one is prescribed"
@@ -44,13 +45,14 @@ static const struct {
     { "solid", "friction_angle", SLOPE, "is for a strength, which this solid has not" },
     { "mlsmpm", "flip", FLIP, "is for \"transfer\": \"flip\"" },
     { "mlsmpm", "xpic_order", XPIC, "is for \"transfer\": \"xpic\"" },
+    { "isph", "restart", GMRES, "is for \"solver\": \"gmres\"" },
 };
 enum { KEYS = sizeof keys/sizeof *keys };
 
-/* The parameters of mlsmpm, NULL if the scene has another method. */
-static const tobi_mlsmpm_def *find_mlsmpm(const tobi_scene *scene)
+/* The parameters of a method, NULL if the scene has another one. */
+static const void *find_def(const tobi_scene *scene, const char *method)
 {
-    return scene->method && strcmp(scene->method->name, "mlsmpm") == 0 ? scene->method_def : NULL;
+    return scene->method && strcmp(scene->method->name, method) == 0 ? scene->method_def : NULL;
 }
 
 /* def: of the body or solid whose keys are asked for, else NULL. */
@@ -58,7 +60,8 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
 {
     const tobi_body_def *body = def;
     const tobi_solid_def *solid = def;
-    const tobi_mlsmpm_def *solids = find_mlsmpm(scene);
+    const tobi_mlsmpm_def *solids = find_def(scene, "mlsmpm");
+    const tobi_isph_def *isph = find_def(scene, "isph");
     tobi_method_info method;
     tobi_method_describe(scene->world.method, &method);
     switch (who) {
@@ -69,7 +72,8 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;
     case SLOPE: return !tobi_solid_uses(solid->model, "strength") || solid->strength > 0;
     case FLIP: return !solids || solids->transfer == TOBI_FLIP;
-    default: return !solids || solids->transfer == TOBI_XPIC;
+    case XPIC: return !solids || solids->transfer == TOBI_XPIC;
+    default: return !isph || isph->solver == TOBI_GMRES;
     }
 }
 
@@ -122,7 +126,7 @@ static void check_friction(const tobi_scene *scene, tobi_source *source, const t
 {
     tobi_place domain = { root, "domain", 0 }, friction = { &domain, "friction", 0 };
     tobi_place planes = { root, "planes", 0 };
-    if (!find_mlsmpm(scene)) return;
+    if (!find_def(scene, "mlsmpm")) return;
     if (scene->world.friction > 0 && !has_separate_side(&scene->world))
         tobi_source_mistake_at_key(source, &friction, "is for \"separate\" sides, and no side in "
                                    "domain.walls is one");

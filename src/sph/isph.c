@@ -53,7 +53,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->def = *(const tobi_isph_def *)s->def;
     m->common.mirrors = 1;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
-    isph_solver_begin(&m->solver, s);
+    isph_solver_begin(&m->solver, s, &m->def);
     m->solver.coupled = tobi_couple_any(s);
     m->solver.view.volume_gain = m->def.volume_gain;
     return TOBI_OK;
@@ -160,11 +160,10 @@ static tobi_status judge(tobi_system *s, isph *m, const tobi_linear_report *repo
 static tobi_status solve(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
-    const tobi_linear_settings settings = { .tolerance = m->def.tolerance, .max = m->def.iterations_max };
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     isph_forces_foresee(&m->solver, s);
-    const tobi_linear_report report = isph_solver_run(&m->solver, s, &settings);
+    const tobi_linear_report report = isph_solver_run(&m->solver, s);
     TOBI_TRY(tobi_simulation_heed(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);

@@ -241,6 +241,13 @@ TOBI_FN void isph_multiply(const isph_view *v, int64_t i, double *totals)
     v->out[i] = v->excess[i]*own + (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])));
 }
 
+/* out = in over the diagonal of the matrix. */
+TOBI_FN void isph_diagonal(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    v->out[i] = v->inverse_diagonal[i]*v->in[i];
+}
+
 /* Over entries of what particles see of bodies: eq. (13). */
 TOBI_FN void isph_grip(const isph_view *v, int64_t k, double *totals)
 {

@@ -45,11 +45,12 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
     return TOBI_OK;
 }
 
-void isph_solver_begin(isph_solver *m, tobi_system *s)
+void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
 {
     const tobi_smoothing_constants *c = &s->smoothing;
     isph_view *v = &m->view;
     m->exec = &s->sim->exec;
+    m->def = def;
     v->dimension = c->dimension;
     m->kernel = sph_kernels_for(s->sim->exec.isa, c->shape);
     v->inverse_h = (float)(1/c->h);
@@ -81,6 +82,23 @@ static tobi_status reserve_entries(isph_solver *m, const tobi_cells *cells, tobi
     return TOBI_OK;
 }
 
+static int64_t krylov_work(const tobi_isph_def *def, int64_t rows)
+{
+    return def->solver == TOBI_BICGSTAB ? tobi_bicgstab_work(rows)
+         : def->solver == TOBI_GMRES ? tobi_gmres_work(rows, def->restart) : 0;
+}
+
+static tobi_status reserve_krylov(isph_solver *m, int64_t rows, tobi_error *err)
+{
+    const int64_t need = krylov_work(m->def, rows);
+    if (need <= m->krylov_rows) return TOBI_OK;
+    double *more = tobi_array_grow(m->krylov, 0, need, sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld numbers of the solver", (long long)need);
+    m->krylov = more;
+    m->krylov_rows = need;
+    return TOBI_OK;
+}
+
 tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
 {
     const tobi_particles *p = &s->particles;
@@ -92,6 +110,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
         TOBI_TRY(tobi_multigrid_create(&m->grid, &points, 1, 2, err));
     }
     TOBI_TRY(reserve_entries(m, &s->cells, err));
+    TOBI_TRY(reserve_krylov(m, p->capacity, err));
     v->count = p->count;
     v->position = p->position;
     v->record = s->cells.record;
@@ -135,20 +154,45 @@ static void precondition(void *user, double *z, const double *r)
     tobi_multigrid_cycle(&m->grid, m->exec, &system, m->view.inverse_diagonal, DAMPING, m->scratch, z, r);
 }
 
-tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_linear_settings *settings)
+static void precondition_by_diagonal(void *user, double *z, const double *r)
+{
+    isph_solver *m = user;
+    m->view.in = r;
+    m->view.out = z;
+    tobi_launch(m->exec, m->kernel->isph_diagonal, &m->view, 0, m->view.count, NULL);
+}
+
+static void set_grid(isph_solver *m, tobi_system *s)
+{
+    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
+    const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
+    tobi_multigrid_set(&m->grid, m->exec, &points, &w);
+}
+
+static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
+{
+    const tobi_isph_def *d = m->def;
+    const tobi_linear_settings how = { .tolerance = d->tolerance, .max = d->iterations_max, .restart = d->restart };
+    const double *b = m->view.source;
+    double *x = m->view.solution;
+    if (d->solver == TOBI_BICGSTAB) return tobi_bicgstab(m->exec, a, &how, b, x, m->krylov);
+    if (d->solver == TOBI_GMRES) return tobi_gmres(m->exec, a, &how, b, x, m->krylov);
+    return tobi_cg(m->exec, a, &how, b, x, m->work);
+}
+
+tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
 {
     double t[TOBI_TOTALS];
     const int64_t n = m->view.count;
     m->system = s;
     m->view.kick = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
-    const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
-    const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
-    tobi_multigrid_set(&m->grid, m->exec, &points, &w);
+    const int grid = m->def->preconditioner == TOBI_MULTIGRID;
+    if (grid) set_grid(m, s);
     const tobi_linear_system system = { .rows = n, .singular = !(t[0] > 0), .user = m, .apply = apply,
-                                        .precondition = precondition, .stop = ask_stop };
-    const tobi_linear_report report =
-        tobi_cg(m->exec, &system, settings, m->view.source, m->view.solution, m->work);
+                                        .precondition = grid ? precondition : precondition_by_diagonal,
+                                        .stop = ask_stop };
+    const tobi_linear_report report = run(m, &system);
     tobi_launch(m->exec, m->kernel->isph_answer, &m->view, 0, n, NULL);
     m->view.kick = 0;
     return report;
@@ -156,7 +200,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_li
 
 int64_t isph_solver_bytes(const isph_solver *m)
 {
-    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->entries*(int64_t)sizeof *m->view.entry +
+    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov + m->entries*(int64_t)sizeof *m->view.entry +
            m->mirrors*(int64_t)sizeof *m->mirror + isph_forces_bytes(m);
 }
 
@@ -164,6 +208,7 @@ void isph_solver_free(isph_solver *m)
 {
     tobi_multigrid_free(&m->grid);
     tobi_array_free(m->view.entry);
+    tobi_array_free(m->krylov);
     isph_forces_free(m);
     tobi_array_free(m->mirror);
     tobi_array_free(m->memory);

@@ -22,9 +22,12 @@ typedef struct isph_solver {
     const sph_kernels *kernel;
     tobi_exec *exec;
     tobi_system *system;             /* during a solve                                              */
+    const tobi_isph_def *def;
     tobi_multigrid grid;
     void *memory;                    /* all arrays of the view but the entries, and those below     */
     double *scratch, *work;
+    double *krylov;                  /* workspace of bicgstab and gmres; cg has `work`              */
+    int64_t krylov_rows;             /* room for them                                               */
     int64_t rows;                    /* room for particles                                          */
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */
@@ -37,12 +40,12 @@ typedef struct isph_solver {
     int bodies;
 } isph_solver;
 
-/* The constants of the system; memory is made when it is first bound. */
-void isph_solver_begin(isph_solver *m, tobi_system *s);
+/* The constants of the system; def must live as long. Memory is made when it is first bound. */
+void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def);
 /* Points the view at the particles and the list as they are now; makes room where there are more. */
 tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err);
-/* Assembles and solves; particles.pressure is the start and receives the answer. */
-tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s, const tobi_linear_settings *settings);
+/* Assembles and solves as def says; particles.pressure is the start and receives the answer. */
+tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s);
 /* Bytes allocated. */
 int64_t isph_solver_bytes(const isph_solver *m);
 void isph_solver_free(isph_solver *m);

@@ -92,6 +92,13 @@ static const tobi_param isph_rows[] = {
     { .key = "iterations_max", INT, AT(tobi_isph_def, iterations_max), .def = { 200 },
       RANGE(1, 1000000), .unit = "1",
       .doc = "Most iterations of the pressure solve; a step that needs more is reported as not converged." },
+    { .key = "solver", CHOICE("cg|bicgstab|gmres", 3), AT(tobi_isph_def, solver),
+      .doc = "Krylov method of the pressure equation. Its matrix is symmetric: cg is the fastest, the others "
+             "are for comparison." },
+    { .key = "restart", INT, AT(tobi_isph_def, restart), .def = { 30 }, RANGE(1, 1000), .unit = "1",
+      .doc = "Directions that gmres keeps before it starts again." },
+    { .key = "preconditioner", CHOICE("multigrid|jacobi", 2), AT(tobi_isph_def, preconditioner),
+      .doc = "multigrid takes as many iterations at any depth; those of jacobi grow with the depth." },
     { .key = "volume_gain", REAL, AT(tobi_isph_def, volume_gain), .def = { 0.1 }, RANGE(0, 1), .unit = "1",
       .text = "off",
       .doc = "Share of the error of volume that the pressure takes out in a step. Less is quieter and lets "

@@ -333,6 +333,12 @@ static void oracle_isph_use_change(check *c, int64_t i, const sums *s)
         compare(c, (&view.velocity[i].x)[a], (&before.x)[a] + (&view.change[i].x)[a], 1);
 }
 
+static void oracle_isph_diagonal(check *c, int64_t i, const sums *s)
+{
+    (void)s;
+    compare(c, view.out[i], view.in[i]*view.inverse_diagonal[i], 1/view.full);
+}
+
 /* One sum over all entries: check_grip. */
 static void oracle_isph_grip(check *c, int64_t i, const sums *s)
 {

@@ -56,6 +56,9 @@ static void a_script_answers_velocities(void **state)
     (void)state;
     double v[3];
     tobi_error err;
+    tobi_script *none;
+    assert_int_equal(tobi_script_load("a.lua", NULL, (tobi_script_role)7, &none, &err), TOBI_INVALID);
+    assert_string_equal(err.text, "script a.lua: there is no role 7");
     assert_int_equal(ask("function velocity(x, y, z) return params.k*x, y - z, x*y*z end", v, &err), TOBI_OK);
     assert_true(v[0] == 10 && v[1] == -1 && v[2] == 6);
     static const struct { const char *text, *part; } bad[] = {

@@ -35,7 +35,15 @@ def late(table, name):
     return values[len(values)//2:]
 
 
-iterations = {}
+def count_iterations(deep, label, **parameters):
+    """Of the first step, from no pressure: later solves start from what is nearly the answer."""
+    d = 1/deep
+    _, first = scene(f"first{deep}_{label}", "isph", d, 0.1*d, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 0.9]}}, 0.1*d,
+                     isph={"tolerance": 1e-6, "iterations_max": 5000, **parameters})
+    return first["divergence_iterations"][-1]
+
+
+iterations, plain, solvers = {}, {}, ("cg", "bicgstab", "gmres")
 PROBES = [{"name": "floor", "position": [0.1, 0]}, {"name": "side", "position": [0, 0.3]}]
 for deep in case.pick((10, 30), (10, 30, 100, 300)):
     d, end = 1/deep, case.pick(1, 5 if deep < 300 else 1)
@@ -47,10 +55,8 @@ for deep in case.pick((10, 30), (10, 30, 100, 300)):
     floor = mean(late(table, "wall_force_ratio")) - 1
     level = deep*(mean(late(table, "potential_energy"))/(RHO*G*0.5*30*d) - 1)
     energy = table["kinetic_energy"][-1]/table["potential_energy"][-1]
-    # from no pressure: the solves above start from what is nearly the answer
-    _, first = scene(f"first{deep}", "isph", d, 0.1*d, [30*d, 1.5], {"box": {"min": [0, 0], "max": [30*d, 0.9]}}, 0.1*d,
-                     isph={"tolerance": 1e-6})
-    iterations[deep] = first["divergence_iterations"][-1]
+    iterations[deep] = count_iterations(deep, "cg")
+    plain[deep] = count_iterations(deep, "jacobi", preconditioner="jacobi")
     case.figure(f"column, {deep} deep: force on the floor over the weight, deviation", floor, "within 0.005", abs(floor) <= 0.005)
     case.figure(f"column, {deep} deep: level, in spacings", level, f"within {0.1*max(deep/30, 1):.2g}", abs(level) <= 0.1*max(deep/30, 1))
     case.figure(f"column, {deep} deep: kinetic over potential energy at the end", energy, "<= 1e-5", energy <= 1e-5)
@@ -63,6 +69,13 @@ spread = max(iterations.values())/min(iterations.values()) - 1
 shown = ", ".join(f"{deep}: {count:.0f}" for deep, count in iterations.items())
 case.figure(f"column: iterations ({shown}), spread", spread, "<= 0.3", spread <= 0.3)
 case.hold("column: at most 15 iterations", max(iterations.values()) <= 15)
+case.state("column: iterations of cg with Jacobi's preconditioner, the deepest", plain[max(plain)])
+case.plot("Iterations against depth", "layers", "iterations from no pressure to 1e-6",
+          [("multigrid", list(iterations), list(iterations.values()), True),
+           ("jacobi", list(plain), list(plain.values()), True)])
+others = {name: count_iterations(30, name, solver=name) for name in solvers}
+shown = ", ".join(f"{name}: {count:.0f}" for name, count in others.items())
+case.hold(f"column, 30 deep: every solver converges ({shown})", max(others.values()) <= 20)
 
 
 def break_dam(method, across):

@@ -1,0 +1,177 @@
+/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg. The movie runs as fast as the scene
+   did, or slower by a given factor. */
+#define _GNU_SOURCE
+#include "app.h"
+#include "table.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+/* Pictures per second at most: more are left out. */
+static const double FASTEST = 60;
+
+typedef struct movie_options { const char *dir, *out; double slow; int force; } movie_options;
+
+enum { KEY_SLOW = KEY_OWN, KEY_FORCE };
+
+static const struct argp_option options[] = {
+    { "out", 'o', "FILE", 0, "the movie: .mp4, .webm or .gif (DIR/movie.mp4)", 0 },
+    { "slow", KEY_SLOW, "N", 0, "N times slower than the scene was (1)", 0 },
+    { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
+    { 0 }
+};
+
+/* How each kind of movie is made. yuv420p and even sizes are what all players know. */
+#define EVEN "pad=ceil(iw/2)*2:ceil(ih/2)*2"
+static const struct kind { const char *ending, *format, *option[9]; } kinds[] = {
+    { ".mp4", "mp4", { "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
+    { ".webm", "webm", { "-c:v", "libvpx-vp9", "-crf", "30", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
+    { ".gif", "gif", { "-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", NULL } },
+};
+enum { KINDS = sizeof kinds/sizeof *kinds };
+
+static const struct kind *find_kind(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    for (int k = 0; dot && k < KINDS; k++)
+        if (strcasecmp(dot, kinds[k].ending) == 0) return &kinds[k];
+    return NULL;
+}
+
+const char *movie_objection(const char *path)
+{
+    return find_kind(path) ? NULL : "is no movie that can be made: its name ends in .mp4, .webm or .gif";
+}
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    movie_options *o = state->input;
+    switch (key) {
+    case 'o':
+        if (movie_objection(value)) argp_error(state, "--out: '%s' %s", value, movie_objection(value));
+        o->out = value;
+        break;
+    case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
+    case KEY_FORCE: o->force = 1; break;
+    default: return parse_argument(state, key, value, "DIR", &o->dir);
+    }
+    return 0;
+}
+
+static int64_t count_pictures(const char *dir)
+{
+    for (int64_t k = 0;; k++) {
+        char *path = NULL;
+        if (asprintf(&path, "%s/frames/frame_%06lld.png", dir, (long long)k) < 0) return k;
+        const int there = access(path, R_OK) == 0;
+        free(path);
+        if (!there) return k;
+    }
+}
+
+/* s from one output to the next, in the mean; 0 if the table does not say. */
+static double find_interval(const char *dir)
+{
+    table t = { 0 };
+    char *path = NULL;
+    double interval = 0;
+    if (asprintf(&path, "%s/history.csv", dir) < 0) return 0;
+    if (table_read(&t, path) == 0) {
+        const int column = table_column(&t, "time");
+        if (column >= 0 && t.rows > 1)
+            interval = (table_number(&t, t.rows - 1, column) - table_number(&t, 0, column))/(double)(t.rows - 1);
+    }
+    table_free(&t);
+    free(path);
+    return isfinite(interval) && interval > 0 ? interval : 0;
+}
+
+/* DIR/frames/frame_%06d.png; ffmpeg reads a % of the folder's name as two. */
+static char *name_pictures(const char *dir)
+{
+    char *path = malloc(2*strlen(dir) + 32), *to = path;
+    if (!path) return NULL;
+    for (; *dir; dir++) {
+        if (*dir == '%') *to++ = '%';
+        *to++ = *dir;
+    }
+    strcpy(to, "/frames/frame_%06d.png");
+    return path;
+}
+
+static int encode(const char *dir, const char *part, const struct kind *kind, double rate)
+{
+    enum { ARGUMENTS = 32 };
+    char *argument[ARGUMENTS], speed[32], most[32], *pictures = name_pictures(dir), *file = NULL;
+    int n = 0;
+    if (!pictures || asprintf(&file, "file:%s", part) < 0) {
+        free(pictures);
+        return complain("out of memory");
+    }
+    snprintf(speed, sizeof speed, "%.9g", rate);
+    snprintf(most, sizeof most, "%.9g", fmin(rate, FASTEST));
+    const char *const first[] = { "ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-framerate", speed, "-i",
+                                  pictures };
+    const char *const last[] = { "-r", most, "-f", kind->format, file };
+    for (size_t k = 0; k < sizeof first/sizeof *first; k++) argument[n++] = (char *)first[k];
+    for (int k = 0; kind->option[k]; k++) argument[n++] = (char *)kind->option[k];
+    for (size_t k = 0; k < sizeof last/sizeof *last; k++) argument[n++] = (char *)last[k];
+    argument[n] = NULL;
+    int code = run_tool(NULL, argument, "makes the movie", "ffmpeg", 0);
+    if (code < 0) code = complain("ffmpeg failed on %s", pictures);
+    free(pictures);
+    free(file);
+    return code;
+}
+
+/* A movie is there whole or not at all. */
+static int write_movie(const char *dir, const char *out, double rate)
+{
+    char *part = NULL;
+    if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
+    int code = encode(dir, part, find_kind(out), rate);
+    if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
+    if (code != 0) unlink(part);
+    free(part);
+    return code;
+}
+
+int prepare_movie(const char *out, int force)
+{
+    char *const ask[] = { "ffmpeg", "-version", NULL };
+    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
+    const int code = run_tool(NULL, ask, "makes the movie", "ffmpeg", 1);
+    return code < 0 ? complain("ffmpeg does not work") : code;
+}
+
+int make_movie(const char *dir, const char *out, double slow, int force)
+{
+    const int64_t count = count_pictures(dir);
+    const double interval = count > 0 ? find_interval(dir) : 0;
+    if (access(dir, F_OK) != 0) return complain_run(dir, "there is no run");
+    if (count == 0)
+        return complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
+    if (count < 2 || !(interval > 0)) return complain("%s has one output only, which is no movie", dir);
+    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
+    const int code = write_movie(dir, out, 1/(interval*slow));
+    if (code == 0)
+        printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
+    return code;
+}
+
+const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Make a movie of the pictures of the run in DIR, with ffmpeg." };
+
+int tobiuo_movie(int argc, char **argv)
+{
+    movie_options o = { .slow = 1 };
+    char *out = NULL;
+    parse_arguments(&movie_argp, argc, argv, &o);
+    if (asprintf(&out, "%s/movie.mp4", o.dir) < 0) return complain("out of memory");
+    const int code = make_movie(o.dir, o.out ? o.out : out, o.slow, o.force);
+    free(out);
+    return code;
+}

@@ -1,0 +1,29 @@
+/* Programs beside this one, as gnuplot and ffmpeg. */
+#define _GNU_SOURCE
+#include "app.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+int run_tool(const char *folder, char *const arguments[], const char *does, const char *package, int quiet)
+{
+    posix_spawn_file_actions_t actions;
+    pid_t child;
+    int state = 0;
+    posix_spawn_file_actions_init(&actions);
+    if (folder) posix_spawn_file_actions_addchdir_np(&actions, folder);
+    if (quiet) posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    const int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed == ENOENT)
+        return complain("%s is missing, and it %s. On Debian: apt-get install %s", arguments[0], does, package);
+    if (failed) return complain("%s does not start: %s", arguments[0], strerror(failed));
+    while (waitpid(child, &state, 0) < 0)
+        if (errno != EINTR) return complain("%s: %s", arguments[0], strerror(errno));
+    return WIFEXITED(state) && WEXITSTATUS(state) == 0 ? 0 : -1;
+}

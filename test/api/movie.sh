@@ -1,0 +1,71 @@
+#!/bin/bash
+# tobiuo movie and run --movie: frames and seconds as ffprobe counts them, all kinds of files, messages.
+# usage: movie.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+# Answers 77 (skipped) without ffmpeg, after the tests that do without it.
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > drop.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.05, "end_time": 0.2,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.5] } } ] } ],
+  "output": { "interval": 0.02 } }
+END
+
+# --- without ffmpeg ---------------------------------------------------------------------------------
+expect 2 "which DIR?" movie
+expect 2 "is not a positive number" movie nowhere --slow 0
+expect 2 "its name ends in .mp4, .webm or .gif" movie nowhere --out film.avi
+expect 2 "its name ends in .mp4, .webm or .gif" run drop.json --movie film
+expect 1 "there is no run" movie nowhere
+expect 0 "" run drop.json --out plain --quiet
+expect 1 "plain has no pictures: run the scene with --frames, or with --movie" movie plain
+expect 0 "" run drop.json --out short --quiet --frames --until 0.001 --set output.interval=1
+rm -f short/frames/frame_000001.png
+expect 1 "has one output only" movie short
+expect 0 "" run drop.json --out "100%d run" --quiet --frames
+got=0; PATH=/nonexistent "$program" movie "100%d run" > out.txt 2> err.txt || got=$?
+check "ffmpeg missing: exit code 1 (was $got)" test $got = 1
+check "ffmpeg missing: the package is named" grep -q "apt-get install ffmpeg" err.txt
+got=0; PATH=/nonexistent "$program" run drop.json --out never --movie a.mp4 > out.txt 2> err.txt || got=$?
+check "nor does a run begin whose movie cannot be made (exit code $got)" test $got = 1 -a ! -e never
+touch there.mp4
+expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4
+expect 1 "there.mp4 exists; --force replaces it" run drop.json --out again --quiet --movie there.mp4
+check "a movie that exists stops the run before it begins" test ! -e again
+
+if ! command -v ffmpeg > /dev/null || ! command -v ffprobe > /dev/null; then
+    echo "$passed passed, $failed failed; the rest was skipped: ffmpeg is missing"
+    [ $failed -eq 0 ] && exit 77
+    exit 1
+fi
+
+# --- with ffmpeg ------------------------------------------------------------------------------------
+# is FILE FRAMES SECONDS
+is() {
+    $python - "$@" <<'END'
+import subprocess, sys
+file, frames, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+seen = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v", "-count_frames", "-show_entries",
+                       "stream=nb_read_frames:format=duration", "-of", "csv=p=0", file],
+                      check=True, capture_output=True, text=True).stdout.split()
+print(seen, file=sys.stderr)
+sys.exit(int(seen[0].strip(",")) != frames or abs(float(seen[1]) - seconds) > 0.021)
+END
+}
+expect 0 "" movie "100%d run"
+check "11 pictures of 0.02 s make 0.22 s" is "100%d run/movie.mp4" 11 0.22
+expect 1 "exists; --force replaces it" movie "100%d run"
+expect 0 "" movie "100%d run" --force --slow 10
+check "ten times slower" is "100%d run/movie.mp4" 11 2.2
+expect 0 "" movie "100%d run" --slow 0.2 --out fast.mp4
+check "at most 60 pictures a second" is fast.mp4 4 0.067
+for kind in webm gif; do
+    expect 0 "" movie "100%d run" --out "film.$kind"
+    check "film.$kind" is "film.$kind" 11 0.22
+done
+expect 0 "" run drop.json --out again --quiet --movie again.mp4
+check "run --movie" is again.mp4 11 0.22
+expect 1 "ffmpeg failed" movie again --out /proc/film.mp4
+check "nothing is left of a movie that failed" test ! -e /proc/film.mp4.part
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
