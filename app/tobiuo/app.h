@@ -10,8 +10,8 @@
 enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
-extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, describe_argp, bench_argp,
-                         info_argp, scenes_argp, new_argp;
+extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp,
+                         describe_argp, bench_argp, info_argp, scenes_argp, new_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -132,9 +132,9 @@ tobi_status measure_steps(tobi_world *world, double end, int *steps, double *wal
 /* run.c: where the results go without and with --out; the caller frees, NULL without memory. */
 char *results_path(const tobi_scene *scene, const char *out);
 
-/* tool.c: runs a program, found by the PATH, in a folder (NULL: here) without a shell. 0; -1 if it failed; after
-   a complaint EXIT_ERROR. does, package: what it is for, and what to install, for that. quiet: without its
-   standard output. */
+/* tool.c: runs a program, found by the PATH, in a folder (NULL: here) without a shell. 0; -1 if it failed;
+   after a complaint EXIT_ERROR. does, package: what it is for, and what to install, for that. quiet: without
+   its standard output. */
 int run_tool(const char *folder, char *const arguments[], const char *does, const char *package, int quiet);
 
 /* movie.c */

@@ -81,8 +81,9 @@ static double find_interval(const char *dir)
     if (asprintf(&path, "%s/history.csv", dir) < 0) return 0;
     if (table_read(&t, path) == 0) {
         const int column = table_column(&t, "time");
+        const size_t last = t.rows - 1;
         if (column >= 0 && t.rows > 1)
-            interval = (table_number(&t, t.rows - 1, column) - table_number(&t, 0, column))/(double)(t.rows - 1);
+            interval = (table_number(&t, last, column) - table_number(&t, 0, column))/(double)last;
     }
     table_free(&t);
     free(path);

@@ -21,7 +21,8 @@ int run_tool(const char *folder, char *const arguments[], const char *does, cons
     const int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failed == ENOENT)
-        return complain("%s is missing, and it %s. On Debian: apt-get install %s", arguments[0], does, package);
+        return complain("%s is missing, and it %s. On Debian: apt-get install %s", arguments[0], does,
+                        package);
     if (failed) return complain("%s does not start: %s", arguments[0], strerror(failed));
     while (waitpid(child, &state, 0) < 0)
         if (errno != EINTR) return complain("%s: %s", arguments[0], strerror(errno));

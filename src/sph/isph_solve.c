@@ -93,7 +93,8 @@ static tobi_status reserve_krylov(isph_solver *m, int64_t rows, tobi_error *err)
     const int64_t need = krylov_work(m->def, rows);
     if (need <= m->krylov_rows) return TOBI_OK;
     double *more = tobi_array_grow(m->krylov, 0, need, sizeof *more);
-    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld numbers of the solver", (long long)need);
+    if (!more)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld numbers of the solver", (long long)need);
     m->krylov = more;
     m->krylov_rows = need;
     return TOBI_OK;
@@ -172,7 +173,7 @@ static void set_grid(isph_solver *m, tobi_system *s)
 static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
 {
     const tobi_isph_def *d = m->def;
-    const tobi_linear_settings how = { .tolerance = d->tolerance, .max = d->iterations_max, .restart = d->restart };
+    const tobi_linear_settings how = { d->tolerance, d->iterations_max, d->restart };
     const double *b = m->view.source;
     double *x = m->view.solution;
     if (d->solver == TOBI_BICGSTAB) return tobi_bicgstab(m->exec, a, &how, b, x, m->krylov);
@@ -200,7 +201,8 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
 
 int64_t isph_solver_bytes(const isph_solver *m)
 {
-    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov + m->entries*(int64_t)sizeof *m->view.entry +
+    return (m->rows + TOBI_PAD_ROWS)*row_bytes() + m->krylov_rows*(int64_t)sizeof *m->krylov +
+           m->entries*(int64_t)sizeof *m->view.entry +
            m->mirrors*(int64_t)sizeof *m->mirror + isph_forces_bytes(m);
 }
 
