@@ -51,7 +51,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_world_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_dfsph_table), 0);
     assert_int_equal(count_uncovered(&tobi_wcsph_table), 0);
-    assert_int_equal(count_uncovered(&tobi_isph_table), 0);
+    assert_int_equal(count_uncovered(&tobi_isph_table), hole);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), sizeof(tobi_flow_fn) + sizeof(void *));
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control + hole);
@@ -123,6 +123,12 @@ static void words_follow_the_enums(void **state)
     const char *kernels = find_row(&tobi_dfsph_table, "kernel")->choices;
     assert_true(word_is(kernels, TOBI_KERNEL_WENDLAND_C2, "wendland-c2"));
     assert_true(word_is(kernels, TOBI_KERNEL_CUBIC_SPLINE, "cubic-spline"));
+    const char *solvers = find_row(&tobi_isph_table, "solver")->choices;
+    assert_true(word_is(solvers, TOBI_CG, "cg") && word_is(solvers, TOBI_BICGSTAB, "bicgstab") &&
+                word_is(solvers, TOBI_GMRES, "gmres"));
+    const char *preconditioners = find_row(&tobi_isph_table, "preconditioner")->choices;
+    assert_true(word_is(preconditioners, TOBI_MULTIGRID, "multigrid") &&
+                word_is(preconditioners, TOBI_JACOBI, "jacobi"));
     const char *friction = find_row(&tobi_body_table, "friction")->choices;
     assert_true(word_is(friction, TOBI_SLIP, "slip") && word_is(friction, TOBI_NO_SLIP, "no-slip"));
     const char *forms = find_row(&tobi_output_table, "compression")->choices;
