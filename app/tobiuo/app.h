@@ -11,11 +11,12 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp,
-                         describe_argp, bench_argp, info_argp, scenes_argp, new_argp;
+                         describe_argp, bench_argp, info_argp, scenes_argp, new_argp, inspect_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
 int tobiuo_movie(int argc, char **argv);
+int tobiuo_inspect(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
 int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);
@@ -136,6 +137,11 @@ char *results_path(const tobi_scene *scene, const char *out);
    after a complaint EXIT_ERROR. does, package: what it is for, and what to install, for that. quiet: without
    its standard output. */
 int run_tool(const char *folder, char *const arguments[], const char *does, const char *package, int quiet);
+/* Draws plots.gnuplot in the folder, without the user's settings. Returns the exit code. */
+int run_gnuplot(const char *folder);
+/* The path of a file in the folder, whatever stood there removed: nothing is written through a link.
+   NULL after a complaint; the caller frees. */
+char *clear_place(const char *folder, const char *file);
 
 /* movie.c */
 /* Why a path is not that of a movie, to stand behind its name; NULL if it is. */

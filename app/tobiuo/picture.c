@@ -158,7 +158,9 @@ void picture_write(FILE *script, const picture *p, const char *file)
     write_text(script, p->title);
     fputc('\n', script);
     for (int k = 0; k < p->panels; k++) {
-        fputs(k == p->panels - 1 ? "set xlabel 'time, s'\n" : "unset xlabel\n", script);
+        fputs(k == p->panels - 1 ? "set xlabel " : "unset xlabel", script);
+        if (k == p->panels - 1) write_text(script, p->x_label ? p->x_label : "time, s");
+        fputc('\n', script);
         write_panel(script, p, &p->panel[k]);
     }
     fputs("unset multiplot\nunset output\n", script);

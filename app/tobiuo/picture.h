@@ -1,8 +1,8 @@
 /* Pictures of curves, written as commands of gnuplot.
 
-   A picture is panels above each other with one time axis; a panel is curves with one y axis. Texts
-   of users (names, labels) reach gnuplot as letters and character codes, values as digits, so that
-   nothing in a file can become a command. */
+   A picture is panels above each other with one axis below, of time as a rule; a panel is curves with
+   one y axis. Texts of users (names, labels) reach gnuplot as letters and character codes, values as
+   digits, so that nothing in a file can become a command. */
 #pragma once
 #include <stddef.h>
 #include <stdio.h>
@@ -28,7 +28,8 @@ typedef struct panel {
 
 typedef struct picture {
     char title[256];
-    double begin, end;              /* s, the time axis                               */
+    const char *x_label;            /* borrowed; NULL: "time, s"                      */
+    double begin, end;              /* of the axis all panels share                   */
     int panels;
     panel panel[PANEL_LIMIT];
 } picture;

@@ -134,21 +134,6 @@ static void clean_name(char *name)
         if ((unsigned char)*c < ' ' || strchr("/\\:*?\"<>|,'", *c)) *c = '_';
 }
 
-/* The path of a file in the folder, whatever stood there removed: nothing is written through a link.
-   NULL after a complaint; the caller frees. */
-static char *clear_place(const plotter *plot, const char *file)
-{
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s", plot->folder, file) < 0) {
-        complain("out of memory");
-        return NULL;
-    }
-    if (unlink(path) == 0 || errno == ENOENT) return path;
-    complain("cannot replace %s: %s", path, strerror(errno));
-    free(path);
-    return NULL;
-}
-
 /* Writes the picture's commands and remembers its file; frees the picture. */
 static int finish_picture(plotter *plot, picture *p, const char *name)
 {
@@ -160,7 +145,7 @@ static int finish_picture(plotter *plot, picture *p, const char *name)
         code = complain("out of memory");
     } else {
         clean_name(file);
-        char *path = clear_place(plot, file);
+        char *path = clear_place(plot->folder, file);
         code = path ? 0 : EXIT_ERROR;
         free(path);
         picture_write(plot->script, p, file);
@@ -328,17 +313,9 @@ static int draw_comparison(plotter *plot, int index)
     return code;
 }
 
-/* In the folder, without a shell and without the user's settings. */
-static int run_gnuplot(const plotter *plot)
-{
-    char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
-    const int code = run_tool(plot->folder, arguments, "draws the pictures", "gnuplot-nox", 0);
-    return code < 0 ? complain("gnuplot failed on %s/plots.gnuplot", plot->folder) : code;
-}
-
 static int write_script(plotter *plot)
 {
-    char *path = clear_place(plot, "plots.gnuplot");
+    char *path = clear_place(plot->folder, "plots.gnuplot");
     if (!path) return EXIT_ERROR;
     plot->script = fopen(path, "wx");
     int code = plot->script ? 0 : complain("cannot write %s: %s", path, strerror(errno));
@@ -420,7 +397,7 @@ static int draw_all(plotter *plot)
         return complain("%s is no folder (a link is not followed)", plot->folder);
     code = read_scene(plot);
     if (code == 0) code = write_script(plot);
-    if (code == 0) code = run_gnuplot(plot);
+    if (code == 0) code = run_gnuplot(plot->folder);
     for (int k = 0; k < plot->file_count && code == 0; k++)
         printf("%s/%s\n", plot->folder, plot->files[k]);
     return code;

@@ -1,9 +1,10 @@
-/* Programs beside this one, as gnuplot and ffmpeg. */
+/* Programs beside this one, as gnuplot and ffmpeg, and places for what they read. */
 #define _GNU_SOURCE
 #include "app.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,4 +28,24 @@ int run_tool(const char *folder, char *const arguments[], const char *does, cons
     while (waitpid(child, &state, 0) < 0)
         if (errno != EINTR) return complain("%s: %s", arguments[0], strerror(errno));
     return WIFEXITED(state) && WEXITSTATUS(state) == 0 ? 0 : -1;
+}
+
+int run_gnuplot(const char *folder)
+{
+    char *const arguments[] = { "gnuplot", "-d", "plots.gnuplot", NULL };
+    const int code = run_tool(folder, arguments, "draws the pictures", "gnuplot-nox", 0);
+    return code < 0 ? complain("gnuplot failed on %s/plots.gnuplot", folder) : code;
+}
+
+char *clear_place(const char *folder, const char *file)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", folder, file) < 0) {
+        complain("out of memory");
+        return NULL;
+    }
+    if (unlink(path) == 0 || errno == ENOENT) return path;
+    complain("cannot replace %s: %s", path, strerror(errno));
+    free(path);
+    return NULL;
 }

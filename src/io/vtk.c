@@ -376,6 +376,35 @@ tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const
     return close_document(&doc, "PolyData", status, err);
 }
 
+static tobi_status write_vertices(document *doc, int64_t n, const double (*points)[3],
+                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+{
+    tobi_file_print(&doc->file,
+                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"%" PRId64 "\" NumberOfLines=\"0\" "
+                    "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n", n, n);
+    begin_point_data(&doc->file, arrays, array_count);
+    TOBI_TRY(add_arrays(doc, arrays, array_count, n, err));
+    tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
+    TOBI_TRY(write_points(doc, n, points, err));
+    tobi_file_print(&doc->file, "<Verts>\n");
+    TOBI_TRY(add_source(doc, (source){ "connectivity", TOBI_I64, 1, n, NULL, 0, 1, 0 }, err));
+    TOBI_TRY(add_source(doc, (source){ "offsets", TOBI_I64, 1, n, NULL, 1, 1, 0 }, err));
+    tobi_file_print(&doc->file, "</Verts>\n");
+    return TOBI_OK;
+}
+
+tobi_status tobi_vtp_write_points(const char *path, tobi_compression compression, int64_t n,
+                                  const double (*points)[3],
+                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+{
+    TOBI_TRY(check_arrays(path, arrays, array_count, n, err));
+    if (n > 0 && !points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
+    document doc;
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", array_count + 3, err));
+    tobi_status status = write_vertices(&doc, n, points, arrays, array_count, err);
+    return close_document(&doc, "PolyData", status, err);
+}
+
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],
                            int64_t triangle_count, const int32_t (*triangles)[3], tobi_error *err)
 {

@@ -37,6 +37,11 @@ typedef struct tobi_vtk_surface {
 tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
                            tobi_error *err);
 
+/* Points alone, as vertices of a VTP; as tobi_vtu_write. */
+tobi_status tobi_vtp_write_points(const char *path, tobi_compression compression, int64_t n,
+                                  const double (*points)[3],
+                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err);
+
 /* Binary STL: little-endian floats, normals by the right-hand rule. At most 2^32 - 1 triangles. */
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],
                            int64_t triangle_count, const int32_t (*triangles)[3], tobi_error *err);

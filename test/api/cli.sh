@@ -54,7 +54,7 @@ expect 0 "" --version
 expect 2 "no command 'fly'" fly
 expect 2 "no command 'rnu'; did you mean run?" rnu
 expect 0 "" -h
-check "every command is listed" test "$(grep -cE '^  (run|resume|check|scenes|new|import|plot|describe|bench|info) ' out.txt)" = 10
+check "every command is listed" test "$(grep -cE '^  (run|resume|check|scenes|new|import|plot|inspect|describe|bench|info) ' out.txt)" = 11
 for word in "help run" "run --help" "run -h"; do
     expect 0 "" $word
     check "$word lists the options" grep -q -- "--spacing=M" out.txt
