@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the Debian 12 packages that Tobiuo needs and that are missing; nothing else.
 # usage: tools/install_packages.sh [--plot] [--test] [--list]
-#   --plot   also what `tobiuo plot` and `tobiuo movie` draw with
+#   --plot   also what `tobiuo plot`, `movie` and `report` draw with
 #   --test   also what the tests need
 #   --list   only print the missing packages
 # Needs root or sudo only if something is missing.
@@ -10,7 +10,7 @@ set -euo pipefail
 packages=(gcc libc6-dev cmake ninja-build pkg-config
           libjansson-dev libassimp-dev libluajit-5.1-dev libhdf5-dev zlib1g-dev liblz4-dev libpng-dev)
 plot_packages=(gnuplot-nox ffmpeg)
-test_packages=(gnuplot-nox g++ git libcmocka-dev python3 python3-numpy python3-matplotlib
+test_packages=(gnuplot-nox ffmpeg chromium g++ git libcmocka-dev python3 python3-numpy python3-matplotlib
                python3-vtk9 python3-jsonschema)
 
 list_only=0

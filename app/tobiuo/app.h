@@ -11,12 +11,13 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp,
-                         describe_argp, bench_argp, info_argp, scenes_argp, new_argp, inspect_argp;
+                         report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp, inspect_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
 int tobiuo_movie(int argc, char **argv);
 int tobiuo_inspect(int argc, char **argv);
+int tobiuo_report(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
 int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);
@@ -150,6 +151,12 @@ const char *movie_objection(const char *path);
 int prepare_movie(const char *out, int force);
 /* Makes a movie of a run's pictures, `slow` times slower than the scene. Returns the exit code. */
 int make_movie(const char *dir, const char *out, double slow, int force);
+/* The same, 640 pixels wide and at least 4 s long: *slow is how much slower it is than the scene. */
+int make_small_movie(const char *dir, const char *out, double *slow);
+/* Number of pictures in DIR/frames. */
+int64_t count_pictures(const char *dir);
+/* sheet.c: a dozen of them in one PNG. Returns the exit code. */
+int make_sheet(const char *dir, const char *out);
 
 /* progress.c */
 typedef struct progress {

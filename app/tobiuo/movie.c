@@ -1,5 +1,5 @@
-/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg. The movie runs as fast as the scene
-   did, or slower by a given factor. */
+/* tobiuo movie DIR: the pictures of a run as a movie, encoded by ffmpeg, or as a sheet (sheet.c). The movie
+   runs as fast as the scene did, or slower by a given factor. Drawback: what makes it is a second program. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "table.h"
@@ -18,7 +18,8 @@ typedef struct movie_options { const char *dir, *out; double slow; int force; } 
 enum { KEY_SLOW = KEY_OWN, KEY_FORCE };
 
 static const struct argp_option options[] = {
-    { "out", 'o', "FILE", 0, "the movie: .mp4, .webm or .gif (DIR/movie.mp4)", 0 },
+    { "out", 'o', "FILE", 0, "the movie: .mp4, .webm or .gif; or a sheet of a dozen pictures: .png "
+        "(DIR/movie.mp4)", 0 },
     { "slow", KEY_SLOW, "N", 0, "N times slower than the scene was (1)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
@@ -26,12 +27,15 @@ static const struct argp_option options[] = {
 
 /* How each kind of movie is made. yuv420p and even sizes are what all players know. */
 #define EVEN "pad=ceil(iw/2)*2:ceil(ih/2)*2"
-static const struct kind { const char *ending, *format, *option[9]; } kinds[] = {
+static const struct kind { const char *ending, *format, *option[11]; } kinds[] = {
     { ".mp4", "mp4", { "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
     { ".webm", "webm", { "-c:v", "libvpx-vp9", "-crf", "30", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
     { ".gif", "gif", { "-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", NULL } },
 };
 enum { KINDS = sizeof kinds/sizeof *kinds };
+/* The movie of a report: small enough to be part of a page. */
+static const struct kind small = { "", "mp4", { "-c:v", "libx264", "-preset", "slow", "-crf", "30",
+                                                "-pix_fmt", "yuv420p", "-vf", "scale=640:-2", NULL } };
 
 static const struct kind *find_kind(const char *path)
 {
@@ -46,12 +50,19 @@ const char *movie_objection(const char *path)
     return find_kind(path) ? NULL : "is no movie that can be made: its name ends in .mp4, .webm or .gif";
 }
 
+static int is_sheet(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".png") == 0;
+}
+
 static error_t parse(int key, char *value, struct argp_state *state)
 {
     movie_options *o = state->input;
     switch (key) {
     case 'o':
-        if (movie_objection(value)) argp_error(state, "--out: '%s' %s", value, movie_objection(value));
+        if (movie_objection(value) && !is_sheet(value))
+            argp_error(state, "--out: '%s' %s, that of a sheet in .png", value, movie_objection(value));
         o->out = value;
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
@@ -61,7 +72,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
-static int64_t count_pictures(const char *dir)
+int64_t count_pictures(const char *dir)
 {
     for (int64_t k = 0;; k++) {
         char *path = NULL;
@@ -129,11 +140,11 @@ static int encode(const char *dir, const char *part, const struct kind *kind, do
 }
 
 /* A movie is there whole or not at all. */
-static int write_movie(const char *dir, const char *out, double rate)
+static int write_movie(const char *dir, const char *out, const struct kind *kind, double rate)
 {
     char *part = NULL;
     if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
-    int code = encode(dir, part, find_kind(out), rate);
+    int code = encode(dir, part, kind, rate);
     if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
     if (code != 0) unlink(part);
     free(part);
@@ -148,23 +159,54 @@ int prepare_movie(const char *out, int force)
     return code < 0 ? complain("ffmpeg does not work") : code;
 }
 
+/* s between the pictures of a run; 0 after a complaint. */
+static double check_pictures(const char *dir, int64_t count)
+{
+    const double interval = count > 0 ? find_interval(dir) : 0;
+    if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
+    else if (count == 0) complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
+    else if (count < 2 || !(interval > 0)) complain("%s has one output only, which is no movie", dir);
+    else return interval;
+    return 0;
+}
+
 int make_movie(const char *dir, const char *out, double slow, int force)
 {
     const int64_t count = count_pictures(dir);
-    const double interval = count > 0 ? find_interval(dir) : 0;
-    if (access(dir, F_OK) != 0) return complain_run(dir, "there is no run");
-    if (count == 0)
-        return complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
-    if (count < 2 || !(interval > 0)) return complain("%s has one output only, which is no movie", dir);
+    const double interval = check_pictures(dir, count);
+    if (!(interval > 0)) return EXIT_ERROR;
     if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
-    const int code = write_movie(dir, out, 1/(interval*slow));
+    const int code = write_movie(dir, out, find_kind(out), 1/(interval*slow));
     if (code == 0)
         printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
     return code;
 }
 
+int make_small_movie(const char *dir, const char *out, double *slow)
+{
+    static const double SHORTEST = 4, STEPS[] = { 1, 2, 5, 10 };       /* s of a movie */
+    const int64_t count = count_pictures(dir);
+    const double interval = check_pictures(dir, count);
+    if (!(interval > 0)) return EXIT_ERROR;
+    const double wanted = fmax(1, SHORTEST/((double)count*interval)), ten = pow(10, floor(log10(wanted)));
+    for (int k = 0; k < 4; k++) {
+        *slow = STEPS[k]*ten;
+        if (*slow >= 0.999*wanted) break;
+    }
+    return write_movie(dir, out, &small, 1/(interval**slow));
+}
+
+static int write_sheet(const char *dir, const char *out, int force)
+{
+    if (access(dir, F_OK) != 0) return complain_run(dir, "there is no run");
+    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
+    const int code = make_sheet(dir, out);
+    if (code == 0) printf("sheet: %s\n", out);
+    return code;
+}
+
 const struct argp movie_argp = { .options = options, .parser = parse, .args_doc = "DIR",
-    .doc = "Make a movie of the pictures of the run in DIR, with ffmpeg." };
+    .doc = "Make a movie of the pictures of the run in DIR, with ffmpeg, or a sheet of a dozen of them." };
 
 int tobiuo_movie(int argc, char **argv)
 {
@@ -172,7 +214,8 @@ int tobiuo_movie(int argc, char **argv)
     char *out = NULL;
     parse_arguments(&movie_argp, argc, argv, &o);
     if (asprintf(&out, "%s/movie.mp4", o.dir) < 0) return complain("out of memory");
-    const int code = make_movie(o.dir, o.out ? o.out : out, o.slow, o.force);
+    const int code = o.out && is_sheet(o.out) ? write_sheet(o.dir, o.out, o.force)
+                                              : make_movie(o.dir, o.out ? o.out : out, o.slow, o.force);
     free(out);
     return code;
 }

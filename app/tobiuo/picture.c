@@ -33,7 +33,7 @@ void picture_begin_script(FILE *script, const char *format)
     if (strcmp(format, "png") == 0)
         fputs("set terminal pngcairo noenhanced font 'Sans,11' size 1000,750\n", script);
     else
-        fputs("set terminal svg noenhanced font 'sans-serif,14' size 1000,750 "
+        fputs("set terminal svg noenhanced font 'sans-serif,14' size 800,640 "
               "background rgb 'white'\n", script);
     fputs("set datafile missing '?'\n"
           "set grid xtics ytics linetype 1 linewidth 0.5 linecolor rgb '#d0d0d0'\n"

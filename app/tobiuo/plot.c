@@ -398,9 +398,28 @@ static int draw_all(plotter *plot)
     code = read_scene(plot);
     if (code == 0) code = write_script(plot);
     if (code == 0) code = run_gnuplot(plot->folder);
-    for (int k = 0; k < plot->file_count && code == 0; k++)
-        printf("%s/%s\n", plot->folder, plot->files[k]);
     return code;
+}
+
+int draw_plots(const char *dir, const char *scene, const char *format, plot_files *files)
+{
+    const plot_options o = { dir, format, scene };
+    plotter plot = { .options = &o, .dimension = 3 };
+    const int code = draw_all(&plot);
+    *files = (plot_files){ plot.folder, plot.files, plot.file_count };
+    table_free(&plot.history);
+    table_free(&plot.bodies);
+    table_free(&plot.probes);
+    tobi_scene_free(plot.scene);
+    return code;
+}
+
+void plot_files_free(plot_files *files)
+{
+    for (int k = 0; k < files->count; k++) free(files->name[k]);
+    free(files->name);
+    free(files->folder);
+    *files = (plot_files){ 0 };
 }
 
 const struct argp plot_argp = { .options = options, .parser = parse, .args_doc = "DIR",
@@ -409,15 +428,10 @@ const struct argp plot_argp = { .options = options, .parser = parse, .args_doc =
 int tobiuo_plot(int argc, char **argv)
 {
     plot_options o = { .format = "svg" };
+    plot_files files;
     parse_arguments(&plot_argp, argc, argv, &o);
-    plotter plot = { .options = &o, .dimension = 3 };
-    int code = draw_all(&plot);
-    for (int k = 0; k < plot.file_count; k++) free(plot.files[k]);
-    free(plot.files);
-    free(plot.folder);
-    table_free(&plot.history);
-    table_free(&plot.bodies);
-    table_free(&plot.probes);
-    tobi_scene_free(plot.scene);
+    const int code = draw_plots(o.dir, o.scene, o.format, &files);
+    for (int k = 0; k < files.count && code == 0; k++) printf("%s/%s\n", files.folder, files.name[k]);
+    plot_files_free(&files);
     return code;
 }

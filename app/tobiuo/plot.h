@@ -33,3 +33,9 @@ typedef struct picture_row {
 extern const picture_row plot_history[], plot_body[];
 /* The unit of any column of the two tables, "" if it has none; with "/m" in two dimensions. */
 const char *plot_unit(const char *column, int dimension);
+
+/* plot.c: the pictures of a run in DIR/plots; the exit code. scene: NULL takes the references of the run.
+   files: what was drawn, to be freed by plot_files_free after failures too. */
+typedef struct plot_files { char *folder, **name; int count; } plot_files;
+int draw_plots(const char *dir, const char *scene, const char *format, plot_files *files);
+void plot_files_free(plot_files *files);

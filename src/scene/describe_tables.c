@@ -28,6 +28,7 @@ static const char head[] =
     "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
     "| `history.csv`, `bodies.csv`, `probes.csv` | the tables below |\n"
     "| `movie.mp4` | those pictures as a movie, after `tobiuo movie` |\n"
+    "| `report.html` | one page: what to trust, pictures, plots, tables, times; after `tobiuo report` |\n"
     "| `plots/` | the tables as pictures, after `tobiuo plot` |\n"
     "| `checkpoints/` | what `tobiuo resume` goes on from |\n"
     "| `resolved.json` | the scene with every default explicit; gives the same bits again |\n"

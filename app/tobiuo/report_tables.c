@@ -1,0 +1,173 @@
+/* Tables of a report: what the CSV files of a run come to, with units and meanings from the library's lists.
+   Drawback: an extreme between two outputs is not seen. */
+#include "report.h"
+#include "plot.h"
+#include <math.h>
+#include <string.h>
+
+/* What a column comes to. */
+typedef struct digest { double last, mean, low, high, low_time, high_time; size_t rows; } digest;
+
+/* The rows of one body; name NULL: all rows. */
+typedef struct part { const table *table; const char *name; } part;
+
+static int belongs(const part *p, size_t row)
+{
+    const int column = p->name ? table_column(p->table, "name") : -1;
+    return !p->name || (column >= 0 && strcmp(p->table->cells[row*(size_t)p->table->columns + (size_t)column],
+                                              p->name) == 0);
+}
+
+/* The mean is over time: by trapezia, or for columns that are means since the row before, by that time. */
+static digest digest_column(const part *p, int column)
+{
+    digest d = { .last = NAN, .mean = NAN, .low = INFINITY, .high = -INFINITY };
+    const int time = table_column(p->table, "time");
+    const int of_outputs = strncmp(p->table->names[column], "mean_", 5) == 0;
+    double sum = 0, span = 0, before = NAN, value_before = NAN;
+    for (size_t i = 0; i < p->table->rows; i++) {
+        const double t = table_number(p->table, i, time), value = table_number(p->table, i, column);
+        if (!belongs(p, i) || isnan(t) || isnan(value)) continue;
+        if (value < d.low) d.low = value, d.low_time = t;
+        if (value > d.high) d.high = value, d.high_time = t;
+        if (t > before) {
+            sum += (t - before)*(of_outputs ? value : 0.5*(value + value_before));
+            span += t - before;
+        }
+        before = t;
+        d.last = value_before = value;
+        d.rows++;
+    }
+    d.mean = span > 0 ? sum/span : d.last;
+    return d;
+}
+
+static void write_head(const report *r, const char *title)
+{
+    fputs("<h3>", r->file);
+    html_text(r->file, title);
+    fputs("</h3>\n<div class=wide><table><tr><th>quantity<th>unit<th>at the end<th>mean<th>least<th>at, s"
+          "<th>most<th>at, s<th class=doc>meaning\n", r->file);
+}
+
+static void write_row(const report *r, const char *name, const char *unit, const char *doc, const digest *d)
+{
+    fputs("<tr><td>", r->file);
+    html_text(r->file, name);
+    fprintf(r->file, "<td>%s%s", strcmp(unit, "1") == 0 ? "" : unit,
+            r->dimension == 2 && strchr("NJk", *unit) && *unit ? " per m" : "");
+    fprintf(r->file, "<td>%.5g<td>%.5g<td>%.5g<td>%.4g<td>%.5g<td>%.4g<td "
+        "class=doc>", d->last, d->mean, d->low,
+            d->low_time, d->high, d->high_time);
+    html_text(r->file, doc);
+    fputc('\n', r->file);
+}
+
+/* Columns of 0 only say nothing, nor do values of steps whose mean is there. */
+static int is_shown(const table *t, const char *name, const digest *d)
+{
+    char mean[420];
+    snprintf(mean, sizeof mean, "mean_%s", name);
+    return d->rows > 0 && !(d->low == 0 && d->high == 0) && table_column(t, mean) < 0;
+}
+
+/* All columns of a part that the library knows, prefixed in the table as probes are. */
+static void write_columns(const report *r, const part *p, tobi_table list, const char *prefix,
+                          const char *title)
+{
+    const tobi_column *c;
+    char name[400];
+    int begun = 0;
+    for (int k = 0; (c = tobi_run_column(list, k)); k++) {
+        snprintf(name, sizeof name, "%s%s", prefix, c->name);
+        const int column = table_column(p->table, name);
+        if (column < 0 || strcmp(c->unit, "text") == 0) continue;
+        if (strcmp(name, "time") == 0 || strcmp(name, "step") == 0) continue;
+        const digest d = digest_column(p, column);
+        if (!is_shown(p->table, name, &d)) continue;
+        if (!begun++) write_head(r, title);
+        write_row(r, c->name, c->unit, c->doc, &d);
+    }
+    if (begun) fputs("</table></div>\n", r->file);
+}
+
+static void write_bodies(const report *r)
+{
+    const table *t = &r->bodies;
+    const int name = table_column(t, "name");
+    char title[300];
+    for (size_t i = 0; name >= 0 && i < t->rows; i++) {
+        const char *body = t->cells[i*(size_t)t->columns + (size_t)name];
+        const part p = { t, body };
+        if (i > 0 && strcmp(body, t->cells[(size_t)name]) == 0) break;      /* the second output begins */
+        snprintf(title, sizeof title, "Body %s", body);
+        write_columns(r, &p, TOBI_TABLE_BODIES, "", title);
+    }
+}
+
+static void write_probes(const report *r)
+{
+    const part p = { &r->probes, NULL };
+    const json_t *probes = report_value(r, "probes"), *probe;
+    char prefix[200], title[300];
+    for (size_t k = 0; (probe = json_array_get(probes, k)); k++) {
+        const char *name = json_string_value(json_object_get(probe, "name"));
+        const char *kind = json_string_value(json_object_get(probe, "kind"));
+        if (!name || !kind) continue;
+        snprintf(prefix, sizeof prefix, "%s_", name);
+        snprintf(title, sizeof title, "Probe %s", name);
+        write_columns(r, &p, strcmp(kind, "level") == 0 ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT, prefix, title);
+    }
+}
+
+void write_tables(const report *r)
+{
+    const part all = { &r->history, NULL };
+    fputs("<h2>Tables</h2>\n<p>Means are over time. Of forces the means over outputs are shown. "
+        "Quantities that "
+          "are 0 throughout are left out.</p>\n", r->file);
+    write_bodies(r);
+    if (r->probes.columns > 0) write_probes(r);
+    write_columns(r, &all, TOBI_TABLE_HISTORY, "", "The whole");
+}
+
+static double number_of(const json_t *json, const char *key)
+{
+    const json_t *value = json_object_get(json, key);
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+static void write_totals(const report *r)
+{
+    char steps[32], rest[32], memory[32];
+    const double wall = number_of(r->summary, "wall_s"), in_steps = number_of(r->summary, "step_wall_s");
+    fprintf(r->file, "<p>%.0f steps took "
+        "%s", number_of(r->summary, "steps"), duration_text(in_steps, steps));
+    if (wall > in_steps)
+        fprintf(r->file, ", files and pictures that steps did not hide %s",
+                duration_text(wall - in_steps, rest));
+    fprintf(r->file, ". %.3g million particle-steps per second on %.0f threads; the program held %s at "
+        "most.</p>\n",
+            1e-6*number_of(r->summary, "particle_steps_per_s"), number_of(r->summary, "threads"),
+            bytes_text(number_of(r->summary, "peak_rss_bytes"), memory));
+}
+
+void write_times(const report *r)
+{
+    json_t *stages = json_object_get(r->summary, "stages_s"), *value;
+    const char *name;
+    double sum = 0;
+    if (!stages) return;
+    fputs("<h2>Time</h2>\n", r->file);
+    write_totals(r);
+    json_object_foreach(stages, name, value) sum += json_number_value(value);
+    fputs("<table><tr><th>stage of a step<th>s<th>share<th class=doc>\n", r->file);
+    json_object_foreach(stages, name, value) {
+        const double share = sum > 0 ? json_number_value(value)/sum : 0;
+        fputs("<tr><td>", r->file);
+        html_text(r->file, name);
+        fprintf(r->file, "<td>%.3g<td>%.1f %%<td class=doc><div class=bar style=\"width:%.0fpx\"></div>\n",
+                json_number_value(value), 100*share, 240*share);
+    }
+    fputs("</table>\n", r->file);
+}

@@ -1,0 +1,211 @@
+/* What of a run to trust: its own counters, the spacings across its bodies, and the weaknesses of its method
+   that the scene meets. The sentences are those of README and docs/which_method.md. Drawback: they stand here
+   once more. */
+#include "report.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum grade { GOOD, LOOK, WRONG } grade;
+
+static void say(const report *r, grade g, const char *what, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void say(const report *r, grade g, const char *what, const char *format, ...)
+{
+    static const char *const word[] = { "good", "look", "wrong" };
+    char text[1000];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    fprintf(r->file, "<tr><td><span class=\"mark %s\">%s</span><td>", word[g], word[g]);
+    html_text(r->file, what);
+    fputs("<td class=doc>", r->file);
+    html_text(r->file, text);
+    fputc('\n', r->file);
+}
+
+static double total(const report *r, const char *key)
+{
+    const json_t *value = json_object_get(r->summary, key);
+    return json_is_number(value) ? json_number_value(value) : 0;
+}
+
+static double at_end(const report *r, const char *column, int first)
+{
+    const int k = r->history.rows ? table_column(&r->history, column) : -1;
+    return k < 0 ? NAN : table_number(&r->history, first ? 0 : r->history.rows - 1, k);
+}
+
+static int is_liquid(const report *r)
+{
+    return strcmp(r->method, "mlsmpm") != 0 && *r->method;
+}
+
+/* --- what the run counted --- */
+
+static void judge_outcome(const report *r)
+{
+    const char *outcome = json_string_value(json_object_get(r->summary, "outcome"));
+    if (!outcome) say(r, LOOK, "end", "The run has not ended: there is no summary.json. Tables go as "
+        "far as it got.");
+    else if (strcmp(outcome, "complete") == 0) say(r, GOOD, "end", "The run reached its end.");
+    else if (strcmp(outcome, "interrupted") == 0) say(r, LOOK, "end", "The run was stopped before its "
+        "end.");
+    else say(r, WRONG, "end", "The run ended as \"%s\" at %.6g s.", outcome, total(r, "time"));
+}
+
+static void judge_solver(const report *r)
+{
+    const double steps = total(r, "steps"), bad = total(r, "unconverged_steps");
+    if (total(r, "density_iterations_mean") + total(r, "divergence_iterations_mean") <= 0) return;
+    say(r, bad == 0 ? GOOD : bad < 0.01*steps ? LOOK : WRONG, "solver",
+        bad == 0 ? "It converged in all of %.0f steps." :
+        "It stopped short of its tolerance in some of %.0f steps: %.0f. See unconverged_steps for "
+        "when.", steps, bad);
+}
+
+static void judge_density(const report *r)
+{
+    const double error = total(r, "density_error_mean");
+    if (!is_liquid(r) || !r->summary) return;
+    say(r, error < 0.005 ? GOOD : error < 0.02 ? LOOK : WRONG, "density",
+        "Particles are off the rest density by %.2g %% in the mean over the run; above 2 %% the liquid "
+        "is none any more.", 100*error);
+}
+
+static void judge_surface(const report *r)
+{
+    const double end = at_end(r, "surface_share", 0), start = at_end(r, "surface_share", 1);
+    if (is_liquid(r) && end > 0.5 && end > 2*start)
+        say(r, LOOK, "spray", "At the end %.0f %% of the particles are at a free surface (%.0f %% at "
+            "the start): drops and films that the spacing does not resolve.", 100*end, 100*start);
+}
+
+static void judge_losses(const report *r)
+{
+    const double lost = total(r, "particles_lost"), back = total(r, "put_back");
+    if (lost > 0) say(r, LOOK, "losses", "%.0f particles left the domain.", lost);
+    if (back > 0)
+        say(r, LOOK, "losses", "Particles got past a side of the domain and were put back %.0f "
+            "times.", back);
+}
+
+/* --- how fine the bodies are --- */
+
+static void judge_body(const report *r, int b)
+{
+    widths w;
+    char what[200];
+    if (measure_widths(r->world, b, r->dimension, &w) != 0 || !(r->spacing > 0)) return;
+    const double narrow = w.narrow/r->spacing, thin = w.thin/r->spacing;
+    snprintf(what, sizeof what, "body %s", tobi_world_body_name(r->world, b));
+    if (!is_liquid(r)) {
+        say(r, GOOD, what, "Narrowest %.4g m, %.1f spacings. Forces act over a cell of the grid, 2 "
+            "spacings.",
+            w.narrow, narrow);
+        return;
+    }
+    if (narrow >= 16)
+        say(r, GOOD, what, "Narrowest %.4g m, %.0f spacings: enough for drag.", w.narrow, narrow);
+    else
+        say(r, narrow < 8 ? WRONG : LOOK, what, "Narrowest %.4g m, %.1f spacings. Small bodies have too "
+            "much drag: 15 %% at 8 spacings across, more below. Use 16.", w.narrow, narrow);
+    if (thin < 10 && thin < 0.8*narrow)
+        say(r, thin < 4 ? WRONG : LOOK, what, "A tenth of its surface is thinner than %.4g m, %.1f "
+            "spacings. Fins and plates act one spacing too wide; at four spacings a force is 25 %% too "
+            "large. Use ten.", w.thin, thin);
+    for (int a = 0; a < r->dimension; a++) {
+        const tobi_world_def *d = tobi_scene_world_def(r->loaded);
+        if (w.low[a] < d->domain_min[a] - 1e-6*r->spacing || w.high[a] > d->domain_max[a] + 1e-6*r->spacing)
+            say(r, LOOK, what, "It reaches out of the domain along %c. A body cut by a plane of "
+                "symmetry sinks 5 %% too fast at 8 spacings across. Compute the whole.", "xyz"[a]);
+    }
+}
+
+/* --- weaknesses of the method --- */
+
+static double corner(const json_t *box, const char *key, size_t a)
+{
+    const json_t *value = json_array_get(json_object_get(box, key), a);
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* What boxes of fluid leave free beside them, over both sides of the horizontal axes. */
+typedef struct gaps { int begins_beside, stands_free; } gaps;
+
+static gaps look_at_fills(const report *r)
+{
+    gaps g = { 0, 0 };
+    const json_t *fluids = report_value(r, "fluids"), *fluid, *fill;
+    const json_t *domain = report_value(r, "domain");
+    for (size_t k = 0; (fluid = json_array_get(fluids, k)); k++)
+        for (size_t n = 0; (fill = json_array_get(json_object_get(fluid, "fill"), n)); n++)
+            for (size_t a = 0; a + 1 < (size_t)r->dimension; a++) {
+                const json_t *box = json_object_get(fill, "box");
+                const double low = corner(box, "min", a) - corner(domain, "min", a),
+                             high = corner(domain, "max", a) - corner(box, "max", a);
+                const double tiny = 0.01*r->spacing;
+                g.begins_beside |= (low > tiny && low <= r->spacing) || (high > tiny && high <= r->spacing);
+                g.stands_free |= low > 2*r->spacing || high > 2*r->spacing;
+            }
+    return g;
+}
+
+static void warn_of_liquids(const report *r)
+{
+    const json_t *support = report_value(r, "dfsph.support");
+    const gaps g = look_at_fills(r);
+    if (strcmp(r->method, "dfsph") == 0 && !(json_is_number(support) && json_number_value(support) >= 3))
+        say(r, LOOK, "waves", "Waves are 1 to 2 %% too fast. Set dfsph.support to 3 where the period "
+            "counts, or use isph.");
+    if (strcmp(r->method, "isph") == 0)
+        say(r, LOOK, "waves", "Long waves lose energy by isph. It is best for floating bodies, dams and "
+            "free patches.");
+    if (json_array_size(report_value(r, "bodies")) > 0)
+        say(r, LOOK, "forces", "Forces of single steps scatter. Use the columns mean_... of bodies.csv; "
+            "with sudden motions set cfl to 0.1.");
+    if (g.begins_beside)
+        say(r, LOOK, "fill", "A fill begins beside a wall, not at it: the water stays 3 to 4 %% too "
+            "high there. Begin each fill at the wall.");
+    if (g.stands_free)
+        say(r, LOOK, "fronts", "Water stands beside free floor: its front runs ahead of experiments, as "
+            "potential flow does.");
+}
+
+static void warn_of_solids(const report *r)
+{
+    const json_t *solids = report_value(r, "solids"), *solid;
+    int bonded = 0, liquid = 0;
+    for (size_t k = 0; (solid = json_array_get(solids, k)); k++) {
+        const char *model = json_string_value(json_object_get(solid, "model"));
+        bonded |= json_is_true(json_object_get(solid, "bonded"));
+        liquid |= model && strcmp(model, "liquid") == 0;
+    }
+    if (bonded && json_array_size(solids) > 1)
+        say(r, LOOK, "contact", "Solids stick to each other. Set \"bonded\": false where they may part.");
+    if (liquid)
+        say(r, LOOK, "liquid", "Water of mlsmpm keeps small slopes. Use dfsph for water without solids.");
+    if (solids)
+        say(r, LOOK, "fineness", "Bending is 3 %% off at 16 spacings through the height, drafts of soft "
+            "bodies 2.4 %% at 16 spacings across.");
+}
+
+void write_trust(const report *r)
+{
+    fputs("<h2>What to trust</h2>\n<table class=trust>\n", r->file);
+    judge_outcome(r);
+    judge_solver(r);
+    judge_density(r);
+    judge_surface(r);
+    judge_losses(r);
+    for (int b = 0; r->world && b < tobi_world_body_count(r->world); b++) judge_body(r, b);
+    if (!r->world && json_array_size(report_value(r, "bodies")) > 0)
+        say(r, LOOK, "bodies", "Spacings across bodies are not known: %s", r->why);
+    if (is_liquid(r)) warn_of_liquids(r);
+    if (report_value(r, "solids")) warn_of_solids(r);
+    fputs("</table>\n<p>Run at two spacings before you trust a figure (<code>--spacing</code>): the "
+        "difference is the error that is left, or more.</p>\n", r->file);
+}

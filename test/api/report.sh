@@ -1,0 +1,142 @@
+#!/bin/bash
+# tobiuo report and picture sheets: what the page says, and what a browser makes of it.
+# usage: report.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+# Answers 77 (skipped) without chromium, gnuplot or ffmpeg, after the tests that do without them.
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > box.obj <<'END'
+v -0.1 -0.1 -0.1
+v 0.1 -0.1 -0.1
+v -0.1 0.1 -0.1
+v 0.1 0.1 -0.1
+v -0.1 -0.1 0.1
+v 0.1 -0.1 0.1
+v -0.1 0.1 0.1
+v 0.1 0.1 0.1
+f 1 3 4 2
+f 5 6 8 7
+f 1 2 6 5
+f 3 7 8 4
+f 1 5 7 3
+f 2 4 8 6
+END
+cat > tank.json <<'END'
+{ "domain": { "min": [0, 0, 0], "max": [1, 1, 1] }, "spacing": 0.1, "end_time": 0.1,
+  "fluids": [ { "name": "water & ice", "fill": [ { "box": { "min": [0, 0, 0], "max": [0.5, 1, 0.5] } } ] } ],
+  "bodies": [ { "name": "box & co", "mesh": "box.obj", "translation": [0.7, 0.5, 0.5], "dynamics": "free",
+                "density": 500 },
+              { "name": "plate", "mesh": "box.obj", "scale": [0.2, 1, 1], "translation": [0.7, 0.5, 0.8] } ],
+  "probes": [ { "name": "P", "position": [0.1, 0.5, 0.1] }, { "name": "H", "kind": "level", "position": [0.2, 0.5, 0] } ],
+  "output": { "interval": 0.02 } }
+END
+cat > jelly.json <<'END'
+{ "method": "mlsmpm", "dimension": 2, "domain": { "min": [0, 0], "max": [1, 1] }, "spacing": 0.05, "end_time": 0.01,
+  "solids": [ { "name": "a", "youngs_modulus": 1e4, "fill": [ { "box": { "min": [0.2, 0.2], "max": [0.4, 0.4] } } ] },
+              { "name": "b", "youngs_modulus": 1e4, "fill": [ { "box": { "min": [0.6, 0.2], "max": [0.8, 0.4] } } ] } ],
+  "output": { "interval": 0.005 } }
+END
+# says FILE TEXT: the page's text contains it
+says() { grep -qF -- "$2" <(sed 's/&amp;/\&/g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g' "$1"); }
+
+# --- without other programs -------------------------------------------------------------------------
+expect 2 "which DIR?" report
+expect 2 "--out is empty" report x --out=
+expect 1 "there is no run to report on" report nowhere
+expect 0 "" run tank.json --out tank --quiet --frames
+expect 0 "" run jelly.json --out jelly --quiet
+expect 0 "" movie tank --out sheet.png
+check "a sheet of four pictures in two rows" grep -qF "1292" <($python -c '
+import struct; print(*struct.unpack(">II", open("sheet.png", "rb").read()[16:24]))')
+expect 1 "sheet.png exists; --force replaces it" movie tank --out sheet.png
+expect 0 "" movie tank --out sheet.png --force
+expect 1 "jelly has no pictures" movie jelly --out none.png
+expect 1 "there is no run" movie nowhere --out none.png
+expect 1 "cannot write" movie tank --out /proc/sheet.png
+cp -r tank torn && echo "no picture" > torn/frames/frame_000000.png
+expect 1 "cannot read torn/frames/frame_000000.png" movie torn --out none.png
+got=0; PATH=/nonexistent "$program" report tank --out bare.html > out.txt 2> err.txt || got=$?
+check "neither gnuplot nor ffmpeg: exit code 0 (was $got)" test $got = 0
+check "both are named" test "$(grep -c 'apt-get install' err.txt)" = 2
+check "and the page says so" says bare.html "There are none: they need gnuplot."
+check "of the movie too" says bare.html "There is no movie: it needs ffmpeg."
+check "no remains" test -z "$(find . -name '*.part' -o -name 'report_*')"
+
+check "the solver" says bare.html "It converged in all of"
+check "a body of two spacings" says bare.html "Narrowest 0.2 m, 2.0 spacings. Small bodies have too much drag"
+check "its name is text" says bare.html "body box & co"
+check "the fluid's too" grep -qF "water &amp; ice" bare.html
+check "a plate of 0.4 spacings" says bare.html "Narrowest 0.04 m, 0.4 spacings."
+check "a dam" says bare.html "Water stands beside free floor"
+check "waves of dfsph" says bare.html "Set dfsph.support to 3"
+check "a table of the box" says bare.html "Body box & co"
+check "of the probes" says bare.html "Probe P"
+check "with units" says bare.html "<td>Pa<td>"
+check "times by stage" says bare.html "density solve"
+check "the scene" says bare.html '"interval": 0.02'
+PATH=/nonexistent "$program" report jelly --out jelly.html > out.txt 2> err.txt
+check "solids stick" says jelly.html "Solids stick to each other."
+check "no pictures" says jelly.html "There are none: the scene was run without"
+check "2-D units" says jelly.html "<td>J per m<td>"
+check "nothing of waves" test "$(grep -c 'Waves are' jelly.html)" = 0
+$python - <<'END'
+import csv, math, re
+rows = list(csv.DictReader(open("tank/history.csv")))
+t = [float(r["time"]) for r in rows]; y = [float(r["kinetic_energy"]) for r in rows]
+mean = sum((t[i] - t[i - 1])*(y[i] + y[i - 1])/2 for i in range(1, len(t)))/t[-1]
+cells = re.search(r"<td>kinetic_energy<td>J<td>([^<]*)<td>([^<]*)<td>([^<]*)<td>[^<]*<td>([^<]*)",
+                  open("bare.html").read()).groups()
+want = (y[-1], mean, min(y), max(y))
+print(cells, want)
+raise SystemExit(not all(math.isclose(float(c), w, rel_tol=1e-4, abs_tol=1e-12) for c, w in zip(cells, want)))
+END
+check "last, mean, least and most are those of the table" test $? = 0
+mkdir moved && cp -r tank/* moved && mv box.obj box.old
+PATH=/nonexistent "$program" report moved > out.txt 2> err.txt
+check "a run whose meshes are gone" says moved/report.html "Spacings across bodies are not known"
+mv box.old box.obj && rm moved/summary.json moved/resolved.json
+PATH=/nonexistent "$program" report moved --force > out.txt 2> err.txt
+check "a run without its end" says moved/report.html "The run has not ended"
+expect 1 "moved/report.html exists; --force replaces it" report moved
+expect 1 "cannot write /proc/page.html" report moved --out /proc/page.html
+echo "when" > moved/history.csv
+expect 1 'has no column "time"' report moved --force
+
+for tool in chromium gnuplot ffmpeg; do
+    command -v $tool > /dev/null && continue
+    echo "$passed passed, $failed failed; the rest was skipped: $tool is missing"
+    [ $failed -eq 0 ] && exit 77
+    exit 1
+done
+
+# --- in a browser -----------------------------------------------------------------------------------
+expect 0 "" report tank
+check "the report's own files are gone" test -z "$(find tank -name 'report_*')"
+# The page as it is, and a script that says what is missing; the page's own rule forbids any address.
+sed "s/default-src 'none'/default-src 'none'; script-src 'unsafe-inline'/" tank/report.html > looked.html
+cat >> looked.html <<'END'
+<script>
+addEventListener("load", async () => {
+  const video = document.querySelector("video"), images = [...document.images];
+  for (let n = 0; n < 50 && video.readyState < 2; n++) await new Promise(f => setTimeout(f, 100));
+  document.title = `seen: ${images.filter(i => i.naturalWidth > 0).length} of ${images.length} pictures, ` +
+                   `${video.videoWidth} wide, ${document.querySelectorAll("table").length} tables`;
+});
+</script>
+END
+browse() {
+    timeout 60 chromium --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" \
+        --enable-logging=stderr --virtual-time-budget=8000 --dump-dom "file://$folder/$1" 2> log.txt
+}
+browse looked.html > dom.txt
+echo "$(grep -o '<title>[^<]*' dom.txt)" > err.txt
+plots=$(ls tank/plots/*.svg | wc -l)
+check "all $((plots + 1)) pictures and the movie are seen" \
+    grep -qE "seen: $((plots + 1)) of $((plots + 1)) pictures, 640 wide" dom.txt
+grep CONSOLE log.txt > err.txt
+check "the console is silent" test ! -s err.txt
+echo '<img src="http://localhost/x.png">' >> looked.html
+browse looked.html > dom.txt
+check "and would not be if the page asked for an address" grep -q "CONSOLE.*Content Security Policy" log.txt
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
