@@ -87,7 +87,7 @@ check "the completion is bash" bash -n complete.bash
 # complete WORD...: what bash offers for the last word
 complete() { bash -c '. ./complete.bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tobiuo
                       echo "${COMPREPLY[@]}"' - tobiuo "$@"; }
-check "commands are completed" test "$(complete re)" = resume
+check "commands are completed" test "$(complete re)" = "resume report"
 check "options are completed" test "$(complete run --sp)" = --spacing
 "$program" --man > tobiuo.1
 for word in 'tobiuo resume DIR' 'spacing' 'NO_COLOR'; do check "the man page has $word" grep -q "$word" tobiuo.1; done
