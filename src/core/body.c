@@ -50,11 +50,11 @@ static int compare_keys(const void *a, const void *b)
    no boundary of the body: they go. Judged once, in the pose the body starts in. */
 static void drop_inner_pieces(tobi_body *b, double width)
 {
-    tobi_surface *s = &b->surface;
+    tobi_quadrature *s = &b->surface;
     int64_t kept = 0;
     if (!b->mesh.overlapping) return;
     tobi_bvh_use_winding(b->bvh);
-    tobi_surface_update(s, (const double(*)[3])b->vertex, (const int32_t(*)[3])b->mesh.triangles, b->piece,
+    tobi_quadrature_update(s, (const double(*)[3])b->vertex, (const int32_t(*)[3])b->mesh.triangles, b->piece,
                         b->piece_normal, b->piece_area);
     for (int64_t i = 0; i < s->count; i++) {
         double before[3], behind[3];
@@ -63,7 +63,7 @@ static void drop_inner_pieces(tobi_body *b, double width)
             behind[a] = b->piece[i][a] - 1e-3*width*b->piece_normal[i][a];
         }
         if (tobi_bvh_inside(b->bvh, before) == tobi_bvh_inside(b->bvh, behind)) continue;
-        tobi_surface_move(s, i, kept++);
+        tobi_quadrature_move(s, i, kept++);
     }
     s->count = kept;
 }
@@ -77,7 +77,7 @@ static tobi_status group_pieces(tobi_body *b, double width, tobi_error *err)
     if (!keys)
         return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %lld surface pieces",
                          b->name, (long long)n);
-    tobi_surface_update(&b->surface, (const double(*)[3])b->vertex,
+    tobi_quadrature_update(&b->surface, (const double(*)[3])b->vertex,
                         (const int32_t(*)[3])b->mesh.triangles, b->piece, b->piece_normal,
                         b->piece_area);
     for (int64_t i = 0; i < n; i++) {
@@ -214,7 +214,7 @@ static void turn_rate(const double from[3][3], const double to[3][3], double dt,
 static void update_surface(tobi_body *b)
 {
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
-    tobi_surface_update(&b->surface, (const double(*)[3])b->vertex,
+    tobi_quadrature_update(&b->surface, (const double(*)[3])b->vertex,
                         (const int32_t(*)[3])b->mesh.triangles, b->piece, b->piece_normal,
                         b->piece_area);
     memset(b->weight, 0, (size_t)b->point_count*sizeof *b->weight);
@@ -393,7 +393,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         status = tobi_rigid_init(&b->rigid, def, &b->rest, centre, dimension, err);
     }
     if (status == TOBI_OK)
-        status = tobi_surface_build(&b->mesh, point_spacing, dimension, &b->surface, err);
+        status = tobi_quadrature_build(&b->mesh, point_spacing, dimension, &b->surface, err);
     if (status == TOBI_OK)
         status = tobi_sample_volume(&b->mesh, NULL, b->spacing, dimension, &b->particle_rest,
                                     &b->particle_count, err);
@@ -430,7 +430,7 @@ void tobi_body_free(tobi_body *b)
 {
     tobi_mesh_free(&b->mesh);
     tobi_bvh_free(b->bvh);
-    tobi_surface_free(&b->surface);
+    tobi_quadrature_free(&b->surface);
     free(b->vertex); free(b->next); free(b->vertex_velocity);
     free(b->vertex_before);
     free(b->point_before);
@@ -524,7 +524,8 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 
 static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (*point)[3])
 {
-    tobi_surface_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex, b->piece_velocity);
+    tobi_quadrature_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex,
+                                b->piece_velocity);
     gather_points(b, (const double (*)[3])b->piece_velocity, point);
     divide_by_weight(b, point);
 }

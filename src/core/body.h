@@ -8,7 +8,7 @@
 #include "geom/mesh.h"
 #include "geom/sample.h"
 #include "geom/sharp.h"
-#include "geom/surface.h"
+#include "geom/quadrature.h"
 #include "tobiuo/types.h"
 
 /* A straight piece of a blade's edge as it cuts now, in rest axes about the centre of mass. */
@@ -66,7 +66,7 @@ typedef struct tobi_body {
                                         where tobi_body_place or tobi_body_bring_surface last put
                                         it: contact uses rest_bvh */
 
-    tobi_surface surface;            /* pieces of the triangles                                */
+    tobi_quadrature surface;            /* pieces of the triangles                                */
     double (*piece)[3], (*piece_normal)[3], (*piece_velocity)[3];
     double *piece_area;
     int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */

@@ -1,7 +1,7 @@
 /* Points that stand for a body: lattice points inside it, and (surface.h) pieces of its surface. */
 #pragma once
 #include "geom/bvh.h"
-#include "geom/surface.h"
+#include "geom/quadrature.h"
 
 /* Points of a cubic lattice of the given spacing (m) inside an oriented mesh (2-D: a square lattice
    inside its section with z = 0). The lattice is shifted so that count spacing^3 meets the volume and

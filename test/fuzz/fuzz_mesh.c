@@ -47,16 +47,16 @@ static void ask_tree(const tobi_mesh *mesh)
 static void cut_surface(const tobi_mesh *mesh, int dimension, double spacing)
 {
     tobi_error err = { 0 };
-    tobi_surface surface;
-    if (!passed(tobi_surface_build(mesh, spacing, dimension, &surface, &err), &err)) return;
+    tobi_quadrature surface;
+    if (!passed(tobi_quadrature_build(mesh, spacing, dimension, &surface, &err), &err)) return;
     double *numbers = calloc((size_t)surface.count*7 + 1, sizeof *numbers);
     PROMISE(numbers);
-    tobi_surface_update(&surface, (const double (*)[3])mesh->vertices,
+    tobi_quadrature_update(&surface, (const double (*)[3])mesh->vertices,
                         (const int32_t (*)[3])mesh->triangles, (double (*)[3])numbers,
                         (double (*)[3])(numbers + 3*surface.count), numbers + 6*surface.count);
     for (int64_t i = 0; i < 7*surface.count; i++) PROMISE(isfinite(numbers[i]));
     free(numbers);
-    tobi_surface_free(&surface);
+    tobi_quadrature_free(&surface);
 }
 
 static void sample(const tobi_mesh *mesh, int dimension, double spacing)

@@ -164,13 +164,13 @@ static void pieces_cover_the_surface(void **state)
     OK(tobi_massprops_volume(&mesh, &p, &err));
     static const double spacings[] = {0.004, 0.001};
     for (int i = 0; i < 2; i++) {
-        tobi_surface s;
-        OK(tobi_surface_build(&mesh, spacings[i], 3, &s, &err));
+        tobi_quadrature s;
+        OK(tobi_quadrature_build(&mesh, spacings[i], 3, &s, &err));
         double (*x)[3] = malloc((size_t)s.count*sizeof *x), (*n)[3] = malloc((size_t)s.count*sizeof *n);
         double *area = malloc((size_t)s.count*sizeof *area);
         double sum = 0, largest = 0, closed[3] = {0}, volume = 0;
         const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
-        tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, x, n, area);
+        tobi_quadrature_update(&s, (const double (*)[3])mesh.vertices, t, x, n, area);
         for (int64_t k = 0; k < s.count; k++) {
             sum += area[k];
             largest = fmax(largest, area[k]);
@@ -189,7 +189,7 @@ static void pieces_cover_the_surface(void **state)
         free(x);
         free(n);
         free(area);
-        tobi_surface_free(&s);
+        tobi_quadrature_free(&s);
     }
     tobi_mesh_free(&mesh);
 }
@@ -198,17 +198,17 @@ static void pieces_move_with_the_mesh(void **state)
 {
     (void)state;
     tobi_mesh mesh = make_cube(1);
-    tobi_surface s;
-    OK(tobi_surface_build(&mesh, 0.5, 3, &s, &err));
+    tobi_quadrature s;
+    OK(tobi_quadrature_build(&mesh, 0.5, 3, &s, &err));
     double (*before)[3] = malloc((size_t)s.count*sizeof *before);
     double (*after)[3] = malloc((size_t)s.count*sizeof *after);
     double (*n)[3] = malloc((size_t)s.count*sizeof *n);
     double *area = malloc((size_t)s.count*sizeof *area), sum = 0;
     const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
-    tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, before, n, area);
+    tobi_quadrature_update(&s, (const double (*)[3])mesh.vertices, t, before, n, area);
     OK(tobi_mesh_transform(&mesh, (double[3]){3, 1, 1}, (double[3]){0, 0, 1}, 90, (double[3]){0, 5, 0},
                            &err));
-    tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, after, n, area);
+    tobi_quadrature_update(&s, (const double (*)[3])mesh.vertices, t, after, n, area);
     for (int64_t i = 0; i < s.count; i++) {
         WITHIN(after[i][0], -before[i][1], 1e-12);
         WITHIN(after[i][1], 3*before[i][0] + 5, 1e-12);
@@ -218,14 +218,14 @@ static void pieces_move_with_the_mesh(void **state)
     }
     NEAR(sum, 2*(12 + 12 + 4), 1e-13);
     /* a linear field is met exactly */
-    tobi_surface_interpolate(&s, t, (const double (*)[3])mesh.vertices, n);
+    tobi_quadrature_interpolate(&s, t, (const double (*)[3])mesh.vertices, n);
     for (int64_t i = 0; i < s.count; i++)
         for (int k = 0; k < 3; k++) WITHIN(n[i][k], after[i][k], 1e-12);
     free(before);
     free(after);
     free(n);
     free(area);
-    tobi_surface_free(&s);
+    tobi_quadrature_free(&s);
     tobi_mesh_free(&mesh);
 }
 
@@ -234,15 +234,15 @@ static void outlines_in_two_dimensions(void **state)
     (void)state;
     tobi_mesh mesh = read_own("test/meshes/cylinder.obj");
     tobi_massprops p;
-    tobi_surface s;
+    tobi_quadrature s;
     OK(tobi_massprops_section(&mesh, &p, &err));
-    OK(tobi_surface_build(&mesh, 0.03, 2, &s, &err));
+    OK(tobi_quadrature_build(&mesh, 0.03, 2, &s, &err));
     double (*x)[3] = malloc((size_t)s.count*sizeof *x), (*n)[3] = malloc((size_t)s.count*sizeof *n);
     double *length = malloc((size_t)s.count*sizeof *length);
     const int32_t (*t)[3] = (const int32_t (*)[3])mesh.triangles;
     /* shifted in the plane: pieces and their values follow */
     for (int64_t i = 0; i < mesh.vertex_count; i++) mesh.vertices[i][0] += 7;
-    tobi_surface_update(&s, (const double (*)[3])mesh.vertices, t, x, n, length);
+    tobi_quadrature_update(&s, (const double (*)[3])mesh.vertices, t, x, n, length);
     double sum = 0, area = 0, first_moment = 0;
     for (int64_t i = 0; i < s.count; i++) {
         sum += length[i];
@@ -256,15 +256,15 @@ static void outlines_in_two_dimensions(void **state)
     NEAR(sum, p.area, 1e-12);
     NEAR(area, p.volume, 1e-11);
     WITHIN(first_moment, 0, 1e-13);
-    tobi_surface_interpolate(&s, t, (const double (*)[3])mesh.vertices, n);
+    tobi_quadrature_interpolate(&s, t, (const double (*)[3])mesh.vertices, n);
     for (int64_t i = 0; i < s.count; i++) WITHIN(n[i][0], x[i][0], 1e-12);
     free(x);
     free(n);
     free(length);
-    tobi_surface_free(&s);
-    REFUSED(tobi_surface_build(&mesh, 0, 2, &s, &err), TOBI_INVALID, "must be > 0");
-    REFUSED(tobi_surface_build(&mesh, 0.1, 1, &s, &err), TOBI_INVALID, "2 and 3");
-    REFUSED(tobi_surface_build(&mesh, 1e-9, 3, &s, &err), TOBI_INVALID, "allow larger");
+    tobi_quadrature_free(&s);
+    REFUSED(tobi_quadrature_build(&mesh, 0, 2, &s, &err), TOBI_INVALID, "must be > 0");
+    REFUSED(tobi_quadrature_build(&mesh, 0.1, 1, &s, &err), TOBI_INVALID, "2 and 3");
+    REFUSED(tobi_quadrature_build(&mesh, 1e-9, 3, &s, &err), TOBI_INVALID, "allow larger");
     tobi_mesh_free(&mesh);
 }
 

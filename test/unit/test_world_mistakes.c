@@ -15,7 +15,7 @@
 #include "calls.h"
 #include "exec/exec.h"
 #include "geom/mesh.h"
-#include "geom/surface.h"
+#include "geom/quadrature.h"
 #include "io/store.h"
 #include "io/vtk.h"
 #include "rigid/script.h"
@@ -289,9 +289,9 @@ static void meshes(void **state)
             "1099511627776 vertices and 4 triangles; allowed are at most");
     REFUSED(tobi_mesh_orient(&empty, "m", &err), TOBI_INVALID, "no triangles; a closed surface");
     assert_int_equal(tobi_mesh_build("m", 4, corner, 4, face, &mesh, NULL), TOBI_OK);
-    tobi_surface surface;
+    tobi_quadrature surface;
     for (int i = 0; i < mesh.vertex_count; i++) mesh.vertices[i][2] -= 0.25;   /* across z = 0 */
-    REFUSED(tobi_surface_build(&mesh, 1e-12, 2, &surface, &err), TOBI_INVALID,
+    REFUSED(tobi_quadrature_build(&mesh, 1e-12, 2, &surface, &err), TOBI_INVALID,
             "an outline in pieces of 1e-12 m needs more than");
     tobi_mesh_free(&mesh);
 

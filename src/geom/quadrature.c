@@ -1,6 +1,6 @@
 /* Surface pieces. Halving the longest edge keeps the pieces of a sliver few and their areas powers
    of two of the triangle's. */
-#include "geom/surface.h"
+#include "geom/quadrature.h"
 #include "exec/exec.h"
 #include "geom/section.h"
 #include "geom/vec3.h"
@@ -14,26 +14,26 @@ typedef struct piece {
     double fraction;
 } piece;
 
-void tobi_surface_free(tobi_surface *s)
+void tobi_quadrature_free(tobi_quadrature *s)
 {
     if (!s) return;
     free(s->triangle);
     free(s->a);
     free(s->b);
     free(s->fraction);
-    *s = (tobi_surface){0};
+    *s = (tobi_quadrature){0};
 }
 
-static tobi_status allocate_surface(tobi_surface *s, int64_t count, int dimension, tobi_error *err)
+static tobi_status allocate_surface(tobi_quadrature *s, int64_t count, int dimension, tobi_error *err)
 {
     size_t n = (size_t)count + 1;
-    *s = (tobi_surface){.dimension = dimension, .count = count};
+    *s = (tobi_quadrature){.dimension = dimension, .count = count};
     s->triangle = malloc(n*sizeof *s->triangle);
     s->a = malloc(n*sizeof *s->a);
     if (dimension == 2) s->b = malloc(n*sizeof *s->b);
     else s->fraction = malloc(n*sizeof *s->fraction);
     if (s->triangle && s->a && (s->b || s->fraction)) return TOBI_OK;
-    tobi_surface_free(s);
+    tobi_quadrature_free(s);
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld surface pieces", (long long)count);
 }
 
@@ -43,7 +43,7 @@ static void place_point(double out[3], const double bary[3], const double *const
 }
 
 /* Cuts one triangle; writes pieces from *count on if out is given, and counts them. */
-static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_surface *out,
+static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_quadrature *out,
                          int64_t *count)
 {
     piece stack[64 + 1] = {{.corner = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .fraction = 1}};
@@ -80,7 +80,7 @@ static void cut_triangle(const double *const x[3], double spacing, int32_t t, to
     }
 }
 
-static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_surface *out,
+static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_quadrature *out,
                                    tobi_error *err)
 {
     for (int pass = 0; pass < 2; pass++) {
@@ -106,7 +106,7 @@ static int64_t count_parts(const tobi_section *s, int64_t i, double spacing)
     return length > 0 ? (int64_t)ceil(length/spacing*(1 - 1e-12)) : 0;
 }
 
-static tobi_status build_section(const tobi_mesh *mesh, double spacing, tobi_surface *out, tobi_error *err)
+static tobi_status build_section(const tobi_mesh *mesh, double spacing, tobi_quadrature *out, tobi_error *err)
 {
     tobi_section s;
     int64_t count = 0;
@@ -135,10 +135,10 @@ static tobi_status build_section(const tobi_mesh *mesh, double spacing, tobi_sur
     return status;
 }
 
-tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimension, tobi_surface *out,
+tobi_status tobi_quadrature_build(const tobi_mesh *mesh, double spacing, int dimension, tobi_quadrature *out,
                                tobi_error *err)
 {
-    *out = (tobi_surface){0};
+    *out = (tobi_quadrature){0};
     if (!(spacing > 0) || !isfinite(spacing))
         return tobi_fail(err, TOBI_INVALID, "surface spacing is %g m; it must be > 0", spacing);
     if (dimension != 2 && dimension != 3)
@@ -147,7 +147,7 @@ tobi_status tobi_surface_build(const tobi_mesh *mesh, double spacing, int dimens
                           : build_triangles(mesh, spacing, out, err);
 }
 
-void tobi_surface_move(tobi_surface *s, int64_t from, int64_t to)
+void tobi_quadrature_move(tobi_quadrature *s, int64_t from, int64_t to)
 {
     s->triangle[to] = s->triangle[from];
     memmove(s->a[to], s->a[from], sizeof *s->a);
@@ -157,7 +157,7 @@ void tobi_surface_move(tobi_surface *s, int64_t from, int64_t to)
 
 /* --- moving ------------------------------------------------------------------------------- */
 
-static void update_part(const tobi_surface *s, int64_t i, const double *const x[3], double middle[3],
+static void update_part(const tobi_quadrature *s, int64_t i, const double *const x[3], double middle[3],
                         double normal[3], double *area)
 {
     double ab[3], ac[3];
@@ -169,7 +169,7 @@ static void update_part(const tobi_surface *s, int64_t i, const double *const x[
     place_point(middle, s->a[i], x);
 }
 
-static void update_line(const tobi_surface *s, int64_t i, const double *const x[3], double middle[3],
+static void update_line(const tobi_quadrature *s, int64_t i, const double *const x[3], double middle[3],
                         double normal[3], double *length)
 {
     double from[3], to[3];
@@ -187,7 +187,7 @@ static void update_line(const tobi_surface *s, int64_t i, const double *const x[
 enum { FEW = 4096 };           /* parts that one thread updates sooner than several wake */
 
 typedef struct moving {
-    const tobi_surface *s;
+    const tobi_quadrature *s;
     const double (*vertices)[3];       /* their places, or values to interpolate */
     const int32_t (*triangles)[3];
     double (*position)[3], (*normal)[3], *area;
@@ -196,7 +196,7 @@ typedef struct moving {
 static void update_points(const void *view, int64_t begin, int64_t end)
 {
     const moving *m = view;
-    const tobi_surface *s = m->s;
+    const tobi_quadrature *s = m->s;
     for (int64_t i = begin; i < end; i++) {
         const int32_t *t = m->triangles[s->triangle[i]];
         const double *x[3] = {m->vertices[t[0]], m->vertices[t[1]], m->vertices[t[2]]};
@@ -209,7 +209,8 @@ static void update_points(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_surface_update(const tobi_surface *s, const double (*vertices)[3], const int32_t (*triangles)[3],
+void tobi_quadrature_update(const tobi_quadrature *s, const double (*vertices)[3],
+                            const int32_t (*triangles)[3],
                          double (*position)[3], double (*normal)[3], double *area)
 {
     const moving view = {s, vertices, triangles, position, normal, area};
@@ -219,7 +220,7 @@ void tobi_surface_update(const tobi_surface *s, const double (*vertices)[3], con
 static void interpolate_points(const void *view, int64_t begin, int64_t end)
 {
     const moving *m = view;
-    const tobi_surface *s = m->s;
+    const tobi_quadrature *s = m->s;
     for (int64_t i = begin; i < end; i++) {
         const int32_t *t = m->triangles[s->triangle[i]];
         const double *x[3] = {m->vertices[t[0]], m->vertices[t[1]], m->vertices[t[2]]};
@@ -232,7 +233,7 @@ static void interpolate_points(const void *view, int64_t begin, int64_t end)
     }
 }
 
-void tobi_surface_interpolate(const tobi_surface *s, const int32_t (*triangles)[3],
+void tobi_quadrature_interpolate(const tobi_quadrature *s, const int32_t (*triangles)[3],
                               const double (*vertex_values)[3], double (*out)[3])
 {
     const moving view = {s, vertex_values, triangles, out, NULL, NULL};

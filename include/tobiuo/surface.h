@@ -1,0 +1,70 @@
+/* The surface of particles as a triangle mesh: of a liquid, of the pieces of solids. Arrays in, mesh out;
+   tobi_world_read and tobi_world_pieces give the arrays of a world.
+
+   Level set of a kernel sum on sparse blocks of a grid, marching cubes, short edges merged, weighted
+   Laplacian smoothing (Loeschner, Boettcher, Jeske & Bender 2023), each connected part brought back to its
+   volume. The mesh is closed and manifold; particles of different groups never share a surface. A particle
+   alone becomes a small sphere of its volume. docs/decisions/0054-surfaces.md says why.
+
+   The same input gives the same bits for any number of threads. Positions have the precision of a float
+   against the size of the particles' box. 3-D only. */
+#ifndef TOBIUO_SURFACE_H
+#define TOBIUO_SURFACE_H
+#include "tobiuo/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Numbers of the particles that the vertices shall have too: mean of the particles around, by the kernel. */
+typedef struct tobi_surface_field {
+    int components;                    /* 1 to 9                                                         */
+    const double *values;              /* particle_count x components                                    */
+} tobi_surface_field;
+
+/* Everything borrowed for the call. Obtain from tobi_default_surface and change members. */
+typedef struct tobi_surface_def {
+    int64_t particle_count;
+    const double (*positions)[3];      /* m; not finite = left out                                       */
+    const int32_t *group;              /* of each particle, below 2^20: one surface each; negative = left
+                                          out; NULL = all are one                                        */
+    double spacing;                    /* m between particles                                            */
+    double cell;                       /* of the grid, in spacings, 0.1 to 2                             */
+    int smoothing;                     /* rounds, 0 to 100                                               */
+
+    double box_min[3], box_max[3];     /* m, the domain; asked only where a surface ends flat            */
+    int flat_min[3], flat_max[3];      /* not 0: surfaces end flat at this side of the box, in a cap     */
+
+    const tobi_surface_field *fields;
+    int field_count;                   /* at most TOBI_SURFACE_FIELD_LIMIT                               */
+    int threads;                       /* 0 = all cores                                                  */
+} tobi_surface_def;
+
+enum { TOBI_SURFACE_FIELD_LIMIT = 32 };
+
+/* The mesh. Owned by the caller until tobi_surface_free. Counts may be 0. */
+typedef struct tobi_surface {
+    int64_t vertex_count, triangle_count;
+    double (*vertices)[3];             /* m                                                              */
+    float (*normals)[3];               /* unit vectors, outwards; where a cap begins, those of the free
+                                          surface beside it                                              */
+    int32_t (*triangles)[3];           /* counter-clockwise seen from outside                            */
+    int32_t *group;                    /* of each vertex                                                 */
+    uint8_t *sides;                    /* of each vertex, a bit for each flat side it lies on: 1, 2, 4 at
+                                          box_min of x, y, z; 8, 16, 32 at box_max. A triangle whose three
+                                          vertices share a bit belongs to a cap.                         */
+    float *fields[TOBI_SURFACE_FIELD_LIMIT];     /* vertex_count x components each                       */
+} tobi_surface;
+
+TOBI_API tobi_surface_def tobi_default_surface(void);
+
+/* TOBI_INVALID for numbers out of range and for NULL where something must stand, TOBI_NO_MEMORY with the
+   bytes that the grid would need. On failure *surface is NULL. */
+TOBI_API tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err);
+/* NULL is fine. */
+TOBI_API void tobi_surface_free(tobi_surface *surface);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
