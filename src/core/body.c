@@ -291,7 +291,7 @@ void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_
     memcpy(b->frame, place->frame, sizeof b->frame);
 }
 
-tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err)
+tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err)
 {
     if (b->rest_bvh) return TOBI_OK;
     if (!b->rest_vertex) b->rest_vertex = malloc((size_t)(b->mesh.vertex_count + 1)*sizeof *b->rest_vertex);
@@ -458,7 +458,7 @@ void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin
 {
     tobi_rigid *r = &b->rigid;
     double turn[3];
-    tobi_rigid_coast(r, dt);
+    tobi_rigid_drift_freely(r, dt);
     for (int a = 0; a < 3; a++) {
         r->next_position[a] += (velocity[a] - r->velocity[a])*dt;
         turn[a] = (spin[a] - r->angular_velocity[a])*dt;
@@ -478,7 +478,7 @@ static void drive_points(const tobi_rigid *r, const double velocity[3], const do
     }
 }
 
-void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3])
+void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3])
 {
     memcpy(b->rigid.driven, velocity, 3*sizeof *velocity);
     memcpy(b->rigid.driven + 3, spin, 3*sizeof *spin);
@@ -487,7 +487,7 @@ void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3
     drive_points(&b->rigid, velocity, spin, b->point_count, (const double (*)[3])b->point, b->point_velocity);
 }
 
-void tobi_body_bring_surface(tobi_body *b) { update_surface(b); }
+void tobi_body_update_surface(tobi_body *b) { update_surface(b); }
 
 /* The drift of a free body, and the velocities its vertices have now. */
 static void predict_free(tobi_body *b, double dt)
@@ -530,12 +530,12 @@ static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (
     divide_by_weight(b, point);
 }
 
-void tobi_body_drive_points(tobi_body *b)
+void tobi_body_set_point_velocities(tobi_body *b)
 {
     interpolate_points(b, (const double (*)[3])b->vertex_velocity, b->point_velocity);
 }
 
-void tobi_body_recall_points(tobi_body *b)
+void tobi_body_set_previous_velocities(tobi_body *b)
 {
     interpolate_points(b, (const double (*)[3])b->vertex_before, b->point_before);
 }

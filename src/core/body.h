@@ -41,7 +41,7 @@ typedef struct tobi_body {
     double edge_resistance;          /* J/m2 of new surface                                    */
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */
     int64_t edge_count;
-    tobi_blade_edge *edge_now;       /* [edge_count], by tobi_blade_bring                      */
+    tobi_blade_edge *edge_now;       /* [edge_count], by tobi_blade_update                     */
     double (*edge_share)[3];         /* [piece_count] 1: what each piece of the edge pushed the material with
                                         in the last step, over the most that it can; the mean of all where
                                         there is no material                                   */
@@ -63,7 +63,7 @@ typedef struct tobi_body {
     double (*vertex_velocity)[3];    /* mean over the step                                     */
     double (*vertex_before)[3];      /* of a body with a motion, in the step before; first 0   */
     tobi_bvh *bvh;                   /* of `vertex`; of a rigid body, as the quadrature points, only
-                                        where tobi_body_place or tobi_body_bring_surface last put
+                                        where tobi_body_place or tobi_body_update_surface last put
                                         it: contact uses rest_bvh */
 
     tobi_quadrature surface;            /* pieces of the triangles                                */
@@ -72,7 +72,7 @@ typedef struct tobi_body {
     int32_t *point_of;               /* [pieces] the quadrature point a piece belongs to       */
     int64_t point_count;             /* quadrature points: neighbouring pieces of one side     */
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
-    double (*point_before)[3];       /* velocities by vertex_before, by tobi_body_recall_points */
+    double (*point_before)[3];       /* velocities by vertex_before, by tobi_body_set_previous_velocities */
     uint8_t *wet;                    /* [points] TOBI_WET_*                                    */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
@@ -85,7 +85,7 @@ typedef struct tobi_body {
     tobi_rigid rigid;                /* pose and velocities, of bodies of every kind           */
     int deforms;                     /* its motion is not rigid: `rigid` is an approximation   */
     double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
-    tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_need_rest        */
+    tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_build_rest       */
     tobi_body_load load[TOBI_SYSTEM_LIMIT];      /* of this step: each system adds to its own  */
     tobi_body_info info;             /* its forces: tobi_body_sum_loads                        */
 } tobi_body;
@@ -98,7 +98,7 @@ void tobi_body_free(tobi_body *b);
 /* 1 if any of the bodies is free or controlled. */
 int tobi_body_any_free(const tobi_body *bodies, int count);
 /* Builds rest_vertex and rest_bvh, for queries in the body's own axes, if they are not there yet. */
-tobi_status tobi_body_need_rest(tobi_body *b, tobi_error *err);
+tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err);
 /* Finds the edge of a blade, or takes the one that the definition gives; of other bodies nothing. The body
    must be placed at time 0. TOBI_INVALID in words where there is none. */
 tobi_status tobi_body_find_edge(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
@@ -117,14 +117,14 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
    because contact has changed them. */
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
-void tobi_body_drive(tobi_body *b, const double velocity[3], const double spin[3]);
+void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
 /* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
    vertices. */
-void tobi_body_drive_points(tobi_body *b);
-/* Gives them, as point_before, those of the step before. To be called before tobi_body_drive_points. */
-void tobi_body_recall_points(tobi_body *b);
+void tobi_body_set_point_velocities(tobi_body *b);
+/* Gives them, as point_before, those of the step before. Before tobi_body_set_point_velocities. */
+void tobi_body_set_previous_velocities(tobi_body *b);
 /* Brings the quadrature points and the tree of a rigid body to its present pose. */
-void tobi_body_bring_surface(tobi_body *b);
+void tobi_body_update_surface(tobi_body *b);
 /* Makes `next` the present pose at time t. */
 tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err);
 /* Before a step: no system presses. */

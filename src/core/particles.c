@@ -40,20 +40,20 @@ static void set_array(char *slot, void *data) { memcpy(slot, &data, sizeof data)
 
 void *tobi_particles_rows(int64_t rows, size_t row) { return tobi_array_zero(rows + TOBI_PAD_ROWS, row); }
 
-static int is_lent(const tobi_field *f) { return f->life != TOBI_STATE && f->life != TOBI_SCRATCH; }
+static int is_leased(const tobi_field *f) { return f->life != TOBI_STATE && f->life != TOBI_SCRATCH; }
 
 /* at[k]: where field k of the list, if it lives in stages, begins in a row of lent memory: in list order,
    each at the lowest place that no field of the same stage has. Returns the bytes of a row. */
-static size_t place_lent(const tobi_field_list *list, unsigned needs, size_t at[FIELD_LIMIT])
+static size_t place_leased(const tobi_field_list *list, unsigned needs, size_t at[FIELD_LIMIT])
 {
     size_t row = 0;
     for (int k = 0; list && k < list->count; k++) {
         const tobi_field *f = &list->field[k];
-        if (!is_lent(f) || !is_there(f, needs)) continue;
+        if (!is_leased(f) || !is_there(f, needs)) continue;
         at[k] = 0;
         for (int j = 0; j < k; j++) {
             const tobi_field *g = &list->field[j];
-            if (!is_lent(g) || !is_there(g, needs) || !(f->life & g->life)) continue;
+            if (!is_leased(g) || !is_there(g, needs) || !(f->life & g->life)) continue;
             if (at[k] >= at[j] + g->bytes || at[j] >= at[k] + f->bytes) continue;
             at[k] = at[j] + g->bytes;
             j = -1;                                    /* the ones before may be in the way now */
@@ -64,14 +64,14 @@ static size_t place_lent(const tobi_field_list *list, unsigned needs, size_t at[
 }
 
 /* Rows of lent arrays: each begins on a cache line, whatever its place. */
-static size_t lent_rows(int64_t rows) { return ((size_t)rows + TOBI_PAD_ROWS + 63)/64*64; }
+static size_t leased_rows(int64_t rows) { return ((size_t)rows + TOBI_PAD_ROWS + 63)/64*64; }
 
-static int make_lent(tobi_particles *p, int64_t rows)
+static int make_leased(tobi_particles *p, int64_t rows)
 {
-    size_t at[FIELD_LIMIT], row = place_lent(p->list, p->needs, at);
+    size_t at[FIELD_LIMIT], row = place_leased(p->list, p->needs, at);
     tobi_particles_stage(p, 0);
     if (row == 0) return 1;
-    char *made = tobi_particles_rows((int64_t)lent_rows(rows), row);
+    char *made = tobi_particles_rows((int64_t)leased_rows(rows), row);
     if (!made) return 0;
     tobi_array_free(p->lent);
     p->lent = made;
@@ -79,7 +79,7 @@ static int make_lent(tobi_particles *p, int64_t rows)
 }
 
 /* Values that nobody should read. */
-static inline int spoil(void *data, size_t bytes)
+static inline int poison(void *data, size_t bytes)
 {
     memset(data, 0xff, bytes);
     return 1;
@@ -88,13 +88,13 @@ static inline int spoil(void *data, size_t bytes)
 void tobi_particles_stage(tobi_particles *p, int stages)
 {
     size_t at[FIELD_LIMIT];
-    const size_t rows = lent_rows(p->capacity);
-    place_lent(p->list, p->needs, at);
+    const size_t rows = leased_rows(p->capacity);
+    place_leased(p->list, p->needs, at);
     for (int k = 0; p->list && k < p->list->count; k++) {
         const tobi_field *f = &p->list->field[k];
         char *slot = (char *)p->own + f->offset;
-        if (!is_lent(f) || !is_there(f, p->needs)) continue;
-        if (get_array(slot) && !(f->life & stages)) assert(spoil(get_array(slot), rows*f->bytes));
+        if (!is_leased(f) || !is_there(f, p->needs)) continue;
+        if (get_array(slot) && !(f->life & stages)) assert(poison(get_array(slot), rows*f->bytes));
         set_array(slot, f->life & stages ? p->lent + rows*at[k] : NULL);
     }
     p->stages = stages;
@@ -105,11 +105,11 @@ void tobi_particles_stage(tobi_particles *p, int stages)
 static int resize(tobi_particles *p, int64_t rows)
 {
     char *slot;
-    if (!make_lent(p, rows)) return 0;
+    if (!make_leased(p, rows)) return 0;
     for (int k = 0;; k++) {
         const tobi_field *f = find_field(p, k, &slot);
         if (!f) break;
-        if (is_lent(f)) continue;
+        if (is_leased(f)) continue;
         void *made = tobi_particles_rows(rows, f->bytes), *old = get_array(slot);
         if (!made) return 0;
         if (old) memcpy(made, old, (size_t)p->count*f->bytes);
@@ -217,8 +217,8 @@ int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs)
     size_t bytes = 0, at[FIELD_LIMIT];
     for (int k = 0; k < COMMON; k++) bytes += common[k].bytes;
     for (int k = 0; list && k < list->count; k++)
-        if (is_there(&list->field[k], needs) && !is_lent(&list->field[k])) bytes += list->field[k].bytes;
-    return (int64_t)(bytes + place_lent(list, needs, at));
+        if (is_there(&list->field[k], needs) && !is_leased(&list->field[k])) bytes += list->field[k].bytes;
+    return (int64_t)(bytes + place_leased(list, needs, at));
 }
 
 int64_t tobi_particles_widest(const tobi_particles *p)

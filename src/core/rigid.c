@@ -245,7 +245,7 @@ static void turn_free(const tobi_rigid *r, double q[4], double dt, int depth)
     normalize(q);
 }
 
-void tobi_rigid_coast(tobi_rigid *r, double dt)
+void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
 {
     double *q = r->next_orientation, w[3];
     int turns = bits_of(r) & ALL_TURNS;
@@ -275,7 +275,7 @@ void tobi_rigid_drift(tobi_rigid *r, double dt)
         mean.momentum[a] = 0.5*(r->momentum[a] + keep*(r->momentum[a] + dt*r->pull_torque[a]));
     }
     tobi_rigid_apply_locks(&mean);
-    tobi_rigid_coast(&mean, dt);
+    tobi_rigid_drift_freely(&mean, dt);
     memcpy(r->next_position, mean.next_position, sizeof r->next_position);
     memcpy(r->next_orientation, mean.next_orientation, sizeof r->next_orientation);
 }

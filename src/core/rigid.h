@@ -29,7 +29,7 @@ typedef struct tobi_rigid {
     double impulse[3], twist[3];     /* N s, N m s about the centre: of particles in this step          */
     double contact_force[3], contact_torque[3];   /* N, N m: mean over the last step                    */
     double pull[3], pull_torque[3];  /* m/s2, N m: constant over the next drift; 0 where contact holds  */
-    double leaned[6];                /* N, N m: of contact with bodies and sides in the last step       */
+    double contact_before[6];        /* N, N m: of contact with bodies and sides in the last step       */
     double held[6];                  /* N, N m: what was so in both of the last two steps               */
     double before[6];                /* m/s, rad/s: that a liquid was made to follow in the last step   */
     double phase, phase_start;       /* of the control program; s                                       */
@@ -41,8 +41,8 @@ typedef struct tobi_rigid {
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
     /* Within the step of a liquid, sph/boundary.h: */
-    double driven[6];                             /* m/s, rad/s: by tobi_body_drive, last               */
-    double foreseen[3], foreseen_spin[3];         /* m/s, rad/s: at the end of the step                 */
+    double driven[6];                             /* m/s, rad/s: by tobi_body_set_velocity, last        */
+    double predicted[3], predicted_spin[3];         /* m/s, rad/s: at the end of the step                 */
     double mobility[3], turn_mobility[3][3];      /* 1/kg, 1/(kg m2): velocities per impulse            */
 } tobi_rigid;
 
@@ -65,7 +65,7 @@ int tobi_rigid_axes(const char *words, char unknown[32]);
    position, into next_position and next_orientation. The velocities are left to the kick. */
 void tobi_rigid_drift(tobi_rigid *r, double dt);
 /* The same by the present velocities alone. */
-void tobi_rigid_coast(tobi_rigid *r, double dt);
+void tobi_rigid_drift_freely(tobi_rigid *r, double dt);
 
 /* Inverse of mass times the unit matrix, as a diagonal, and of inertia in world axes at the present
    orientation; locked degrees of freedom give 0. */

@@ -24,7 +24,7 @@ int tobi_simulation_stops(tobi_simulation *s)
     return s->stopped;
 }
 
-tobi_status tobi_simulation_heed(tobi_simulation *s, tobi_error *err)
+tobi_status tobi_simulation_check_stop(tobi_simulation *s, tobi_error *err)
 {
     if (!tobi_simulation_stops(s)) return TOBI_OK;
     return tobi_fail(err, TOBI_STOPPED, "stopped on request at t = %.9g s, after step %lld", s->time,

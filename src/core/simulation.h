@@ -42,7 +42,7 @@ double tobi_simulation_fit_dt(double dt, double max_dt);
 /* Asks the caller whether to stop, until the answer is yes: then 1. */
 int tobi_simulation_stops(tobi_simulation *s);
 /* The same as a status: TOBI_STOPPED, in words. A step that answers it has changed nothing. */
-tobi_status tobi_simulation_heed(tobi_simulation *s, tobi_error *err);
+tobi_status tobi_simulation_check_stop(tobi_simulation *s, tobi_error *err);
 
 /* Adds the seconds since *since to a stage and moves *since to now. */
 void tobi_stage_end(tobi_stages *st, const char *name, double *since);

@@ -74,9 +74,9 @@ typedef struct tobi_method {
     /* The bits of the optional fields that this system needs. full: liquid fills the domain. NULL: 0. */
     unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
-    /* Smoothing kernel and support radius that the parameters ask for; stirred: something is moved in a
+    /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */
-    void (*smoothing)(const void *def, int stirred, int *shape, double *support);
+    void (*smoothing)(const void *def, int driven, int *shape, double *support);
     tobi_status (*create)(tobi_system *s, tobi_error *err);
     /* Optional: the method's own state fields of a new particle. */
     void (*place)(tobi_system *s, int64_t i, const tobi_start *start);

@@ -7,11 +7,11 @@
 #pragma once
 #include "exec/portable.h"
 
-typedef struct tobi_near {
+typedef struct tobi_neighbors {
     lane dx, dy, dz, r2, w;      /* w: payload of the neighbour's record */
     lane_int index;
     const int32_t *j;            /* the neighbours' indices in memory    */
-} tobi_near;
+} tobi_neighbors;
 
 #define TOBI_PAIR_LOOP(K, V, NAME)                                                               \
     static void NAME(const void *view, int64_t begin, int64_t end, double *totals)               \
@@ -23,7 +23,7 @@ typedef struct tobi_near {
             const int32_t *j = v->list + 8*(int64_t)v->list_start[i];                            \
             K##_start(v, i, &acc);                                                               \
             for (int g = 0; g < 8*v->list_groups[i]; g += TOBI_LANES) {                          \
-                tobi_near near;                                                                  \
+                tobi_neighbors near;                                                             \
                 lane_int x, y, z;                                                                \
                 near.j = j + g;                                                                  \
                 near.index = lane_load_index(near.j);                                            \

@@ -23,7 +23,7 @@ static int find_ahead(const tobi_body *b, const tobi_edge *e, const double along
     return 1;
 }
 
-void tobi_blade_bring(tobi_body *b, int dimension)
+void tobi_blade_update(tobi_body *b, int dimension)
 {
     for (int64_t k = 0; k < b->edge_count; k++) {
         const tobi_edge *e = &b->edge[k];

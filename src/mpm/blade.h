@@ -21,7 +21,7 @@ typedef struct tobi_blade_piece {
 } tobi_blade_piece;
 
 /* Before the others, whenever the body has moved or has other velocities: where its edges cut now. */
-void tobi_blade_bring(tobi_body *b, int dimension);
+void tobi_blade_update(tobi_body *b, int dimension);
 /* x: m, from the body's centre, in the body's rest axes, as the normal found. 0 if the edge has no direction:
    it is tagged and stands still; only `far` is found then. */
 int tobi_blade_locate(const tobi_body *b, int dimension, const double x[3], tobi_blade_place *out);

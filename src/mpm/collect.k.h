@@ -21,8 +21,8 @@ TOBI_FN void mpm_apply_plane(const mpm_plane *p, float v[3])
         slide += r[a]*r[a];
     }
     slide = sqrtf(slide);
-    float grip = p->kind == TOBI_WALL_SEPARATE ? -p->friction*along : 0;
-    float left = slide > grip ? 1 - grip/(slide + 1e-30f) : 0;
+    float limit = p->kind == TOBI_WALL_SEPARATE ? -p->friction*along : 0;
+    float left = slide > limit ? 1 - limit/(slide + 1e-30f) : 0;
     for (int a = 0; a < 3; a++) v[a] = p->velocity[a] + r[a]*left;
 }
 

@@ -79,9 +79,9 @@ static void find_change(tobi_contact *k, const tobi_contacts *c, double friction
         wanted[a] = k->impulse[a] - sliding*pace/k->mobility[1];
     }
     vec3_add_scaled(slide, wanted, -vec3_dot(wanted, k->normal), k->normal);
-    double size = vec3_length(slide), grip = friction*normal;
-    k->sliding = size > grip;
-    const double keep = k->sliding ? grip/size : 1;
+    double size = vec3_length(slide), limit = friction*normal;
+    k->sliding = size > limit;
+    const double keep = k->sliding ? limit/size : 1;
     for (int a = 0; a < 3; a++) k->change[a] = normal*k->normal[a] + keep*slide[a] - k->impulse[a];
 }
 
@@ -104,13 +104,13 @@ static void find_edge_change(tobi_contact *k, const tobi_contacts *c, double pac
    listed; with them what friction makes of the sliding before. */
 static void find_start(tobi_contact *k, const tobi_contacts *c, double friction)
 {
-    const double normal = vec3_dot(k->change, k->normal), grip = friction*normal;
+    const double normal = vec3_dot(k->change, k->normal), limit = friction*normal;
     double relative[3], slide[3];
     if (!(normal > 0)) return;
     find_relative(k, c->velocity, c->spin, relative);
     vec3_add_scaled(slide, relative, -vec3_dot(relative, k->normal), k->normal);
     const double size = vec3_length(slide)/k->mobility[1];
-    vec3_add_scaled(k->change, k->change, -(size > grip ? grip/size : 1)/k->mobility[1], slide);
+    vec3_add_scaled(k->change, k->change, -(size > limit ? limit/size : 1)/k->mobility[1], slide);
 }
 
 /* Adds G^T P G and G^T P (v - aim) over mobility, where G takes the body's six velocities to the contact
@@ -194,8 +194,8 @@ static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, 
         for (int n = 0; n < width; n++) total[n] += c->partial[q*SUMS + n];
 }
 
-/* The foreseen velocities after the impulses of this sweep, solved with them: V = V0 + M^-1 (r - K V). */
-static void foresee(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
+/* The predicted velocities after the impulses of this sweep, solved with them: V = V0 + M^-1 (r - K V). */
+static void predict(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
 {
     double shift[3], turn[3][3], inverse[6][6] = {{0}}, total[SUMS], a[6][6], b[6];
     tobi_rigid_inverse(r, shift, turn);
@@ -249,7 +249,7 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     double velocity[3], spin[3], total[6];
     memcpy(velocity, c->velocity, sizeof velocity);
     memcpy(spin, c->spin, sizeof spin);
-    if (moves && !first) foresee(c, r, step->dt, x);
+    if (moves && !first) predict(c, r, step->dt, x);
     const visiting view = { .c = c, .body = r, .dt = step->dt, .first = first, .moves = moves, .pace = pace };
     tobi_loop(x->threads, count_parts(c), 1, sweep_parts, &view);
     for (int64_t q = 0; q < count_parts(c); q++) {

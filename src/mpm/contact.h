@@ -46,8 +46,8 @@ typedef struct tobi_contacts {
     tobi_shift *shift;               /* of this step, at all bodies so far                       */
     int64_t shift_count, shift_room;
     struct tobi_contact_run *run;
-    struct tobi_contact_near *near;  /* of each body: particles that may touch it                */
-    int near_next, near_room;
+    struct tobi_contact_candidates *candidates; /* of each body: particles that may touch it     */
+    int candidates_next, candidates_room;
     double (*chunk_box)[6];          /* m, of every TOBI_BLOCK particles: lower and upper corner */
     double drift;                    /* m, how far they may be out of it                         */
     int marked;                      /* 1: particles remember other cuts than in the last step: the
@@ -86,7 +86,7 @@ tobi_status tobi_contact_add_edge(tobi_contacts *c, tobi_body *b, const tobi_bla
 /* Whether and how fast contacts shall bounce, from the velocities as they are. */
 void tobi_contact_aim(tobi_contacts *c, const tobi_body *b, const tobi_contact_step *step, tobi_exec *x);
 /* Impulses that turn the listed velocities into allowed ones, given the mobilities: into change, and added to
-   impulse and to the body's foreseen velocities. first: 1 takes the starting impulses as the change. Returns
+   impulse and to the body's predicted velocities. first: 1 takes the starting impulses as the change. Returns
    the largest change over the largest impulse. */
 double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_step *step, int first,
                           tobi_exec *x);

@@ -21,7 +21,7 @@ static double smaller(double a, double b) { return a < b ? a : b; }
 typedef struct candidate { int32_t particle, slot; float clear, sure; } candidate;
 
 /* Particles near one body. */
-struct tobi_contact_near {
+struct tobi_contact_candidates {
     const tobi_body *body;
     candidate *list;                 /* in rising order                                          */
     int64_t count, room;
@@ -36,8 +36,8 @@ struct tobi_contact_run { int64_t block, count; };
 
 void tobi_contact_free(tobi_contacts *c)
 {
-    for (int k = 0; k < c->near_room; k++) free(c->near[k].list);
-    free(c->near);
+    for (int k = 0; k < c->candidates_room; k++) free(c->candidates[k].list);
+    free(c->candidates);
     free(c->list);
     free(c->run);
     free(c->chunk_box);
@@ -78,8 +78,8 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
     int64_t chunks = count_chunks(p->count);
     c->shift_count = 0;
     c->drift = drift;
-    c->near_next = 0;
-    for (int k = 0; k < c->near_room && c->marked; k++) c->near[k].body = NULL;
+    c->candidates_next = 0;
+    for (int k = 0; k < c->candidates_room && c->marked; k++) c->candidates[k].body = NULL;
     c->marked = 0;
     if (drift > 0 && chunks <= c->chunk_room) return TOBI_OK;
     if (chunks > c->chunk_room) {
@@ -90,7 +90,7 @@ tobi_status tobi_contact_begin(tobi_contacts *c, const tobi_particles *p, double
         c->chunk_room = c->run && c->chunk_box ? chunks : 0;
         if (!c->chunk_room) return fail_memory(p->count, err);
     }
-    for (int k = 0; k < c->near_room; k++) c->near[k].body = NULL;
+    for (int k = 0; k < c->candidates_room; k++) c->candidates[k].body = NULL;
     const boxing view = {c, p};
     tobi_loop(tobi_team(x, p->count, 32768), chunks, 0, box_chunks, &view);
     return TOBI_OK;
@@ -309,7 +309,7 @@ static int boxes_meet(const double box[6], const double low[3], const double hig
 /* What the loops over blocks of particles or candidates need. */
 typedef struct searching {
     tobi_contacts *c;
-    struct tobi_contact_near *near;
+    struct tobi_contact_candidates *near;
     const pose *at;
     const tobi_particles *p;
     double far, low[3], high[3];       /* m, of candidates, and the box that they lie in */
@@ -324,7 +324,7 @@ static void list_chunks(const void *view, int64_t begin, int64_t end)
 }
 
 /* The list of candidates anew: all within `far`. */
-static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_candidates *near, const pose *at,
                                    const tobi_particles *p, double far, tobi_exec *x, tobi_error *err)
 {
     searching view = { .c = c, .near = near, .at = at, .p = p, .far = far };
@@ -351,7 +351,7 @@ static tobi_status list_candidates(tobi_contacts *c, struct tobi_contact_near *n
 }
 
 /* How far a point of the body may have moved since it was last looked at, m. */
-static double find_way(const pose *at, struct tobi_contact_near *near)
+static double find_way(const pose *at, struct tobi_contact_candidates *near)
 {
     const tobi_rigid *r = &at->body->rigid;
     double shift[3], turn = 0, size = 0, sign = 0;
@@ -372,7 +372,7 @@ static double find_way(const pose *at, struct tobi_contact_near *near)
 }
 
 /* Brings the body's list of candidates up to date. */
-static tobi_status find_candidates(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+static tobi_status find_candidates(tobi_contacts *c, struct tobi_contact_candidates *near, const pose *at,
                                    const tobi_particles *p, tobi_exec *x, tobi_error *err)
 {
     const double skin = at->step->reach;
@@ -451,7 +451,7 @@ static int look(const pose *at, const tobi_particles *p, double way, candidate *
 enum { AHEAD = 8 };                    /* particles that are on their way from memory             */
 
 /* Contacts of one block of candidates into out; returns how many. */
-static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_near *near,
+static int64_t search_block(const pose *at, const tobi_particles *p, struct tobi_contact_candidates *near,
                             int64_t block, tobi_contact out[TOBI_BLOCK])
 {
     const double least = at->reach*(1 + 1e-6) + near->way;
@@ -477,7 +477,7 @@ static void search_blocks(const void *view, int64_t begin, int64_t end)
 }
 
 /* Lists the contacts in the order of the particles. */
-static void search(tobi_contacts *c, struct tobi_contact_near *near, const pose *at,
+static void search(tobi_contacts *c, struct tobi_contact_candidates *near, const pose *at,
                    const tobi_particles *p, tobi_exec *x)
 {
     const int64_t runs = count_chunks(near->count);
@@ -519,17 +519,17 @@ static tobi_status reserve_shifts(tobi_contacts *c, tobi_error *err)
 }
 
 /* Bodies come in the same order in every step. */
-static tobi_status take_near(tobi_contacts *c, struct tobi_contact_near **near, tobi_error *err)
+static tobi_status take_candidates(tobi_contacts *c, struct tobi_contact_candidates **near, tobi_error *err)
 {
-    if (c->near_next == c->near_room) {
-        const int room = 2*c->near_room + 1;
-        struct tobi_contact_near *more = realloc(c->near, (size_t)room*sizeof *more);
+    if (c->candidates_next == c->candidates_room) {
+        const int room = 2*c->candidates_room + 1;
+        struct tobi_contact_candidates *more = realloc(c->candidates, (size_t)room*sizeof *more);
         if (!more) return fail_memory(0, err);
-        memset(more + c->near_room, 0, (size_t)(room - c->near_room)*sizeof *more);
-        c->near = more;
-        c->near_room = room;
+        memset(more + c->candidates_room, 0, (size_t)(room - c->candidates_room)*sizeof *more);
+        c->candidates = more;
+        c->candidates_room = room;
     }
-    *near = &c->near[c->near_next++];
+    *near = &c->candidates[c->candidates_next++];
     return TOBI_OK;
 }
 
@@ -537,11 +537,11 @@ tobi_status tobi_contact_find(tobi_contacts *c, const tobi_particles *p, tobi_bo
                               const tobi_contact_step *step, tobi_exec *x, tobi_error *err)
 {
     pose at;
-    struct tobi_contact_near *near = NULL;
-    if (!b->deforms) TOBI_TRY(tobi_body_need_rest(b, err));
-    TOBI_TRY(take_near(c, &near, err));
+    struct tobi_contact_candidates *near = NULL;
+    if (!b->deforms) TOBI_TRY(tobi_body_build_rest(b, err));
+    TOBI_TRY(take_candidates(c, &near, err));
     find_pose(b, step, &at);
-    tobi_blade_bring(b, step->dimension);
+    tobi_blade_update(b, step->dimension);
     TOBI_TRY(find_candidates(c, near, &at, p, x, err));
     TOBI_TRY(make_room(c, (count_chunks(near->count) + 1)*TOBI_BLOCK, err));
     search(c, near, &at, p, x);

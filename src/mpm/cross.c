@@ -182,18 +182,18 @@ static void find_neighbors(mpm_crossing *at, int level, const struct mpm_cut *c,
 static int grow_level(mpm_crossing *at, int level, const struct mpm_cut *c, const mpm_grid *g,
                       const mpm_view *v)
 {
-    mpm_majority votes[MPM_VELOCITIES/2][MPM_MAJORITIES];
+    mpm_majority majorities[MPM_VELOCITIES/2][MPM_MAJORITIES];
     int any = 0, unused = 0;
-    memset(votes, 0, sizeof votes);
+    memset(majorities, 0, sizeof majorities);
     for (walk w = begin_walk(c, g, v, at->node); walk_on(&w);) {
         const tobi_columns *cuts = &v->cuts[w.particle];
         const int q = find_branch(at, level, cuts);
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
-            mpm_majority_add(votes[q], cuts->c[k].w, w.weight, w.place,
+            mpm_majority_add(majorities[q], cuts->c[k].w, w.weight, w.place,
                              quad_load(&c->face[w.particle].c[k]), 0);
     }
     for (int q = 0; q < 1 << level; q++) {
-        const mpm_majority *best = mpm_majority_pick(votes[q], &unused);
+        const mpm_majority *best = mpm_majority_pick(majorities[q], &unused);
         if (!best) continue;
         at->mark[place_of(level, q)] = mpm_majority_own(best) ? -best->number : best->number;
         any = 1;
@@ -214,20 +214,21 @@ static void grow_tree(mpm_crossing *at, const struct mpm_cut *c, const mpm_grid 
 
 /* What is heard of each piece: of the cuts that it knows, with its side, 0 = no more. */
 typedef struct piece {
-    mpm_heard face[MPM_MAJORITIES];
+    mpm_side_sums face[MPM_MAJORITIES];
     float mark[MPM_MAJORITIES], weight, friction;
 } piece;
 
-static void hear_face(piece *p, float mark, float w, quad place, quad face)
+static void add_face(piece *p, float mark, float w, quad place, quad face)
 {
     int k = 0;
     while (k < MPM_MAJORITIES && p->mark[k] != 0 && p->mark[k] != mark) k++;
     if (k == MPM_MAJORITIES) return;
     p->mark[k] = mark;
-    mpm_majority_hear(&p->face[k], w, place, face);
+    mpm_majority_add_side(&p->face[k], w, place, face);
 }
 
-static void hear_pieces(const mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g, const mpm_view *v,
+static void collect_pieces(const mpm_crossing *at, const struct mpm_cut *c, const mpm_grid *g,
+                           const mpm_view *v,
                         piece pieces[MPM_VELOCITIES])
 {
     memset(pieces, 0, MPM_VELOCITIES*sizeof *pieces);
@@ -237,11 +238,11 @@ static void hear_pieces(const mpm_crossing *at, const struct mpm_cut *c, const m
         p->weight += w.weight;
         p->friction += w.weight*v->material[v->solid[w.particle]].cut_friction;
         for (int k = 0; k < TOBI_CUTS_EACH && cuts->c[k].w != 0; k++)
-            hear_face(p, cuts->c[k].w, w.weight, w.place, quad_load(&c->face[w.particle].c[k]));
+            add_face(p, cuts->c[k].w, w.weight, w.place, quad_load(&c->face[w.particle].c[k]));
     }
 }
 
-static int are_opposed(const mpm_heard *a, const mpm_heard *b)
+static int are_opposed(const mpm_side_sums *a, const mpm_side_sums *b)
 {
     double p[3] = {a->face[0], a->face[1], a->face[2]}, q[3] = {b->face[0], b->face[1], b->face[2]};
     vec3_normalize(p);
@@ -302,7 +303,7 @@ void mpm_cross_pair(mpm_cross *c, const mpm_crossing *at)
 static void fill_pairs(const mpm_crossing *at, struct mpm_cut *c, const mpm_grid *g, const mpm_view *v)
 {
     piece pieces[MPM_VELOCITIES];
-    hear_pieces(at, c, g, v, pieces);
+    collect_pieces(at, c, g, v, pieces);
     mpm_cross_pair(&c->cross, at);
     for (int64_t n = at->begin; n < at->end; n++) fill_pair(at, pieces, &c->cross.pair[n]);
 }

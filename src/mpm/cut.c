@@ -135,7 +135,7 @@ static void mark_blade(tobi_system *s, tobi_body *b, const mpm_view *v, double *
     const double mine = b->rigid.cut > 0 ? b->rigid.cut : *number + 1;
     int met = 0, dim = s->box.dimension;
     marking view = { .s = s, .b = b, .v = v, .band = find_band(dim, v->cell), .mine = mine, .met = &met };
-    tobi_blade_bring(b, dim);
+    tobi_blade_update(b, dim);
     tobi_blade_box(b, view.band, view.low, view.high);
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, mark_particles, &view);
     b->rigid.cut = met ? mine : 0;
@@ -359,7 +359,7 @@ static void list_cut_faces(mpm_cut *c, const mpm_grid *g)
         }
 }
 
-static void list_votes(const void *view, int64_t begin, int64_t end)
+static void list_members(const void *view, int64_t begin, int64_t end)
 {
     const splitting *s = view;
     const mpm_grid *g = s->g;
@@ -369,7 +369,7 @@ static void list_votes(const void *view, int64_t begin, int64_t end)
     }
 }
 
-static void count_votes(const void *view, int64_t begin, int64_t end)
+static void find_majorities(const void *view, int64_t begin, int64_t end)
 {
     const splitting *s = view;
     const mpm_cut *c = s->c;
@@ -402,8 +402,8 @@ tobi_status mpm_cut_find(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_view
 {
     const splitting view = { c, g, v };
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
-    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_votes, &view);
-    tobi_loop(s->sim->exec.threads, g->patch_count, 8, count_votes, &view);
+    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_members, &view);
+    tobi_loop(s->sim->exec.threads, g->patch_count, 8, find_majorities, &view);
     TOBI_TRY(mpm_cross_find(c, &s->sim->exec, g, v, err));
     return split_blocks(c, s, g, v, err);
 }
@@ -413,7 +413,7 @@ tobi_status mpm_cut_restore(mpm_cut *c, tobi_system *s, mpm_grid *g, const mpm_v
     const splitting view = { c, g, v };
     TOBI_TRY(reserve(c, g, s->particles.capacity, err));
     TOBI_TRY(mpm_cut_read(c, g, err));
-    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_votes, &view);
+    tobi_loop(s->sim->exec.threads, g->block_count, 0, list_members, &view);
     return split_blocks(c, s, g, v, err);
 }
 

@@ -35,7 +35,7 @@ static double press(mpm_cut_face *cut_face, tobi_float4 *first, tobi_float4 *sec
     double normal = fmax(0, vec3_dot(was, j.n) + mass*lack);
     for (int a = 0; a < 3; a++) slide[a] = was[a] - mass*(j.u[a] - j.along*j.n[a]);
     vec3_add_scaled(slide, slide, -vec3_dot(slide, j.n), j.n);
-    double size = vec3_length(slide), grip = cut_face->friction*normal, keep = size > grip ? grip/size : 1;
+    double size = vec3_length(slide), limit = cut_face->friction*normal, keep = size > limit ? limit/size : 1;
     for (int a = 0; a < 3; a++) {
         double push = normal*j.n[a] + keep*slide[a], change = push - was[a];
         if (cut_face->fixed != 1) (&first->x)[a] -= (float)(change/first->w);

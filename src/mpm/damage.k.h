@@ -37,7 +37,7 @@ TOBI_FN lane mpm_damage(const mpm_parameters *m, lane s, lane tau)
 
 /* Hencky strains h of the cracked share, eq. (19): apart it has no shape, pressed it keeps the shape that
    friction holds. Its volume is kept up to e^2, at which faces have long lost sight of each other. */
-TOBI_FN void mpm_loosen(const mpm_parameters *m, const lane h[3], lane out[3])
+TOBI_FN void mpm_cracked_strain(const mpm_parameters *m, const lane h[3], lane out[3])
 {
     lane trace = h[0] + h[1] + h[2], mean = trace*(1.0f/3), d[3], norm = lane_set(1e-30f), zero = lane_set(0);
     for (int k = 0; k < 3; k++) {
@@ -65,7 +65,7 @@ TOBI_FN void mpm_find_crack(const mpm_parameters *m, lane_int model, const lane 
     }
     lane zero = lane_set(0), ratio = c->log[0] + c->log[1] + c->log[2];
     mpm_elastic(m, model, c->s, ratio, c->intact);
-    mpm_loosen(m, c->log, c->loose_log);
+    mpm_cracked_strain(m, c->log, c->loose_log);
     for (int k = 0; k < 3; k++) {
         lane flown = c->loose_log[k] - c->log[k];
         c->loose[k] = lane_where_less(flown*flown, lane_set(1e-30f), c->s[k], mpm_expm1(c->loose_log[k]));

@@ -10,7 +10,7 @@ static void sum_energy(const void *view, int64_t begin, int64_t end, double *tot
     const mpm_view *v = view;
     for (int64_t i = begin; i < end; i++) {
         const double mass = v->strain[i].c[2].w;
-        totals[0] += mpm_look(v, i).energy;
+        totals[0] += mpm_sample_particle(v, i).energy;
         totals[1] += mpm_kinetic(v, i);
         totals[3] += mpm_damage_spent(v, i);
         for (int a = 0; a < 3; a++) totals[2] -= mass*v->gravity[a]*(&v->position[i].x)[a];
@@ -20,7 +20,7 @@ static void sum_energy(const void *view, int64_t begin, int64_t end, double *tot
 /* The energy of all solids, J; t as in sum_energy. */
 static double find_energy(tobi_system *s, const mlsmpm *m, double t[TOBI_TOTALS])
 {
-    const mpm_view v = mpm_look_back(m);
+    const mpm_view v = mpm_output_view(m);
     tobi_launch(&s->sim->exec, TOBI_HOST(sum_energy, 4, 0), &v, 0, s->particles.count, t);
     return t[0] + t[1] + t[2];
 }
@@ -64,14 +64,14 @@ void mpm_energy_add_nodes(tobi_system *s, mlsmpm *m)
 
 void mpm_energy_add_flow(tobi_system *s, mlsmpm *m)
 {
-    const mpm_view v = mpm_look_back(m);
+    const mpm_view v = mpm_output_view(m);
     double t[TOBI_TOTALS];
     if (!m->def.measure_transfer) return;
     tobi_launch(&s->sim->exec, TOBI_HOST(mpm_sum_flow, 1, 0), &v, 0, s->particles.count, t);
     m->memory.flow += t[0];
 }
 
-void mpm_energy_tell(tobi_system *s)
+void mpm_energy_report(tobi_system *s)
 {
     const mlsmpm *m = s->state;
     double t[TOBI_TOTALS], energy = find_energy(s, m, t);

@@ -7,7 +7,7 @@
 double mpm_energy_find(tobi_system *s, const mlsmpm *m);
 /* Takes the energy that all solids have at the start. */
 void mpm_energy_start(tobi_system *s, mlsmpm *m);
-/* Particle i leaves the domain and takes its energy with it. v: from mpm_look_back. */
+/* Particle i leaves the domain and takes its energy with it. v: from mpm_output_view. */
 void mpm_energy_drop(mlsmpm *m, const mpm_view *v, int64_t i);
 
 /* In every step, with measure_transfer only: after the way to the grid, what it takes from kinetic energy,
@@ -20,4 +20,4 @@ void mpm_energy_add_nodes(tobi_system *s, mlsmpm *m);
 void mpm_energy_add_flow(tobi_system *s, mlsmpm *m);
 
 /* Fills the energies of tobi_step_info. state: mlsmpm. */
-void mpm_energy_tell(tobi_system *s);
+void mpm_energy_report(tobi_system *s);

@@ -71,13 +71,13 @@ static double cracked_energy(const mpm_parameters *m, int32_t model, const float
     return (1 - damage)*breakable_energy(m, model, c.s) + damage*cracked;
 }
 
-mpm_sight mpm_look(const mpm_view *v, int64_t i)
+mpm_sample mpm_sample_particle(const mpm_view *v, int64_t i)
 {
     mpm_parameters parameters;
     float gradient[9], e[9], other[3], unused[3], tau[6], keep;
     int32_t model;
     uint32_t present;
-    mpm_sight s = { 0 };
+    mpm_sample s = { 0 };
     mpm_load_columns(v->affine + i, gradient, unused);
     mpm_load_columns(v->strain + i, e, other);
     mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
@@ -128,7 +128,7 @@ static double flow_work(const mpm_view *v, int64_t i)
     mpm_gather_parameters(v, i, 1, &parameters, &keep, &model, &present);
     const double stored = energy_density(m, e, other[1]);
     mpm_parameters still = parameters;                     /* no time goes by */
-    still.haste = 0;
+    still.inertial_scale = 0;
     mpm_find_stress(&still, model, present, gradient, e, &other[1], before);
     mpm_load_columns(v->strain + i, e, other);
     mpm_deform(v->strain_dt, gradient, e);
@@ -154,9 +154,9 @@ static double von_mises(const double s[6])
     return sqrt(0.5*(x*x + y*y + z*z) + 3*shear);
 }
 
-void mpm_show_field(const mpm_view *v, double density, const char *field, int64_t i, double *out)
+void mpm_read_field(const mpm_view *v, double density, const char *field, int64_t i, double *out)
 {
-    const mpm_sight s = mpm_look(v, i);
+    const mpm_sample s = mpm_sample_particle(v, i);
     if (!strcmp(field, "density")) {
         out[0] = density/s.ratio;
     } else if (!strcmp(field, "J")) {

@@ -226,7 +226,7 @@ TOBI_FN void mpm_move(const mpm_view *v, const mpm_around *t, const mpm_stencil 
 }
 
 /* Checkpoints read a particle's block there, see mpm_grid_restore. */
-TOBI_FN void mpm_keep_home(const mpm_view *v, int64_t i, quad home)
+TOBI_FN void mpm_keep_base(const mpm_view *v, int64_t i, quad home)
 {
     for (int c = 0; c < 3; c++) v->affine[i].c[c].w = home[1 + c];
 }
@@ -243,7 +243,7 @@ TOBI_FN void mpm_move_block(const mpm_view *v, const mpm_block *b, const mpm_aro
         mpm_find_stencil(v, b, i, dim, &s);
         mpm_find_turn(&s, m, dim);
         for (int k = 0; k < count; k++) {
-            if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) mpm_keep_home(v, i + k, home);
+            if (v->material[v->solid[i + k]].model == TOBI_STATIONARY) mpm_keep_base(v, i + k, home);
             else mpm_move(v, t, &s, k, i + k, b->levels, home, m, gathered, dim, plain);
         }
         mpm_note_speed(m, plain);

@@ -1,5 +1,5 @@
-/* Most members stand where all are of one side. So the sides are looked at first, by base node, and votes
-   counted for those nodes alone that see both: the others have one velocity whatever the count. */
+/* Most members stand where all are of one side. So the sides are looked at first, by base node, and
+   majorities are found for those nodes alone that see both: the others have one velocity in any case. */
 #include "mpm/majority.h"
 #include "mpm/cuts.h"
 #include "exec/rows.h"
@@ -78,7 +78,7 @@ void mpm_majority_list(mpm_cut *c, const mpm_view *v, const mpm_block *b, int64_
     c->members[number] = count;
 }
 
-mpm_face mpm_majority_measure(const mpm_heard *first, const mpm_heard *second)
+mpm_face mpm_majority_measure(const mpm_side_sums *first, const mpm_side_sums *second)
 {
     mpm_face f;
     const double weight[2] = {first->place[3], second->place[3]};
@@ -93,11 +93,11 @@ mpm_face mpm_majority_measure(const mpm_heard *first, const mpm_heard *second)
     return f;
 }
 
-/* The node's side and cut face by its votes; returns how many cuts have both sides there. */
-static int decide(const mpm_majority votes[MPM_MAJORITIES], float *side, mpm_cut_face *cut_face)
+/* The node's side and cut face by its majorities; returns how many cuts have both sides there. */
+static int decide(const mpm_majority majorities[MPM_MAJORITIES], float *side, mpm_cut_face *cut_face)
 {
     int both = 0;
-    const mpm_majority *best = mpm_majority_pick(votes, &both);
+    const mpm_majority *best = mpm_majority_pick(majorities, &both);
     *side = 0;
     if (!best) return 0;
     const int own = mpm_majority_own(best);
@@ -111,11 +111,11 @@ static int decide(const mpm_majority votes[MPM_MAJORITIES], float *side, mpm_cut
 }
 
 /* Nodes of a patch and base nodes around it, by place. */
-typedef struct poll {
+typedef struct node_sides {
     unsigned char sides[CELLS];        /* of the members with this base node: 1 +, 2 -, 3 both      */
     unsigned char wanted[CELLS];       /* 1: a node of the patch that sees both                    */
     unsigned char near[CELLS];         /* 1: members with this base node reach such a node          */
-} poll;
+} node_sides;
 
 /* Place of a base node or a node, counted from the patch. */
 static int cell_of(int a, int b, int c) { return ((a + 2)*SPAN + b + 2)*SPAN + c + 2; }
@@ -144,7 +144,7 @@ static void spread(unsigned char x[CELLS], int step)
 }
 
 /* Returns whether any node sees both sides. */
-static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, poll *q)
+static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, node_sides *q)
 {
     int any = 0;
     memset(q, 0, sizeof *q);
@@ -171,8 +171,8 @@ static int find_wanted(const mpm_cut *c, const mpm_grid *g, const mpm_patch *p, 
 }
 
 /* Adds the votes of one particle to the wanted nodes of a block that feel it. */
-static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
-                          const poll *q, int64_t i, mpm_majority votes[][MPM_MAJORITIES])
+static void add_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v, const mpm_patch *p,
+                          const node_sides *q, int64_t i, mpm_majority majorities[][MPM_MAJORITIES])
 {
     const int dim = g->dimension;
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
@@ -197,7 +197,7 @@ static void vote_particle(const mpm_cut *c, const mpm_grid *g, const mpm_view *v
                 const double along = mass*w[0][p0]*w[1][p1];
                 for (int p2 = low[2]; p2 <= high[2]; p2++)
                     if (q->wanted[cell_of(first[0] + p0, first[1] + p1, first[2] + p2)])
-                        mpm_majority_add(votes[dim == 3 ? row*4 + first[2] + p2 : row], mark,
+                        mpm_majority_add(majorities[dim == 3 ? row*4 + first[2] + p2 : row], mark,
                                      (float)(along*w[2][p2]), place, face, friction);
             }
     }
@@ -207,24 +207,24 @@ int mpm_majority_count(mpm_cut *c, const mpm_grid *g, const mpm_view *v, int64_t
 {
     const mpm_patch *p = &g->patch[patch];
     const int nodes = g->dimension == 3 ? MPM_NODES_3D : MPM_NODES_2D;
-    mpm_majority votes[MPM_NODES_3D][MPM_MAJORITIES];
-    poll q;
+    mpm_majority majorities[MPM_NODES_3D][MPM_MAJORITIES];
+    node_sides q;
     int two = 0;
     c->cross.doubt[patch] = 0;
     memset(c->side + patch*nodes, 0, (size_t)nodes*sizeof *c->side);
     if (!v->cuts || !find_wanted(c, g, p, &q)) return 0;
-    memset(votes, 0, sizeof votes);
+    memset(majorities, 0, sizeof majorities);
     for (int o = 0; o < 27; o++) {
         if (p->cover[o] < 0) continue;
         const mpm_member *list = c->member + g->block[p->cover[o]].begin;
         for (int32_t k = 0; k < c->members[p->cover[o]]; k = list[k].end) {
             const int cell = find_cell(&list[k], p);
             for (int32_t n = k; n < list[k].end && cell >= 0 && q.near[cell]; n++)
-                vote_particle(c, g, v, p, &q, list[n].particle, votes);
+                add_particle(c, g, v, p, &q, list[n].particle, majorities);
         }
     }
     for (int n = 0; n < nodes; n++) {
-        const int cuts = decide(votes[n], &c->side[patch*nodes + n], &c->cut_face[patch*nodes + n]);
+        const int cuts = decide(majorities[n], &c->side[patch*nodes + n], &c->cut_face[patch*nodes + n]);
         two |= cuts > 0;
         if (cuts > 1) c->cross.doubt[patch] |= UINT64_C(1) << n;
     }

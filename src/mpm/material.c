@@ -13,7 +13,7 @@ static double find_cone(const tobi_solid_def *d)
 }
 
 /* Shear modulus times I_0/(d sqrt(rho_s)) of eq. (11c): grains fill 0.6 of what they lie in. */
-static double find_haste(const tobi_solid_def *d, double mu)
+static double find_inertial_scale(const tobi_solid_def *d, double mu)
 {
     return mu*d->inertial_number/(d->grain_diameter*sqrt(d->density/0.6));
 }
@@ -30,8 +30,8 @@ mpm_material mpm_material_describe(const tobi_solid_def *d, double *sound)
         .model = d->model, .mu = (float)mu, .lambda = (float)lambda, .bulk = (float)d->bulk_modulus,
         .viscosity = (float)d->viscosity, .yield = (float)d->yield_stress, .hardening = (float)d->hardening,
         .compression = (float)d->critical_compression, .stretch = (float)d->critical_stretch,
-        .friction = (float)find_cone(d), .rise = (float)d->friction_rise,
-        .haste = (float)find_haste(d, mu), .cut_friction = (float)d->cut_friction,
+        .friction = (float)find_cone(d), .friction_rise = (float)d->friction_rise,
+        .inertial_scale = (float)find_inertial_scale(d, mu), .cut_friction = (float)d->cut_friction,
         .surface_friction = d->model == TOBI_LIQUID ? 0 : (float)d->surface_friction, .keep = 1 };
 }
 

@@ -114,7 +114,7 @@ TOBI_FN void mpm_stretch(lane e[9], const lane g[3], lane v[3][3])
 /* The parameters of eight particles. */
 typedef struct mpm_parameters {
     lane mu, lambda, bulk, viscosity, yield, hardening, compression, stretch, friction, strength, brittleness;
-    lane rise, haste;                  /* haste: times the time step that the strain takes in, sqrt(Pa) */
+    lane friction_rise, inertial_scale;    /* the latter times the time step of the strain, sqrt(Pa) */
 } mpm_parameters;
 
 /* Kirchhoff stress of the neo-Hookean solid, eq. (6): mu (b - I) + lambda ln J I. */
@@ -182,12 +182,14 @@ TOBI_FN void mpm_von_mises(const mpm_parameters *m, lane h[3], lane *state)
 }
 
 /* Deviatoric strain that sand in flow loses, eq. (11c): tau solves tau = G (shear - rate dt) and
-   tau = (mu_s + rise x/(1 + x)) p, x = rate dt G/(haste sqrt(p)); of the two roots the one below `shear`. */
-TOBI_FN lane mpm_hurry(const mpm_parameters *m, lane trace, lane norm)
+   tau = (mu_s + friction_rise x/(1 + x)) p, x = rate dt G/(inertial_scale sqrt(p)); of the two roots the one
+   below `shear`. */
+TOBI_FN lane mpm_inertial_flow(const mpm_parameters *m, lane trace, lane norm)
 {
     const lane p = lane_positive(-1.0f*(m->lambda + 0.66666667f*m->mu)*trace), zero = lane_set(0);
-    const lane shear = 1.4142135f*m->mu*norm, rest = 2.1213203f*m->friction*p, most = rest + m->rise*p;
-    const lane slow = m->haste*lane_sqrt(p), sum = most + shear + slow, product = most*shear + rest*slow;
+    const lane shear = 1.4142135f*m->mu*norm, rest = 2.1213203f*m->friction*p;
+    const lane most = rest + m->friction_rise*p, slow = m->inertial_scale*lane_sqrt(p);
+    const lane sum = most + shear + slow, product = most*shear + rest*slow;
     const lane tau = 2.0f*product/(sum + lane_sqrt(lane_positive(sum*sum - 4.0f*product)) + 1e-30f);
     return lane_where_less(rest, shear, (shear - tau)/(1.4142135f*m->mu), zero);
 }
@@ -205,7 +207,7 @@ TOBI_FN void mpm_sand(const mpm_parameters *m, lane h[3], lane *state)
     norm = lane_sqrt(norm);
     lane flow = lane_positive(norm + (3.0f*m->lambda + 2.0f*m->mu)/(2.0f*m->mu)*trace*m->friction);
     lane zero = lane_set(0);
-    flow = lane_where_less(zero, m->rise, mpm_hurry(m, trace, norm), flow);
+    flow = lane_where_less(zero, m->friction_rise, mpm_inertial_flow(m, trace, norm), flow);
     for (int k = 0; k < 3; k++) h[k] = lane_where_less(trace, zero, mean + d[k]*(1.0f - flow/norm), zero);
     *state = lane_where_less(trace, zero, zero, trace);
 }

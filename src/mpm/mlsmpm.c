@@ -20,10 +20,10 @@
 
 enum { SORT_AGE = 40 };                /* steps after which the order within blocks has gone stale */
 
-static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+static void choose_smoothing(const void *def, int driven, int *shape, double *support)
 {
     (void)def;
-    (void)stirred;
+    (void)driven;
     *shape = TOBI_KERNEL_WENDLAND_C2;
     *support = 2;
 }
@@ -333,7 +333,7 @@ static void measure_squeeze(tobi_system *s, mlsmpm *m)
 {
     const double speed = fmax(m->memory.speed, s->sim->body_speed);
     if (speed < 0.3*m->liquid_sound && m->memory.squeezed <= m->sound) return;
-    const mpm_view v = mpm_look_back(m);
+    const mpm_view v = mpm_output_view(m);
     m->memory.squeezed = mpm_material_squeezed_sound(s, &v);
 }
 
@@ -350,7 +350,7 @@ static int is_beyond(const tobi_system *s, const tobi_double3 *x)
 static void remove_leavers(tobi_system *s, mlsmpm *m)
 {
     tobi_particles *p = &s->particles;
-    const mpm_view v = mpm_look_back(m);
+    const mpm_view v = mpm_output_view(m);
     int64_t kept = 0;
     for (int64_t i = 0; i < p->count; i++) {
         if (is_beyond(s, &p->position[i])) {
@@ -412,7 +412,7 @@ static double latest_cut(const tobi_particles *p, int64_t i)
 
 static void read_field(const tobi_system *s, const char *field, int64_t i, double *out)
 {
-    const mpm_view v = mpm_look_back(s->state);
+    const mpm_view v = mpm_output_view(s->state);
     const tobi_particles *p = &s->particles;
     if (!strcmp(field, "material")) {
         out[0] = p->fluid[i];
@@ -427,12 +427,12 @@ static void read_field(const tobi_system *s, const char *field, int64_t i, doubl
         out[0] = latest_cut(p, i);
         return;
     }
-    mpm_show_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
+    mpm_read_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);
 }
 
 static tobi_status find_nodes(const tobi_system *s, tobi_grid *grid, tobi_error *err)
 {
-    const mpm_view v = mpm_look_back(s->state);
+    const mpm_view v = mpm_output_view(s->state);
     return mpm_nodes_find(&v, s->particles.count, s->box.dimension, grid, err);
 }
 
@@ -510,7 +510,7 @@ const tobi_method tobi_mlsmpm = {
     .accept = accept_solid,
     .stable_dt = limit_dt,
     .nodes = find_nodes,
-    .measure = mpm_energy_tell,
+    .measure = mpm_energy_report,
     .memory = list_memory,
     .keep = keep_rows,
     .restore = restore_rows,

@@ -69,7 +69,7 @@ static void add_particle(const mpm_view *v, int64_t i, int dimension, table *t)
     const double x[3] = {v->position[i].x, v->position[i].y, v->position[i].z};
     const tobi_float4 u = v->velocity[i];
     const tobi_columns *c = &v->affine[i];
-    const mpm_sight s = mpm_look(v, i);
+    const mpm_sample s = mpm_sample_particle(v, i);
     double w[3][3] = {{1}, {1}, {1}}, f[3] = {0}, mass = v->strain[i].c[2].w;
     double volume = v->strain[i].c[0].w*s.ratio;
     int64_t first[3] = {0};

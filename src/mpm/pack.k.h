@@ -13,14 +13,14 @@ typedef struct mpm_pack {
 } mpm_pack;
 
 /* 1/kg: of a node, and times the sum of the weights there, of each kind. */
-typedef struct mpm_yield { float inverse, load[2]; } mpm_yield;
+typedef struct mpm_response { float inverse, load[2]; } mpm_response;
 
 typedef struct mpm_pack_view {
     const mpm_pack *TOBI_RESTRICT pack;
     const uint32_t *TOBI_RESTRICT node;
     const float *TOBI_RESTRICT weight;
     tobi_float4 *TOBI_RESTRICT velocity;   /* [nodes] m/s, and mass, kg                            */
-    mpm_yield *TOBI_RESTRICT yield;        /* [nodes]                                              */
+    mpm_response *TOBI_RESTRICT response;  /* [nodes]                                              */
     tobi_float4 *TOBI_RESTRICT push;       /* [contacts][2] N s, to be put on the nodes            */
     tobi_float4 *TOBI_RESTRICT moving;     /* [contacts][2] m/s, w: 1/kg, see mpm_pack_answer      */
 } mpm_pack_view;
@@ -35,7 +35,7 @@ TOBI_FN void mpm_pack_load(const mpm_pack_view *v, int64_t number)
     const float *weight = v->weight + p->weight;
     const int count = p->count;
     for (int n = 0; n < count; n++, weight += 8) {
-        mpm_yield *y = &v->yield[node[n]];
+        mpm_response *y = &v->response[node[n]];
         const quad along = quad_load(weight), across = mpm_pack_size(quad_load(weight + 4));
         if (y->load[0] == 0) y->inverse = v->velocity[node[n]].w > 0 ? 1/v->velocity[node[n]].w : 0;
         y->load[0] += ((along[0] + along[1]) + (along[2] + along[3]))*y->inverse;
@@ -53,7 +53,7 @@ TOBI_FN void mpm_pack_answer(const mpm_pack_view *v, int64_t number)
     const int count = p->count;
     quad along = quad_set(0), across = quad_set(0);
     for (int n = 0; n < count; n++, weight += 8) {
-        const mpm_yield *y = &v->yield[node[n]];
+        const mpm_response *y = &v->response[node[n]];
         along = along + quad_load(weight)*quad_set(y->load[0]);
         across = across + mpm_pack_size(quad_load(weight + 4))*quad_set(y->load[1]);
     }
@@ -69,7 +69,7 @@ TOBI_FN void mpm_pack_forget(const mpm_pack_view *v, int64_t number)
     const mpm_pack *p = &v->pack[number];
     const uint32_t *node = v->node + p->node;
     const int count = p->count;
-    for (int n = 0; n < count; n++) v->yield[node[n]].load[0] = v->yield[node[n]].load[1] = 0;
+    for (int n = 0; n < count; n++) v->response[node[n]].load[0] = v->response[node[n]].load[1] = 0;
 }
 
 TOBI_FN void mpm_pack_read(const mpm_pack_view *v, int64_t number)
@@ -106,6 +106,6 @@ TOBI_FN void mpm_pack_push(const mpm_pack_view *v, int64_t number)
         tobi_float4 *to = &v->velocity[node[n]];
         const quad sum = row_fold(row_fma(row_spread(quad_load(weight + 4)), across,
                                           row_mul(row_spread(quad_load(weight)), along)));
-        quad_store(to, quad_load(to) + sum*quad_set(v->yield[node[n]].inverse));
+        quad_store(to, quad_load(to) + sum*quad_set(v->response[node[n]].inverse));
     }
 }

@@ -76,8 +76,9 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
         *m = (mpm_parameters){lane_set(one->mu), lane_set(one->lambda), lane_set(one->bulk),
                               lane_set(one->viscosity), lane_set(one->yield), lane_set(one->hardening),
                               lane_set(one->compression), lane_set(one->stretch), lane_set(one->friction),
-                              lane_set(one->strength), lane_set(one->brittleness), lane_set(one->rise),
-                              lane_set(one->haste*v->strain_dt)};
+                              lane_set(one->strength), lane_set(one->brittleness),
+                              lane_set(one->friction_rise),
+                              lane_set(one->inertial_scale*v->strain_dt)};
         *keep = lane_set(one->keep);
         *model = lane_set_int(one->model);
         *present = mpm_bit_of(one);
@@ -89,7 +90,7 @@ TOBI_FN void mpm_gather_parameters(const mpm_view *v, int64_t i, int count, mpm_
         p[0][k] = a->mu; p[1][k] = a->lambda; p[2][k] = a->bulk; p[3][k] = a->viscosity;
         p[4][k] = a->yield; p[5][k] = a->hardening; p[6][k] = a->compression; p[7][k] = a->stretch;
         p[8][k] = a->friction; p[9][k] = a->keep; p[10][k] = a->strength;
-        p[11][k] = a->brittleness; p[12][k] = a->rise; p[13][k] = a->haste*v->strain_dt;
+        p[11][k] = a->brittleness; p[12][k] = a->friction_rise; p[13][k] = a->inertial_scale*v->strain_dt;
         number[k] = a->model;
         *present |= mpm_bit_of(a);
     }

@@ -25,7 +25,7 @@ enum { EMPTY = -2, NORMALS = 4, WELL = 8 };     /* cells: more than any reach   
 #define MARGIN (2*MPM_SOLID_CONTACT_STALE)      /* the step in which it is exceeded included            */
 
 /* What the particles of one group say at one node. */
-typedef struct voice {
+typedef struct group_sums {
     int    group;                      /* -1 = none                                                */
     int    shaped;                     /* 1: keeps its shape, so that its surface is known best    */
     int    fixed;                      /* 1: is stationary                                         */
@@ -33,7 +33,7 @@ typedef struct voice {
     double towards[3];                 /* where its volume lies, m4                                */
     double place[3];                   /* kg m, from the node, weighted by mass                    */
     double reach[NORMALS];             /* m, along each normal, from WELL before the node          */
-} voice;
+} group_sums;
 
 static void mix(int16_t *to, int group)
 {
@@ -146,21 +146,21 @@ static int find_meetings(scene *s, const float *side)
 
 /* What is said at one node. */
 typedef struct meeting {
-    voice voice[GROUPS];
+    group_sums sums[GROUPS];
     int   first, second;               /* whose velocities it has; first < 0: not decided, or one */
     double normal[NORMALS][3];         /* that are tried, from the first to the second            */
 } meeting;
 
-static void say_what(const scene *s, int64_t i, double w, const double d[3], meeting *m)
+static void add_mass(const scene *s, int64_t i, double w, const double d[3], meeting *m)
 {
     const mpm_material *of = &s->v->material[s->v->solid[i]];
     const double volume = s->v->strain[i].c[0].w, mass = (w + 1e-6)*s->v->strain[i].c[2].w;
     const double q = vec3_dot(d, d)*s->v->inverse_cell*s->v->inverse_cell/2.25;
     const double near = q < 0.99 ? 1 - q : 0.01;
     int k = 0;
-    while (k < GROUPS && m->voice[k].group >= 0 && m->voice[k].group != of->group) k++;
+    while (k < GROUPS && m->sums[k].group >= 0 && m->sums[k].group != of->group) k++;
     if (k == GROUPS) return;
-    voice *to = &m->voice[k];
+    group_sums *to = &m->sums[k];
     to->group = of->group;
     to->mass += mass;
     to->friction += mass*of->surface_friction;
@@ -173,19 +173,20 @@ static void say_what(const scene *s, int64_t i, double w, const double d[3], mee
 }
 
 /* radius: m, half a spacing, which a particle fills. */
-static void say_how_far(const scene *s, int64_t i, double radius, const double d[3], meeting *m)
+static void add_reach(const scene *s, int64_t i, double radius, const double d[3], meeting *m)
 {
-    const int second = s->v->material[s->v->solid[i]].group == m->voice[m->second].group;
-    double *reach = m->voice[second ? m->second : m->first].reach;
+    const int second = s->v->material[s->v->solid[i]].group == m->sums[m->second].group;
+    double *reach = m->sums[second ? m->second : m->first].reach;
     for (int k = 0; k < NORMALS; k++) {
         const double along = vec3_dot(d, m->normal[k]);
         reach[k] = fmax(reach[k], (second ? -along : along) + radius + WELL*s->v->cell);
     }
 }
 
-/* One particle speaks at the nodes that feel it, or soon may: what it is or, once it is decided who meets,
+/* Adds a particle to the nodes that feel it, or soon may: what it is or, once it is decided who meets,
    how far it reaches. */
-static void say(const scene *s, int64_t i, const range *r, const float *side, meeting *meetings, int decided)
+static void add_particle(const scene *s, int64_t i, const range *r, const float *side, meeting *meetings,
+                         int decided)
 {
     const int three = s->g->dimension == 3;
     const double cell = s->v->cell, volume = s->v->strain[i].c[0].w, *x = &s->v->position[i].x;
@@ -203,22 +204,22 @@ static void say(const scene *s, int64_t i, const range *r, const float *side, me
                 const double d[3] = {x[0] - (s->p->corner[0] + a)*cell, x[1] - (s->p->corner[1] + b)*cell,
                                      three ? x[2] - (s->p->corner[2] + c)*cell : 0};
                 if (decided) {
-                    say_how_far(s, i, radius, d, &meetings[n]);
+                    add_reach(s, i, radius, d, &meetings[n]);
                     continue;
                 }
                 double w = 1;
                 for (int k = 0; k < s->g->dimension; k++) w *= mpm_spline_at(d[k]*s->v->inverse_cell);
-                say_what(s, i, w, d, &meetings[n]);
+                add_mass(s, i, w, d, &meetings[n]);
             }
 }
 
-static void hear(const scene *s, const float *side, meeting *meetings, int decided)
+static void add_particles(const scene *s, const float *side, meeting *meetings, int decided)
 {
     for (int k = 0; k < s->near_count; k++) {
         const mpm_block *b = &s->g->block[s->near[k]];
         for (int64_t i = b->begin; i < b->end; i++) {
             range r;
-            if (find_range(s, i, &r) && is_near(s, &r)) say(s, i, &r, side, meetings, decided);
+            if (find_range(s, i, &r) && is_near(s, &r)) add_particle(s, i, &r, side, meetings, decided);
         }
     }
 }
@@ -229,12 +230,12 @@ static void hear(const scene *s, const float *side, meeting *meetings, int decid
 static void decide(meeting *m)
 {
     int first = 0, second = -1;
-    for (int k = 1; k < GROUPS && m->voice[k].group >= 0; k++) {
-        if (m->voice[k].mass > m->voice[first].mass) { second = first; first = k; }
-        else if (second < 0 || m->voice[k].mass > m->voice[second].mass) second = k;
+    for (int k = 1; k < GROUPS && m->sums[k].group >= 0; k++) {
+        if (m->sums[k].mass > m->sums[first].mass) { second = first; first = k; }
+        else if (second < 0 || m->sums[k].mass > m->sums[second].mass) second = k;
     }
     if (second < 0) return;
-    const voice *f = &m->voice[first], *s = &m->voice[second];
+    const group_sums *f = &m->sums[first], *s = &m->sums[second];
     for (int k = 0; k < NORMALS; k++) {
         const int use_first = f->shaped == s->shaped ? k != 1 : f->shaped;
         const int use_second = f->shaped == s->shaped ? k != 0 : s->shaped;
@@ -251,7 +252,7 @@ static void decide(meeting *m)
 /* The normal with the widest gap parts the two best: at the corner of a block on a floor, the floor's. */
 static void write_cut_face(const meeting *m, double cell, float *side, mpm_cut_face *cut_face)
 {
-    const voice *first = &m->voice[m->first], *second = &m->voice[m->second];
+    const group_sums *first = &m->sums[m->first], *second = &m->sums[m->second];
     int best = 2;
     for (int k = 0; k < NORMALS; k++)
         if (first->reach[k] + second->reach[k] < first->reach[best] + second->reach[best]) best = k;
@@ -272,12 +273,12 @@ int mpm_solid_contact_find(const mpm_grid *g, const mpm_view *v, const mpm_exten
     if (!list_blocks(&s, extent) || !find_meetings(&s, side)) return 0;
     for (int n = 0; n < nodes; n++) {
         meetings[n] = (meeting){ .first = -1, .second = -1 };
-        for (int k = 0; k < GROUPS; k++) meetings[n].voice[k] = (voice){ .group = -1 };
+        for (int k = 0; k < GROUPS; k++) meetings[n].sums[k] = (group_sums){ .group = -1 };
     }
-    hear(&s, side, meetings, 0);
+    add_particles(&s, side, meetings, 0);
     for (int n = 0; n < nodes; n++)
         if (side[n] == 0) decide(&meetings[n]);
-    hear(&s, side, meetings, 1);
+    add_particles(&s, side, meetings, 1);
     for (int n = 0; n < nodes; n++) {
         if (meetings[n].first < 0) continue;
         write_cut_face(&meetings[n], v->cell, &side[n], &cut_face[n]);

@@ -47,7 +47,7 @@ typedef struct mlsmpm {
 static inline int64_t mpm_count_patches(const mlsmpm *m) { return m->grid.patch_count + m->grid.patch_twins; }
 
 /* The view of reading: strain lags by the last step. */
-static inline mpm_view mpm_look_back(const mlsmpm *m)
+static inline mpm_view mpm_output_view(const mlsmpm *m)
 {
     mpm_view v = m->view;
     v.strain_dt = (float)m->memory.strain_dt;

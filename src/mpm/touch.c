@@ -18,7 +18,7 @@ void mpm_touch_free(mpm_touch *t)
     tobi_contact_free(&t->contacts);
     free(t->node);
     free(t->weight);
-    free(t->yield);
+    free(t->response);
     free(t->piece);
     free(t->around);
     free(t->push);
@@ -70,10 +70,10 @@ static tobi_status reserve_contacts(mpm_touch *t, int64_t count)
 static tobi_status reserve_nodes(mpm_touch *t, int64_t count)
 {
     if (count <= t->node_room) return TOBI_OK;
-    free(t->yield);
+    free(t->response);
     t->node_room = count + count/8;
-    t->yield = calloc((size_t)t->node_room, sizeof *t->yield);
-    if (t->yield) return TOBI_OK;
+    t->response = calloc((size_t)t->node_room, sizeof *t->response);
+    if (t->response) return TOBI_OK;
     t->node_room = 0;
     return TOBI_NO_MEMORY;
 }
@@ -152,13 +152,13 @@ static void spread_contacts(const void *view, int64_t begin, int64_t end)
         const double reach = -4*contact->depth*v->inverse_cell;
         uint32_t *node = s->touch->node + k*each;
         float *weight = s->touch->weight + 2*k*each;
-        double w[3][3] = {{1}, {1}, {1}}, lean[3][3] = {{0}};
+        double w[3][3] = {{1}, {1}, {1}}, slope[3][3] = {{0}};
         int first[3] = {0, 0, 0};
         for (int a = 0; a < dim; a++) {
             const double place = (&v->position[i].x)[a]*v->inverse_cell;
             const int base = (int)mpm_spline(place, w[a]);
             first[a] = base - b->corner[a] + 4;
-            for (int n = 0; n < 3; n++) lean[a][n] = (base + n - place)*reach*contact->normal[a];
+            for (int n = 0; n < 3; n++) slope[a][n] = (base + n - place)*reach*contact->normal[a];
         }
         if (is_gathered(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
         else {
@@ -171,7 +171,7 @@ static void spread_contacts(const void *view, int64_t begin, int64_t end)
                 const double all = w[0][m/3]*w[1][m%3]*w[2][l];
                 float *to = weight + 2*(deep*m + l);
                 to[0] = (float)all;
-                to[1] = (float)(all*(1 + lean[0][m/3] + lean[1][m%3] + lean[2][l]));
+                to[1] = (float)(all*(1 + slope[0][m/3] + slope[1][m%3] + slope[2][l]));
             }
     }
 }
@@ -323,7 +323,8 @@ static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid
 static mpm_pack_view view_packs(const mpm_touch *t, const mpm_grid *g)
 {
     return (mpm_pack_view){ .pack = t->packs.pack, .node = t->node, .weight = t->packs.weight,
-                            .velocity = g->node, .yield = t->yield, .push = t->push, .moving = t->moving };
+                            .velocity = g->node, .response = t->response, .push = t->push,
+                            .moving = t->moving };
 }
 
 static tobi_status pack_contacts(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_error *err)

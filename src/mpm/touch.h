@@ -15,7 +15,7 @@ typedef struct mpm_touch {
     int64_t room;
     mpm_packs packs;                   /* the contacts by their nodes                             */
     const mpm_pack_kernels *kernels;   /* the caller's to set                                     */
-    mpm_yield *yield;                  /* [nodes], the sums 0 outside of a step                   */
+    mpm_response *response;            /* [nodes], the sums 0 outside of a step                   */
     int64_t node_room;
     tobi_blade_piece *piece;           /* of the present blade's edge                             */
     struct mpm_surroundings *around;   /* [pieces] and what is there; those in material first     */

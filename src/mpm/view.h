@@ -25,7 +25,7 @@ typedef struct mpm_material {
     float yield, hardening;            /* Pa, and Pa or 1                                         */
     float compression, stretch;        /* 1, limits of snow                                       */
     float friction;                    /* 1, alpha of Drucker and Prager                          */
-    float rise, haste;                 /* 1 and sqrt(Pa)/s, of sand in flow, eq. (11c)            */
+    float friction_rise, inertial_scale; /* 1 and sqrt(Pa)/s, of sand in flow, eq. (11c)          */
     float cut_friction;                /* 1, Coulomb, between the faces of a cut                  */
     float surface_friction;            /* 1, Coulomb, where it meets solids it is not bonded to   */
     int   group;                       /* solids of one group share their velocity where they meet */

@@ -333,7 +333,7 @@ static void keep_impulses(tobi_dynamics_state *d)
 
 /* Adds to sum[0] by how much the next drift opens the contact without the pull, m, to sum[1] what the pull
    adds; sign: 1 for the body a, -1 for b. */
-static void foresee(const tobi_rigid *r, const tobi_touch *c, int sign, double dt, double sum[2])
+static void predict(const tobi_rigid *r, const tobi_touch *c, int sign, double dt, double sum[2])
 {
     double arm[3], lever[3], shift[3], turn[3][3];
     vec3_sub(arm, c->point, r->position);
@@ -368,8 +368,8 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
             const tobi_touch *c = &d->contacts.at[k];
             tobi_rigid *a = &d->bodies[c->a].rigid, *b = c->b >= 0 ? &d->bodies[c->b].rigid : NULL;
             double sum[2] = { c->gap, 0 };
-            foresee(a, c, 1, dt, sum);
-            if (b) foresee(b, c, -1, dt, sum);
+            predict(a, c, 1, dt, sum);
+            if (b) predict(b, c, -1, dt, sum);
             double size = vec3_length(a->pull) + (b ? vec3_length(b->pull) : 0);
             if (sum[1] >= -level*dt*dt*size || sum[0] + sum[1] >= 0) continue;
             again |= drop_pull(a);
@@ -378,15 +378,15 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
     }
 }
 
-/* What a body leans on is there in the next step as well; a blow is not. */
-static void keep_lean(tobi_body *b)
+/* A resting contact is there in the next step as well; an impact is not. */
+static void keep_contact_force(tobi_body *b)
 {
     tobi_rigid *r = &b->rigid;
     for (int a = 0; a < 6; a++) {
         const double now = a < 3 ? b->info.contact_force[a] : b->info.contact_torque[a - 3],
-                     last = r->leaned[a];
+                     last = r->contact_before[a];
         r->held[a] = now*last > 0 ? copysign(fmin(fabs(now), fabs(last)), now) : 0;
-        r->leaned[a] = now;
+        r->contact_before[a] = now;
     }
 }
 
@@ -408,7 +408,7 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
         tobi_body *b = &d->bodies[k];
         const tobi_rigid *r = &b->rigid;
         if (r->kind == TOBI_PRESCRIBED) continue;
-        keep_lean(b);
+        keep_contact_force(b);
         if (!isfinite(vec3_dot(r->velocity, r->velocity) + vec3_dot(r->momentum, r->momentum)))
             return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: body '%s' has a "
                              "velocity that is no number", t, b->name);

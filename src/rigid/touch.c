@@ -41,7 +41,7 @@ tobi_status tobi_shape_make(tobi_shape *s, tobi_body *b, int dimension, tobi_err
     s->solid = !b->deforms;
     if (!s->solid) return TOBI_OK;
     if (dimension == 2) TOBI_TRY(check_prism(b, err));
-    TOBI_TRY(tobi_body_need_rest(b, err));
+    TOBI_TRY(tobi_body_build_rest(b, err));
     return tobi_facets_build(&s->facets, b->rest_bvh, (const double (*)[3])b->rest_vertex, dimension == 2,
                              err);
 }

@@ -12,41 +12,41 @@ struct tobi_system;
 
 /* Finds which particles see which body at the bodies' present pose. */
 tobi_status tobi_boundary_search(struct tobi_system *s, tobi_error *err);
-/* After the search: fills the entries, at the bodies' present velocities, and particles.near. */
+/* After the search: fills the entries, at the bodies' present velocities, and particles.last_link. */
 tobi_status tobi_boundary_measure(struct tobi_system *s, tobi_error *err);
 /* Marks with TOBI_WET_GAP the points of bodies below the level of still water that no particle sees and that
    face a side of the domain or another body within a support radius. Part of measuring. */
 void tobi_boundary_fill_gaps(struct tobi_system *s);
 /* Replaces neighbours that lie behind a body by the particle itself in the list. */
 void tobi_boundary_cut_pairs(struct tobi_system *s);
-/* Writes particles.beside, if there is one. After cutting pairs. */
-void tobi_boundary_mark_beside(struct tobi_system *s);
+/* Writes particles.near_body, if there is one. After cutting pairs. */
+void tobi_boundary_mark_near_body(struct tobi_system *s);
 
 /* --- what bodies do to particles -------------------------------------------------------------- */
 
 /* Adds gradients, wall fluxes and shares to particles.wall and particles.density (which hold the planes'
    part). */
 void tobi_boundary_add_gradients(struct tobi_system *s);
-/* Adds dt times lift and no-slip friction of the bodies to the velocities. */
+/* Adds dt times hydrostatic pressure of mirrors and no-slip friction of the bodies to the velocities. */
 void tobi_boundary_add_forces(struct tobi_system *s);
 /* Turns the surface normals of particles nearer than 1.5 spacings to the bodies' angles of contact. */
 void tobi_boundary_turn_normals(struct tobi_system *s);
-/* Moves the particles with `beside` by dt^2 accel, a tenth of a spacing at most and not into bodies or sides;
-   velocities stay. */
+/* Moves the particles with `near_body` by dt^2 accel, a tenth of a spacing at most and not into bodies or
+   sides; velocities stay. */
 void tobi_boundary_relax(struct tobi_system *s);
 /* Puts particles outside again that the bodies' new poses have caught, that came nearer than 0.2 d, or that
    went through a body within the step, however thin it is. Their speed into the body is taken, the impulse
    counts as pressure of this system's load. After measuring and the motion of particles and bodies; counts in
-   s->near.contacts. */
+   s->links.contacts. */
 void tobi_push_out(struct tobi_system *s);
 
 /* --- what particles do to bodies -------------------------------------------------------------- */
 
-/* Runs kernel over the entries of each body apart; the totals go to near.total. own: blocks begin with each
+/* Runs kernel over the entries of each body apart; the totals go to links.total. own: blocks begin with each
    body, else with the first entry of all: where they are cut decides the last bits. */
 void tobi_boundary_sum(struct tobi_system *s, tobi_kernel kernel, const void *view, int own);
-/* Forces and torques on all bodies by lift and surface tension, or by friction, all that does not wait for
-   pressure: into the first six of near.total. */
+/* Forces and torques on all bodies by hydrostatic pressure of mirrors and surface tension, or by friction,
+   all that does not wait for pressure: into the first six of links.total. */
 void tobi_boundary_known_forces(struct tobi_system *s, int viscous);
 /* Adds force and torque of the pressure and the friction of this step to this system's load on each body. */
 void tobi_boundary_load(struct tobi_system *s);
@@ -54,14 +54,14 @@ void tobi_boundary_load(struct tobi_system *s);
 /* --- how bodies that move by forces answer (docs/theory/rigid.md, R.11 to R.14) --------------- */
 
 /* A solve for the pressure has tobi_couple_product after each product; an equation of state has it known from
-   tobi_couple_begin, and the step bounded by tobi_couple_softness (docs/theory/wcsph.md, eq. 25). */
+   tobi_couple_begin, and the step bounded by tobi_couple_compliance (docs/theory/wcsph.md, eq. 25). */
 
 /* Whether any body moves by forces. */
 int tobi_couple_any(const struct tobi_system *s);
-/* Into near.answer of a body: by how much force and torque f (N, N m), with gravity and what else it feels,
+/* Into links.answer of a body: by how much force and torque f (N, N m), with gravity and what else it feels,
    change its velocities in this step; 0 for a body that does not move by forces. */
-void tobi_couple_foresee(struct tobi_system *s, int body, const double f[6]);
-/* Into near.answer of a body that was foreseen: its accelerations by f alone. */
+void tobi_couple_predict(struct tobi_system *s, int body, const double f[6]);
+/* Into links.answer of a body that was predicted: its accelerations by f alone. */
 void tobi_couple_answer(struct tobi_system *s, int body, const double f[6]);
 /* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are,
    into particles.wall. */
@@ -79,4 +79,4 @@ double tobi_couple_dt(const struct tobi_system *s);
 /* How fast a layer of water around a moving body would move it, were the layer a spring: the largest
    eigenvalue of the inverse mass and inertia times the integral of (n, r x n) (n, r x n)^T over the surface,
    of the worst body, up to 6 % too much; m2/kg, 0 without such bodies. At the bodies' present pose. */
-double tobi_couple_softness(const struct tobi_system *s);
+double tobi_couple_compliance(const struct tobi_system *s);

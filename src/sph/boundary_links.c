@@ -42,7 +42,7 @@ static int bin_along(const tobi_boundary_bins *c, double width, int a, double x)
 /* Lays the bins of all bodies out, cells of width h over the boxes. */
 static tobi_status plan_bins(tobi_system *s, tobi_error *err)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     const int bodies = s->sim->body_count;
     int64_t starts = 0, items = 0;
     TOBI_TRY(grow(&n->bins, &n->bins_capacity, bodies + 1, err));
@@ -99,7 +99,7 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        fill_bins(&sph_of(s)->near, (int)k, b);
+        fill_bins(&sph_of(s)->links, (int)k, b);
         memset(b->wet, 0, (size_t)b->point_count);
     }
 }
@@ -157,7 +157,7 @@ static int sees_any(void *user, int32_t point)
 /* Whether x sees a point of the body: most likely one in its own or the nearest bin. */
 static int sees_body(look *l, int64_t body)
 {
-    const tobi_boundary_links *n = &sph_of(l->s)->near;
+    const tobi_boundary_links *n = &sph_of(l->s)->links;
     const tobi_boundary_bins *bins = &n->bins[body];
     const int32_t *start = n->bin_start + bins->start, *item = n->bin_item + bins->item;
     int64_t bin = 0;
@@ -201,7 +201,7 @@ static int add_point(void *user, int32_t k)
         int p = (a + 1)%3, q = (a + 2)%3;
         l->link->gradient[a] -= aw*n[a];
         l->link->torque_arm[a] -= aw*(arm[p]*n[q] - arm[q]*n[p]);
-        e->lift[a] -= aw*gn*(s + reach)*n[a];
+        e->hydrostatic[a] -= aw*gn*(s + reach)*n[a];
     }
     e->wall_flux -= aw*dot(n, v);
     e->share += aw*reach;
@@ -237,7 +237,7 @@ static int look_at(look *l, int32_t i, int body)
     for (int a = 0; a < 3; a++) e->offset[a] = l->x[a] - hit.point[a];
     memcpy(e->foot, hit.point, sizeof e->foot);
     memcpy(e->foot_normal, hit.normal, sizeof e->foot_normal);
-    tobi_boundary_visit(&sph_of(l->s)->near, body, l->x, add_point, l);
+    tobi_boundary_visit(&sph_of(l->s)->links, body, l->x, add_point, l);
     e->share = fmin(e->share, 0.98);
     return 1;
 }
@@ -257,7 +257,7 @@ static int cell_along(const tobi_cells *c, int axis, double x)
 static tobi_status add_row(tobi_system *s, int body, int64_t begin, int64_t end, int64_t *hits,
                            tobi_error *err)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     if (begin == end) return TOBI_OK;
     TOBI_TRY(grow(&n->row, &n->row_capacity, n->row_count + 1, err));
     n->row[n->row_count++] = (tobi_boundary_row){body, (int32_t)begin, (int32_t)end, *hits};
@@ -301,7 +301,7 @@ static int is_far(const tobi_system *s, const double lo[3], const double hi[3], 
 static void find_hits(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
         const tobi_boundary_row *row = &n->row[r];
@@ -322,7 +322,7 @@ static void find_hits(const void *view, int64_t begin, int64_t end, double *tota
 static void fill_entries(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     (void)totals;
     for (int64_t r = begin; r < end; r++) {
         const tobi_boundary_row *row = &n->row[r];
@@ -338,20 +338,20 @@ static void fill_entries(const void *view, int64_t begin, int64_t end, double *t
 
 static void chain_entries(tobi_system *s)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
-    int32_t *near = sph_fields_of(&s->particles)->near;
-    memset(near, 0xFF, (size_t)s->particles.count*sizeof *near);
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    memset(last_link, 0xFF, (size_t)s->particles.count*sizeof *last_link);
     for (int64_t k = 0; k < n->count; k++) {
         tobi_boundary_link *e = &n->link[k];
-        e->previous = near[e->particle];
-        near[e->particle] = (int32_t)k;
+        e->previous = last_link[e->particle];
+        last_link[e->particle] = (int32_t)k;
     }
 }
 
 /* Room for what is done with the entries before the next search. */
 static tobi_status reserve(tobi_system *s, tobi_error *err)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     const int64_t bodies = s->sim->body_count, blocks = s->particles.count/TOBI_BLOCK + 1;
     const int64_t parts = n->count/TOBI_BLOCK + 1 + bodies;
     TOBI_TRY(grow(&n->total, &n->total_capacity, bodies, err));
@@ -364,7 +364,7 @@ static tobi_status reserve(tobi_system *s, tobi_error *err)
 /* Rows near each body are searched, not all particles for every body. */
 tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     tobi_exec *x = &s->sim->exec;
     const int bodies = s->sim->body_count;
     int64_t hits = 0;
@@ -389,7 +389,7 @@ tobi_status tobi_boundary_search(tobi_system *s, tobi_error *err)
 
 tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     TOBI_TRY(grow(&n->link, &n->link_capacity, n->count, err));
     TOBI_TRY(grow(&n->entry, &n->capacity, n->count, err));
     tobi_launch_each(&s->sim->exec, TOBI_HOST(fill_entries, 0, 0), s, n->row_count, NULL);
@@ -402,22 +402,22 @@ tobi_status tobi_boundary_measure(tobi_system *s, tobi_error *err)
 
 static void visit_entries(tobi_system *s, tobi_range visit)
 {
-    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, visit, s);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, visit, s);
 }
 
 /* Runs over entries; those of one particle are handled together, where the first of them stands. */
 #define FOR_NEAR_PARTICLES(s, k, i, e)                                                                     \
     for (int64_t k = begin; k < end; k++)                                                                  \
-        for (int64_t i = sph_of(s)->near.link[k].particle,                                                 \
-                     once = sph_fields_of(&s->particles)->near[i] == k; once; once = 0)                    \
-            for (const tobi_boundary_entry *e = &sph_of(s)->near.entry[k]; e;                              \
-                 e = tobi_boundary_next(&sph_of(s)->near, e))
+        for (int64_t i = sph_of(s)->links.link[k].particle,                                                \
+                     once = sph_fields_of(&s->particles)->last_link[i] == k; once; once = 0)               \
+            for (const tobi_boundary_entry *e = &sph_of(s)->links.entry[k]; e;                             \
+                 e = tobi_boundary_next(&sph_of(s)->links, e))
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *w = &f->wall[i];
         const double *g = n->link[e - n->entry].gradient;
@@ -429,14 +429,14 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
 
 void tobi_boundary_add_gradients(tobi_system *s) { visit_entries(s, add_gradients); }
 
-/* Acceleration by lift and friction of one entry, for velocity u. */
+/* Acceleration by hydrostatic pressure of mirrors and friction of one entry, for velocity u. */
 static void entry_accel(const tobi_system *s, int64_t i, const tobi_boundary_entry *e, const double u[3],
-                        double lift[3], double drag[3])
+                        double hydrostatic[3], double drag[3])
 {
     const tobi_fluid *f = &s->fluid[s->particles.fluid[i]];
     double nu = f->viscosity/f->density, a[3];
     for (int c = 0; c < 3; c++) {
-        lift[c] = e->lift[c];
+        hydrostatic[c] = e->hydrostatic[c];
         a[c] = nu*(e->drag_velocity[c] - e->drag*u[c]);
     }
     double normal = dot(a, e->foot_normal), square = 0;
@@ -455,14 +455,14 @@ static void add_forces(const void *view, int64_t begin, int64_t end)
     const tobi_system *s = view;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *v = &s->particles.velocity[i];
-        double u[3] = {v->x, v->y, v->z}, lift[3], drag[3];
-        entry_accel(s, i, e, u, lift, drag);
+        double u[3] = {v->x, v->y, v->z}, hydrostatic[3], drag[3];
+        entry_accel(s, i, e, u, hydrostatic, drag);
         tobi_boundary_entry *own = (tobi_boundary_entry *)e;   /* kept for the reaction */
-        memcpy(own->lift, lift, sizeof lift);
+        memcpy(own->hydrostatic, hydrostatic, sizeof hydrostatic);
         memcpy(own->friction, drag, sizeof drag);
-        v->x += (float)(s->dt*(lift[0] + drag[0]));
-        v->y += (float)(s->dt*(lift[1] + drag[1]));
-        v->z += (float)(s->dt*(lift[2] + drag[2]));
+        v->x += (float)(s->dt*(hydrostatic[0] + drag[0]));
+        v->y += (float)(s->dt*(hydrostatic[1] + drag[1]));
+        v->z += (float)(s->dt*(hydrostatic[2] + drag[2]));
     }
 }
 
@@ -471,8 +471,8 @@ void tobi_boundary_add_forces(tobi_system *s) { visit_entries(s, add_forces); }
 /* Keeps the place x + way of particle i at least that far from the bodies it sees. */
 static void keep_away(const tobi_system *s, int64_t i, double least, double way[3])
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
-    int32_t k = sph_fields_of(&s->particles)->near[i];
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    int32_t k = sph_fields_of(&s->particles)->last_link[i];
     for (const tobi_boundary_entry *e = k >= 0 ? &n->entry[k] : NULL; e; e = tobi_boundary_next(n, e)) {
         double lack = least - e->distance - dot(way, e->foot_normal);
         for (int a = 0; a < 3 && lack > 0; a++) way[a] += lack*e->foot_normal[a];
@@ -486,7 +486,7 @@ static void relax_particles(const void *view, int64_t begin, int64_t end)
     const sph_fields *f = sph_fields_of(&s->particles);
     const double d = s->smoothing.spacing, most = 0.1*d, least = 0.2*d;
     for (int64_t i = begin; i < end; i++) {
-        if (!f->beside[i]) continue;
+        if (!f->near_body[i]) continue;
         double way[3] = {f->accel[i].x, f->accel[i].y, f->accel[i].z}, size = sqrt(dot(way, way)),
                scale = s->dt*s->dt, *x = &p->position[i].x;
         if (size*scale > most) scale = most/size;
@@ -507,7 +507,7 @@ void tobi_boundary_relax(tobi_system *s)
 static void turn_normals(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const tobi_boundary_links *near = &sph_of(s)->near;
+    const tobi_boundary_links *links = &sph_of(s)->links;
     FOR_NEAR_PARTICLES(s, k, i, e) {
         tobi_float4 *n = &sph_fields_of(&s->particles)->normal[i];
         double u[3] = {n->x, n->y, n->z}, across = dot(u, e->foot_normal), size = 0;
@@ -516,7 +516,7 @@ static void turn_normals(const void *view, int64_t begin, int64_t end)
             size += u[c]*u[c];
         }
         if (e->distance >= 1.5*s->smoothing.spacing || !(size > 1e-6)) continue;
-        const tobi_body *body = &s->sim->bodies[near->link[e - near->entry].body];
+        const tobi_body *body = &s->sim->bodies[links->link[e - links->entry].body];
         double cosine = body->contact_cosine, scale = sqrt((1 - cosine*cosine)/size);
         for (int c = 0; c < 3; c++) (&n->x)[c] = (float)(scale*u[c] + cosine*e->foot_normal[c]);
     }

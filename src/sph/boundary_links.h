@@ -54,7 +54,7 @@ static inline const tobi_boundary_entry *tobi_boundary_next(const tobi_boundary_
 
 /* Calls visit for every point of a body in the bins around x, m from the lower corner of the box; stops early
    when it answers nonzero, and answers that. */
-int tobi_boundary_visit(const tobi_boundary_links *near, int64_t body, const double x[3],
+int tobi_boundary_visit(const tobi_boundary_links *links, int64_t body, const double x[3],
                         int (*visit)(void *user, int32_t point), void *user);
-int64_t tobi_boundary_links_bytes(const tobi_boundary_links *near);
-void tobi_boundary_links_free(tobi_boundary_links *near);
+int64_t tobi_boundary_links_bytes(const tobi_boundary_links *links);
+void tobi_boundary_links_free(tobi_boundary_links *links);

@@ -20,12 +20,12 @@ static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 /* A body between two particles is not farther from both together than they are from each other. */
 static int may_separate(const tobi_system *s, int64_t i, int64_t j)
 {
-    const int32_t *near = sph_fields_of(&s->particles)->near;
-    const tobi_boundary_link *link = sph_of(s)->near.link;
+    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    const tobi_boundary_link *link = sph_of(s)->links.link;
     double square = 0;
     int32_t fixed[3];
-    if (near[j] < 0) return 0;
-    const double least = (double)link[near[i]].nearest + link[near[j]].nearest;
+    if (last_link[j] < 0) return 0;
+    const double least = (double)link[last_link[i]].nearest + link[last_link[j]].nearest;
     if (least > 1.001*s->smoothing.h) return 0;
     subtract(s, i, j, fixed);
     for (int a = 0; a < 3; a++) {
@@ -41,17 +41,17 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
 {
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
-    const int32_t *near = sph_fields_of(p)->near;
-    const tobi_boundary_link *link = sph_of(s)->near.link;
-    const tobi_boundary_entry *entry = sph_of(s)->near.entry, *a = &entry[near[i]], *b;
+    const int32_t *last_link = sph_fields_of(p)->last_link;
+    const tobi_boundary_link *link = sph_of(s)->links.link;
+    const tobi_boundary_entry *entry = sph_of(s)->links.entry, *a = &entry[last_link[i]], *b;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     int32_t fixed[3];
     double d[3];
     subtract(s, i, j, fixed);
     for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
     const double length = sqrt(dot(d, d));
-    for (; a; a = tobi_boundary_next(&sph_of(s)->near, a))
-        for (b = &entry[near[j]]; b; b = tobi_boundary_next(&sph_of(s)->near, b)) {
+    for (; a; a = tobi_boundary_next(&sph_of(s)->links, a))
+        for (b = &entry[last_link[j]]; b; b = tobi_boundary_next(&sph_of(s)->links, b)) {
             const int body = link[a - entry].body;
             if (body != link[b - entry].body || fabs(a->distance) + fabs(b->distance) >= length) continue;
             double to[3], ra[3], rb[3];
@@ -70,11 +70,11 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
 static void find_nearest(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const int32_t *near = sph_fields_of(&s->particles)->near;
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     for (int64_t k = begin; k < end; k++) {
         double least = INFINITY;
-        if (near[n->link[k].particle] != k) continue;      /* once per particle */
+        if (last_link[n->link[k].particle] != k) continue; /* once per particle */
         for (const tobi_boundary_entry *e = &n->entry[k]; e; e = tobi_boundary_next(n, e))
             least = fmin(least, fabs(e->distance));
         n->link[k].nearest = (float)least;
@@ -85,12 +85,12 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const tobi_cells *c = &s->cells;
-    const int32_t *near = sph_fields_of(&s->particles)->near;
-    tobi_boundary_links *n = &sph_of(s)->near;
+    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    tobi_boundary_links *n = &sph_of(s)->links;
     int64_t cut = 0;
     for (int64_t k = begin; k < end; k++) {
         int64_t i = n->link[k].particle;
-        if (near[i] != k) continue;      /* once per particle */
+        if (last_link[i] != k) continue; /* once per particle */
         int32_t *list = c->list + 8*(int64_t)c->list_start[i];
         for (int g = 0; g < 8*c->list_groups[i]; g++) {
             int32_t j = list[g];
@@ -104,31 +104,31 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     tobi_loop(s->sim->exec.threads, n->count, 0, find_nearest, s);
     n->cut_pairs = 0;
     tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
     n->cut_pairs /= 2;      /* each was seen from both sides */
 }
 
-static void mark_beside(const void *view, int64_t begin, int64_t end)
+static void mark_near_body(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const tobi_cells *c = &s->cells;
-    uint8_t *beside = sph_fields_of(&s->particles)->beside;
+    uint8_t *near_body = sph_fields_of(&s->particles)->near_body;
     for (int64_t k = begin; k < end; k++) {
-        int64_t i = sph_of(s)->near.link[k].particle;
+        int64_t i = sph_of(s)->links.link[k].particle;
         const int32_t *list = c->list + 8*(int64_t)c->list_start[i];
         for (int g = 0; g < 8*c->list_groups[i]; g++)
-            __atomic_store_n(&beside[list[g]], 1, __ATOMIC_RELAXED);
-        __atomic_store_n(&beside[i], 1, __ATOMIC_RELAXED);
+            __atomic_store_n(&near_body[list[g]], 1, __ATOMIC_RELAXED);
+        __atomic_store_n(&near_body[i], 1, __ATOMIC_RELAXED);
     }
 }
 
-void tobi_boundary_mark_beside(tobi_system *s)
+void tobi_boundary_mark_near_body(tobi_system *s)
 {
-    uint8_t *beside = sph_fields_of(&s->particles)->beside;
-    if (!beside) return;
-    memset(beside, 0, (size_t)s->particles.count);
-    tobi_loop(s->sim->exec.threads, sph_of(s)->near.count, 0, mark_beside, s);
+    uint8_t *near_body = sph_fields_of(&s->particles)->near_body;
+    if (!near_body) return;
+    memset(near_body, 0, (size_t)s->particles.count);
+    tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, mark_near_body, s);
 }

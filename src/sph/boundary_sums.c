@@ -44,7 +44,7 @@ static void combine_bodies(const void *view, int64_t begin, int64_t end, double 
 
 void tobi_boundary_sum(tobi_system *s, tobi_kernel kernel, const void *view, int own)
 {
-    summing q = {&sph_of(s)->near, kernel, view, own};
+    summing q = {&sph_of(s)->links, kernel, view, own};
     tobi_launch(&s->sim->exec, TOBI_HOST(sum_block, 0, 0), &q, 0, q.n->count, NULL);
     tobi_launch(&s->sim->exec, TOBI_HOST(combine_bodies, 0, 0), &q, 0, s->sim->body_count, NULL);
 }
@@ -70,15 +70,15 @@ static void sum_reaction(const void *view, int64_t begin, int64_t end, double *t
 {
     const reaction *r = view;
     const tobi_system *s = r->s;
-    const tobi_boundary_links *near = &sph_of(s)->near;
+    const tobi_boundary_links *links = &sph_of(s)->links;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t k = begin; k < end; k++) {
-        const tobi_boundary_link *l = &near->link[k];
-        const tobi_boundary_entry *e = &near->entry[k];
+        const tobi_boundary_link *l = &links->link[k];
+        const tobi_boundary_entry *e = &links->entry[k];
         const tobi_body *b = &s->sim->bodies[l->body];
         double mass = s->smoothing.volume * s->fluid[s->particles.fluid[l->particle]].density,
                force[3], arm[3], turning[3] = {0, 0, 0};
-        const double *accel = r->viscous ? e->friction : e->lift;
+        const double *accel = r->viscous ? e->friction : e->hydrostatic;
         for (int a = 0; a < 3; a++) {
             force[a] = -mass*accel[a];
             arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
@@ -110,7 +110,7 @@ void tobi_boundary_load(tobi_system *s)
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body_load *load = &s->sim->bodies[k].load[s->number];
             double *sum = viscous ? load->friction : load->pressure;
-            for (int a = 0; a < 6; a++) sum[a] += sph_of(s)->near.total[k][a];
+            for (int a = 0; a < 6; a++) sum[a] += sph_of(s)->links.total[k][a];
         }
     }
 }

@@ -20,36 +20,36 @@ int tobi_couple_any(const tobi_system *s)
 
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control, and with
    what contact has held for two steps; the rest of contact the next step knows from its first velocities. */
-static void foresee(const tobi_system *s, tobi_body *b, const double f[6])
+static void predict(const tobi_system *s, tobi_body *b, const double f[6])
 {
     tobi_rigid *r = &b->rigid;
     double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
     tobi_rigid_inverse(r, shift, turn);
     for (int a = 0; a < 3; a++) {
         double force = r->mass*s->sim->def.gravity[a] + r->force[a] + r->held[a] + f[a];
-        r->foreseen[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
+        r->predicted[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
         momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + r->held[3 + a] + f[3 + a]));
         r->mobility[a] = keep*shift[a];
         for (int c = 0; c < 3; c++) r->turn_mobility[a][c] = keep*turn[a][c];
     }
-    for (int a = 0; a < 3; a++) r->foreseen_spin[a] = vec3_dot(turn[a], momentum);
+    for (int a = 0; a < 3; a++) r->predicted_spin[a] = vec3_dot(turn[a], momentum);
 }
 
-void tobi_couple_foresee(tobi_system *s, int k, const double f[6])
+void tobi_couple_predict(tobi_system *s, int k, const double f[6])
 {
     tobi_body *b = &s->sim->bodies[k];
-    double *answer = sph_of(s)->near.answer[k];
+    double *answer = sph_of(s)->links.answer[k];
     memset(answer, 0, 6*sizeof *answer);
     if (!moves(b)) return;
-    foresee(s, b, f);
-    vec3_sub(answer, b->rigid.foreseen, b->rigid.velocity);
-    vec3_sub(answer + 3, b->rigid.foreseen_spin, b->rigid.angular_velocity);
+    predict(s, b, f);
+    vec3_sub(answer, b->rigid.predicted, b->rigid.velocity);
+    vec3_sub(answer + 3, b->rigid.predicted_spin, b->rigid.angular_velocity);
 }
 
 void tobi_couple_answer(tobi_system *s, int k, const double f[6])
 {
     const tobi_rigid *r = &s->sim->bodies[k].rigid;
-    double *answer = sph_of(s)->near.answer[k];
+    double *answer = sph_of(s)->links.answer[k];
     memset(answer, 0, 6*sizeof *answer);
     if (!moves(&s->sim->bodies[k])) return;
     for (int a = 0; a < 3; a++) {
@@ -60,10 +60,10 @@ void tobi_couple_answer(tobi_system *s, int k, const double f[6])
 
 static tobi_couple_view see_entries(const tobi_system *s)
 {
-    const tobi_boundary_links *near = &sph_of(s)->near;
+    const tobi_boundary_links *links = &sph_of(s)->links;
     const sph_fields *f = sph_fields_of(&s->particles);
-    return (tobi_couple_view){ .link = near->link, .answer = (const double (*)[6])near->answer,
-                               .near = f->near, .record = s->cells.record, .wall = f->wall,
+    return (tobi_couple_view){ .link = links->link, .answer = (const double (*)[6])links->answer,
+                               .last_link = f->last_link, .record = s->cells.record, .wall = f->wall,
                                .product = f->product };
 }
 
@@ -76,7 +76,7 @@ static const sph_kernels *kernels_of(const tobi_system *s)
 /* Into the answers, which are free until then. */
 static void sum_known_forces(tobi_system *s)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     for (int viscous = 0; viscous < 2; viscous++) {
         tobi_boundary_known_forces(s, viscous);
         for (int k = 0; k < s->sim->body_count; k++)
@@ -91,9 +91,9 @@ void tobi_couple_begin(tobi_system *s)
     sum_known_forces(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         double f[6];
-        memcpy(f, sph_of(s)->near.answer[k], sizeof f);
+        memcpy(f, sph_of(s)->links.answer[k], sizeof f);
         if (moves(&s->sim->bodies[k])) sph_body_hydrostatic(s, k, f);
-        tobi_couple_foresee(s, k, f);
+        tobi_couple_predict(s, k, f);
     }
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
 }
@@ -109,7 +109,7 @@ static void sum_pressure(const void *view, int64_t begin, int64_t end, double *t
 
 void tobi_couple_product(tobi_system *s, double *totals)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     const tobi_couple_view v = see_entries(s);
     const pressing p = {s, kernels_of(s)->couple_pressure, &v};
     double t[TOBI_TOTALS];
@@ -134,15 +134,15 @@ static void collect_forces(const tobi_system *s, const tobi_body *b, double f[6]
 
 void tobi_couple_correct(tobi_system *s)
 {
-    const int64_t *first = sph_of(s)->near.first;
+    const int64_t *first = sph_of(s)->links.first;
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b) || first[k] == first[k + 1]) continue;
         collect_forces(s, b, f);
-        foresee(s, b, f);
-        tobi_body_correct(b, b->rigid.foreseen, b->rigid.foreseen_spin, s->dt);
-        tobi_body_drive(b, b->rigid.foreseen, b->rigid.foreseen_spin);
+        predict(s, b, f);
+        tobi_body_correct(b, b->rigid.predicted, b->rigid.predicted_spin, s->dt);
+        tobi_body_set_velocity(b, b->rigid.predicted, b->rigid.predicted_spin);
     }
 }
 
@@ -191,7 +191,7 @@ static double largest_eigenvalue(double x[6][6])
 }
 
 /* Locked shifts count as free ones: how much of the surface lies across the others changes with the pose. */
-double tobi_couple_softness(const tobi_system *s)
+double tobi_couple_compliance(const tobi_system *s)
 {
     double most = 0;
     for (int k = 0; k < s->sim->body_count; k++) {

@@ -2,8 +2,8 @@
 #pragma once
 #include "exec/pairs.h"
 
-/* One fluid particle sees one body: what solves read of it, in 64 bytes. sph_fields.near names a particle's
-   last. */
+/* One fluid particle sees one body: what solves read of it, in 64 bytes. sph_fields.last_link names the
+   last of a particle. */
 typedef struct tobi_boundary_link {
     int32_t particle;
     int16_t body;
@@ -17,7 +17,7 @@ typedef struct tobi_boundary_link {
 typedef struct tobi_boundary_entry {
     double wall_flux;         /* -sum A W n . v_b, 1/s                                            */
     double share;             /* lambda: share of the kernel inside or behind the body            */
-    double lift[3];           /* acceleration by the hydrostatic part of the mirrored pressure    */
+    double hydrostatic[3];    /* acceleration by the hydrostatic part of the mirrored pressure    */
     double friction[3];       /* acceleration by no-slip friction in this step                    */
     double drag;              /* no-slip friction rate, 1/m2: a = -nu drag (v - v_body)_t         */
     double drag_velocity[3];  /* drag times mean body velocity, 1/(m s)                           */
@@ -32,7 +32,7 @@ typedef struct tobi_boundary_entry {
 typedef struct tobi_couple_view {
     const tobi_boundary_link *link;
     const double (*answer)[6];       /* of each body: velocities, or accelerations per pressure; 0: none */
-    const int32_t *near;             /* a particle's last entry, -1 = none                               */
+    const int32_t *last_link;        /* a particle's last entry, -1 = none                               */
     const tobi_record *record;       /* w: the pressure                                                  */
     tobi_float4 *wall;
     float *product;
@@ -42,7 +42,7 @@ typedef struct tobi_couple_view {
 TOBI_FN double couple_sum(const tobi_couple_view *v, int64_t i)
 {
     double sum = 0;
-    for (int64_t k = v->near[i]; k >= 0; k = v->link[k].previous) {
+    for (int64_t k = v->last_link[i]; k >= 0; k = v->link[k].previous) {
         const tobi_boundary_link *e = &v->link[k];
         const double *u = v->answer[e->body];
         sum += (e->gradient[0]*u[0] + e->gradient[1]*u[1] + e->gradient[2]*u[2]) +
@@ -54,7 +54,7 @@ TOBI_FN double couple_sum(const tobi_couple_view *v, int64_t i)
 TOBI_FN void couple_flux(const tobi_couple_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    if (v->near[i] >= 0) v->wall[i].w += (float)couple_sum(v, i);
+    if (v->last_link[i] >= 0) v->wall[i].w += (float)couple_sum(v, i);
 }
 
 /* Over entries. totals: force and torque of the pressures on a body, without the factor of two volumes. */
@@ -72,7 +72,7 @@ TOBI_FN void couple_pressure(const tobi_couple_view *v, int64_t k, double *total
    totals: q times what is gained, and that. */
 TOBI_FN void couple_product(const tobi_couple_view *v, int64_t i, double *totals)
 {
-    if (v->near[i] < 0) return;
+    if (v->last_link[i] < 0) return;
     const float before = v->product[i], after = before + (float)(2*couple_sum(v, i));
     v->product[i] = after;
     totals[0] += ((double)after - before)*v->record[i].w;

@@ -74,11 +74,11 @@ static void launch(tobi_system *s, dfsph *m, tobi_kernel k, double *totals)
 }
 
 /* Shifting, without which cavities open, wants more neighbours than the shortest support reaches. */
-static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+static void choose_smoothing(const void *def, int driven, int *shape, double *support)
 {
     const tobi_dfsph_def *d = def;
     *shape = d->kernel;
-    *support = d->support > 0 ? d->support : stirred ? SHIFTING_SUPPORT : 2;
+    *support = d->support > 0 ? d->support : driven ? SHIFTING_SUPPORT : 2;
 }
 
 static int reaches_far(const tobi_system *s)
@@ -210,12 +210,12 @@ static void iterate(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 
 /* Particles of a free surface whose pressure came out pulling are held at none, and what the others lack
    without their pull is the new residual, at the price of an iteration; 0 if they are next to nothing. */
-static int hold_pulling(tobi_system *s, dfsph *m, linear_solve *q, double *t)
+static int clamp_pressure(tobi_system *s, dfsph *m, linear_solve *q, double *t)
 {
     double pull[TOBI_TOTALS];
     cg_run run = { s, m, q, t };
     if (m->memory.vessel == SPH_VESSEL_FULL || q->iterations >= q->max || s->sim->stopped) return 0;
-    launch(s, m, m->kernel->sph_hold, pull);
+    launch(s, m, m->kernel->sph_clamp_pressure, pull);
     if (!(pull[0] > PULL_TOLERANCE*pull[1])) return 0;
     apply(&run);
     advance(&run, 1);
@@ -230,7 +230,7 @@ static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear
     memcpy(t, start, sizeof t);
     center(s, m, q, k->sph_center_residual, t[2], t);
     m->view.coarse = q->grid ? tobi_multigrid_values(&m->grid) : (tobi_grid_values){0};
-    do iterate(s, m, q, t); while (hold_pulling(s, m, q, t));
+    do iterate(s, m, q, t); while (clamp_pressure(s, m, q, t));
     launch(s, m, k->sph_correct_pressure, t);
     center(s, m, q, k->sph_center_pressure, t[1], NULL);
     q->head = 2*t[0]/(double)s->particles.count;
@@ -247,11 +247,11 @@ static tobi_status find_neighbors(tobi_system *s, dfsph *m, double *clock, tobi_
     return TOBI_OK;
 }
 
-static tobi_status look_into_vessel(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
+static tobi_status classify_vessel(tobi_system *s, dfsph *m, double *clock, tobi_error *err)
 {
-    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     if (m->memory.vessel == SPH_VESSEL_OPEN) return TOBI_OK;
-    sph_fill_up(s);
+    sph_remove_gravity(s);
     bind_view(s, m);
     return TOBI_OK;
 }
@@ -370,11 +370,11 @@ static tobi_status relax_lattice(tobi_system *s, dfsph *m, double *clock, tobi_e
     const tobi_simulation *w = s->sim;
     if (s->step > 0 || w->body_count == 0 || tobi_body_any_free(w->bodies, w->body_count)) return TOBI_OK;
     for (int k = 0; k < SETTLING_ROUNDS; k++) {
-        TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
+        TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));
         m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
         if (s->info.density_error_max < SETTLED) return TOBI_OK;
         correct_density(s, m, clock);
-        TOBI_TRY(tobi_simulation_heed(s->sim, err));
+        TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
         tobi_boundary_relax(s);
         TOBI_TRY(find_neighbors(s, m, clock, err));
     }
@@ -405,7 +405,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
     memcpy(kept, s->particles.velocity, (size_t)s->particles.count*sizeof *kept);
     tobi_status status = TOBI_OK;
     for (int k = 0; k < 2 && status == TOBI_OK; k++) {
-        status = sph_see_walls(s, &m->view, m->kernel, clock, err);
+        status = sph_find_boundaries(s, &m->view, m->kernel, clock, err);
         if (status != TOBI_OK) break;
         m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, clock);
         m->memory.low = sph_reference_low(s);
@@ -442,14 +442,14 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     dfsph *m = s->state;
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
-    sph_drive_bodies(s, &clock);
+    sph_set_body_velocities(s, &clock);
     set_reference(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
-    TOBI_TRY(look_into_vessel(s, m, &clock, err));
+    TOBI_TRY(classify_vessel(s, m, &clock, err));
     TOBI_TRY(relax_lattice(s, m, &clock, err));
     TOBI_TRY(find_first_pressure(s, m, &clock, err));
-    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);
     m->memory.low = sph_reference_low(s);
     return TOBI_OK;
@@ -465,12 +465,12 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
 {
     dfsph *m = s->state;
     double clock = tobi_clock();
-    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     tobi_couple_begin(s);
     remove_divergence(s, m, &clock);
-    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     correct_density(s, m, &clock);
-    return tobi_simulation_heed(s->sim, err);
+    return tobi_simulation_check_stop(s->sim, err);
 }
 
 static void move(tobi_system *s)
@@ -490,8 +490,8 @@ static tobi_status refresh(tobi_system *s, tobi_error *err)
     dfsph *m = s->state;
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
-    TOBI_TRY(look_into_vessel(s, m, &clock, err));
-    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    TOBI_TRY(classify_vessel(s, m, &clock, err));
+    TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, &clock);
     return TOBI_OK;
 }
@@ -513,7 +513,7 @@ static void follow_gravity(tobi_system *s, int loaded)
 static void free_state(void *state)
 {
     dfsph *m = state;
-    if (m) tobi_boundary_links_free(&m->common.near);
+    if (m) tobi_boundary_links_free(&m->common.links);
     if (m) tobi_multigrid_free(&m->grid);
     if (m) sph_undo_free(&m->undo);
     free(m);

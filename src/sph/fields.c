@@ -37,4 +37,4 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     }
 }
 
-int64_t sph_bytes(const tobi_system *s) { return tobi_boundary_links_bytes(&sph_of(s)->near); }
+int64_t sph_bytes(const tobi_system *s) { return tobi_boundary_links_bytes(&sph_of(s)->links); }

@@ -18,14 +18,14 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(tobi_float4, TOBI_F32, 4, stretch,      TOBI_SCRATCH, SPH_NEED_WETTED, "1", \
       "T, eq. (7b), (7c): xx, yy, zz, xy") \
     X(tobi_float4, TOBI_F32, 4, shear,        TOBI_SCRATCH, SPH_NEED_WETTED, "1", "T: yz, zx") \
-    X(uint8_t,     TOBI_U8,  1, beside,       TOBI_SCRATCH, SPH_NEED_WETTED, "1", \
+    X(uint8_t,     TOBI_U8,  1, near_body,    TOBI_SCRATCH, SPH_NEED_WETTED, "1", \
       "1: it or a neighbour sees a body") \
     X(float,       TOBI_F32, 1, density,      TOBI_SCRATCH, 0, "1",    "density over rest density") \
     X(float,       TOBI_F32, 1, diagonal,     TOBI_SCRATCH, 0, "m/kg", "diagonal of the pressure operator") \
     X(float,       TOBI_F32, 1, mean,         SPH_SEE | SPH_DERIVE, 0, "Pa", "kernel average of p") \
-    X(float,       TOBI_F32, 1, drop,         SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
+    X(float,       TOBI_F32, 1, surface_depth,     SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
     X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, SPH_NEED_WETTED, "1/m", "eq. (13b)") \
-    X(float,       TOBI_F32, 1, midway,       SPH_FORCES | SPH_SOLVE, SPH_NEED_WETTED, "1/s", \
+    X(float,       TOBI_F32, 1, target_divergence, SPH_FORCES | SPH_SOLVE, SPH_NEED_WETTED, "1/s", \
       "eq. (10d)") \
     X(float,       TOBI_F32, 1, wetness,      SPH_AFTER_SEEING, 0, "1", "eq. (6b)") \
     X(float,       TOBI_F32, 1, precondition, SPH_SOLVE | SPH_CORRECT, 0, "kg/m", \
@@ -36,13 +36,13 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(float,       TOBI_F32, 1, delta,        SPH_SOLVE | SPH_CORRECT, 0, "Pa",   "change of the pressure") \
     X(float,       TOBI_F32, 1, correction,   SPH_CORRECT, 0, "Pa", "pressure that corrects positions") \
     X(float,       TOBI_F32, 1, damped,       SPH_TAIT | SPH_MOVE, 0, "Pa", "pressure and damping of sound") \
-    X(tobi_float4, TOBI_F32, 4, kept,         SPH_DERIVE, 0, "m/s", "velocity meanwhile, then its kick") \
+    X(tobi_float4, TOBI_F32, 4, saved_velocity, SPH_DERIVE, 0, "m/s", "velocity meanwhile, then its change") \
     X(tobi_float4, TOBI_F32, 4, normal,       TOBI_SCRATCH, SPH_NEED_TENSION, "1", \
       "normal of the surface; w = weight") \
     X(float,       TOBI_F32, 1, capillary,    TOBI_SCRATCH, SPH_NEED_TENSION, "Pa", \
       "surface tension times curvature") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "1 at a free surface") \
-    X(int32_t,     TOBI_I32, 1, near,         TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
+    X(int32_t,     TOBI_I32, 1, last_link,    TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
 
 typedef struct sph_fields { SPH_FIELDS(TOBI_FIELD_POINTER) } sph_fields;
 extern const tobi_field_list sph_field_list;

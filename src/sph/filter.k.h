@@ -18,7 +18,7 @@ TOBI_FN void sph_filter_start(const sph_view *v, int64_t i, sph_filter_acc *a)
 {
     sph_filter_begin(v, i, a, v->velocity);
 }
-TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_filter_acc *a,
+TOBI_FN void sph_filter_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_filter_acc *a,
                              const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -37,7 +37,7 @@ TOBI_FN void sph_filter_kick_start(const sph_view *v, int64_t i, sph_filter_acc 
 {
     sph_filter_begin(v, i, a, v->accel);
 }
-TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_filter_acc *a,
+TOBI_FN void sph_filter_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_filter_acc *a,
                            const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);

@@ -18,7 +18,7 @@ static int faces_side(const tobi_system *s, const double x[3], const double n[3]
 static int faces_body(const tobi_system *s, int body, const double x[3], const double n[3])
 {
     tobi_tree_walk walk = {0, 0};
-    for (int k; (k = tobi_body_tree_next(&sph_of(s)->near.tree, x, &walk)) >= 0;) {
+    for (int k; (k = tobi_body_tree_next(&sph_of(s)->links.tree, x, &walk)) >= 0;) {
         tobi_bvh_hit hit;
         if (k == body || !tobi_bvh_closest(s->sim->bodies[k].bvh, x, s->smoothing.h, &hit)) continue;
         if (n[0]*hit.normal[0] + n[1]*hit.normal[1] + n[2]*hit.normal[2] < -0.5) return 1;
@@ -29,7 +29,7 @@ static int faces_body(const tobi_system *s, int body, const double x[3], const d
 /* The body that the q-th of all points belongs to. */
 static int body_of(const tobi_system *s, int64_t q)
 {
-    const tobi_boundary_bins *bins = sph_of(s)->near.bins;
+    const tobi_boundary_bins *bins = sph_of(s)->links.bins;
     int low = 0, high = s->sim->body_count;
     while (high - low > 1) {
         const int middle = (low + high)/2;
@@ -43,7 +43,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
 {
     const tobi_system *s = view;
     const sph_state *state = sph_of(s);
-    const tobi_boundary_bins *bins = state->near.bins;
+    const tobi_boundary_bins *bins = state->links.bins;
     int k = body_of(s, begin);
     (void)totals;
     for (int64_t all = begin; all < end; all++) {
@@ -59,7 +59,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
 void tobi_boundary_fill_gaps(tobi_system *s)
 {
     sph_state *state = sph_of(s);
-    tobi_boundary_links *n = &state->near;
+    tobi_boundary_links *n = &state->links;
     const int bodies = s->sim->body_count;
     if (!(state->reference.push > 0)) return;
     tobi_body_tree_build(&n->tree, s->sim->bodies, bodies, s->smoothing.h, s->box.dimension);

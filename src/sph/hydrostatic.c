@@ -5,7 +5,7 @@
 #include "sph/hydrostatic.h"
 #include "sph/state.h"
 
-void sph_fill_up(tobi_system *s)
+void sph_remove_gravity(tobi_system *s)
 {
     for (int a = 0; a < 3; a++)
         if (!s->box.periodic[a]) s->gravity[a] = 0;
@@ -23,7 +23,7 @@ double sph_hydrostatic(const tobi_system *s, const double x[3])
 static double reference_pressure(const tobi_reference *w, const double *x, int wet)
 {
     if (wet != TOBI_WET_GAP) return tobi_reference_pressure(w, x);
-    return w->push*fmax(tobi_reference_drop(w, x) - w->level, 0);
+    return w->push*fmax(tobi_reference_depth(w, x) - w->level, 0);
 }
 
 /* Force and torque of still water on a body, where it is wet. */

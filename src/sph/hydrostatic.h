@@ -3,7 +3,7 @@
 #include "core/system.h"
 
 /* Takes gravity along axes with walls from what the particles of a full vessel feel. */
-void sph_fill_up(tobi_system *s);
+void sph_remove_gravity(tobi_system *s);
 /* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */
 double sph_hydrostatic(const tobi_system *s, const double x[3]);
 /* Adds its forces to those on the walls and to this system's load on the bodies. */

@@ -17,9 +17,9 @@
     typedef K##_acc K##_wendland_acc, K##_cubic_acc;                                                \
     TOBI_FN void K##_wendland_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \
     TOBI_FN void K##_cubic_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); }  \
-    TOBI_FN void K##_wendland_pair(const sph_view *v, int64_t i, const tobi_near *n, K##_acc *a)    \
+    TOBI_FN void K##_wendland_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, K##_acc *a) \
     { K##_pair(v, i, n, a, TOBI_SHAPE_WENDLAND); }                                                  \
-    TOBI_FN void K##_cubic_pair(const sph_view *v, int64_t i, const tobi_near *n, K##_acc *a)       \
+    TOBI_FN void K##_cubic_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, K##_acc *a)  \
     { K##_pair(v, i, n, a, TOBI_SHAPE_CUBIC); }                                                     \
     TOBI_FN void K##_wendland_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)            \
     { K##_finish(v, i, a, t); }                                                                     \

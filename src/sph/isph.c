@@ -18,7 +18,7 @@
 /* MEMORY: numbers that survive a restart; steps in a row that may fail to converge. */
 enum { MEMORY = 3, FAILURES = 50 };
 
-static const double STIR = 0.2, SHIFT_AT_REST = 0.1;
+static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
 
 typedef struct isph {
     sph_state common;
@@ -38,10 +38,10 @@ static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
     tobi_launch(&s->sim->exec, k, &m->solver.view, 0, s->particles.count, totals);
 }
 
-static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+static void choose_smoothing(const void *def, int driven, int *shape, double *support)
 {
     const tobi_isph_def *d = def;
-    (void)stirred;
+    (void)driven;
     *shape = d->kernel;
     *support = d->support > 0 ? d->support : 2.5;
 }
@@ -78,26 +78,26 @@ static double choose_dt(tobi_system *s)
 }
 
 /* Still liquid needs less of the shift, which would stir it: all of it where the fastest particle or body
-   goes STIR spacings in a step. */
+   goes FULL_SHIFT_STEP spacings in a step. */
 static double share_of_shift(const tobi_system *s, const isph *m)
 {
     const double speed = fmax(m->memory.speed, s->sim->body_speed);
-    return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(STIR*s->smoothing.spacing), 1));
+    return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(FULL_SHIFT_STEP*s->smoothing.spacing), 1));
 }
 
 static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
-    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
     m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
     m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
-    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, clock, err));
+    TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
-    TOBI_TRY(isph_bodies_see(&m->solver, s, err));
-    TOBI_TRY(isph_forces_see(&m->solver, s, err));
+    TOBI_TRY(isph_bodies_find_mirrors(&m->solver, s, err));
+    TOBI_TRY(isph_forces_find_coupling(&m->solver, s, err));
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;
 }
@@ -120,8 +120,8 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
     for (int k = 0; k < s->sim->body_count; k++)
-        if (s->sim->bodies[k].motion) tobi_body_recall_points(&s->sim->bodies[k]);
-    sph_drive_bodies(s, &clock);
+        if (s->sim->bodies[k].motion) tobi_body_set_previous_velocities(&s->sim->bodies[k]);
+    sph_set_body_velocities(s, &clock);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
     launch(s, m, m->kernel->isph_geometry, NULL);
@@ -138,7 +138,7 @@ static void forces(tobi_system *s)
     sph_view without = m->view;
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     sph_apply_forces(s, &without, m->kernel, &clock);
-    isph_bodies_unlift(s);
+    isph_bodies_remove_hydrostatic(s);
     launch(s, m, m->kernel->isph_gravity, NULL);
 }
 
@@ -161,14 +161,14 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
     double t[TOBI_TOTALS], clock = tobi_clock();
-    TOBI_TRY(tobi_simulation_heed(s->sim, err));
-    isph_forces_foresee(&m->solver, s);
+    TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
+    isph_forces_predict(&m->solver, s);
     const tobi_linear_report report = isph_solver_run(&m->solver, s);
-    TOBI_TRY(tobi_simulation_heed(s->sim, err));
+    TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
-    isph_forces_follow(&m->solver, s);
-    launch(s, m, m->kernel->isph_kick, t);
+    isph_forces_correct(&m->solver, s);
+    launch(s, m, m->kernel->isph_projection, t);
     s->info.force_sum = t[0]*s->smoothing.volume;
     memcpy(m->side_force, t + 1, sizeof m->side_force);
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);
@@ -186,7 +186,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
     tobi_boundary_load(s);
-    isph_forces_press(&m->solver, s);
+    isph_forces_load(&m->solver, s);
     tobi_couple_correct(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
@@ -199,7 +199,7 @@ static void move(tobi_system *s)
     launch(s, m, m->kernel->isph_shift, t);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
     s->info.divergence_max = t[6];
-    launch(s, m, m->kernel->isph_use_change, NULL);
+    launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     tobi_stage_end(&s->sim->stages, "shifting", &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
 }
@@ -226,7 +226,7 @@ static int64_t count_bytes(const tobi_system *s)
 static void free_state(void *state)
 {
     isph *m = state;
-    if (m) tobi_boundary_links_free(&m->common.near);
+    if (m) tobi_boundary_links_free(&m->common.links);
     if (m) isph_solver_free(&m->solver);
     if (m) sph_undo_free(&m->undo);
     free(m);

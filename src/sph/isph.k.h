@@ -11,8 +11,8 @@
    missing elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
 #define ISPH_GAP_SHUT 1.0
 #define ISPH_GAP_FREE 1.5
-#define ISPH_GAP_LACK_SHUT 0.15
-#define ISPH_GAP_LACK_FREE 0.25
+#define ISPH_GAP_GRADIENT_SHUT 0.15
+#define ISPH_GAP_GRADIENT_FREE 0.25
 #define ISPH_GAP_LOSS_SHUT 0.3
 #define ISPH_GAP_LOSS_FREE 0.4
 /* Least share of a row that is missing where the gate is open, per relative loss of neighbours: clusters
@@ -66,7 +66,7 @@ TOBI_FN void isph_geometry_start(const isph_view *v, int64_t i, isph_geometry_ac
     a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = a->w = a->gx = a->gy = a->gz = a->bodies = lane_set(0);
 }
 
-TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                                 isph_geometry_acc *a, const int shape, const int kind)
 {
     const lane f = isph_falloff(v, n, m, shape, kind), x = f*n->dx, y = f*n->dy, z = f*n->dz;
@@ -91,9 +91,9 @@ TOBI_FN double isph_excess(const isph_view *v, double loss, double sum, double g
     return 2*gate*v->surface_row*isph_larger(v->full - sum, ISPH_EXCESS_FLOOR*loss*v->full);
 }
 
-/* What the shift asks of a neighbour at the surface, eq. (10b): as w of `lack`, which turns it into a
-   direction. */
-TOBI_FN tobi_float4 isph_weigh_lack(const isph_view *v, tobi_float4 c, double trace)
+/* What the shift asks of a neighbour at the surface, eq. (10b): as w of `concentration_gradient`, which
+   gives it a direction. */
+TOBI_FN tobi_float4 isph_weigh_gradient(const isph_view *v, tobi_float4 c, double trace)
 {
     const double size = sqrt((double)c.x*c.x + (double)c.y*c.y + (double)c.z*c.z);
     c.w = (float)(isph_larger(0, v->dimension - trace)/(size + 1e-30));
@@ -108,7 +108,7 @@ TOBI_FN double isph_fade(double x, double a, double b) { return isph_clamp((b - 
 TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, double loss)
 {
     double gap = 0;
-    for (int32_t k = v->near ? v->near[i] : -1; k >= 0; k = v->mirror[k].previous) {
+    for (int32_t k = v->last_link ? v->last_link[i] : -1; k >= 0; k = v->mirror[k].previous) {
         const isph_mirror *m = &v->mirror[k];
         double along = 0, s2 = 0, rest2 = 0;
         for (int a = 0; a < 3; a++) along += (&c->x)[a]*m->normal[a];
@@ -118,8 +118,9 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
             rest2 += rest*rest;
             s2 += m->offset[a]*m->offset[a];
         }
-        gap = isph_larger(gap, m->share*isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE)*
-                                   isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_LACK_SHUT, ISPH_GAP_LACK_FREE));
+        const double narrow = isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE);
+        gap = isph_larger(gap, m->share*narrow*isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
+                                                         ISPH_GAP_GRADIENT_FREE));
     }
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
 }
@@ -133,18 +134,18 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     double m[6] = {k*main.x, k*main.y, k*main.z, k*off.x, k*off.y, k*off.z};
     /* one plane per body leaves gaps in its corners, which are no surface */
     const double sum = m[0] + m[1] + m[2],
-                 trace = isph_larger(sum, sum - k*off.w + v->dimension*v->behind[i]);
+                 trace = isph_larger(sum, sum - k*off.w + v->dimension*v->body_share[i]);
     const double loss = 1 - trace/v->dimension;
-    tobi_float4 lack = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
+    tobi_float4 gradient = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
     const double gate = v->open ? (1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN))*
-                                      (1 - isph_gap(v, i, &lack, loss)) : 0;
+                                      (1 - isph_gap(v, i, &gradient, loss)) : 0;
     (void)totals;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
     v->gate[i] = (float)gate;
     v->scale[i] = (float)isph_scale(v->dimension, trace);
-    v->filled[i] = (float)(v->weight*(1 + (double)main.w));
-    v->lack[i] = isph_weigh_lack(v, lack, trace);
+    v->concentration[i] = (float)(v->weight*(1 + (double)main.w));
+    v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
     v->inverse[i] = isph_invert(m, gate);
 }
 
@@ -160,14 +161,14 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 TOBI_FN double isph_volume_source(const isph_view *v, int64_t i)
 {
     const int bulk = v->trace[i] > ISPH_BULK*v->dimension || !v->open;
-    const double e = isph_larger(v->filled[i] - 1.0, bulk ? -ISPH_STRETCH_MAX : 0);
+    const double e = isph_larger(v->concentration[i] - 1.0, bulk ? -ISPH_STRETCH_MAX : 0);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 
 /* A row of the pressure equation, eq. (6), and its source, eq. (8). The start of the solve is the last
    pressure. totals[0]: excess. */
 typedef struct isph_rows_acc {
-    lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, lift, divergence;
+    lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, difference, divergence;
     float bodies;                    /* of self, by bodies */
 } isph_rows_acc;
 
@@ -179,7 +180,7 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->bxx = lane_set(b.xx); a->byy = lane_set(b.yy); a->bzz = lane_set(b.zz);
     a->bxy = lane_set(b.xy); a->byz = lane_set(b.yz); a->bzx = lane_set(b.zx);
     a->scale = lane_set(v->scale[i]);
-    a->sum = a->self = a->lift = a->divergence = lane_set(0);
+    a->sum = a->self = a->difference = a->divergence = lane_set(0);
     a->bodies = 0;
 }
 
@@ -195,7 +196,7 @@ TOBI_FN void isph_rows_enter(const isph_view *v, const isph_image *m, lane a, co
     if (m->k >= 0) lane_store(&v->entry[m->k], a);
 }
 
-TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                             isph_rows_acc *c, const int shape, const int kind)
 {
     const lane f = isph_falloff(v, n, m, shape, kind), a = (float)v->slope*f*(c->scale + n->w);
@@ -205,7 +206,7 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_near *n, c
     const lane x = c->bxx*n->dx + c->bxy*n->dy + c->bzx*n->dz, y = c->bxy*n->dx + c->byy*n->dy + c->byz*n->dz,
                z = c->bzx*n->dx + c->byz*n->dy + c->bzz*n->dz;
     c->divergence += f*((u[0] - c->ux)*x + (u[1] - c->uy)*y + (u[2] - c->uz)*z);
-    c->lift += a*isph_lift(v, m, kind);
+    c->difference += a*isph_pressure_difference(v, m, kind);
     c->sum += a;
     if (kind == ISPH_SIDE && m->k < 0) c->self += a;
     if (kind == ISPH_BODY)
@@ -216,7 +217,7 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_near *n, c
 
 TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, double *totals)
 {
-    const tobi_float4 t = lane_sum4(a->sum, a->self, a->lift, a->divergence);
+    const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
     const double excess = isph_excess(v, loss, t.x, v->gate[i]);
     const double diagonal = t.x - t.y - a->bodies + excess;
@@ -249,24 +250,24 @@ TOBI_FN void isph_diagonal(const isph_view *v, int64_t i, double *totals)
 }
 
 /* Over entries of what particles see of bodies: eq. (13). */
-TOBI_FN void isph_grip(const isph_view *v, int64_t k, double *totals)
+TOBI_FN void isph_body_force(const isph_view *v, int64_t k, double *totals)
 {
     const double p = v->in[v->link[k].particle];
-    for (int a = 0; a < 6; a++) totals[a] += v->grip[k].f[a]*p;
+    for (int a = 0; a < 6; a++) totals[a] += v->coupling[k].f[a]*p;
 }
 
 /* The row of the accelerations that bodies answer with, eq. (15). */
-TOBI_FN void isph_yield(const isph_view *v, int64_t i, double *totals)
+TOBI_FN void isph_add_answer(const isph_view *v, int64_t i, double *totals)
 {
     double sum = 0;
     (void)totals;
-    for (int32_t k = v->near[i]; k >= 0; k = v->link[k].previous)
-        for (int a = 0; a < 6; a++) sum += v->grip[k].f[a]*v->answer[v->link[k].body][a];
-    if (v->near[i] >= 0) v->out[i] += v->density/v->volume*sum;
+    for (int32_t k = v->last_link[i]; k >= 0; k = v->link[k].previous)
+        for (int a = 0; a < 6; a++) sum += v->coupling[k].f[a]*v->answer[v->link[k].body][a];
+    if (v->last_link[i] >= 0) v->out[i] += v->density/v->volume*sum;
 }
 
 /* The answer of the solve, for neighbours to read. */
-TOBI_FN void isph_answer(const isph_view *v, int64_t i, double *totals)
+TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
     v->pressure[i] = (float)v->solution[i];
@@ -276,18 +277,18 @@ TOBI_FN void isph_answer(const isph_view *v, int64_t i, double *totals)
 /* v -= dt/rho grad p, eq. (9): the difference form, with B, in the bulk; the plain sum, with -p_i in place of
    missing neighbours, at a free surface. totals: |grad p|; [1..3] force of image pairs on the sides of the
    domain, eq. (11), N. */
-typedef struct isph_kick_acc { lane p, x, y, z, fx, fy, fz; } isph_kick_acc;
+typedef struct isph_projection_acc { lane p, x, y, z, fx, fy, fz; } isph_projection_acc;
 
-TOBI_FN void isph_kick_start(const isph_view *v, int64_t i, isph_kick_acc *a)
+TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
 {
     a->p = lane_set(v->pressure[i]);
     a->x = a->y = a->z = a->fx = a->fy = a->fz = lane_set(0);
 }
 
-TOBI_FN void isph_kick_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
-                            isph_kick_acc *a, const int shape, const int kind)
+TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
+                            isph_projection_acc *a, const int shape, const int kind)
 {
-    const lane f = isph_falloff(v, n, m, shape, kind), other = n->w + isph_lift(v, m, kind),
+    const lane f = isph_falloff(v, n, m, shape, kind), other = n->w + isph_pressure_difference(v, m, kind),
                q = f*(other - a->p);
     (void)i;
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
@@ -296,7 +297,7 @@ TOBI_FN void isph_kick_pair(const isph_view *v, int64_t i, const tobi_near *n, c
     a->fx += both*n->dx; a->fy += both*n->dy; a->fz += both*n->dz;
 }
 
-TOBI_FN void isph_kick_finish(const isph_view *v, int64_t i, isph_kick_acc *a, double *totals)
+TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projection_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                       w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
@@ -304,7 +305,7 @@ TOBI_FN void isph_kick_finish(const isph_view *v, int64_t i, isph_kick_acc *a, d
                  x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3];
     isph_apply(&v->inverse[i], x, g);
-    for (int c = 0; c < 3; c++) g[c] += mean*(&v->lack[i].x)[c];
+    for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     totals[1] += v->volume*k*w.x; totals[2] += v->volume*k*w.y; totals[3] += v->volume*k*w.z;
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
@@ -322,7 +323,7 @@ TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
     for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
 }
 
-TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_near *n, const isph_image *m,
+TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                              isph_shift_acc *a, const int shape, const int kind)
 {
     const lane f = isph_falloff(v, n, m, shape, kind), r = lane_sqrt(n->r2), x[3] = {n->dx, n->dy, n->dz},
@@ -337,13 +338,13 @@ TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_near *n, 
     }
     if (kind != ISPH_PLAIN) return;
     lane c[4];
-    lane_load_float4(v->lack, n->j, &c[0], &c[1], &c[2], &c[3]);
+    lane_load_float4(v->concentration_gradient, n->j, &c[0], &c[1], &c[2], &c[3]);
     c[3] = lane_where_equal(n->index, lane_set_int((int32_t)i), lane_set(0), c[3]);
     for (int b = 0; b < 3; b++) a->normal[b] += c[3]*c[b];
 }
 
 /* Takes the part of x along n out. */
-TOBI_FN void isph_take_normal(double x[3], const double n[3])
+TOBI_FN void isph_remove_normal(double x[3], const double n[3])
 {
     const double n2 = n[0]*n[0] + n[1]*n[1] + n[2]*n[2];
     if (!(n2 > 1e-24)) return;
@@ -352,7 +353,7 @@ TOBI_FN void isph_take_normal(double x[3], const double n[3])
 }
 
 /* |div v| of the gradient g. */
-TOBI_FN void isph_note_divergence(const isph_view *v, int64_t i, const double g[9], double *totals)
+TOBI_FN void isph_add_divergence(const isph_view *v, int64_t i, const double g[9], double *totals)
 {
     const isph_tensor *b = &v->inverse[i];
     if (v->gate[i] > 0) return;
@@ -368,12 +369,12 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     double x[3], along[3], n[3], g[9], size = 0;
     for (int k = 0; k < 9; k++) g[k] = -v->slope*lane_sum(s->slope[k]);
     for (int a = 0; a < 3; a++) {
-        x[a] = -v->shifting*d*d*(&v->lack[i].x)[a];
+        x[a] = -v->shifting*d*d*(&v->concentration_gradient[i].x)[a];
         n[a] = lane_sum(s->normal[a]);
     }
-    isph_note_divergence(v, i, g, totals);
+    isph_add_divergence(v, i, g, totals);
     if (v->open && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
-    else if (v->open && full < ISPH_BULK) isph_take_normal(x, n);
+    else if (v->open && full < ISPH_BULK) isph_remove_normal(x, n);
     for (int a = 0; a < 3; a++) {
         x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;
         size += x[a]*x[a];
@@ -382,13 +383,14 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     const double part = v->open && full < ISPH_SPARSE ? 0 : keep;
     isph_apply(&v->inverse[i], x, along);
     for (int a = 0; a < 3; a++) {
-        (&v->change[i].x)[a] = (float)(part*(g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2]));
+        const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2];
+        (&v->shift_velocity[i].x)[a] = (float)(part*change);
         (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->dt*v->dt));
     }
 }
 
-TOBI_FN void isph_use_change(const isph_view *v, int64_t i, double *totals)
+TOBI_FN void isph_add_shift_velocity(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    for (int a = 0; a < 3; a++) (&v->velocity[i].x)[a] += (&v->change[i].x)[a];
+    for (int a = 0; a < 3; a++) (&v->velocity[i].x)[a] += (&v->shift_velocity[i].x)[a];
 }

@@ -51,17 +51,17 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
     if (b->rigid.kind != TOBI_PRESCRIBED) turn(b, e, b->rigid.before, before);
     else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
-    for (int a = 0; a < 3; a++) m.change[a] = m.velocity[a] - before[a];
+    for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a];
     return m;
 }
 
-tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
+tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error *err)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     isph_view *v = &m->view;
-    memset(v->behind, 0, (size_t)s->particles.count*sizeof *v->behind);
-    v->near = s->sim->body_count ? sph_fields_of(&s->particles)->near : NULL;
-    if (!v->near) return TOBI_OK;
+    memset(v->body_share, 0, (size_t)s->particles.count*sizeof *v->body_share);
+    v->last_link = s->sim->body_count ? sph_fields_of(&s->particles)->last_link : NULL;
+    if (!v->last_link) return TOBI_OK;
     if (n->count > m->mirrors) {
         const int64_t room = n->count + n->count/2 + 64;
         isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
@@ -72,26 +72,26 @@ tobi_status isph_bodies_see(isph_solver *m, tobi_system *s, tobi_error *err)
     v->mirror = m->mirror;
     for (int64_t k = 0; k < n->count; k++) {
         m->mirror[k] = make_mirror(s, &n->link[k], &n->entry[k]);
-        float *behind = &v->behind[n->link[k].particle];
-        *behind = 1 - (1 - *behind)*(1 - (float)n->entry[k].share);
+        float *body_share = &v->body_share[n->link[k].particle];
+        *body_share = 1 - (1 - *body_share)*(1 - (float)n->entry[k].share);
     }
     return TOBI_OK;
 }
 
 /* Particles may have several entries: not shared among threads. */
-void isph_bodies_unlift(tobi_system *s)
+void isph_bodies_remove_hydrostatic(tobi_system *s)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     for (int64_t k = 0; k < n->count; k++) {
         const tobi_boundary_entry *e = &n->entry[k];
         for (int a = 0; a < 3; a++)
-            (&s->particles.velocity[n->link[k].particle].x)[a] -= (float)(s->dt*e->lift[a]);
+            (&s->particles.velocity[n->link[k].particle].x)[a] -= (float)(s->dt*e->hydrostatic[a]);
     }
 }
 
-void isph_bodies_push(isph_solver *m, tobi_system *s, double dt)
+void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     for (int64_t k = 0; k < n->count; k++) {
         const tobi_boundary_entry *e = &n->entry[k];
         const tobi_body *b = &s->sim->bodies[n->link[k].body];
@@ -100,7 +100,7 @@ void isph_bodies_push(isph_solver *m, tobi_system *s, double dt)
         turn(b, e, n->answer[n->link[k].body], u);
         for (int a = 0; a < 3; a++) {
             m->mirror[k].velocity[a] += dt*u[a];
-            m->mirror[k].change[a] += dt*u[a];
+            m->mirror[k].velocity_change[a] += dt*u[a];
         }
     }
 }

@@ -8,7 +8,7 @@ enum { ISPH_BODIES = 4 };            /* that a pair sees at once                
 
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {
-    double normal[3], velocity[3], change[3];
+    double normal[3], velocity[3], velocity_change[3];
     double sum[3];                   /* m, of the offsets of both particles                         */
     double weight;
 } isph_plane;
@@ -16,20 +16,21 @@ typedef struct isph_plane {
 /* One particle's images at bodies: where the walk is, and the group at hand. */
 typedef struct isph_walk {
     const isph_view *v;
-    const isph_frames *frames;
+    const isph_reflections *reflections;
     int64_t i, j, first;
     int k, groups;                   /* the next of the list; before all others i itself            */
     double offset[3];                /* m, x_i - x_j                                                */
     isph_plane plane[ISPH_BODIES];
     int planes, at;                  /* of the pair: planes, images done                            */
-    int taken;                       /* images in the group                                         */
+    int used;                        /* images in the group                                         */
     int32_t index[8];
     int64_t entry[8];
-    float x[3][8], away[3][8], sign[3][8], normal[3][8], flow[8], change[8], weight[8];
+    float x[3][8], displacement[3][8], sign[3][8], normal[3][8];
+    float normal_velocity[8], velocity_change[8], weight[8];
 } isph_walk;
 
 /* Where both share of the body is below a half there is next to none between a particle and the image. */
-TOBI_FN void isph_join(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
+TOBI_FN void isph_add_plane(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
 {
     isph_plane *p = &w->plane[w->planes];
     const double both = a->share + b->share - 0.5;
@@ -38,7 +39,7 @@ TOBI_FN void isph_join(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
     for (int c = 0; c < 3; c++) {
         p->normal[c] = a->normal[c] + b->normal[c];
         p->velocity[c] = 0.5*(a->velocity[c] + b->velocity[c]);
-        p->change[c] = 0.5*(a->change[c] + b->change[c]);
+        p->velocity_change[c] = 0.5*(a->velocity_change[c] + b->velocity_change[c]);
         p->sum[c] = a->offset[c] + b->offset[c];
         size += p->normal[c]*p->normal[c];
     }
@@ -48,7 +49,7 @@ TOBI_FN void isph_join(isph_walk *w, const isph_mirror *a, const isph_mirror *b)
 }
 
 /* The pair of i and j: its offset, and its mirrors. */
-TOBI_FN void isph_walk_see(isph_walk *w, int64_t j)
+TOBI_FN void isph_walk_load_pair(isph_walk *w, int64_t j)
 {
     const isph_view *v = w->v;
     w->j = j;
@@ -58,29 +59,29 @@ TOBI_FN void isph_walk_see(isph_walk *w, int64_t j)
         if (v->periodic[a]) x -= x > 0.5*v->size[a] ? v->size[a] : x < -0.5*v->size[a] ? -v->size[a] : 0;
         w->offset[a] = x;
     }
-    for (int32_t a = v->near[w->i]; a >= 0; a = v->mirror[a].previous)
-        for (int32_t b = v->near[j]; b >= 0; b = v->mirror[b].previous)
+    for (int32_t a = v->last_link[w->i]; a >= 0; a = v->mirror[a].previous)
+        for (int32_t b = v->last_link[j]; b >= 0; b = v->mirror[b].previous)
             if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_BODIES)
-                isph_join(w, &v->mirror[a], &v->mirror[b]);
+                isph_add_plane(w, &v->mirror[a], &v->mirror[b]);
 }
 
-TOBI_FN isph_walk isph_walk_begin(const isph_view *v, int64_t i, const isph_frames *frames, int64_t first,
-                                  int groups)
+TOBI_FN isph_walk isph_walk_begin(const isph_view *v, int64_t i, const isph_reflections *reflections,
+                                  int64_t first, int groups)
 {
     isph_walk w;
-    w.v = v; w.frames = frames; w.i = i; w.first = first; w.groups = groups;
+    w.v = v; w.reflections = reflections; w.i = i; w.first = first; w.groups = groups;
     w.k = 0;
-    isph_walk_see(&w, i);
+    isph_walk_load_pair(&w, i);
     return w;
 }
 
 /* The image at sides, once more mirrored at a body: only where the two stand across one another. Symmetric:
    r^2 + 4 s_i s_j with the distances of both from the plane. */
-TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3])
+TOBI_FN void isph_walk_add_image(isph_walk *w, const isph_plane *b, const int side[3])
 {
     const isph_view *v = w->v;
-    const int k = w->taken;
-    double x[3], normal[3], size = 0, own = 0, other = 0, flow = 0, change = 0, r2 = 0;
+    const int k = w->used;
+    double x[3], normal[3], size = 0, own = 0, other = 0, normal_velocity = 0, change = 0, r2 = 0;
     for (int a = 0; a < 3; a++) {
         const double wall = side[a] == 1 ? v->size[a] : 0;
         x[a] = side[a] < 0 ? w->offset[a] : 2*((&v->position[w->i].x)[a] - wall) - w->offset[a];
@@ -92,8 +93,8 @@ TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3]
         normal[a] /= sqrt(size);
         own += 0.5*(b->sum[a] + w->offset[a])*normal[a];
         other += 0.5*(b->sum[a] - w->offset[a])*normal[a];
-        flow += b->velocity[a]*normal[a];
-        change += b->change[a]*normal[a];
+        normal_velocity += b->velocity[a]*normal[a];
+        change += b->velocity_change[a]*normal[a];
     }
     if (!(own > 0) || !(other > 0)) return;
     for (int a = 0; a < 3; a++) {
@@ -103,48 +104,48 @@ TOBI_FN void isph_walk_take(isph_walk *w, const isph_plane *b, const int side[3]
     if (r2 >= v->h*v->h) return;
     for (int a = 0; a < 3; a++) {
         w->x[a][k] = (float)x[a];
-        w->away[a][k] = (float)(w->offset[a] - x[a]);
+        w->displacement[a][k] = (float)(w->offset[a] - x[a]);
         w->sign[a][k] = side[a] < 0 ? 1 : -1;
         w->normal[a][k] = (float)normal[a];
     }
-    w->flow[k] = (float)flow;
-    w->change[k] = (float)change;
+    w->normal_velocity[k] = (float)normal_velocity;
+    w->velocity_change[k] = (float)change;
     w->weight[k] = (float)b->weight;
     w->index[k] = (int32_t)w->j;
     w->entry[k] = w->k > 0 ? w->first + w->k - 1 : -1;
-    w->taken++;
+    w->used++;
 }
 
 /* The next group; 0: there is none. */
 TOBI_FN int isph_walk_fill(isph_walk *w)
 {
-    w->taken = 0;
+    w->used = 0;
     for (;;) {
-        for (; w->at < w->planes*w->frames->total && w->taken < TOBI_LANES; w->at++) {
+        for (; w->at < w->planes*w->reflections->total && w->used < TOBI_LANES; w->at++) {
             int side[3];
-            isph_choose_sides(w->frames, w->at%w->frames->total, side);
-            isph_walk_take(w, &w->plane[w->at/w->frames->total], side);
+            isph_choose_sides(w->reflections, w->at%w->reflections->total, side);
+            isph_walk_add_image(w, &w->plane[w->at/w->reflections->total], side);
         }
-        if (w->taken == TOBI_LANES) return 1;
+        if (w->used == TOBI_LANES) return 1;
         for (;; w->k++) {
-            if (w->k == w->groups) return w->taken > 0;
+            if (w->k == w->groups) return w->used > 0;
             const int32_t j = w->v->list[w->first + w->k];
-            if (j != w->i && w->v->near[j] >= 0) break;
+            if (j != w->i && w->v->last_link[j] >= 0) break;
         }
-        isph_walk_see(w, w->v->list[w->first + w->k++]);
+        isph_walk_load_pair(w, w->v->list[w->first + w->k++]);
     }
 }
 
 /* The group at hand; what is missing in it is out of reach. */
-TOBI_FN void isph_walk_load(isph_walk *w, tobi_near *n, isph_image *m)
+TOBI_FN void isph_walk_load(isph_walk *w, tobi_neighbors *n, isph_image *m)
 {
     lane_int x, y, z;
-    for (int k = w->taken; k < TOBI_LANES; k++) {
+    for (int k = w->used; k < TOBI_LANES; k++) {
         w->index[k] = (int32_t)w->i;
         w->entry[k] = -1;
         w->x[0][k] = 2*(float)w->v->h;
-        w->x[1][k] = w->x[2][k] = w->flow[k] = w->change[k] = w->weight[k] = 0;
-        for (int a = 0; a < 3; a++) w->away[a][k] = w->sign[a][k] = w->normal[a][k] = 0;
+        w->x[1][k] = w->x[2][k] = w->normal_velocity[k] = w->velocity_change[k] = w->weight[k] = 0;
+        for (int a = 0; a < 3; a++) w->displacement[a][k] = w->sign[a][k] = w->normal[a][k] = 0;
     }
     n->j = w->index;
     n->index = lane_load_index(w->index);
@@ -153,11 +154,11 @@ TOBI_FN void isph_walk_load(isph_walk *w, tobi_near *n, isph_image *m)
     n->r2 = isph_square(n);
     for (int a = 0; a < 3; a++) {
         m->sign[a] = lane_load(w->sign[a]);
-        m->away[a] = lane_load(w->away[a]);
+        m->displacement[a] = lane_load(w->displacement[a]);
         m->normal[a] = lane_load(w->normal[a]);
     }
-    m->flow = lane_load(w->flow);
-    m->change = lane_load(w->change);
+    m->normal_velocity = lane_load(w->normal_velocity);
+    m->velocity_change = lane_load(w->velocity_change);
     m->weight = lane_load(w->weight);
     m->entry = w->entry;
 }

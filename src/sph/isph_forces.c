@@ -1,6 +1,6 @@
 /* What the pressure of isph does to bodies, and how those that move by forces answer it within the solve. The
-   force is linear in the pressures of the particles: its coefficients, the grips, are found once per step.
-   The answer spreads the flux of a surface that moves by the same coefficients, which keeps the matrix
+   force is linear in the pressures of the particles: its coefficients, the couplings, are found once per
+   step. The answer spreads the flux of a surface that moves by the same coefficients, which keeps the matrix
    symmetric (decision 49). Drawback: that flux and the one of the mirrors are the same on average only. */
 #include "sph/boundary.h"
 #include "sph/isph_forces.h"
@@ -13,18 +13,18 @@
 static const double DRY = 0.1;
 
 /* A body's points, and the particles around them. */
-typedef struct look {
+typedef struct body_points {
     const tobi_system *s;
     const isph_view *v;
     int body;
     isph_point *point;               /* of the body                                                 */
     double scale;                    /* m3, on W                                                    */
-} look;
+} body_points;
 
-static const tobi_body *body_of(const look *q) { return &q->s->sim->bodies[q->body]; }
+static const tobi_body *body_of(const body_points *q) { return &q->s->sim->bodies[q->body]; }
 
 /* What a particle at distance x from a point, which faces it, counts there; 0: nothing. */
-static double weigh(const look *q, int64_t point, const double x[3])
+static double weigh(const body_points *q, int64_t point, const double x[3])
 {
     const tobi_smoothing_constants *c = &q->s->smoothing;
     const double r2 = vec3_dot(x, x);
@@ -33,13 +33,13 @@ static double weigh(const look *q, int64_t point, const double x[3])
 }
 
 /* From a point to a place. */
-static void measure(const look *q, int64_t point, const tobi_double3 *at, double x[3])
+static void measure(const body_points *q, int64_t point, const tobi_double3 *at, double x[3])
 {
     for (int a = 0; a < 3; a++) x[a] = a < q->v->dimension ? (&at->x)[a] - body_of(q)->point[point][a] : 0;
 }
 
 /* Particles before the point, and the pressure that liquid at rest has there beyond theirs. */
-static void add_cell(const look *q, int64_t k, int64_t cell, isph_point *sum)
+static void add_cell(const body_points *q, int64_t k, int64_t cell, isph_point *sum)
 {
     const isph_view *v = q->v;
     for (int64_t i = q->s->cells.start[cell]; i < q->s->cells.start[cell + 1]; i++) {
@@ -47,8 +47,8 @@ static void add_cell(const look *q, int64_t k, int64_t cell, isph_point *sum)
         measure(q, k, &v->position[i], x);
         const double w = weigh(q, k, x);
         sum->weight += w;
-        sum->away += w*vec3_dot(x, body_of(q)->normal[k]);
-        for (int a = 0; a < v->dimension; a++) sum->rise -= w*v->density*v->gravity[a]*x[a];
+        sum->distance += w*vec3_dot(x, body_of(q)->normal[k]);
+        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*v->gravity[a]*x[a];
     }
 }
 
@@ -63,7 +63,7 @@ static int64_t find_cell(const tobi_cells *c, const double x[3], const int offse
     return tobi_cells_row(c, at[1], at[2]) + at[0];
 }
 
-static isph_point look_around(const look *q, int64_t k)
+static isph_point sum_particles(const body_points *q, int64_t k)
 {
     const int deep = q->v->dimension == 3;
     double x[3] = { 0 };
@@ -95,7 +95,7 @@ static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
 }
 
 /* m/s2: of a point of a driven body along its normal. */
-static double accelerate(const look *q, int64_t k)
+static double normal_acceleration(const body_points *q, int64_t k)
 {
     const tobi_body *b = body_of(q);
     double sum = 0;
@@ -108,56 +108,60 @@ static double accelerate(const look *q, int64_t k)
    that which the surface of a driven body accelerates. */
 static void weigh_points(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    const look *q = view;
+    const body_points *q = view;
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        *p = b->area[k] > 0 ? look_around(q, k) : (isph_point){ 0, 0, 0 };
+        *p = b->area[k] > 0 ? sum_particles(q, k) : (isph_point){ 0, 0, 0 };
         if (!(p->weight > DRY)) p->weight = INFINITY;
-        const double more = p->rise + q->v->density*p->away*accelerate(q, k);
+        const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
         add_push(b, k, -b->area[k]*more/p->weight, totals);
     }
 }
 
 /* A particle's look at the points of one body. */
-typedef struct gripping { look q; const tobi_double3 *at; isph_grips grip; } gripping;
+typedef struct coupling_sum { body_points q; const tobi_double3 *at; isph_coupling coupling; } coupling_sum;
 
-static int grip_point(void *user, int32_t k)
+static int add_coupling(void *user, int32_t k)
 {
-    gripping *g = user;
+    coupling_sum *g = user;
     const tobi_body *b = body_of(&g->q);
     double x[3];
     measure(&g->q, k, g->at, x);
     const double w = b->area[k] > 0 ? weigh(&g->q, k, x) : 0;
-    if (w > 0) add_push(b, k, -b->area[k]*w/g->q.point[k].weight, g->grip.f);
+    if (w > 0) add_push(b, k, -b->area[k]*w/g->q.point[k].weight, g->coupling.f);
     return 0;
 }
 
-typedef struct all { const look *q; isph_solver *m; const tobi_boundary_links *n; } all;
+typedef struct coupling_view {
+    const body_points *q;
+    isph_solver *m;
+    const tobi_boundary_links *n;
+} coupling_view;
 
-static void grip_bodies(const void *view, int64_t begin, int64_t end, double *totals)
+static void find_couplings(const void *view, int64_t begin, int64_t end, double *totals)
 {
-    const all *u = view;
+    const coupling_view *u = view;
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_link *l = &u->n->link[k];
-        gripping g = { .q = *u->q, .at = &u->q->v->position[l->particle] };
+        coupling_sum g = { .q = *u->q, .at = &u->q->v->position[l->particle] };
         const double x[3] = { g.at->x, g.at->y, g.at->z };
         g.q.body = l->body;
         g.q.point = u->m->point + u->n->bins[l->body].item;
-        tobi_boundary_visit(u->n, l->body, x, grip_point, &g);
-        u->m->grip[k] = g.grip;
+        tobi_boundary_visit(u->n, l->body, x, add_coupling, &g);
+        u->m->coupling[k] = g.coupling;
     }
 }
 
 static tobi_status reserve(isph_solver *m, const tobi_boundary_links *n, int bodies, tobi_error *err)
 {
     const int64_t links = n->count, points = n->bins[bodies].item;
-    if (links > m->grips) {
-        isph_grips *more = tobi_array_grow(m->grip, 0, links + links/2 + 64, sizeof *more);
-        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld grips", (long long)links);
-        m->grip = more;
-        m->grips = links + links/2 + 64;
+    if (links > m->couplings) {
+        isph_coupling *more = tobi_array_grow(m->coupling, 0, links + links/2 + 64, sizeof *more);
+        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld couplings", (long long)links);
+        m->coupling = more;
+        m->couplings = links + links/2 + 64;
     }
     if (points > m->points) {
         isph_point *more = tobi_array_grow(m->point, 0, points, sizeof *more);
@@ -174,39 +178,39 @@ static tobi_status reserve(isph_solver *m, const tobi_boundary_links *n, int bod
     return TOBI_OK;
 }
 
-tobi_status isph_forces_see(isph_solver *m, tobi_system *s, tobi_error *err)
+tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error *err)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     const tobi_smoothing_constants *c = &s->smoothing;
     const int bodies = s->sim->body_count;
     if (bodies == 0) return TOBI_OK;
     TOBI_TRY(reserve(m, n, bodies, err));
-    look q = { .s = s, .v = &m->view, .scale = c->volume*c->weight_correction };
+    body_points q = { .s = s, .v = &m->view, .scale = c->volume*c->weight_correction };
     for (q.body = 0; q.body < bodies; q.body++) {
         double t[TOBI_TOTALS] = { 0 };
         q.point = m->point + n->bins[q.body].item;
         if (n->first[q.body] < n->first[q.body + 1])
             tobi_launch(m->exec, TOBI_HOST(weigh_points, 6, 0), &q, 0, body_of(&q)->point_count, t);
-        memcpy(m->body[q.body].still, t, sizeof m->body->still);
+        memcpy(m->body[q.body].rest_force, t, sizeof m->body->rest_force);
     }
-    const all u = { &q, m, n };
-    tobi_launch(m->exec, TOBI_HOST(grip_bodies, 0, 0), &u, 0, n->count, NULL);
+    const coupling_view u = { &q, m, n };
+    tobi_launch(m->exec, TOBI_HOST(find_couplings, 0, 0), &u, 0, n->count, NULL);
     m->view.link = n->link;
-    m->view.grip = m->grip;
+    m->view.coupling = m->coupling;
     m->view.answer = (const double (*)[6])n->answer;
     return TOBI_OK;
 }
 
-/* grip^T p of each body into near.total. */
-static void sum_grips(isph_solver *m, tobi_system *s, const double *pressure)
+/* coupling^T p of each body into links.total. */
+static void sum_body_forces(isph_solver *m, tobi_system *s, const double *pressure)
 {
     isph_view v = m->view;
     v.in = pressure;
-    tobi_boundary_sum(s, m->kernel->isph_grip, &v, 1);
+    tobi_boundary_sum(s, m->kernel->isph_body_force, &v, 1);
 }
 
 /* A column of the inertia of the water between particles and surface, eq. (14). */
-typedef struct column { look q; int number; } column;
+typedef struct column { body_points q; int number; } column;
 
 static void sum_column(const void *view, int64_t begin, int64_t end, double *totals)
 {
@@ -216,20 +220,20 @@ static void sum_column(const void *view, int64_t begin, int64_t end, double *tot
         const isph_point *p = &c->q.point[k];
         double lever[6];
         find_lever(b, k, lever);
-        const double mass = c->q.v->density*b->area[k]*p->away/p->weight*lever[c->number];
+        const double mass = c->q.v->density*b->area[k]*p->distance/p->weight*lever[c->number];
         for (int a = 0; a < 6; a++) totals[a] += mass*lever[a];
     }
 }
 
-static void find_inertia(isph_solver *m, tobi_system *s, int k)
+static void find_added_mass(isph_solver *m, tobi_system *s, int k)
 {
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     column c = { { .s = s, .v = &m->view, .body = k, .point = m->point + n->bins[k].item }, 0 };
     double t[TOBI_TOTALS] = { 0 };
     for (; c.number < 6; c.number++) {
         if (n->first[k] < n->first[k + 1])
             tobi_launch(m->exec, TOBI_HOST(sum_column, 6, 0), &c, 0, s->sim->bodies[k].point_count, t);
-        for (int a = 0; a < 6; a++) m->body[k].inertia[a][c.number] = t[a];
+        for (int a = 0; a < 6; a++) m->body[k].added_mass[a][c.number] = t[a];
     }
 }
 
@@ -258,77 +262,77 @@ static void multiply(const double x[6][6], double y[6])
     memcpy(y, out, sizeof out);
 }
 
-/* follow = (1 + M^-1 K)^-1. */
-static void find_follow(const tobi_rigid *r, isph_body *b)
+/* added_mass_factor = (1 + M^-1 K)^-1. */
+static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
 {
     double x[6][6];
     for (int j = 0; j < 6; j++)
         for (int i = 0; i < 3; i++) {
-            const double turn[3] = { b->inertia[3][j], b->inertia[4][j], b->inertia[5][j] };
-            x[i][j] = r->mobility[i]*b->inertia[i][j] + (i == j);
+            const double turn[3] = { b->added_mass[3][j], b->added_mass[4][j], b->added_mass[5][j] };
+            x[i][j] = r->mobility[i]*b->added_mass[i][j] + (i == j);
             x[3 + i][j] = vec3_dot(r->turn_mobility[i], turn) + (3 + i == j);
         }
-    invert(x, b->follow);
+    invert(x, b->added_mass_factor);
 }
 
 /* What the body would change without the water at its surface, as an acceleration from the last step's
    velocities on, less what that water takes of it. */
-static void foresee(isph_solver *m, tobi_system *s, int k)
+static void predict(isph_solver *m, tobi_system *s, int k)
 {
     const tobi_rigid *r = &s->sim->bodies[k].rigid;
     isph_body *b = &m->body[k];
-    double f[6], *answer = sph_of(s)->near.answer[k];
-    for (int a = 0; a < 6; a++) f[a] = sph_of(s)->near.total[k][a] + b->still[a];
-    tobi_couple_foresee(s, k, f);
+    double f[6], *answer = sph_of(s)->links.answer[k];
+    for (int a = 0; a < 6; a++) f[a] = sph_of(s)->links.total[k][a] + b->rest_force[a];
+    tobi_couple_predict(s, k, f);
     if (r->kind == TOBI_PRESCRIBED) return;
-    find_inertia(m, s, k);
-    find_follow(r, b);
+    find_added_mass(m, s, k);
+    find_added_mass_factor(r, b);
     for (int a = 0; a < 6; a++) {
         const double now = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
         f[a] = now + answer[a] - r->before[a];
-        b->known[a] = r->before[a] - now;
+        b->explicit_change[a] = r->before[a] - now;
     }
-    multiply((const double (*)[6])b->follow, f);
-    for (int a = 0; a < 6; a++) answer[a] = b->known[a] += f[a];
+    multiply((const double (*)[6])b->added_mass_factor, f);
+    for (int a = 0; a < 6; a++) answer[a] = b->explicit_change[a] += f[a];
 }
 
-void isph_forces_foresee(isph_solver *m, tobi_system *s)
+void isph_forces_predict(isph_solver *m, tobi_system *s)
 {
     if (!m->coupled) return;
     tobi_boundary_known_forces(s, 1);
-    for (int k = 0; k < s->sim->body_count; k++) foresee(m, s, k);
-    isph_bodies_push(m, s, 1);
+    for (int k = 0; k < s->sim->body_count; k++) predict(m, s, k);
+    isph_bodies_accelerate(m, s, 1);
 }
 
-/* Accelerations of the bodies by the pressures of the particles, into near.answer. */
+/* Accelerations of the bodies by the pressures of the particles, into links.answer. */
 static void answer(isph_solver *m, tobi_system *s, const double *pressure)
 {
-    sum_grips(m, s, pressure);
+    sum_body_forces(m, s, pressure);
     for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_couple_answer(s, k, sph_of(s)->near.total[k]);
+        tobi_couple_answer(s, k, sph_of(s)->links.total[k]);
         if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
-            multiply((const double (*)[6])m->body[k].follow, sph_of(s)->near.answer[k]);
+            multiply((const double (*)[6])m->body[k].added_mass_factor, sph_of(s)->links.answer[k]);
     }
 }
 
-void isph_forces_yield(isph_solver *m, double *product, const double *pressure)
+void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure)
 {
     if (!m->coupled) return;
     answer(m, m->system, pressure);
     isph_view v = m->view;
     v.out = product;
-    tobi_launch(m->exec, m->kernel->isph_yield, &v, 0, v.count, NULL);
+    tobi_launch(m->exec, m->kernel->isph_add_answer, &v, 0, v.count, NULL);
 }
 
-void isph_forces_follow(isph_solver *m, tobi_system *s)
+void isph_forces_correct(isph_solver *m, tobi_system *s)
 {
     if (!m->coupled) return;
     answer(m, s, m->view.solution);
-    isph_bodies_push(m, s, s->dt);
+    isph_bodies_accelerate(m, s, s->dt);
 }
 
 /* Less what the water at the surface of a body takes that moves by forces: eq. (14). */
-static void take_inertia(const isph_solver *m, const tobi_system *s, int k, double f[6])
+static void remove_added_mass(const isph_solver *m, const tobi_system *s, int k, double f[6])
 {
     const tobi_rigid *r = &s->sim->bodies[k].rigid;
     const isph_body *b = &m->body[k];
@@ -336,32 +340,32 @@ static void take_inertia(const isph_solver *m, const tobi_system *s, int k, doub
     if (r->kind == TOBI_PRESCRIBED) return;
     for (int i = 0; i < 6; i++) {
         const double now = i < 3 ? r->velocity[i] : r->angular_velocity[i - 3];
-        a[i] = (now + b->known[i] - r->before[i])/s->dt + sph_of(s)->near.answer[k][i];
+        a[i] = (now + b->explicit_change[i] - r->before[i])/s->dt + sph_of(s)->links.answer[k][i];
     }
-    multiply((const double (*)[6])b->inertia, a);
+    multiply((const double (*)[6])b->added_mass, a);
     for (int i = 0; i < 6; i++) f[i] -= a[i];
 }
 
-void isph_forces_press(isph_solver *m, tobi_system *s)
+void isph_forces_load(isph_solver *m, tobi_system *s)
 {
     if (s->sim->body_count == 0) return;
-    sum_grips(m, s, m->view.solution);
+    sum_body_forces(m, s, m->view.solution);
     for (int k = 0; k < s->sim->body_count; k++) {
         double *f = s->sim->bodies[k].load[s->number].pressure;
-        for (int a = 0; a < 6; a++) f[a] = sph_of(s)->near.total[k][a] + m->body[k].still[a];
-        take_inertia(m, s, k, f);
+        for (int a = 0; a < 6; a++) f[a] = sph_of(s)->links.total[k][a] + m->body[k].rest_force[a];
+        remove_added_mass(m, s, k, f);
     }
 }
 
 int64_t isph_forces_bytes(const isph_solver *m)
 {
-    return m->grips*(int64_t)sizeof *m->grip + m->points*(int64_t)sizeof *m->point +
+    return m->couplings*(int64_t)sizeof *m->coupling + m->points*(int64_t)sizeof *m->point +
            m->bodies*(int64_t)sizeof *m->body;
 }
 
 void isph_forces_free(isph_solver *m)
 {
-    tobi_array_free(m->grip);
+    tobi_array_free(m->coupling);
     tobi_array_free(m->point);
     tobi_array_free(m->body);
 }

@@ -10,15 +10,16 @@ enum { ISPH_PLAIN, ISPH_SIDE, ISPH_BODY };
 typedef struct isph_image {
     int64_t k;                       /* entry of the first pair in the list; -1: of i and itself    */
     lane sign[3];                    /* of velocities: -1 along mirrored axes                       */
-    lane away[3];                    /* m, from j to its image                                      */
+    lane displacement[3];            /* m, from j to its image                                      */
     /* bodies only */
     const int64_t *entry;            /* of each pair, in place of k                                 */
     lane weight;                     /* 1; less at edges                                            */
-    lane normal[3], flow, change;    /* 1, m/s: velocity of the surface along the normal, its change */
+    lane normal[3];
+    lane normal_velocity, velocity_change;     /* m/s: of the surface along the normal; its change  */
 } isph_image;
 
 /* V F over slope: V grad W = -V F x_ij. 0 out of reach. */
-TOBI_FN lane isph_falloff(const isph_view *v, const tobi_near *n, const isph_image *m, const int shape,
+TOBI_FN lane isph_falloff(const isph_view *v, const tobi_neighbors *n, const isph_image *m, const int shape,
                           const int kind)
 {
     const lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -26,7 +27,7 @@ TOBI_FN lane isph_falloff(const isph_view *v, const tobi_near *n, const isph_ima
 }
 
 /* V W over weight. */
-TOBI_FN lane isph_weight(const isph_view *v, const tobi_near *n, const isph_image *m, const int shape,
+TOBI_FN lane isph_weight(const isph_view *v, const tobi_neighbors *n, const isph_image *m, const int shape,
                          const int kind)
 {
     const lane w = smoothing_shape(shape, lane_sqrt(n->r2)*v->inverse_h);
@@ -34,37 +35,36 @@ TOBI_FN lane isph_weight(const isph_view *v, const tobi_near *n, const isph_imag
 }
 
 /* Velocities of j or of its image; walls do not mirror what gravity gave in this step. */
-TOBI_FN void isph_velocity(const isph_view *v, const tobi_near *n, const isph_image *m, const int kind,
+TOBI_FN void isph_velocity(const isph_view *v, const tobi_neighbors *n, const isph_image *m, const int kind,
                            lane u[3])
 {
     lane w, across = lane_set(0);
     lane_load_float4(v->velocity, n->j, &u[0], &u[1], &u[2], &w);
     if (kind == ISPH_PLAIN) return;
-    for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->kick*v->gravity[a]);
+    for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->gravity_dt*v->gravity[a]);
     if (kind == ISPH_SIDE) return;
-    for (int a = 0; a < 3; a++) across += 2*(u[a] - v->kick*v->gravity[a])*m->normal[a];
-    across -= 2*(m->flow - (v->kick > 0 ? m->change : lane_set(0)));
+    for (int a = 0; a < 3; a++) across += 2*(u[a] - v->gravity_dt*v->gravity[a])*m->normal[a];
+    across -= 2*(m->normal_velocity - (v->gravity_dt > 0 ? m->velocity_change : lane_set(0)));
     for (int a = 0; a < 3; a++) u[a] -= across*m->normal[a];
 }
 
 /* Pa: pressure of the image less that of j, as of liquid at rest, eq. (7). */
-TOBI_FN lane isph_lift(const isph_view *v, const isph_image *m, const int kind)
+TOBI_FN lane isph_pressure_difference(const isph_view *v, const isph_image *m, const int kind)
 {
     if (kind == ISPH_PLAIN) return lane_set(0);
-    const lane still = (float)v->density*(v->gravity[0]*m->away[0] + v->gravity[1]*m->away[1] +
-                                          v->gravity[2]*m->away[2]);
+    const lane *d = m->displacement, *n = m->normal;
+    const lane still = (float)v->density*(v->gravity[0]*d[0] + v->gravity[1]*d[1] + v->gravity[2]*d[2]);
     if (kind == ISPH_SIDE) return still;
-    return still - (float)(v->density/v->dt)*m->change*(m->normal[0]*m->away[0] + m->normal[1]*m->away[1] +
-                                                       m->normal[2]*m->away[2]);
+    return still - (float)(v->density/v->dt)*m->velocity_change*(n[0]*d[0] + n[1]*d[1] + n[2]*d[2]);
 }
 
 /* m2, out of reach of every kernel. */
 TOBI_FN lane isph_far(const isph_view *v) { return lane_set(4*(float)(v->h*v->h)); }
 
-TOBI_FN lane isph_square(const tobi_near *n) { return n->dx*n->dx + n->dy*n->dy + n->dz*n->dz; }
+TOBI_FN lane isph_square(const tobi_neighbors *n) { return n->dx*n->dx + n->dy*n->dy + n->dz*n->dz; }
 
 /* Eight neighbours; those that are i itself, which pad the list, are out of reach. */
-TOBI_FN void isph_load(const isph_view *v, int64_t i, const int32_t *j, tobi_near *n)
+TOBI_FN void isph_load(const isph_view *v, int64_t i, const int32_t *j, tobi_neighbors *n)
 {
     const tobi_record own = v->record[i];
     lane_int x, y, z;
@@ -78,11 +78,11 @@ TOBI_FN void isph_load(const isph_view *v, int64_t i, const int32_t *j, tobi_nea
 }
 
 /* Reflections that i may see: side[a] of axis a has -1 for none, 0 and 1 for its lower and upper side. */
-typedef struct isph_frames { int side[3][3], count[3], total; } isph_frames;
+typedef struct isph_reflections { int side[3][3], count[3], total; } isph_reflections;
 
-TOBI_FN isph_frames isph_find_frames(const isph_view *v, int64_t i)
+TOBI_FN isph_reflections isph_find_reflections(const isph_view *v, int64_t i)
 {
-    isph_frames f;
+    isph_reflections f;
     for (int a = 0; a < 3; a++) {
         const double x = (&v->position[i].x)[a];
         f.count[a] = 1;
@@ -96,7 +96,7 @@ TOBI_FN isph_frames isph_find_frames(const isph_view *v, int64_t i)
 }
 
 /* Sides of reflection m. */
-TOBI_FN void isph_choose_sides(const isph_frames *f, int m, int side[3])
+TOBI_FN void isph_choose_sides(const isph_reflections *f, int m, int side[3])
 {
     side[0] = f->side[0][m%f->count[0]];
     side[1] = f->side[1][m/f->count[0]%f->count[1]];
@@ -105,7 +105,7 @@ TOBI_FN void isph_choose_sides(const isph_frames *f, int m, int side[3])
 
 /* The pairs as the sides mirror them: by the sum of both distances from a side, so that i sees j as j sees i.
    Of a group of i itself (k < 0) the first counts. */
-TOBI_FN void isph_reflect(const isph_view *v, int64_t i, const int side[3], tobi_near *n, isph_image *m)
+TOBI_FN void isph_reflect(const isph_view *v, int64_t i, const int side[3], tobi_neighbors *n, isph_image *m)
 {
     static const int32_t first[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     const int32_t *own = &v->record[i].x;
@@ -114,13 +114,13 @@ TOBI_FN void isph_reflect(const isph_view *v, int64_t i, const int side[3], tobi
     lane_load_record(v->record, n->j, &at[0], &at[1], &at[2], &w);
     for (int a = 0; a < 3; a++) {
         m->sign[a] = lane_set(1);
-        m->away[a] = lane_set(0);
+        m->displacement[a] = lane_set(0);
         if (side[a] < 0) continue;
         const int32_t wall = v->side[side[a]][a];
         const lane both = lane_from_int(lane_sub_wrap(wall, at[a])) + (float)(wall - own[a]),
                    image = -both*v->from_fixed[a];
         m->sign[a] = lane_set(-1);
-        m->away[a] = x[a] - image;
+        m->displacement[a] = x[a] - image;
         x[a] = image;
     }
     n->dx = x[0]; n->dy = x[1]; n->dz = x[2];

@@ -8,10 +8,10 @@
 
 /* Calls K##_pair for each group of each reflection at the sides. */
 #define ISPH_SIDES(K, SHAPE)                                                                        \
-    const isph_frames frames = isph_find_frames(v, i);                                              \
-    for (int f = 1; f < frames.total; f++) {                                                        \
+    const isph_reflections reflections = isph_find_reflections(v, i);                               \
+    for (int f = 1; f < reflections.total; f++) {                                                   \
         int side[3];                                                                                \
-        isph_choose_sides(&frames, f, side);                                                        \
+        isph_choose_sides(&reflections, f, side);                                                   \
         for (int g = -TOBI_LANES; g < groups; g += TOBI_LANES) {                                    \
             isph_load(v, i, g < 0 ? self : j + g, &near);                                           \
             image.k = g < 0 ? -1 : first + g;                                                       \
@@ -22,8 +22,8 @@
 
 /* The same for pairs at bodies. */
 #define ISPH_AT_BODIES(K, SHAPE)                                                                    \
-    if (v->near && v->near[i] >= 0) {                                                               \
-        isph_walk walk = isph_walk_begin(v, i, &frames, first, groups);                             \
+    if (v->last_link && v->last_link[i] >= 0) {                                                     \
+        isph_walk walk = isph_walk_begin(v, i, &reflections, first, groups);                        \
         while (isph_walk_fill(&walk)) {                                                             \
             isph_walk_load(&walk, &near, &image);                                                   \
             K##_pair(v, i, &near, &image, &acc, SHAPE, ISPH_BODY);                                  \
@@ -40,7 +40,7 @@
             const int32_t *j = v->list + first;                                                     \
             int32_t self[8];                                                                        \
             K##_acc acc;                                                                            \
-            tobi_near near;                                                                         \
+            tobi_neighbors near;                                                                    \
             isph_image image;                                                                       \
             for (int k = 0; k < 8; k++) self[k] = (int32_t)i;                                       \
             K##_start(v, i, &acc);                                                                  \

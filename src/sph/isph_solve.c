@@ -15,9 +15,9 @@ static const double DAMPING = 0.7;
 #define ARRAYS(X)                                                                                    \
     X(double, m->view.solution) X(double, m->scratch) X(double, m->view.excess)                           \
     X(double, m->view.inverse_diagonal) X(double, m->view.source) X(tobi_double3, m->work)           \
-    X(tobi_float4, m->view.lack) X(isph_tensor, m->view.inverse) X(float, m->view.trace)             \
-    X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.filled) \
-    X(float, m->view.behind)
+    X(tobi_float4, m->view.concentration_gradient) X(isph_tensor, m->view.inverse) X(float, m->view.trace) \
+    X(float, m->view.gate) X(float, m->view.scale) X(float, m->view.concentration) \
+    X(float, m->view.body_share)
 
 static int64_t row_bytes(void)
 {
@@ -40,7 +40,7 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
 #define X(type, pointer) pointer = (void *)at; at += n*(int64_t)sizeof(type);
     ARRAYS(X)
 #undef X
-    m->view.change = (tobi_float4 *)m->work;      /* free between the solves */
+    m->view.shift_velocity = (tobi_float4 *)m->work; /* free between the solves */
     m->rows = p->capacity;
     return TOBI_OK;
 }
@@ -138,7 +138,7 @@ static void multiply(void *user, double *y, const double *x)
 static void apply(void *user, double *y, const double *x)
 {
     multiply(user, y, x);
-    isph_forces_yield(user, y, x);
+    isph_forces_add_answer(user, y, x);
 }
 
 static int ask_stop(void *user)
@@ -186,7 +186,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     double t[TOBI_TOTALS];
     const int64_t n = m->view.count;
     m->system = s;
-    m->view.kick = (float)m->view.dt;
+    m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
     const int grid = m->def->preconditioner == TOBI_MULTIGRID;
     if (grid) set_grid(m, s);
@@ -194,8 +194,8 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
                                         .precondition = grid ? precondition : precondition_by_diagonal,
                                         .stop = ask_stop };
     const tobi_linear_report report = run(m, &system);
-    tobi_launch(m->exec, m->kernel->isph_answer, &m->view, 0, n, NULL);
-    m->view.kick = 0;
+    tobi_launch(m->exec, m->kernel->isph_store_pressure, &m->view, 0, n, NULL);
+    m->view.gravity_dt = 0;
     return report;
 }
 

@@ -7,14 +7,14 @@
 
 /* A point of a body's surface: sum of the weights of the particles before it (INFINITY: dry), and of those
    times the hydrostatic pressure from particle to point, Pa, and times the distance from the surface, m. */
-typedef struct isph_point { double weight, rise, away; } isph_point;
+typedef struct isph_point { double weight, hydrostatic, distance; } isph_point;
 
 /* What a body does with pressure: in the order of its velocities, then turns. */
 typedef struct isph_body {
-    double still[6];                 /* N, N m: what is not linear in the particles' pressures      */
-    double known[6];                 /* m/s, rad/s: what all but the pressure changes               */
-    double inertia[6][6];            /* kg: of the water between particles and surface              */
-    double follow[6][6];             /* 1: what of its own acceleration is left with that           */
+    double rest_force[6];            /* N, N m: what is not linear in the particles' pressures      */
+    double explicit_change[6];       /* m/s, rad/s: what all but the pressure changes               */
+    double added_mass[6][6];         /* kg: of the water between particles and surface              */
+    double added_mass_factor[6][6];  /* 1: what of its own acceleration is left with that           */
 } isph_body;
 
 typedef struct isph_solver {
@@ -30,13 +30,13 @@ typedef struct isph_solver {
     int64_t krylov_rows;             /* room for them                                               */
     int64_t rows;                    /* room for particles                                          */
     int64_t entries;                 /* room for them                                               */
-    isph_mirror *mirror;             /* of s->near, see isph_bodies.h                               */
+    isph_mirror *mirror;             /* of s->links, see isph_bodies.h                              */
     int64_t mirrors;                 /* room for them                                               */
     int coupled;                     /* 1: bodies move by forces                                    */
-    isph_grips *grip;                /* of s->near, see isph_forces.h                               */
+    isph_coupling *coupling;         /* of s->links, see isph_forces.h                              */
     isph_point *point;               /* of all bodies                                               */
     isph_body *body;
-    int64_t grips, points;           /* room for them                                               */
+    int64_t couplings, points;       /* room for them                                               */
     int bodies;
 } isph_solver;
 

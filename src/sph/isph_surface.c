@@ -16,7 +16,7 @@ static double fall_off(const tobi_smoothing_constants *c, const int at[3])
     return c->volume*c->slope_correction*tobi_smoothing_f(c->shape, c->dimension, c->h, r);
 }
 
-typedef struct row_sums { double trace, weight, lift, gradient, lack; } row_sums;
+typedef struct row_sums { double trace, weight, difference, gradient, concentration_gradient; } row_sums;
 
 /* Over the neighbours of a particle in layer `layer` below a flat surface; scale: kappa by layer, or NULL. */
 static row_sums sum_row(const tobi_smoothing_constants *c, int layer, const double *scale)
@@ -30,9 +30,9 @@ static row_sums sum_row(const tobi_smoothing_constants *c, int layer, const doub
                 const double a = scale ? f*(scale[layer] + scale[layer + down]) : 0;
                 s.trace += f*c->spacing*c->spacing*(x*x + y*y + down*down);
                 s.weight += a;
-                s.lift += a*down;
+                s.difference += a*down;
                 s.gradient += f*down*down;
-                s.lack += f*down;
+                s.concentration_gradient += f*down;
             }
     return s;
 }
@@ -46,6 +46,6 @@ void isph_surface_measure(isph_view *v, const tobi_smoothing_constants *c)
     const row_sums top = sum_row(c, 0, scale);
     /* p = rho g d (1/2 + layer): sum a (p_i - p_j) + e p_i = 0, and dp/dz = -rho g. The gate is open. */
     v->surface_row = 1;
-    v->surface_row = top.lift/(0.5*isph_excess(v, 1 - top.trace/c->dimension, top.weight, 1));
-    v->surface_force = (1/(d*d) - top.gradient)/top.lack;
+    v->surface_row = top.difference/(0.5*isph_excess(v, 1 - top.trace/c->dimension, top.weight, 1));
+    v->surface_force = (1/(d*d) - top.gradient)/top.concentration_gradient;
 }

@@ -13,12 +13,12 @@ typedef struct isph_mirror {
     int32_t body, previous;          /* previous: the particle's plane for an earlier body, -1 = none */
     double offset[3];                /* m, from the closest point of the surface to the particle    */
     double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
-    double change[3];                /* m/s, of that velocity since the step before                 */
+    double velocity_change[3];       /* m/s, of that velocity since the step before                 */
     double share;                    /* 1: how much of the half space behind is body, 0 to 1        */
 } isph_mirror;
 
 /* Force and torque on a body, about its centre, by one pascal of a particle: m2, m3; eq. (13). */
-typedef struct isph_grips { double f[6]; } isph_grips;
+typedef struct isph_coupling { double f[6]; } isph_coupling;
 
 typedef struct isph_view {
     int64_t count;
@@ -34,7 +34,7 @@ typedef struct isph_view {
     float from_fixed[3];             /* m per unit of the records                                   */
     int32_t side[2][3];              /* lower and upper sides of the domain, units of the records   */
     float gravity[3];                /* m/s2                                                        */
-    float kick;                      /* s: dt while velocities hold the step's gravity, else 0      */
+    float gravity_dt;                /* s: dt while velocities hold the step's gravity, else 0      */
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
     double volume_gain, shifting;    /* parameters                                                  */
@@ -46,19 +46,19 @@ typedef struct isph_view {
     const int32_t *list;
     const uint32_t *list_start;
     const uint16_t *list_groups;
-    const int32_t *near;             /* last mirror of each particle, < 0: none; NULL: no bodies    */
+    const int32_t *last_link;        /* last mirror of each particle, < 0: none; NULL: no bodies    */
     const isph_mirror *mirror;
-    const tobi_boundary_link *link;  /* which particle sees which body; mirror and grip go with it  */
-    const isph_grips *grip;
+    const tobi_boundary_link *link;  /* which particle sees which body; mirror and coupling go with it */
+    const isph_coupling *coupling;
     const double (*answer)[6];       /* of each body: accelerations, m/s2 and rad/s2                */
-    float *behind;                   /* 1: share of the kernel in and behind bodies                 */
+    float *body_share;               /* 1: share of the kernel in and behind bodies                 */
     /* the method's own: geometry, eq. (2) to (5) */
     isph_tensor *inverse;            /* 1: B                                                        */
     float *trace;                    /* 1: tr M                                                     */
     float *gate;                     /* 1: gamma, 0 in the bulk, 1 at a free surface                */
     float *scale;                    /* 1: kappa                                                    */
-    float *filled;                   /* 1: kernel sum, 1 on the lattice                             */
-    tobi_float4 *lack;               /* 1/m: sum of V grad W; w: eq. (10b)                          */
+    float *concentration;            /* 1: kernel sum, 1 on the lattice                             */
+    tobi_float4 *concentration_gradient; /* 1/m: sum of V grad W; w: eq. (10b)                      */
     /* the matrix */
     float *entry;                    /* 1/m2: a of each entry of the list                           */
     double *excess, *inverse_diagonal;     /* 1/m2, m2                                              */
@@ -66,5 +66,5 @@ typedef struct isph_view {
     double *solution;                /* Pa                                                          */
     const double *in;                /* of the product at hand                                      */
     double *out;
-    tobi_float4 *change;             /* m/s: of the velocity, with the shift                        */
+    tobi_float4 *shift_velocity;     /* m/s: of the velocity, with the shift                        */
 } isph_view;

@@ -21,7 +21,7 @@ TOBI_FN void sph_pressure_accel_start(const sph_view *v, int64_t i, sph_pressure
     a->t = sph_tensor_of(v, i);
 }
 
-TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_near *n,
+TOBI_FN void sph_pressure_accel_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                      sph_pressure_accel_acc *a, const int shape)
 {
     lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -80,7 +80,7 @@ TOBI_FN void sph_compression_start(const sph_view *v, int64_t i, sph_compression
     a->sum = lane_set(0);
 }
 
-TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_near *n, sph_compression_acc *a,
+TOBI_FN void sph_compression_pair(const sph_view *v, const tobi_neighbors *n, sph_compression_acc *a,
                                   const tobi_float4 *field, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -106,15 +106,16 @@ TOBI_FN float sph_floor(const sph_view *v, int64_t i)
 }
 
 /* The divergence asked for, eq. (10d): dt/2 tr(grad v grad v), into delta, free until the solve. */
-typedef struct sph_midway_acc { lane ux, uy, uz, g[9]; sph_tensor t; } sph_midway_acc;
-TOBI_FN void sph_midway_start(const sph_view *v, int64_t i, sph_midway_acc *a)
+typedef struct sph_target_divergence_acc { lane ux, uy, uz, g[9]; sph_tensor t; } sph_target_divergence_acc;
+TOBI_FN void sph_target_divergence_start(const sph_view *v, int64_t i, sph_target_divergence_acc *a)
 {
     tobi_float4 u = v->velocity[i];
     a->t = sph_tensor_of(v, i);
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
     for (int k = 0; k < 9; k++) a->g[k] = lane_set(0);
 }
-TOBI_FN void sph_midway_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_midway_acc *a,
+TOBI_FN void sph_target_divergence_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
+                                        sph_target_divergence_acc *a,
                              const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r), tilted[3];
@@ -126,13 +127,14 @@ TOBI_FN void sph_midway_pair(const sph_view *v, int64_t i, const tobi_near *n, s
         a->g[3*k] += tilted[k]*x; a->g[3*k + 1] += tilted[k]*y; a->g[3*k + 2] += tilted[k]*z;
     }
 }
-TOBI_FN void sph_midway_finish(const sph_view *v, int64_t i, sph_midway_acc *a, double *totals)
+TOBI_FN void sph_target_divergence_finish(const sph_view *v, int64_t i, sph_target_divergence_acc *a,
+                                          double *totals)
 {
     float g[9];
     (void)totals;
     for (int k = 0; k < 9; k++) g[k] = v->slope*lane_sum(a->g[k]);
     float squares = g[0]*g[0] + g[4]*g[4] + g[8]*g[8], mixed = g[1]*g[3] + g[5]*g[7] + g[6]*g[2];
-    v->midway[i] = 0.5f*v->dt*(squares + 2*mixed);
+    v->target_divergence[i] = 0.5f*v->dt*(squares + 2*mixed);
 }
 
 /* Source of the velocity equation, eq. (10): s = C v/dt for the velocity without pressure. At a free
@@ -158,7 +160,7 @@ TOBI_FN void sph_source_start(const sph_view *v, int64_t i, sph_source_acc *a)
     sph_compression_start(v, i, &a->free, v->velocity);
     sph_compression_start(v, i, &a->held, v->accel);
 }
-TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_source_acc *a,
+TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_source_acc *a,
                              const int shape)
 {
     (void)i;
@@ -168,7 +170,7 @@ TOBI_FN void sph_source_pair(const sph_view *v, int64_t i, const tobi_near *n, s
 TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, double *totals)
 {
     float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
-    if (v->exact) rate += v->midway[i];
+    if (v->exact) rate += v->target_divergence[i];
     float r = v->inverse_dt*rate;
     int active = v->diagonal[i] > v->isolated &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
@@ -204,7 +206,7 @@ TOBI_FN void sph_product_start(const sph_view *v, int64_t i, sph_compression_acc
 {
     sph_compression_start(v, i, a, v->accel);
 }
-TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_near *n,
+TOBI_FN void sph_product_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                               sph_compression_acc *a, const int shape)
 {
     (void)i;
@@ -277,7 +279,7 @@ TOBI_FN void sph_warm_start(const sph_view *v, int64_t i, double *totals)
 
 /* A pressure of a free surface that would pull goes to its floor and stays there; payload = the change, a
    direction of the search. totals: sum of the changes, sum of |p|. */
-TOBI_FN void sph_hold(const sph_view *v, int64_t i, double *totals)
+TOBI_FN void sph_clamp_pressure(const sph_view *v, int64_t i, double *totals)
 {
     float p = v->pressure[i] + v->delta[i], least = sph_floor(v, i);
     int pulls = v->surface[i] && v->precondition[i] > 0 && p < least;
@@ -316,7 +318,7 @@ TOBI_FN void sph_shift_start(const sph_view *v, int64_t i, sph_shift_acc *a)
     sph_pressure_accel_start(v, i, &a->accel);
     a->x = a->y = a->z = a->cx = a->cy = a->cz = lane_set(0);
 }
-TOBI_FN void sph_shift_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_shift_acc *a,
+TOBI_FN void sph_shift_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_shift_acc *a,
                             const int shape)
 {
     lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);

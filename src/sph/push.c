@@ -31,8 +31,8 @@ typedef struct touch {
 
 static const tobi_boundary_entry *entry_of(const pusher *p, int64_t i)
 {
-    const tobi_boundary_links *n = &sph_of(p->s)->near;
-    int32_t k = sph_fields_of(&p->s->particles)->near[i];
+    const tobi_boundary_links *n = &sph_of(p->s)->links;
+    int32_t k = sph_fields_of(&p->s->particles)->last_link[i];
     while (k >= 0 && n->link[k].body != p->body) k = n->link[k].previous;
     return k >= 0 && n->entry[k].triangle >= 0 ? &n->entry[k] : NULL;
 }
@@ -152,7 +152,7 @@ static void widen(tobi_caught_block *b, const double x[3])
 static void list_caught(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_system *s = view;
-    const tobi_boundary_links *n = &sph_of(s)->near;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     int32_t *list = n->caught + begin;
     tobi_caught_block *found = &n->caught_block[begin/TOBI_BLOCK];
     *found = (tobi_caught_block){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
@@ -191,7 +191,7 @@ static int is_apart(const pusher *p, const tobi_caught_block *b)
 static void push_parts(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const pusher *p = view;
-    tobi_boundary_links *n = &sph_of(p->s)->near;
+    tobi_boundary_links *n = &sph_of(p->s)->links;
     (void)totals;
     for (int64_t k = begin; k < end; k++) {
         tobi_block_sum *part = &n->part[k];
@@ -211,7 +211,7 @@ static void push_parts(const void *view, int64_t begin, int64_t end, double *tot
 static void push_all(const pusher *p, double *t)
 {
     tobi_system *s = p->s;
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     int64_t parts = 0;
     for (int64_t b = 0; b*TOBI_BLOCK < s->particles.count; b++) {
         const int32_t *list = n->caught + b*TOBI_BLOCK;
@@ -226,7 +226,7 @@ static void push_all(const pusher *p, double *t)
 
 void tobi_push_out(tobi_system *s)
 {
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     n->contacts = 0;
     tobi_body_tree_build(&n->tree, s->sim->bodies, s->sim->body_count, s->smoothing.spacing,
                          s->box.dimension);

@@ -29,14 +29,14 @@ void sph_reference_set(tobi_system *s, double low)
     w->push = low > 0 ? s->fluid[0].density*sqrt(g2) : 0;
 }
 
-typedef struct counting { const float *drop; double scale; int64_t *n; } counting;
+typedef struct counting { const float *surface_depth; double scale; int64_t *n; } counting;
 
 static void count_drops(const void *view, int64_t begin, int64_t end)
 {
     const counting *c = view;
     int64_t n[DROPS] = {0};
     for (int64_t i = begin; i < end; i++)
-        if (c->drop[i] > 0) n[(int)(c->drop[i]*c->scale)]++;
+        if (c->surface_depth[i] > 0) n[(int)(c->surface_depth[i]*c->scale)]++;
     for (int k = 0; k < DROPS; k++)
         if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
 }
@@ -46,7 +46,7 @@ double sph_reference_low(tobi_system *s)
     sph_state *state = sph_of(s);
     int64_t n[DROPS] = {0}, count = s->particles.count;
     double scale = DROPS/(1.0001*state->lowest);
-    const counting view = { sph_fields_of(&s->particles)->drop, scale, n };
+    const counting view = { sph_fields_of(&s->particles)->surface_depth, scale, n };
     if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
@@ -109,7 +109,7 @@ void sph_reference_follow(tobi_system *s, sph_view *v, const sph_kernels *k, con
     if (s->step > 0) add_reference(s, 1);
     *f->low = *f->level = 0;
     if (s->step == 0) *f->vessel = SPH_VESSEL_UNKNOWN;
-    if (*f->vessel == SPH_VESSEL_FULL) sph_fill_up(s);
+    if (*f->vessel == SPH_VESSEL_FULL) sph_remove_gravity(s);
     if (*f->vessel != SPH_VESSEL_OPEN) return;
     bind(s, v, f);
     sph_measure_density(s, v, k, 0, &clock);

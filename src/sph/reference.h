@@ -3,11 +3,11 @@
 #include "core/system.h"
 #include "sph/stages.h"
 
-/* Sets s->still to the reference below a drop of `low`, m; 0, a vessel without gravity across its walls and
+/* Sets s->still to the reference below a depth of `low`, m; 0, a vessel without gravity across its walls and
    fluids of several densities have none. */
 void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
-   where it has no more. After sph_measure_density, which leaves the drops in particles.drop. */
+   where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. */
 double sph_reference_low(tobi_system *s);
 /* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low`:
    down with it, by `speed` (m/s, of the fastest particle or body) at most, up slowly. *before: the reference
@@ -17,7 +17,7 @@ void sph_reference_move(tobi_system *s, tobi_reference *before, double low, doub
 /* What a method remembers of its free surface, and how it finds it. */
 typedef struct sph_surface {
     double *vessel;                          /* SPH_VESSEL_*                            */
-    double *low, *level;                     /* m, drops of the surface and of still water */
+    double *low, *level;                     /* m, depths of the surface and of still water */
     double (*find)(tobi_system *s);      /* the first of them now                   */
     int rests;                               /* 1: the method takes still water         */
 } sph_surface;

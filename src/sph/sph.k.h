@@ -72,7 +72,7 @@ TOBI_FN void sph_density_start(const sph_view *v, int64_t i, sph_density_acc *a)
     a->rho = a->pressure = a->gx = a->gy = a->gz = a->g2 = a->div = lane_set(0);
 }
 
-TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_density_acc *a,
+TOBI_FN void sph_density_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_density_acc *a,
                               const int shape)
 {
     lane r = lane_sqrt(n->r2), q = r*v->inverse_h, f = smoothing_falloff(shape, q, r);
@@ -105,7 +105,7 @@ TOBI_FN sph_matrix sph_make_tensor(const sph_view *v, int64_t i, const sph_densi
 {
     sph_matrix t = {1, 1, 1, 0, 0, 0};
     if (!v->stretch) return t;
-    int walled = share > 0 && (v->full || (v->near && v->near[i] >= 0)), made = 0;
+    int walled = share > 0 && (v->full || (v->last_link && v->last_link[i] >= 0)), made = 0;
     if (v->exact) {
         sph_matrix m = sph_moments_sum(&a->first, v->slope);
         sph_matrix b = {0, 0, 0, 0, 0, 0};
@@ -148,9 +148,9 @@ TOBI_FN void sph_density_finish(const sph_view *v, int64_t i, sph_density_acc *a
     totals[3] += sure;
     /* beside walls disorder and the corners of the box make a gradient as well */
     if (share > 0 && div > 0.7f*(float)v->dimension) sure = 0;
-    double drop = sure && flagged ? tobi_reference_drop(&v->reference, &v->position[i].x) : 0;
-    v->drop[i] = (float)drop;
-    totals[7] = drop > totals[7] ? drop : totals[7];
+    double depth = sure && flagged ? tobi_reference_depth(&v->reference, &v->position[i].x) : 0;
+    v->surface_depth[i] = (float)depth;
+    totals[7] = depth > totals[7] ? depth : totals[7];
     float p = v->record[i].w, mean = (v->weight*(p + lane_sum(a->pressure)) + share*p)/(fluid + share);
     v->mean_pressure[i] = mean;
     if (share == 0 && !v->surface[i]) v->pressure[i] = p + v->smooth*(mean - p);
@@ -175,7 +175,7 @@ TOBI_FN void sph_laplacian_begin(sph_laplacian_acc *a, const tobi_float4 *field,
     a->ax = a->ay = a->az = lane_set(0);
 }
 
-TOBI_FN void sph_laplacian_add(const sph_view *v, const tobi_near *n, sph_laplacian_acc *a,
+TOBI_FN void sph_laplacian_add(const sph_view *v, const tobi_neighbors *n, sph_laplacian_acc *a,
                                const tobi_float4 *field, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -187,7 +187,7 @@ TOBI_FN void sph_laplacian_start(const sph_view *v, int64_t i, sph_laplacian_acc
 {
     sph_laplacian_begin(a, v->velocity, i);
 }
-TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_near *n,
+TOBI_FN void sph_laplacian_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                 sph_laplacian_acc *a, const int shape)
 {
     (void)i;
@@ -242,7 +242,7 @@ TOBI_FN void sph_kick_start(const sph_view *v, int64_t i, sph_laplacian_acc *a)
 {
     sph_laplacian_begin(a, v->accel, i);
 }
-TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_laplacian_acc *a,
+TOBI_FN void sph_kick_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_laplacian_acc *a,
                            const int shape)
 {
     (void)i;
@@ -325,7 +325,7 @@ TOBI_FN void sph_vorticity_start(const sph_view *v, int64_t i, sph_vorticity_acc
     a->vx = lane_set(u.x); a->vy = lane_set(u.y); a->vz = lane_set(u.z);
     a->x = a->y = a->z = lane_set(0);
 }
-TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_near *n,
+TOBI_FN void sph_vorticity_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                 sph_vorticity_acc *a, const int shape)
 {
     lane x, y, z, w, r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);

@@ -47,11 +47,11 @@ static double band_depth(const tobi_smoothing_constants *c)
 
 static void bind_stage(sph_view *v, const sph_fields *f)
 {
-    v->mean_pressure = f->mean; v->drop = f->drop;
+    v->mean_pressure = f->mean; v->surface_depth = f->surface_depth;
     v->wetness = f->wetness; v->damped = f->damped;
     v->precondition = f->precondition; v->residual = f->residual; v->product = f->product;
     v->delta = f->delta;
-    v->moment = f->moment; v->midway = f->midway;
+    v->moment = f->moment; v->target_divergence = f->target_divergence;
 }
 
 void sph_stage(tobi_system *s, sph_view *v, int stage)
@@ -67,7 +67,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     const tobi_smoothing_constants *c = &s->smoothing;
     v->count = p->count;
     v->position = p->position; v->record = s->cells.record; v->velocity = p->velocity; v->accel = f->accel;
-    v->stretch = f->stretch; v->shear = f->shear; v->beside = f->beside;
+    v->stretch = f->stretch; v->shear = f->shear; v->near_body = f->near_body;
     v->wall = f->wall; v->normal = f->normal; v->capillary = f->capillary;
     v->density = f->density;
     v->diagonal = f->diagonal;
@@ -76,7 +76,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
     bind_stage(v, f);
-    v->near = s->sim->body_count > 0 ? f->near : NULL;
+    v->last_link = s->sim->body_count > 0 ? f->last_link : NULL;
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
@@ -102,7 +102,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);
     for (int a = 0; a < 3; a++) {
         v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
-        v->taken[a] = a < c->dimension ? (float)(s->sim->def.gravity[a] - s->gravity[a]) : 0;
+        v->removed_gravity[a] = a < c->dimension ? (float)(s->sim->def.gravity[a] - s->gravity[a]) : 0;
     }
 }
 
@@ -148,7 +148,7 @@ tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
     return TOBI_OK;
 }
 
-tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
+tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err)
 {
     sph_stage(s, v, SPH_SEE);
@@ -159,19 +159,19 @@ tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, dou
         tobi_stage_end(&s->sim->stages, "body search", clock);
         TOBI_TRY(tobi_boundary_measure(s, err));
         tobi_boundary_cut_pairs(s);
-        tobi_boundary_mark_beside(s);
+        tobi_boundary_mark_near_body(s);
         tobi_boundary_add_gradients(s);
     }
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     return TOBI_OK;
 }
 
-tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
+tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err)
 {
     double t[TOBI_TOTALS], count = (double)s->particles.count;
     if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
-    TOBI_TRY(sph_see_walls(s, v, k, clock, err));
+    TOBI_TRY(sph_find_boundaries(s, v, k, clock, err));
     v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
@@ -200,13 +200,13 @@ double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, do
     return diagonal;
 }
 
-void sph_drive_bodies(tobi_system *s, double *clock)
+void sph_set_body_velocities(tobi_system *s, double *clock)
 {
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         if (b->rigid.kind != TOBI_PRESCRIBED)
-            tobi_body_drive(b, b->rigid.velocity, b->rigid.angular_velocity);
-        else if (b->motion) tobi_body_drive_points(b);
+            tobi_body_set_velocity(b, b->rigid.velocity, b->rigid.angular_velocity);
+        else if (b->motion) tobi_body_set_point_velocities(b);
     }
     tobi_stage_end(&s->sim->stages, "motion", clock);
 }
@@ -235,7 +235,7 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     sph_stage(s, v, SPH_FORCES);
-    if (v->exact) launch(s, v, k->sph_midway, NULL);
+    if (v->exact) launch(s, v, k->sph_target_divergence, NULL);
     if (v->exact) apply_filter(s, v, k);
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
@@ -272,11 +272,11 @@ void sph_finish(tobi_system *s)
     double clock = tobi_clock();
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
-        if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_bring_surface(b);
+        if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_update_surface(b);
     }
     if (s->sim->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
-    s->info.contacts += sph_of(s)->near.contacts;
+    s->info.contacts += sph_of(s)->links.contacts;
     tobi_stage_end(&s->sim->stages, "motion", &clock);
 }
 
@@ -288,7 +288,7 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     const float dt = v->dt;
     const double step = s->dt;
     sph_stage(s, v, SPH_DERIVE);
-    memcpy(f->kept, p->velocity, (size_t)p->count*sizeof *f->kept);
+    memcpy(f->saved_velocity, p->velocity, (size_t)p->count*sizeof *f->saved_velocity);
     s->dt = v->dt = 1;
     v->filter = 0;
     launch(s, v, k->sph_laplacian, NULL);
@@ -298,14 +298,14 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     s->dt = step;
     v->dt = dt;
     for (int64_t i = 0; i < p->count; i++) {
-        const tobi_float4 u = p->velocity[i], before = f->kept[i];
+        const tobi_float4 u = p->velocity[i], before = f->saved_velocity[i];
         p->velocity[i] = before;
-        f->kept[i] = (tobi_float4){u.x - before.x, u.y - before.y, u.z - before.z, 0};
+        f->saved_velocity[i] = (tobi_float4){u.x - before.x, u.y - before.y, u.z - before.z, 0};
         s->cells.record[i].w = f->pressure[i];
     }
     launch(s, v, k->sph_pressure_accel, NULL);
     for (int64_t i = 0; i < p->count; i++)
-        for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += (&f->kept[i].x)[a];
+        for (int a = 0; a < 3; a++) (&f->accel[i].x)[a] += (&f->saved_velocity[i].x)[a];
 }
 
 void sph_derive(tobi_system *s, sph_view *v, const sph_kernels *k, const char *field)

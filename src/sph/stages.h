@@ -22,18 +22,18 @@ void sph_use_dt(const tobi_system *s, sph_view *v);
 /* Sorts the particles and lists their neighbours; the view is to be bound again. */
 tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err);
 /* Planes and bodies: wall gradients, shares, pairs that a body separates. */
-tobi_status sph_see_walls(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
+tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err);
 /* Unless *vessel is known: full if fewer particles see a free surface than a tenth of a cube's face has.
    The view is to be bound again. */
-tobi_status sph_look_into_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
+tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *k, double *vessel,
                                  double *clock, tobi_error *err);
 /* Density, its error, and the share `smooth` of the kernel average in the pressure; returns the mean
    diagonal of the pressure operator, m/kg. */
 double sph_measure_density(tobi_system *s, sph_view *v, const sph_kernels *k, double smooth,
                            double *clock);
 /* Gives the points of bodies the velocities that were predicted for this step. */
-void sph_drive_bodies(tobi_system *s, double *clock);
+void sph_set_body_velocities(tobi_system *s, double *clock);
 /* v += dt (surface tension, gravity, viscosity, filter, friction, lift); v->filter is set. */
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock);
 /* Forces on walls and bodies by particles.pressure and the friction of this step. */

@@ -6,11 +6,11 @@
 #include "sph/reference_pressure.h"
 
 typedef struct sph_state {
-    tobi_boundary_links near;          /* particles that see a body                                        */
+    tobi_boundary_links links;         /* particles that see a body                                        */
     tobi_reference reference;       /* what still water holds of gravity                                */
     double reference_volume;        /* m3 of fluid times the share of gravity so held                   */
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
-    double lowest;                  /* m, drop of the lowest particle at a free surface                 */
+    double lowest;                  /* m, depth of the lowest particle at a free surface                */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
 } sph_state;
 

@@ -8,7 +8,7 @@ TOBI_FN void sph_rest(const sph_view *v, int64_t i, double *totals)
 {
     const tobi_reference *w = &v->reference;
     const double *x = &v->position[i].x;
-    double depth = tobi_reference_drop(w, x) - w->level;
+    double depth = tobi_reference_depth(w, x) - w->level;
     (void)totals;
     v->pressure[i] = depth > 0 ? (float)(w->push*depth - tobi_reference_pressure(w, x)) : 0;
     v->record[i].w = v->pressure[i];
@@ -23,7 +23,7 @@ TOBI_FN void sph_carry(const sph_view *v, int64_t i, double *totals)
     tobi_float4 u = v->velocity[i];
     double held = w->push*tobi_reference_share(w, x), sink = 0, rho = 1/v->inverse_density[v->fluid[i]];
     (void)totals;
-    for (int c = 0; c < 3; c++) sink += (held*w->down[c] + rho*v->taken[c])*(&u.x)[c];
+    for (int c = 0; c < 3; c++) sink += (held*w->down[c] + rho*v->removed_gravity[c])*(&u.x)[c];
     double rise = tobi_reference_pressure(w, x) - tobi_reference_pressure(&v->reference_before, x);
     v->pressure[i] -= (float)(rise + v->dt*sink);
 }
@@ -36,7 +36,7 @@ TOBI_FN void sph_tait_start(const sph_view *v, int64_t i, sph_compression_acc *a
 {
     sph_compression_start(v, i, a, v->velocity);
 }
-TOBI_FN void sph_tait_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_compression_acc *a,
+TOBI_FN void sph_tait_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_compression_acc *a,
                            const int shape)
 {
     (void)i;

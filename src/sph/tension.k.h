@@ -12,7 +12,7 @@ TOBI_FN void sph_normal_start(const sph_view *v, int64_t i, sph_normal_acc *a)
     (void)v; (void)i;
     a->x = a->y = a->z = lane_set(0);
 }
-TOBI_FN void sph_normal_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_normal_acc *a,
+TOBI_FN void sph_normal_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_normal_acc *a,
                              const int shape)
 {
     lane r = lane_sqrt(n->r2), f = smoothing_falloff(shape, r*v->inverse_h, r);
@@ -38,7 +38,7 @@ TOBI_FN void sph_smooth_normal_start(const sph_view *v, int64_t i, sph_smooth_no
     (void)v; (void)i;
     a->x = a->y = a->z = lane_set(0);
 }
-TOBI_FN void sph_smooth_normal_pair(const sph_view *v, int64_t i, const tobi_near *n,
+TOBI_FN void sph_smooth_normal_pair(const sph_view *v, int64_t i, const tobi_neighbors *n,
                                     sph_smooth_normal_acc *a, const int shape)
 {
     lane x, y, z, b, w = smoothing_shape(shape, lane_sqrt(n->r2)*v->inverse_h);
@@ -87,7 +87,7 @@ TOBI_FN void sph_curvature_start(const sph_view *v, int64_t i, sph_curvature_acc
     a->nx = lane_set(n.x); a->ny = lane_set(n.y); a->nz = lane_set(n.z);
     a->turn = a->area = a->weight = a->depth = lane_set(0);
 }
-TOBI_FN void sph_curvature_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_curvature_acc *a,
+TOBI_FN void sph_curvature_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_curvature_acc *a,
                                 const int shape)
 {
     lane x, y, z, b, r = lane_sqrt(n->r2);
@@ -121,7 +121,7 @@ TOBI_FN void sph_tension_start(const sph_view *v, int64_t i, sph_tension_acc *a)
     (void)v; (void)i;
     a->weight = a->sum = lane_set(0);
 }
-TOBI_FN void sph_tension_pair(const sph_view *v, int64_t i, const tobi_near *n, sph_tension_acc *a,
+TOBI_FN void sph_tension_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, sph_tension_acc *a,
                               const int shape)
 {
     lane x, y, z, b;

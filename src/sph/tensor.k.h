@@ -8,7 +8,7 @@ typedef struct sph_tensor { lane xx, yy, zz, xy, yz, zx; int due; } sph_tensor;
 
 TOBI_FN int sph_tensor_due(const sph_view *v, int64_t i)
 {
-    return v->stretch && (v->full || v->beside[i]);
+    return v->stretch && (v->full || v->near_body[i]);
 }
 
 TOBI_FN sph_tensor sph_tensor_of(const sph_view *v, int64_t i)
@@ -23,7 +23,7 @@ TOBI_FN sph_tensor sph_tensor_of(const sph_view *v, int64_t i)
 }
 
 /* p T + w T_j for the neighbours j. */
-TOBI_FN sph_tensor sph_tensor_both(const sph_view *v, const sph_tensor *own, lane p, const tobi_near *n)
+TOBI_FN sph_tensor sph_tensor_both(const sph_view *v, const sph_tensor *own, lane p, const tobi_neighbors *n)
 {
     sph_tensor t, other;
     lane unused;
@@ -56,7 +56,7 @@ TOBI_FN void sph_moments_clear(sph_moments *m)
     m->xx = m->yy = m->zz = m->xy = m->yz = m->zx = lane_set(0);
 }
 
-TOBI_FN void sph_moments_add(sph_moments *m, lane f, const tobi_near *n)
+TOBI_FN void sph_moments_add(sph_moments *m, lane f, const tobi_neighbors *n)
 {
     lane x = f*n->dx, y = f*n->dy, z = f*n->dz;
     m->xx += x*n->dx; m->yy += y*n->dy; m->zz += z*n->dz;

@@ -17,14 +17,15 @@ typedef struct sph_view {
     tobi_record *TOBI_RESTRICT record;
     tobi_float4 *TOBI_RESTRICT velocity, *TOBI_RESTRICT accel, *TOBI_RESTRICT wall,
                 *TOBI_RESTRICT normal;
-    tobi_float4 *TOBI_RESTRICT stretch, *TOBI_RESTRICT shear;   /* T, eq. (7b), (7c); they and beside: */
-    const uint8_t *TOBI_RESTRICT beside;                        /* NULL without it     */
-    const int32_t *TOBI_RESTRICT near;        /* < 0: sees no body; NULL: there is none    */
+    tobi_float4 *TOBI_RESTRICT stretch, *TOBI_RESTRICT shear;   /* T, eq. (7b), (7c); they and near_body: */
+    const uint8_t *TOBI_RESTRICT near_body;                     /* NULL without it     */
+    const int32_t *TOBI_RESTRICT last_link;   /* < 0: sees no body; NULL: there is none    */
     float *TOBI_RESTRICT density, *TOBI_RESTRICT diagonal;
     /* of stages, see sph/fields.h; NULL in others */
-    float *TOBI_RESTRICT mean_pressure, *TOBI_RESTRICT drop, *TOBI_RESTRICT wetness, *TOBI_RESTRICT damped;
+    float *TOBI_RESTRICT mean_pressure, *TOBI_RESTRICT surface_depth, *TOBI_RESTRICT wetness;
+    float *TOBI_RESTRICT damped;
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
-    float *TOBI_RESTRICT midway;              /* it and moment: with `exact`                          */
+    float *TOBI_RESTRICT target_divergence;   /* it and moment: with `exact`                          */
     tobi_float4 *TOBI_RESTRICT moment;
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
@@ -59,7 +60,7 @@ typedef struct sph_view {
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];
-    float taken[3];                           /* m/s2, what a full vessel takes from gravity    */
+    float removed_gravity[3];                 /* m/s2, what a full vessel takes from gravity    */
     tobi_reference reference, reference_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */
     float smooth;                             /* share of the averaged pressure in the warm start */

@@ -23,10 +23,10 @@ typedef struct wcsph {
     tobi_wcsph_def def;
     sph_view view;
     const sph_kernels *kernel;
-    /* survives a restart; vessel: SPH_VESSEL_*; low, level: drops of the surface and of still water, m */
+    /* survives a restart; vessel: SPH_VESSEL_*; low, level: depths of the surface and of still water, m */
     struct { double speed, vessel, low, level; } memory;
     double sound;                                 /* m/s                                              */
-    double softness;                              /* m2/kg, of the bodies: tobi_couple_softness       */
+    double compliance;                            /* m2/kg, of the bodies: tobi_couple_compliance     */
 } wcsph;
 
 static void launch(tobi_system *s, wcsph *m, tobi_kernel k, double *totals)
@@ -34,10 +34,10 @@ static void launch(tobi_system *s, wcsph *m, tobi_kernel k, double *totals)
     tobi_launch(&s->sim->exec, k, &m->view, 0, s->particles.count, totals);
 }
 
-static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+static void choose_smoothing(const void *def, int driven, int *shape, double *support)
 {
     const tobi_wcsph_def *d = def;
-    (void)stirred;
+    (void)driven;
     *shape = d->kernel;
     *support = d->support > 0 ? d->support : 2;
 }
@@ -60,7 +60,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->def = *(const tobi_wcsph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     m->sound = find_sound(s, &m->def);
-    m->softness = tobi_couple_softness(s);
+    m->compliance = tobi_couple_compliance(s);
     return TOBI_OK;
 }
 
@@ -86,8 +86,8 @@ static void bind_view(tobi_system *s, wcsph *m)
 /* The layer of water at a body is a spring between the two, explicit in time, eq. (25). INFINITY without. */
 static double body_dt(const tobi_system *s, const wcsph *m)
 {
-    double d = s->smoothing.spacing, limit = 2/(1 + s->fluid[0].density*d*m->softness);
-    if (!(m->softness > 0)) return INFINITY;
+    double d = s->smoothing.spacing, limit = 2/(1 + s->fluid[0].density*d*m->compliance);
+    if (!(m->compliance > 0)) return INFINITY;
     return limit/(sqrt(m->def.damping*m->def.damping + limit) + m->def.damping)*d/m->sound;
 }
 
@@ -108,7 +108,7 @@ static double find_surface(tobi_system *s)
 {
     sph_state *state = sph_of(s);
     const sph_fields *f = sph_fields_of(&s->particles);
-    for (int64_t k = 0; k < state->near.count; k++) f->drop[state->near.link[k].particle] = 0;
+    for (int64_t k = 0; k < state->links.count; k++) f->surface_depth[state->links.link[k].particle] = 0;
     return sph_reference_low(s);
 }
 
@@ -126,8 +126,8 @@ static tobi_status find_neighbors(tobi_system *s, wcsph *m, double *clock, tobi_
     TOBI_TRY(sph_find_neighbors(s, clock, err));
     bind_view(s, m);
     int new = m->memory.vessel == SPH_VESSEL_UNKNOWN;
-    TOBI_TRY(sph_look_into_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
-    if (m->memory.vessel == SPH_VESSEL_FULL) sph_fill_up(s);
+    TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
+    if (m->memory.vessel == SPH_VESSEL_FULL) sph_remove_gravity(s);
     if (new) start_at_rest(s, m);
     bind_view(s, m);
     return TOBI_OK;
@@ -186,11 +186,11 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     wcsph *m = s->state;
     double clock = tobi_clock();
     sph_use_dt(s, &m->view);
-    sph_drive_bodies(s, &clock);
+    sph_set_body_velocities(s, &clock);
     sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
                    fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
-    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);
     return TOBI_OK;
@@ -227,7 +227,7 @@ static tobi_status refresh(tobi_system *s, tobi_error *err)
     wcsph *m = s->state;
     double clock = tobi_clock();
     TOBI_TRY(find_neighbors(s, m, &clock, err));
-    TOBI_TRY(sph_see_walls(s, &m->view, m->kernel, &clock, err));
+    TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, 0, &clock);
     return TOBI_OK;
 }
@@ -248,7 +248,7 @@ static void follow_gravity(tobi_system *s, int loaded)
 
 static void free_state(void *state)
 {
-    if (state) tobi_boundary_links_free(&((wcsph *)state)->common.near);
+    if (state) tobi_boundary_links_free(&((wcsph *)state)->common.links);
     free(state);
 }
 

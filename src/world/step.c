@@ -226,7 +226,7 @@ static void put_back(tobi_world *w, const kept *keep)
 tobi_status tobi_step_take(tobi_world *w, double max_dt, tobi_error *err)
 {
     kept keep;
-    TOBI_TRY(tobi_simulation_heed(&w->sim, err));
+    TOBI_TRY(tobi_simulation_check_stop(&w->sim, err));
     keep_memory(w, &keep);
     w->sim.changed = 0;
     const tobi_status status = take_step(w, max_dt, &w->failure);

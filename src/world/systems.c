@@ -46,9 +46,9 @@ static int is_full_vessel(const tobi_world *w, const tobi_system *s)
 /* Whether a body or a side moves in a full vessel. */
 static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 {
-    int stirred = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
-    for (int k = 0; k < w->sim.body_count; k++) stirred |= w->sim.bodies[k].motion != NULL;
-    return stirred && is_full_vessel(w, s);
+    int driven = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
+    for (int k = 0; k < w->sim.body_count; k++) driven |= w->sim.bodies[k].motion != NULL;
+    return driven && is_full_vessel(w, s);
 }
 
 /* The kernel, and the box whose cells follow its support. Final when all regions and bodies are known. */

@@ -24,9 +24,9 @@ static const tobi_output outputs[] = { { "path", 1, "m" }, { NULL, 0, NULL } };
 
 typedef struct free_flight { double speed; } free_flight;      /* m/s, of the fastest */
 
-static void smoothing(const void *def, int stirred, int *shape, double *support)
+static void smoothing(const void *def, int driven, int *shape, double *support)
 {
-    (void)def, (void)stirred;
+    (void)def, (void)driven;
     *shape = 0;
     *support = 2;
 }

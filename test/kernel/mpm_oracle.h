@@ -11,7 +11,7 @@ typedef struct oracle_solid {
     int model;                               /* tobi_model */
     double E, nu, bulk, viscosity, yield, hardening, compression, stretch, cone, keep;
     double strength, last;                   /* 0: never breaks; crack strain at which nothing is left */
-    double rise, haste;                      /* of sand: friction in flow; eq. (11c) */
+    double friction_rise, inertial_scale;             /* of sand: friction in flow; eq. (11c) */
 } oracle_solid;
 
 typedef struct oracle_particle {
@@ -126,8 +126,8 @@ static double oracle_hurry(const oracle_solid *m, double mu, double pressure, do
 {
     double low = 0, high = sqrt(2)*norm/dt;
     for (int k = 0; k < 200; k++) {
-        double rate = 0.5*(low + high), x = rate*mu/(m->haste*sqrt(pressure));
-        double friction = 3*m->cone/sqrt(2) + m->rise*x/(1 + x);
+        double rate = 0.5*(low + high), x = rate*mu/(m->inertial_scale*sqrt(pressure));
+        double friction = 3*m->cone/sqrt(2) + m->friction_rise*x/(1 + x);
         if (sqrt(2)*mu*norm - mu*rate*dt > friction*pressure) low = rate;
         else high = rate;
     }
@@ -151,7 +151,7 @@ static void oracle_hencky(const oracle_solid *m, int sand, double mu, double lam
     norm = sqrt(norm);
     if (sand) {
         double over = norm + (3*lambda + 2*mu)/(2*mu)*trace*m->cone;
-        if (m->rise > 0 && over > 0 && trace < 0)
+        if (m->friction_rise > 0 && over > 0 && trace < 0)
             over = oracle_hurry(m, mu, -(lambda + 2*mu/3)*trace, norm, dt);
         p->state = trace < 0 ? 0 : trace;
         for (int k = 0; k < 3; k++) {

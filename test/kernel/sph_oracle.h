@@ -18,7 +18,7 @@ static const char *const column_name[COLUMNS] = {
     "normal band", "Gx", "Gy", "Gz", "flux", "capillary", "density", "diagonal", "precondition",
     "residual", "product", "delta", "pressure", "surface", "wetness",
     "Txx", "Tyy", "Tzz", "Txy", "Tyz", "Tzx", "walled",
-    "cx", "cy", "cz", "mean pressure", "drop", "midway", "damped"
+    "cx", "cy", "cz", "mean pressure", "drop", "target_divergence", "damped"
 };
 
 enum { TABLE = 4000 };
@@ -30,11 +30,11 @@ typedef struct oracle {
     double behind;                       /* what a lattice lacks at a wall, of a sum of 1 */
     double lambda[TABLE + 2], sigma[TABLE + 2];
     int along;                           /* not 0: eq. (7c), or with near (7b) */
-    const int32_t *near;                 /* >= 0: with it, NULL: all */
+    const int32_t *last_link;            /* >= 0: with it, NULL: all */
     int plane_count;
     tobi_plane plane[6];
     const uint8_t *fluid;
-    double rho0[2], nu[2], gravity[3], taken[3];
+    double rho0[2], nu[2], gravity[3], removed_gravity[3];
     double dt, alpha, beta, mean, smooth, filter, surface_limit, speed_cap;
     const float *coarse;
     double cells_per_metre[3];
@@ -237,10 +237,10 @@ static void oracle_tensor(const oracle *o, const row *in, row *out, int i, int o
 {
     double share = in[i][RHO], lack = fmin(oracle_fill(o, share), 0.45), size = 0;
     double n[3] = {0}, t[3][3] = {{0}};
-    int walled = share > 0 && !(o->near && o->near[i] < 0);
+    int walled = share > 0 && !(o->last_link && o->last_link[i] < 0);
     for (int c = 0; c < 3; c++) size += in[i][WALL + c]*in[i][WALL + c];
     for (int c = 0; c < 3; c++) n[c] = size > 0 ? in[i][WALL + c]/sqrt(size) : 0;
-    if (o->near || open || !oracle_renormalised(o, in, i, n, share, t))
+    if (o->last_link || open || !oracle_renormalised(o, in, i, n, share, t))
         for (int a = 0; a < 9; a++) {
             double across = n[a/3]*n[a%3], unit = a%4 == 0;
             t[a/3][a%3] = walled ? across + (unit - across)/(1 - lack) : unit;

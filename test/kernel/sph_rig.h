@@ -62,7 +62,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->count = p->count;
     v->position = p->position; v->record = g->cells.record; v->velocity = p->velocity; v->accel = f->accel;
     v->wall = f->wall; v->density = f->density; v->diagonal = f->diagonal; v->precondition = f->precondition;
-    v->mean_pressure = f->mean; v->drop = f->drop; v->wetness = f->wetness; v->damped = f->damped;
+    v->mean_pressure = f->mean; v->surface_depth = f->surface_depth;
+    v->wetness = f->wetness; v->damped = f->damped;
     v->residual = f->residual; v->product = f->product; v->delta = f->delta; v->surface = f->surface;
     v->pressure = f->pressure; v->fluid = p->fluid;
     v->list = g->cells.list; v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
@@ -77,7 +78,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->plane_count = 0;
     for (int a = 0; a < k->dimension; a++) {
         v->gravity[a] = (float)(a + 1 == k->dimension ? -9.81 : 1.5);
-        v->taken[a] = (float)(0.5 - a);
+        v->removed_gravity[a] = (float)(0.5 - a);
         if (k->periodic[a]) continue;
         v->plane[v->plane_count++] = (tobi_plane){a, 1, 0, a != 1, {0.3f, -0.2f, 0.1f}};
         v->plane[v->plane_count++] = (tobi_plane){a, -1, g->box.size[a], 0, {0}};
@@ -95,8 +96,8 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->stiffness = 2e4f; v->exponent = 7; v->damping = 40; v->relaxation = 0.05f;
     v->stretch = k->along ? f->stretch : NULL;
     v->shear = f->shear;
-    v->beside = f->beside; v->near = f->near; v->full = v->exact = k->along == 1;
-    v->midway = f->midway; v->moment = f->moment;
+    v->near_body = f->near_body; v->last_link = f->last_link; v->full = v->exact = k->along == 1;
+    v->target_divergence = f->target_divergence; v->moment = f->moment;
     v->normal = f->normal; v->capillary = f->capillary;
     v->tension[0] = 0.07f; v->tension[1] = 0.03f; v->contact_cosine = 0.5f;
     v->band_depth = (float)(0.6*g->c.spacing);
@@ -146,14 +147,14 @@ static void rig_bind_oracle(rig *g, const rig_case *k, const double rho[2], cons
     o->d = g->c.spacing; o->h = g->c.h;
     o->fluid = p->fluid;
     o->along = k->along;
-    o->near = k->along == 2 ? f->near : NULL;
+    o->last_link = k->along == 2 ? f->last_link : NULL;
     o->plane_count = v->plane_count;
     memcpy(o->plane, v->plane, sizeof o->plane);
     for (int a = 0; a < 3; a++) {
         o->box[a] = g->box.size[a];
         o->periodic[a] = g->box.periodic[a];
         o->gravity[a] = v->gravity[a];
-        o->taken[a] = v->taken[a];
+        o->removed_gravity[a] = v->removed_gravity[a];
     }
     for (int f = 0; f < 2; f++) {
         o->rho0[f] = rho[f]; o->nu[f] = nu[f];
@@ -175,11 +176,11 @@ static void rig_hide_walls(rig *g)
 {
     tobi_particles *p = &g->p;
     const sph_fields *f = sph_fields_of(p);
-    for (int64_t i = 0; i < p->count; i++) f->near[i] = p->id[i]%3 == 0 ? 0 : -1;
+    for (int64_t i = 0; i < p->count; i++) f->last_link[i] = p->id[i]%3 == 0 ? 0 : -1;
     for (int64_t i = 0; i < p->count; i++) {
-        f->beside[i] = f->near[i] >= 0;
+        f->near_body[i] = f->last_link[i] >= 0;
         for (int n = 0; n < 8*g->cells.list_groups[i]; n++)
-            f->beside[i] |= f->near[g->cells.list[8*(int64_t)g->cells.list_start[i] + n]] >= 0;
+            f->near_body[i] |= f->last_link[g->cells.list[8*(int64_t)g->cells.list_start[i] + n]] >= 0;
     }
 }
 
@@ -249,8 +250,8 @@ static void rig_get(const rig *g, row *s)
         s[i][RHO] = f->density[i]; s[i][DIAG] = f->diagonal[i]; s[i][PRE] = f->precondition[i];
         s[i][RES] = f->residual[i]; s[i][PROD] = f->product[i]; s[i][DELTA] = f->delta[i];
         s[i][PRES] = f->pressure[i]; s[i][SURF] = f->surface[i];
-        s[i][WET] = f->wetness[i]; s[i][MEAN] = f->mean[i]; s[i][DROP] = f->drop[i];
-        s[i][MIDWAY] = f->midway[i]; s[i][DAMPED] = f->damped[i];
+        s[i][WET] = f->wetness[i]; s[i][MEAN] = f->mean[i]; s[i][DROP] = f->surface_depth[i];
+        s[i][MIDWAY] = f->target_divergence[i]; s[i][DAMPED] = f->damped[i];
         for (int a = 0; a < 3; a++) s[i][MOMENT + a] = (&f->moment[i].x)[a];
     }
 }
@@ -265,8 +266,9 @@ static void rig_set(rig *g, const row *s)
             (&p->velocity[i].x)[a] = (float)s[i][VEL + a];
             (&f->accel[i].x)[a] = (float)s[i][ACC + a];
         }
-        f->wetness[i] = (float)s[i][WET]; f->mean[i] = (float)s[i][MEAN]; f->drop[i] = (float)s[i][DROP];
-        f->midway[i] = (float)s[i][MIDWAY]; f->damped[i] = (float)s[i][DAMPED];
+        f->wetness[i] = (float)s[i][WET]; f->mean[i] = (float)s[i][MEAN];
+        f->surface_depth[i] = (float)s[i][DROP];
+        f->target_divergence[i] = (float)s[i][MIDWAY]; f->damped[i] = (float)s[i][DAMPED];
         for (int a = 0; a < 3; a++) (&f->moment[i].x)[a] = (float)s[i][MOMENT + a];
         for (int a = 0; a < 4; a++) (&f->wall[i].x)[a] = (float)s[i][WALL + a];
         for (int a = 0; a < 4; a++) (&f->normal[i].x)[a] = (float)s[i][NORMAL + a];

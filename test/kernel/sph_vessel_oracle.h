@@ -90,7 +90,7 @@ static void oracle_carry(const oracle *o, const row *in, row *out, double *t)
                      gain = pressure_of(&o->reference, x, 0) - pressure_of(&o->reference_before, x, 0);
         double sink = 0;
         for (int a = 0; a < 3; a++)
-            sink += (slope*o->reference.down[a] + o->rho0[o->fluid[i]]*o->taken[a])*u[a];
+            sink += (slope*o->reference.down[a] + o->rho0[o->fluid[i]]*o->removed_gravity[a])*u[a];
         out[i][PRES] -= gain + o->dt*sink;
     }
 }

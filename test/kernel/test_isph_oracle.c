@@ -19,8 +19,8 @@ static int shape;
 
 /* The arrays of the view that kernels write, or that this test fills. */
 #define ARRAYS(X)                                                                                   \
-    X(pressure) X(trace) X(gate) X(scale) X(filled) X(behind) X(excess) X(inverse_diagonal)         \
-    X(source) X(solution) X(out) X(inverse) X(lack) X(change) X(accel) X(velocity)
+    X(pressure) X(trace) X(gate) X(scale) X(concentration) X(body_share) X(excess) X(inverse_diagonal)    \
+    X(source) X(solution) X(out) X(inverse) X(concentration_gradient) X(shift_velocity) X(accel) X(velocity)
 
 /* In cases with a body its face is where the lower side along x was; that is FAR supports further down. */
 enum { FAR = 10 };
@@ -30,7 +30,7 @@ static tobi_double3 *shifted;
 static int32_t *near_body;
 static isph_mirror *mirror;
 static tobi_boundary_link *links;
-static isph_grips *grips;
+static isph_coupling *couplings;
 static const double answers[1][6] = {{0.3, -0.2, 0.1, 0.7, -0.4, 0.2}};
 
 static void put_body(void)
@@ -41,7 +41,7 @@ static void put_body(void)
         shifted[i] = pool.p.position[i];
         near_body[i] = -1;
         links[i] = (tobi_boundary_link){.particle = (int32_t)i, .body = 0, .previous = -1};
-        for (int a = 0; a < 6; a++) grips[i].f[a] = poisson_random();
+        for (int a = 0; a < 6; a++) couplings[i].f[a] = poisson_random();
         if (!bodies) continue;
         shifted[i].x += away;
         if (pool.p.position[i].x >= view.h) continue;
@@ -49,10 +49,10 @@ static void put_body(void)
         links[count].particle = (int32_t)i;
         mirror[count++] = (isph_mirror){.body = 0, .previous = -1, .share = 1, .normal = {1, 0, 0},
                                         .offset = {pool.p.position[i].x, 0, 0},
-                                        .velocity = {FLOW, 0.3, 0}, .change = {CHANGE, 0.1, 0}};
+                                        .velocity = {FLOW, 0.3, 0}, .velocity_change = {CHANGE, 0.1, 0}};
     }
     view.size[0] = pool.box.size[0] + (bodies ? away : 0);
-    view.near = bodies ? near_body : NULL;
+    view.last_link = bodies ? near_body : NULL;
 }
 
 /* A jittered pool, closed or with a surface, and a view of it with memory of its own. */
@@ -88,7 +88,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view.position = shifted = calloc((size_t)count, sizeof *shifted);
     near_body = calloc((size_t)count, sizeof *near_body);
     view.link = links = calloc((size_t)count, sizeof *links);
-    view.grip = grips = calloc((size_t)count, sizeof *grips);
+    view.coupling = couplings = calloc((size_t)count, sizeof *couplings);
     view.answer = answers;
     view.record = pool.cells.record;
     view.list = pool.cells.list;
@@ -113,7 +113,7 @@ static void close_pool(void)
     free(shifted);
     free(near_body);
     free(links);
-    free(grips);
+    free(couplings);
     poisson_drop(&pool);
 }
 
@@ -123,10 +123,10 @@ static void run(tobi_kernel k, double *totals)
 }
 
 /* Every image of every particle that i can see, in 3^dim boxes; code of its own. */
-typedef struct image { int64_t j; double x[3], r, away[3]; int flip[3]; int self; } image;
+typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
-    double moment[6], filled, lack[3], product, divergence, lift, row, gradient[3], force[3], core[3],
-           normal[3], slope[9];
+    double moment[6], concentration, gradient_c[3], product, divergence, difference, row,
+           gradient[3], force[3], core[3], normal[3], slope[9];
 } sums;
 
 static double falloff(double r)
@@ -146,9 +146,10 @@ static void image_velocity(const image *m, double u[3])
 {
     for (int a = 0; a < 3; a++) {
         const int face = bodies && a == 0 && m->flip[a] == 1;
-        const double kick = (double)view.kick*view.gravity[a] - (face && view.kick > 0 ? CHANGE : 0);
+        const double change = face && view.gravity_dt > 0 ? CHANGE : 0,
+                     given = (double)view.gravity_dt*view.gravity[a] - change;
         u[a] = (&view.velocity[m->j].x)[a];
-        if (m->flip[a]) u[a] = -(u[a] - kick) + kick + (face ? 2*FLOW : 0);
+        if (m->flip[a]) u[a] = -(u[a] - given) + given + (face ? 2*FLOW : 0);
     }
 }
 
@@ -161,32 +162,33 @@ static void add_pair(int64_t i, const image *m, sums *s)
     const int side = m->flip[0] > (bodies ? 1 : 0) || m->flip[1] || m->flip[2],
               image = side || m->flip[0], face = bodies && m->flip[0] == 1;
     double u[3], lift = 0;
-    for (int k = 0; k < view.dimension; k++) lift += view.density*view.gravity[k]*m->away[k];
-    if (face) lift -= view.density/view.dt*CHANGE*m->away[0];
+    for (int k = 0; k < view.dimension; k++) lift += view.density*view.gravity[k]*m->displacement[k];
+    if (face) lift -= view.density/view.dt*CHANGE*m->displacement[0];
     image_velocity(m, u);
-    s->filled += weight(m->r);
+    s->concentration += weight(m->r);
     s->product += a*(view.in[i] - view.in[m->j]);
-    s->lift += a*lift;
+    s->difference += a*lift;
     s->row += a;
     for (int k = 0; k < 3; k++) {
         const double jump = u[k] - (&view.velocity[i].x)[k], p = view.pressure[m->j] + lift,
                      own = view.pressure[i];
         s->moment[k] += f*x[k]*x[k];
         s->moment[3 + k] += f*x[k]*x[(k + 1)%3];
-        s->lack[k] -= f*x[k];
+        s->gradient_c[k] -= f*x[k];
         s->divergence -= jump*f*g[k];
         s->gradient[k] -= (p - own)*f*x[k];
         if (side && !face) s->force[k] -= view.volume*(p + own)*f*x[k];
         if (m->r < 0.8*view.spacing) s->core[k] += 0.25*(0.8*view.spacing - m->r)*x[k]/m->r;
         for (int c = 0; c < 3; c++) s->slope[3*k + c] -= jump*f*x[c];
-        if (!image) s->normal[k] += (double)view.lack[m->j].w*(&view.lack[m->j].x)[k];
+        const tobi_float4 *of = &view.concentration_gradient[m->j];
+        if (!image) s->normal[k] += (double)of->w*(&of->x)[k];
     }
 }
 
 static sums sum_pairs(int64_t i)
 {
     const int dim = view.dimension;
-    sums s = {.filled = view.weight};
+    sums s = {.concentration = view.weight};
     for (int64_t j = 0; j < view.count; j++)
         for (int code = 0; code < (dim == 3 ? 27 : 9); code++) {
             image m = {.j = j, .self = i == j && code == 0};
@@ -196,7 +198,7 @@ static sums sum_pairs(int64_t i)
                 m.flip[a] = a < dim ? c%3 : 0;
                 const double at = !m.flip[a] ? y : m.flip[a] == 1 ? -y : 2*pool.box.size[a] - y;
                 m.x[a] = (&pool.p.position[i].x)[a] - at;
-                m.away[a] = at - y;
+                m.displacement[a] = at - y;
                 r2 += m.x[a]*m.x[a];
             }
             m.r = sqrt(r2);
@@ -222,7 +224,7 @@ static double clip(double x) { return fmin(fmax(x, 0), 1); }
 /* The face has the normal x: c_x > 0 says that neighbours are missing towards it. */
 static double gate_of(int64_t i, const sums *s)
 {
-    const double *c = s->lack, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
+    const double *c = s->gradient_c, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
                  rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
     double gap = clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1);
     gap *= near_body[i] >= 0 ? clip((1.5 - mirror[near_body[i]].offset[0]/d)/0.5) : 0;
@@ -234,13 +236,14 @@ static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
     const double trace = view.dimension*(1 - loss_of(s)), gate = gate_of(i, s);
     const isph_tensor b = view.inverse[i];
     const double made[6] = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx};
-    double m[6], missing = sqrt(s->lack[0]*s->lack[0] + s->lack[1]*s->lack[1] + s->lack[2]*s->lack[2]);
+    const double *grad = s->gradient_c;
+    double m[6], missing = sqrt(grad[0]*grad[0] + grad[1]*grad[1] + grad[2]*grad[2]);
     compare(c, view.trace[i], trace, 1);
     compare(c, view.gate[i], gate, 10);
     compare(c, view.scale[i], fmin(1.3, view.dimension/fmax(trace, 0.95*view.dimension)), 1);
-    compare(c, view.filled[i], s->filled, 1);
-    for (int a = 0; a < 3; a++) compare(c, (&view.lack[i].x)[a], s->lack[a], 1/view.h);
-    compare(c, view.lack[i].w*missing, fmax(0, view.dimension - trace), 1);
+    compare(c, view.concentration[i], s->concentration, 1);
+    for (int a = 0; a < 3; a++) compare(c, (&view.concentration_gradient[i].x)[a], grad[a], 1/view.h);
+    compare(c, view.concentration_gradient[i].w*missing, fmax(0, view.dimension - trace), 1);
     /* B M = (1 - gamma) + gamma M */
     for (int k = 0; k < 6; k++) m[k] = s->moment[k];
     if (view.dimension == 2) m[2] = 1;
@@ -273,8 +276,8 @@ static double excess_of(int64_t i, const sums *s)
 
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)
 {
-    const double e = fmax(s->filled - 1, loss_of(s) < 0.05 || !view.open ? -0.05 : 0);
-    const double source = s->lift - view.density/view.dt*s->divergence +
+    const double e = fmax(s->concentration - 1, loss_of(s) < 0.05 || !view.open ? -0.05 : 0);
+    const double source = s->difference - view.density/view.dt*s->divergence +
                           view.density*0.1*e/(view.dt*view.motion_dt);
     compare(c, view.source[i], source, view.density/view.dt/view.dt);
     compare(c, view.excess[i], excess_of(i, s), 10*view.full);
@@ -287,19 +290,19 @@ static void oracle_isph_multiply(check *c, int64_t i, const sums *s)
     compare(c, view.out[i], s->product + view.excess[i]*view.in[i], view.full);
 }
 
-static void oracle_isph_answer(check *c, int64_t i, const sums *s)
+static void oracle_isph_store_pressure(check *c, int64_t i, const sums *s)
 {
     (void)s;
     compare(c, view.pressure[i], view.solution[i], 1000);
     compare(c, view.record[i].w, view.pressure[i], 1000);
 }
 
-static void oracle_isph_kick(check *c, int64_t i, const sums *s)
+static void oracle_isph_projection(check *c, int64_t i, const sums *s)
 {
     double g[3];
     isph_apply(&view.inverse[i], s->gradient, g);
     for (int a = 0; a < view.dimension; a++) {
-        g[a] += 2*1.1*view.gate[i]*view.pressure[i]*(&view.lack[i].x)[a];
+        g[a] += 2*1.1*view.gate[i]*view.pressure[i]*(&view.concentration_gradient[i].x)[a];
         compare(c, (&view.velocity[i].x)[a], (&before.x)[a] - view.dt/view.density*g[a],
                 view.dt/view.density*1000/view.h);
     }
@@ -309,7 +312,7 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    for (int a = 0; a < 3; a++) x[a] = view.open && full < 0.6 ? 0 : -view.shifting*d*d*s->lack[a];
+    for (int a = 0; a < 3; a++) x[a] = view.open && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
         if (view.open && full < 0.95 && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
@@ -322,15 +325,15 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
         double change = 0;
         for (int b = 0; b < 3; b++) change += s->slope[3*a + b]*along[b];
         compare(c, (&view.accel[i].x)[a]*view.dt*view.dt, keep*x[a], d);
-        compare(c, (&view.change[i].x)[a], view.open && full < 0.75 ? 0 : keep*change, 1);
+        compare(c, (&view.shift_velocity[i].x)[a], view.open && full < 0.75 ? 0 : keep*change, 1);
     }
 }
 
-static void oracle_isph_use_change(check *c, int64_t i, const sums *s)
+static void oracle_isph_add_shift_velocity(check *c, int64_t i, const sums *s)
 {
     (void)s;
     for (int a = 0; a < 3; a++)
-        compare(c, (&view.velocity[i].x)[a], (&before.x)[a] + (&view.change[i].x)[a], 1);
+        compare(c, (&view.velocity[i].x)[a], (&before.x)[a] + (&view.shift_velocity[i].x)[a], 1);
 }
 
 static void oracle_isph_diagonal(check *c, int64_t i, const sums *s)
@@ -339,27 +342,27 @@ static void oracle_isph_diagonal(check *c, int64_t i, const sums *s)
     compare(c, view.out[i], view.in[i]*view.inverse_diagonal[i], 1/view.full);
 }
 
-/* One sum over all entries: check_grip. */
-static void oracle_isph_grip(check *c, int64_t i, const sums *s)
+/* One sum over all entries: check_body_force. */
+static void oracle_isph_body_force(check *c, int64_t i, const sums *s)
 {
     (void)c; (void)i; (void)s;
 }
 
-static void check_grip(check *c, const double *t)
+static void check_body_force(check *c, const double *t)
 {
     for (int a = 0; a < 6; a++) {
         double force = 0;
-        for (int64_t k = 0; k < view.count; k++) force += grips[k].f[a]*view.in[links[k].particle];
+        for (int64_t k = 0; k < view.count; k++) force += couplings[k].f[a]*view.in[links[k].particle];
         compare(c, t[a], force, 1);
     }
 }
 
 /* Adds to what isph_multiply made. */
-static void oracle_isph_yield(check *c, int64_t i, const sums *s)
+static void oracle_isph_add_answer(check *c, int64_t i, const sums *s)
 {
     double flux = 0;
     if (near_body[i] >= 0)
-        for (int a = 0; a < 6; a++) flux += grips[near_body[i]].f[a]*answers[0][a];
+        for (int a = 0; a < 6; a++) flux += couplings[near_body[i]].f[a]*answers[0][a];
     compare(c, view.out[i], s->product + view.excess[i]*view.in[i] + view.density/view.volume*flux,
             view.full + view.density/view.volume);
 }
@@ -389,9 +392,9 @@ static tobi_kernel kernel_at(const sph_kernels *table, int k)
 /* Before a kernel: what the solver does between them. */
 static void prepare(int k)
 {
-    view.kick = !strcmp(kernels[k].name, "isph_rows") ? (float)view.dt : 0;
-    view.near = bodies || !strcmp(kernels[k].name, "isph_yield") ? near_body : NULL;
-    if (!strcmp(kernels[k].name, "isph_answer"))
+    view.gravity_dt = !strcmp(kernels[k].name, "isph_rows") ? (float)view.dt : 0;
+    view.last_link = bodies || !strcmp(kernels[k].name, "isph_add_answer") ? near_body : NULL;
+    if (!strcmp(kernels[k].name, "isph_store_pressure"))
         for (int64_t i = 0; i < view.count; i++) view.solution[i] *= 0.9;
 }
 
@@ -407,7 +410,8 @@ static void follow_the_equations(int scalar)
             memcpy(old, view.velocity, (size_t)view.count*sizeof *old);
             prepare(n);
             run(kernel_at(kernel, n), t);
-            const int all = !strcmp(kernels[n].name, "isph_kick") || !strcmp(kernels[n].name, "isph_shift");
+            const int all = !strcmp(kernels[n].name, "isph_projection") ||
+                            !strcmp(kernels[n].name, "isph_shift");
             for (int64_t i = 0; i < view.count; i += all ? 1 : 7) {
                 before = old[i];
                 sums s = sum_pairs(i);
@@ -415,10 +419,10 @@ static void follow_the_equations(int scalar)
                 if (!(view.gate[i] > 0)) div += fabs(s.divergence);
                 kernels[n].oracle(&c, i, &s);
             }
-            if (!strcmp(kernels[n].name, "isph_kick"))
+            if (!strcmp(kernels[n].name, "isph_projection"))
                 for (int a = 0; a < 3; a++) compare(&c, t[1 + a], force[a], 1e4*view.volume/view.h);
             if (!strcmp(kernels[n].name, "isph_shift")) compare(&c, t[0], div, div + 1);
-            if (!strcmp(kernels[n].name, "isph_grip")) check_grip(&c, t);
+            if (!strcmp(kernels[n].name, "isph_body_force")) check_body_force(&c, t);
             if (!strcmp(kernels[n].name, "isph_rows")) assert_true((t[0] > 0) == view.open);
             if (!(c.worst < 2e-5)) fail_msg("case %d, %s: off by %g", k, c.name, c.worst);
             free(old);
@@ -533,8 +537,8 @@ static void linear_pressures_are_exact(void **state)
         }
         double t[TOBI_TOTALS];
         run(kernel->isph_gravity, NULL);
-        run(kernel->isph_answer, NULL);
-        run(kernel->isph_kick, t);
+        run(kernel->isph_store_pressure, NULL);
+        run(kernel->isph_projection, t);
         for (int64_t i = 0; i < view.count; i++)
             for (int a = 0; a <= 1 + k; a++) assert_true(fabsf((&view.velocity[i].x)[a]) < 1e-4*view.dt*9.81);
         close_pool();

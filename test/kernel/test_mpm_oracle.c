@@ -45,7 +45,8 @@ static void choose_solids(rig *g, int only)
             .model = k < BREAKING ? k : k - BREAKING, .strength = k < BREAKING ? 0 : 3000, .last = 0.1,
             .E = 1e5*(1 + k), .nu = 0.1 + 0.05*(k%BREAKING), .bulk = 2e5, .viscosity = 3, .yield = 4e3,
             .hardening = k == TOBI_SNOW ? 8 : 2e4, .compression = 0.04, .stretch = 0.02, .cone = 0.2,
-            .rise = k == TOBI_SAND && (only < 0) == (g->dimension == 2) ? 0.5 : 0, .haste = 1e5,
+            .friction_rise = k == TOBI_SAND && (only < 0) == (g->dimension == 2) ? 0.5 : 0,
+            .inertial_scale = 1e5,
             .keep = 1 - 0.01*k };
         g->solid[k] = s;
         g->material[k] = (mpm_material){
@@ -54,7 +55,8 @@ static void choose_solids(rig *g, int only)
             .lambda = (float)(s.E*s.nu/((1 + s.nu)*(1 - 2*s.nu))), .bulk = (float)s.bulk,
             .viscosity = (float)s.viscosity, .yield = (float)s.yield, .hardening = (float)s.hardening,
             .compression = (float)s.compression, .stretch = (float)s.stretch, .friction = (float)s.cone,
-            .rise = (float)s.rise, .haste = (float)s.haste, .keep = (float)s.keep };
+            .friction_rise = (float)s.friction_rise, .inertial_scale = (float)s.inertial_scale,
+            .keep = (float)s.keep };
     }
 }
 
@@ -293,7 +295,7 @@ static void shown_stress_matches_the_oracle(void **state)
                 oracle_stress(&intact, g.view.strain_dt, &copy, tau);
                 for (int k = 0; k < 9; k++) size += fabs(tau[k/3][k%3]);
             }
-            mpm_sight s = mpm_look(&g.view, i);
+            mpm_sample s = mpm_sample_particle(&g.view, i);
             oracle_stress(m, g.view.strain_dt, &p[i], tau);
             double ratio = oracle_det(p[i].F);
             if (m->model == TOBI_SNOW) ratio *= 1 + p[i].state;

@@ -21,7 +21,7 @@ typedef struct state {
     uint32_t node[PACKS*EACH];
     float weight[PACKS*EACH*8];
     tobi_float4 velocity[NODES], push[2*CONTACTS], moving[2*CONTACTS];
-    mpm_yield yield[NODES];
+    mpm_response response[NODES];
     contact contact[CONTACTS];
     int contacts;
 } state;
@@ -66,7 +66,7 @@ static void fill(state *s)
 
 static mpm_pack_view see(state *s)
 {
-    return (mpm_pack_view){ s->pack, s->node, s->weight, s->velocity, s->yield, s->push, s->moving };
+    return (mpm_pack_view){ s->pack, s->node, s->weight, s->velocity, s->response, s->push, s->moving };
 }
 
 static int node_of(const state *s, const contact *c, int n)
@@ -119,7 +119,7 @@ static void loads_and_answers(void **unused)
         find_load(&s, load);
         run(&s, k->load);
         for (int n = 0; n < NODES; n++)
-            for (int m = 0; m < 2; m++) close_to(s.yield[n].load[m], load[n][m], load[n][m]);
+            for (int m = 0; m < 2; m++) close_to(s.response[n].load[m], load[n][m], load[n][m]);
         run(&s, k->answer);
         for (int c = 0; c < s.contacts; c++)
             for (int m = 0; m < 2; m++) {
@@ -129,7 +129,7 @@ static void loads_and_answers(void **unused)
                 close_to(s.moving[2*c + m].w, sum, sum);
             }
         run(&s, k->forget);
-        for (int n = 0; n < NODES; n++) assert_true(s.yield[n].load[0] == 0 && s.yield[n].load[1] == 0);
+        for (int n = 0; n < NODES; n++) assert_true(s.response[n].load[0] == 0 && s.response[n].load[1] == 0);
     }
 }
 

@@ -20,7 +20,7 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_density oracle_density
 #define oracle_sph_laplacian oracle_laplacian
 #define oracle_sph_kick oracle_kick
-#define oracle_sph_midway oracle_midway
+#define oracle_sph_target_divergence oracle_midway
 #define oracle_sph_filter oracle_filter
 #define oracle_sph_filter_kick oracle_filter_kick
 #define oracle_sph_wall_force oracle_wall_force
@@ -36,7 +36,7 @@ typedef struct entry { const char *name; size_t offset; oracle_fn oracle; } entr
 #define oracle_sph_center_residual oracle_center_residual
 #define oracle_sph_center_product oracle_center_product
 #define oracle_sph_cg_update oracle_cg_update
-#define oracle_sph_hold oracle_hold
+#define oracle_sph_clamp_pressure oracle_hold
 #define oracle_sph_cg_direction oracle_cg_direction
 #define oracle_sph_correct_pressure oracle_correct_pressure
 #define oracle_sph_shift oracle_shift

@@ -33,7 +33,7 @@ static double softness(const double size[3], const tobi_body_def *more, int dime
     OK(tobi_world_create(&def, NULL, &w, &err));
     OK(tobi_world_add_fluid(w, &fluid, &fill, 1, &err));
     OK(tobi_world_add_body(w, &b, &err));
-    double value = tobi_couple_softness(&w->system[0]);
+    double value = tobi_couple_compliance(&w->system[0]);
     tobi_world_destroy(w);
     return value;
 }
@@ -192,7 +192,7 @@ static void sum_gradients(const void *view, int64_t begin, int64_t end, double *
 {
     const chosen *c = view;
     for (int64_t k = begin; k < end; k++) {
-        const tobi_boundary_link *e = &sph_of(c->s)->near.link[k];
+        const tobi_boundary_link *e = &sph_of(c->s)->links.link[k];
         if (c->body >= 0 && e->body != c->body) continue;
         for (int a = 0; a < 3; a++) t[a] += e->gradient[a];
     }
@@ -205,7 +205,7 @@ static void sums_of_all_bodies_at_once(void **state)
     (void)state;
     tobi_world *w = make_boxes();
     tobi_system *s = &w->system[0];
-    tobi_boundary_links *n = &sph_of(s)->near;
+    tobi_boundary_links *n = &sph_of(s)->links;
     double t[TOBI_TOTALS];
     assert_true(n->count > 5000 && n->count > s->particles.count);
     assert_int_equal(n->first[64], n->count);

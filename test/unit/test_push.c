@@ -95,7 +95,7 @@ static void stays_on_its_side(void **state)
             step(s, way, x);
             double gap = side*(x[0] - side*0.003) - THICKNESS/2;
             assert_true(fabs(gap - 0.2*SPACING) < 1e-9);
-            assert_int_equal(sph_of(s)->near.contacts, 1);
+            assert_int_equal(sph_of(s)->links.contacts, 1);
             assert_true(fabs(s->particles.velocity[0].x - side*0.003) < 1e-8);   /* the plate's */
             assert_true(fabs(s->particles.velocity[0].y - 0.001) < 1e-8);
             double mass = s->smoothing.volume*1000;
@@ -132,7 +132,7 @@ static void goes_where_nothing_is(void **state)
         step(s, k ? away : past, x);
         assert_true(fabs(x[0] - (SPACING/2 + (k ? away : past)[0])) < 1e-12);
         assert_true(fabs(x[1] - (start + (k ? away : past)[1])) < 1e-12);
-        assert_int_equal(sph_of(s)->near.contacts, 0);
+        assert_int_equal(sph_of(s)->links.contacts, 0);
         tobi_world_destroy(world);
     }
 }

@@ -25,7 +25,7 @@ static const mpm_material hard = { .mu = 4e4f, .lambda = 6e4f, .bulk = 1e5f, .yi
                                    .compression = 0.025f, .stretch = 0.0075f, .friction = 0.8f, .keep = 1 };
 
 /* A particle of 1 m3 of the material that is deformed by F (rows). */
-static mpm_sight look_into(const mpm_material *material, const double F[9], float plastic)
+static mpm_sample look_into(const mpm_material *material, const double F[9], float plastic)
 {
     tobi_columns strain[WIDE] = { 0 }, affine[WIDE] = { 0 };
     const uint8_t solid[WIDE] = { 0 };
@@ -35,10 +35,10 @@ static mpm_sight look_into(const mpm_material *material, const double F[9], floa
     strain[0].c[0].w = 1;
     strain[0].c[1].w = plastic;
     const mpm_view v = { .strain = strain, .affine = affine, .solid = solid, .material = material };
-    return mpm_look(&v, 0);
+    return mpm_sample_particle(&v, 0);
 }
 
-static mpm_sight look_at(int model, const double F[9], float plastic)
+static mpm_sample look_at(int model, const double F[9], float plastic)
 {
     mpm_material material = hard;
     material.model = model;
@@ -62,7 +62,7 @@ static void check_energy(int model, double size, double squeeze, float plastic)
     double S[9], F[9], tau[9], norm = 0;
     for (int k = 0; k < 9; k++) S[k] = size*shape[k] + (k%4 == 0 ? 1 + squeeze : 0);
     multiply(S, turn, F);
-    const mpm_sight s = look_at(model, F, plastic);
+    const mpm_sample s = look_at(model, F, plastic);
     for (int k = 0; k < 9; k++) norm += pow(tau[k] = s.stress[tensor[k]]*s.ratio, 2);
     norm = sqrt(norm);
     assert_true(s.energy > 0 && norm > 0);
@@ -97,7 +97,7 @@ static void models_flow_as_they_should(void **state)
 {
     (void)state;
     const double apart[9] = { 1.1, 0, 0, 0, 1.1, 0, 0, 0, 1.1 }, bent[9] = { 1, 0.3, 0, 0, 1, 0, 0, 0, 1 };
-    mpm_sight s = look_at(TOBI_SAND, apart, 0);              /* loose sand carries nothing, and remembers */
+    mpm_sample s = look_at(TOBI_SAND, apart, 0);             /* loose sand carries nothing, and remembers */
     assert_true(fabs(s.stress[0]) < 1 && s.energy < 1e-3 && fabs(s.ratio - 1.331) < 1e-4);
     assert_true(fabs(s.plastic - 3*log(1.1)) < 1e-4);
     s = look_at(TOBI_STATIONARY, bent, 0);
@@ -120,7 +120,7 @@ static void sheared_sand_flows_at_its_angle(void **state)
         d.model = TOBI_SAND;
         d.friction_angle = angle;
         const mpm_material sand = mpm_material_describe(&d, &sound);
-        const mpm_sight seen = look_into(&sand, F, 0);
+        const mpm_sample seen = look_into(&sand, F, 0);
         const double *s = seen.stress;
         const double pressure = -0.5*(s[0] + s[1]), radius = hypot(0.5*(s[0] - s[1]), s[3]);
         if (!(pressure > 0 && fabs(radius/pressure - slope) < 2e-3*slope &&
