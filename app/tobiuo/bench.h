@@ -80,3 +80,5 @@ int bench_cut(const bench_options *o);
 int bench_bodies(const bench_options *o);
 /* bench_bodies_in_water.c: what small bodies cost in water. */
 int bench_bodies_in_water(const bench_options *o);
+/* bench_frame.c: the processor time of a picture. */
+int bench_frame(const bench_options *o);

@@ -1,11 +1,11 @@
-/* A PNG picture of a moment, drawn in software: particles as the surfaces of water or of solids, bodies, the
-   domain's box. It is drawn from arrays alone: tobi_world_read and tobi_world_surface give those of a world.
+/* A PNG picture of a moment, drawn in software: particles as the surfaces of water or of solids, bodies,
+   the domain's box. It is drawn from arrays alone: tobi_world_read and tobi_world_surface give those of a
+   world.
 
-   3-D: particles are splatted as spheres into a depth buffer, the buffer is smoothed in screen
-   space, lit, and blended over the bodies by its thickness (van der Laan, Green & Sainz 2009;
-   smoothing: the narrow-range filter of Truong & Yuksel 2018). 2-D: front view of discs coloured by
-   value. The same input gives the same picture for any number of threads. Needs about 40 bytes per
-   sample of the picture (width x height x samples^2) and 30 per particle while it runs. */
+   3-D: a smooth mesh around the particles (surface nets of their kernel sum, Gibson 1998; smoothing:
+   Taubin 1995), lone particles as balls. Water bends, dims and mirrors light (decisions/0055). 2-D: front
+   view of discs coloured by value. The same input gives the same picture for any number of threads and on
+   every x86-64 processor. Needs about 60 bytes per pixel and 200 per particle while it runs. */
 #ifndef TOBIUO_PICTURE_H
 #define TOBIUO_PICTURE_H
 #include "tobiuo/base.h"
@@ -36,7 +36,7 @@ typedef struct tobi_picture {
 
     int64_t particle_count;
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
-    const float *values;               /* colour of each particle, e.g. speed; NULL = lowest colour     */
+    const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
@@ -50,7 +50,14 @@ typedef struct tobi_picture {
     float background_top[3], background_bottom[3];   /* sRGB */
     const char *title;                 /* ASCII, upper left, "t = 0.25 s"; NULL = none                  */
     const char *label;                 /* ASCII, of the colour bar, "speed [m/s]"; NULL = no bar        */
+
+    int threads;                       /* 0 = all cores; any number gives the same picture              */
+    double *stage_seconds;             /* NULL, or gets TOBI_PICTURE_STAGES times of the process, s     */
 } tobi_picture;
+
+/* Stages of a picture, for measurements. */
+enum { TOBI_PICTURE_STAGES = 6 };
+TOBI_API const char *tobi_picture_stage_name(int stage);      /* NULL beyond the last */
 
 TOBI_API tobi_picture tobi_default_picture(void);
 

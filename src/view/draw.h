@@ -1,5 +1,6 @@
-/* The stages of a picture, shared by the files of this room. A canvas holds samples, several per pixel; view
-   space has x to the right, y up and z away from the eye; colours are linear RGB. */
+/* The stages of a picture, shared by the files of this room. View space has x to the right, y up and z
+   away from the eye; colours are linear RGB; x and y on the canvas are in pixels, whose middles are at
+   halves. */
 #pragma once
 #include "base/error.h"
 #include "exec/exec.h"
@@ -32,39 +33,67 @@ static inline float clampf(float x, float low, float high) { return x < low ? lo
  * origin. */
 typedef struct camera {
     double eye[3], right[3], up[3], forward[3];
-    float  focal;                /* samples per unit of x/z; orthographic: samples per m           */
-    float  center_x, center_y;   /* of the canvas, samples                                         */
+    float  focal;                /* pixels per unit of x/z; orthographic: pixels per m             */
+    float  center_x, center_y;   /* of the canvas, pixels                                          */
     float  near;                 /* m                                                              */
     bool   orthographic;
 } camera;
 
-/* Depth of the bodies seen from the key light; axes and centre in view space. */
+/* Depth of what is opaque seen from the key light; axes and centre in view space. */
 typedef struct shadow {
     vec    center, right, up, forward;
-    float  focal;                /* samples of the map per m                                       */
+    float  focal;                /* pixels of the map per m                                        */
     float *depth;                /* NULL = everything is lit                                       */
     float *range;                /* least and largest depth of each block and the eight around it  */
 } shadow;
 
+/* A point on the canvas. Nearness, 1/z or, for an orthographic camera, -z, is linear on flat surfaces. */
+typedef struct spot {
+    float x, y, nearness;
+} spot;
+
+typedef struct ball {
+    vec   place;                 /* view space                                                     */
+    float radius;                /* m                                                              */
+    vec   color;
+} ball;
+
+/* Triangles and balls. The arrays of vertices are as long as each other. */
+typedef struct geometry {
+    vec    *place, *normal, *color;
+    spot   *at;
+    int64_t vertices, vertex_room;
+    int32_t (*face)[3];          /* anticlockwise seen from outside                                */
+    int64_t faces, face_room;
+    ball   *balls;
+    int64_t ball_count, ball_room;
+} geometry;
+
+/* The loops over a tile's samples and a block's nodes, for one instruction set: isa_tiles.c. */
+typedef struct tile_kernels {
+    tobi_range depth_tiles;      /* nearness of what is opaque, of a shadow's map                  */
+    tobi_range opaque_tiles;
+    tobi_range water_tiles;
+    tobi_range sum_nodes;        /* of isosurface.c                                                */
+    tobi_range sum_colors;
+} tile_kernels;
+extern const tile_kernels tile_kernels_v2, tile_kernels_v3, tile_kernels_v4;
+
 typedef struct canvas {
-    int     width, height;       /* samples                                                        */
+    int     width, height;       /* pixels                                                         */
+    int     samples;             /* per pixel and axis                                             */
+    int     threads;
+    const tile_kernels *kernels;
     camera  camera;
     vec     light, sky_up;       /* unit vectors in view space: to the key light, against gravity  */
     shadow  shadow;
-    const float (*palette)[3];   /* sRGB; NULL = the usual map                                     */
-    int     palette_count;
-    vec    *color;               /* NULL: only depth is drawn                                      */
-    float  *depth;               /* of what is opaque, m; INFINITY = background                    */
-    float  *surface;             /* of the water's front, m; INFINITY = none                       */
-    float  *thickness;           /* of the water, m                                                */
-    float *value; /* of the water at its front, 0 to 1; once lit: the light it lets through */
-    float  *scratch;
+    vec    *color;               /* of pixels                                                      */
+    float  *depth;               /* of pixels: of the nearest that is opaque, m; INFINITY = none   */
+    float  *front;               /* of pixels: of the water; NULL: no water                        */
+    float  *nearness;            /* of samples, tile by tile, of what is opaque; NULL: no water    */
+    uint8_t *covered;            /* of tiles: 1 if nearness is set there, else nothing is opaque   */
+    float   clarity;             /* m after which 1/e of the light is left in water                */
 } canvas;
-
-/* A point in samples with its depth. */
-typedef struct spot {
-    float x, y, z;
-} spot;
 
 static inline vec view_point(const camera *c, const double p[3])
 {
@@ -74,16 +103,21 @@ static inline vec view_point(const camera *c, const double p[3])
                   (float)(d[0]*c->forward[0] + d[1]*c->forward[1] + d[2]*c->forward[2]) };
 }
 
-/* Samples per metre at a depth. */
+/* Pixels per metre at a depth. */
 static inline float scale_at(const camera *c, float z) { return c->orthographic ? c->focal : c->focal/z; }
+
+static inline float depth_of(const camera *c, float nearness)
+{
+    return c->orthographic ? -nearness : 1/nearness;
+}
 
 static inline spot project(const camera *c, vec p)
 {
     float s = scale_at(c, p.z);
-    return (spot){ c->center_x + s*p.x, c->center_y - s*p.y, p.z };
+    return (spot){ c->center_x + s*p.x, c->center_y - s*p.y, c->orthographic ? -p.z : 1/p.z };
 }
 
-/* The view point seen at a sample and a depth. */
+/* The view point seen at a point of the canvas and a depth. */
 static inline vec unproject(const camera *c, float x, float y, float z)
 {
     float s = 1/scale_at(c, z);
@@ -105,63 +139,82 @@ static inline vec linear_color(const float srgb[3])
     return (vec){ to_linear(srgb[0]), to_linear(srgb[1]), to_linear(srgb[2]) };
 }
 
-/* tiles.c: which items touch which square of samples, so that each square is one thread's. */
-enum { TILE = 64 };
+/* picture.c */
+const tile_kernels *tile_kernels_for(int isa);
+
+/* camera.c */
+tobi_status view_aim(canvas *v, const char *path, const tobi_picture *f, tobi_error *err);
+
+/* geometry.c: NULL without memory, or the first of `count` new items, undefined. */
+bool view_reserve(geometry *g, int64_t vertices, int64_t faces, int64_t balls);
+void view_geometry_free(geometry *g);
+/* Places all vertices on the canvas; faces that reach behind the eye are cut there. */
+tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *err);
+bool view_add_mesh(geometry *g, const camera *c, const tobi_picture_mesh *m);
+
+/* tiles.c: which faces and balls touch which square of the canvas, so that each square is one thread's. */
+enum { TILE = 32, MOST_SAMPLES = 4, MOST_SIDE = TILE*MOST_SAMPLES };     /* pixels; samples */
 typedef struct tiles {
     int      across, down;
-    int64_t *first;              /* across*down + 1 offsets into item */
-    int32_t *item;
+    int64_t *first;              /* across*down + 1 offsets into item                              */
+    int32_t *item;               /* a face, or the number of faces and a ball                      */
 } tiles;
-/* Samples that item i touches: {x0, y0, x1, y1}, both ends included; false = none. */
-typedef bool (*tile_rect)(const void *items, int64_t i, int rect[4]);
-tobi_status view_tiles_build(tiles *t, const canvas *c, int64_t n, const void *items, tile_rect rect,
-                        tobi_error *err);
+tobi_status view_tiles_build(tiles *t, const canvas *c, const geometry *g, tobi_error *err);
 void view_tiles_free(tiles *t);
-/* The samples of tile k: {x0, y0, x1, y1}, both ends included. */
-static inline void view_tiles_rect(const tiles *t, const canvas *c, int64_t k, int rect[4])
-{
-    rect[0] = (int)(k%t->across)*TILE, rect[1] = (int)(k/t->across)*TILE;
-    rect[2] = rect[0] + TILE <= c->width ? rect[0] + TILE - 1 : c->width - 1;
-    rect[3] = rect[1] + TILE <= c->height ? rect[1] + TILE - 1 : c->height - 1;
-}
 
-/* solid.c */
-tobi_status view_draw_meshes(canvas *c, const tobi_picture *frame, tobi_error *err);
-void view_draw_floor(canvas *c, const tobi_picture *frame);
-void view_draw_box(canvas *c, const tobi_picture *frame);
-vec  view_sky_color(const canvas *c, vec direction);
-vec  view_shade_solid(const canvas *c, vec p, vec n, vec albedo);
+/* What the kernels over tiles need. */
+typedef struct painting {
+    canvas *c;
+    const geometry *g;
+    const tiles *t;
+    vec    *under;               /* water: pixels with all that is opaque, read where light is bent */
+} painting;
+tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *under, tobi_error *err);
+
+/* isosurface.c */
+typedef struct surface_request {
+    const tobi_picture *f;
+    const int32_t *row;          /* particles that the surface is around                           */
+    int64_t count;
+    const vec *color;            /* linear, of all particles; NULL = one colour for all            */
+    vec     plain;
+    float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
+} surface_request;
+tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, tobi_error *err);
+
+enum { BLOCK_EDGE = 8, BLOCK_NODES = BLOCK_EDGE*BLOCK_EDGE*BLOCK_EDGE };
+/* What the kernels over blocks of nodes need. Lengths are in cells. */
+typedef struct node_view {
+    const int32_t (*block)[3];   /* of each block its place, in blocks                             */
+    const int64_t *first;        /* of each block its particles, as offsets into entry             */
+    const int32_t *entry;
+    const float (*place)[3];     /* of particles                                                   */
+    const vec *color;            /* of particles                                                   */
+    float *node;                 /* BLOCK_NODES for each block                                     */
+    float *colors;               /* 4 BLOCK_NODES for each that has a surface: sums and weight     */
+    const int32_t *colored;      /* of each block, or -1: its place there                          */
+    float reach;                 /* of a particle                                                  */
+} node_view;
+
+/* floor.c */
+void view_draw_background(canvas *c, const tobi_picture *f);
+void view_draw_floor(canvas *c, const tobi_picture *f);
+/* Lines behind what is opaque are hidden; over_water: only those in front of water are drawn. */
+void view_draw_box(canvas *c, const tobi_picture *f, bool over_water);
 
 /* shadow.c */
-tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err);
+tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometry *g, tobi_error *err);
 float view_lit_at(const canvas *c, vec point);
+enum { SHADOW_SIDE = 1024, SHADOW_BLOCK = 8, SHADOW_ACROSS = SHADOW_SIDE/SHADOW_BLOCK };
 
-/* smooth.c: after particles were splatted. */
-typedef enum particle_kind { WATER, GRAINS, DISCS } particle_kind;     /* what the particles of a pass are */
-typedef struct patch {
-    int x, y, width, height; /* samples; width 0 = none */
-} patch;
-/* *p: what is around the surface; nothing beyond it was changed. */
-tobi_status view_smooth_surface(canvas *c, float radius, particle_kind what, patch *p, tobi_error *err);
+/* colors.c: of a value from 0 to 1 by the picture's map; of all particles, NULL without memory. */
+vec  view_color_of(const tobi_picture *f, float value);
+void view_find_range(const tobi_picture *f, double *low, double *high);
+vec *view_color_particles(const tobi_picture *f, double low, double high);
 
-/* water.c. Solids first: they become part of what is opaque. */
-tobi_status view_draw_grains(canvas *c, const tobi_picture *frame, double value_min, double value_max,
-                        tobi_error *err);
-tobi_status view_draw_water(canvas *c, const tobi_picture *frame, double value_min, double value_max,
-                       tobi_error *err);
-tobi_status view_draw_discs(canvas *c, const tobi_picture *frame, double value_min, double value_max,
-                       tobi_error *err);
-/* The usual map, and the canvas's own. */
-vec  view_map_color(float value);
-vec  view_water_color(const canvas *c, float value);
-
-/* text.c: pixels, after the samples have been averaged. */
-typedef struct image {
-    int  width, height;
-    vec *color;
-} image;
-void view_draw_title(image *i, const char *text);
-void view_draw_color_bar(image *i, const char *label, double value_min, double value_max);
+/* text.c */
+void view_draw_title(canvas *c, const char *text);
+void view_draw_color_bar(canvas *c, const tobi_picture *f, double value_min, double value_max);
 
 /* png.c */
-tobi_status view_write_png(const char *path, const image *i, tobi_error *err);
+tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err);

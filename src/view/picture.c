@@ -1,10 +1,11 @@
-/* The order of drawing: bodies, shadows, particles, letters, each over one canvas in memory. Drawback:
-   everything is drawn on the processor. */
+/* The order of drawing: surfaces of the particles, shadows, what is opaque, water, lines and letters,
+   over one canvas in memory. Drawback: everything is drawn on the processor. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 tobi_picture tobi_default_picture(void)
 {
@@ -58,245 +59,191 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
     return TOBI_OK;
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
-
-static void cross(const double a[3], const double b[3], double out[3])
+const char *tobi_picture_stage_name(int stage)
 {
-    double c[3] = { a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0] };
-    memcpy(out, c, sizeof c);
+    static const char *const names[TOBI_PICTURE_STAGES] = {
+        "surfaces of particles", "shadows", "bodies and solids", "water", "lines and letters", "PNG"
+    };
+    return stage >= 0 && stage < TOBI_PICTURE_STAGES ? names[stage] : NULL;
 }
 
-static bool normalize(double a[3])
+const tile_kernels *tile_kernels_for(int isa)
 {
-    double n = sqrt(dot(a, a));
-    if (!(n > 0) || !isfinite(n)) return false;
-    for (int k = 0; k < 3; k++) a[k] /= n;
-    return true;
+#if defined(__x86_64__)
+    if (isa >= 4) return &tile_kernels_v4;
+    if (isa == 3) return &tile_kernels_v3;
+#endif
+    (void)isa;
+    return &tile_kernels_v2;
 }
 
-/* forward is given; right and up follow from the wanted up. */
-static void orient(camera *c, const double up[3])
+/* All that is drawn. */
+typedef struct scene {
+    const tobi_picture *f;
+    canvas c;
+    geometry solids, water;
+    vec *color;                  /* of particles; NULL: water in its own colour */
+    int32_t *row;                /* of particles                                */
+    double low, high;            /* values of the colour map's ends             */
+    double clock;                /* s, when the stage began                     */
+} scene;
+
+enum { STAGE_SURFACE, STAGE_SHADOW, STAGE_SOLIDS, STAGE_WATER, STAGE_LINES, STAGE_PNG };
+
+static double processor_clock(void)
 {
-    cross(c->forward, up, c->right);
-    if (!normalize(c->right)) {
-        double other[3] = { fabs(c->forward[0]) < 0.5, fabs(c->forward[0]) >= 0.5, 0 };
-        cross(c->forward, other, c->right);
-        normalize(c->right);
-    }
-    cross(c->right, c->forward, c->up);
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9*(double)now.tv_nsec;
 }
 
-/* From the box's middle towards a viewer who stands in front, a little to the right and above. */
-static void choose_direction(const double up[3], double out[3])
+static void end_stage(scene *s, int stage)
 {
-    const double turn = 0.48, lift = 0.34;      /* radians */
-    double right[3] = { 1, 0, 0 }, front[3];
-    if (fabs(up[0]) > 0.9) right[0] = 0, right[1] = 1;
-    double along = dot(right, up);
-    for (int k = 0; k < 3; k++) right[k] -= along*up[k];
-    normalize(right);
-    cross(right, up, front);
-    for (int k = 0; k < 3; k++)
-        out[k] = cos(lift)*(cos(turn)*front[k] + sin(turn)*right[k]) + sin(lift)*up[k];
+    if (!s->f->stage_seconds) return;
+    const double now = processor_clock();
+    s->f->stage_seconds[stage] = now - s->clock;
+    s->clock = now;
 }
 
-static void box_corner(const tobi_picture *f, int i, double out[3])
+static void free_scene(scene *s)
 {
-    for (int k = 0; k < 3; k++) out[k] = i >> k & 1 ? f->box_max[k] : f->box_min[k];
+    free(s->c.color);
+    free(s->c.depth);
+    free(s->c.front);
+    free(s->c.nearness);
+    free(s->c.covered);
+    free(s->c.shadow.depth);
+    free(s->c.shadow.range);
+    view_geometry_free(&s->solids);
+    view_geometry_free(&s->water);
+    free(s->color);
+    free(s->row);
 }
 
-/* Moves the eye until the eight corners fill the picture with a margin: the distance from the tightest
-   corner, the sideways place from the extent of the projections, a few times in turn. */
-static void fit_box(camera *c, const tobi_picture *f, double half_width, double half_height)
+static tobi_status no_memory(const tobi_picture *f, tobi_error *err)
 {
-    const double margin = 0.90;
-    double target[3], distance = 0;
-    for (int k = 0; k < 3; k++) target[k] = 0.5*(f->box_min[k] + f->box_max[k]);
-    for (int round = 0; round < 8; round++) {
-        distance = 0;
-        for (int i = 0; i < 8; i++) {
-            double p[3], x, y, z;
-            box_corner(f, i, p);
-            for (int k = 0; k < 3; k++) p[k] -= target[k];
-            x = fabs(dot(p, c->right)), y = fabs(dot(p, c->up)), z = dot(p, c->forward);
-            double need = fmax(x*c->focal/(margin*half_width), y*c->focal/(margin*half_height)) - z;
-            if (need > distance) distance = need;
-        }
-        double low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
-        for (int i = 0; i < 8; i++) {
-            double p[3];
-            box_corner(f, i, p);
-            for (int k = 0; k < 3; k++) p[k] -= target[k];
-            double z = distance + dot(p, c->forward), at[2] = { dot(p, c->right)/z, dot(p, c->up)/z };
-            for (int k = 0; k < 2; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
-        }
-        for (int k = 0; k < 3; k++)
-            target[k] += 0.5*distance*((low[0] + high[0])*c->right[k] + (low[1] + high[1])*c->up[k]);
-    }
-    for (int k = 0; k < 3; k++) c->eye[k] = target[k] - distance*c->forward[k];
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d pixels", f->width, f->height);
 }
 
-static tobi_status aim_camera(canvas *v, const char *path, const tobi_picture *f, tobi_error *err)
+static tobi_status make_canvas(scene *s, tobi_error *err)
 {
-    camera *c = &v->camera;
-    double up[3] = { f->up[0], f->up[1], f->up[2] }, half_width = 0.5*v->width, half_height = 0.5*v->height;
-    if (!normalize(up)) up[0] = up[1] = 0, up[2] = 1;
-    double bar = f->label ? 0.08 : 0, top = f->title ? 0.05 : 0;      /* of the picture, for text */
-    *c = (camera){ .center_x = (float)(half_width*(1 - bar)), .center_y = (float)(half_height*(1 + top)) };
-    c->focal = (float)(half_height/tan(f->field_of_view*(M_PI/360)));
-    if (f->has_camera) {
-        for (int k = 0; k < 3; k++) {
-            c->eye[k] = f->eye[k];
-            c->forward[k] = f->target[k] - f->eye[k];
-        }
-        if (!normalize(c->forward))
-            return tobi_fail(err, TOBI_INVALID, "%s: the camera's eye and target are the same point", path);
-        orient(c, up);
-    } else {
-        choose_direction(up, c->forward);
-        for (int k = 0; k < 3; k++) c->forward[k] = -c->forward[k];
-        orient(c, up);
-        fit_box(c, f, half_width*(1 - bar), half_height*(1 - top));
-    }
+    const tobi_picture *f = s->f;
+    canvas *c = &s->c;
+    tobi_exec exec;
+    TOBI_TRY(tobi_exec_init(&exec, f->threads, err));
+    *c = (canvas){ .width = f->width, .height = f->height, .samples = f->samples, .threads = f->threads,
+                   .kernels = tile_kernels_for(exec.isa) };
+    tobi_exec_free(&exec);
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
-    c->near = (float)(1e-3*sqrt(size));
-    v->sky_up = (vec){ (float)dot(up, c->right), (float)dot(up, c->up), (float)dot(up, c->forward) };
-    /* The key light stands high to the left, a little behind the viewer. */
-    v->light = vec_unit(vec_add(vec_scale(0.9f, v->sky_up), (vec){ -0.45f, 0.1f, -0.4f }));
-    return TOBI_OK;
-}
-
-/* 2-D: x to the right, y up, the box with a margin, more on the right where the colour bar stands. */
-static void aim_front(canvas *v, const tobi_picture *f)
-{
-    camera *c = &v->camera;
-    double bar = f->label ? 0.09 : 0, top = f->title ? 0.06 : 0;
-    double wide = f->box_max[0] - f->box_min[0], high = f->box_max[1] - f->box_min[1];
-    double across = v->width*(0.92 - bar), down = v->height*(0.92 - top);
-    *c = (camera){ .right = { 1, 0, 0 }, .up = { 0, 1, 0 }, .forward = { 0, 0, -1 }, .orthographic = true };
-    c->focal = (float)fmin(across/wide, down/high);
-    c->center_x = (float)(v->width*0.5*(1 - bar));
-    c->center_y = (float)(v->height*0.5*(1 + top));
-    for (int k = 0; k < 2; k++) c->eye[k] = 0.5*(f->box_min[k] + f->box_max[k]);
-    c->eye[2] = 0;
-    c->near = -INFINITY;
-    v->sky_up = (vec){ 0, 1, 0 };
-    v->light = vec_unit((vec){ -0.4f, 0.6f, -0.9f });
-}
-
-static void free_canvas(canvas *c)
-{
-    free(c->color);
-    free(c->depth);
-    free(c->surface);
-    free(c->thickness);
-    free(c->value);
-    free(c->scratch);
-    free(c->shadow.depth);
-    free(c->shadow.range);
-}
-
-/* What the loops over the rows of a canvas or of the picture need. */
-typedef struct row_view { const canvas *c; vec top, bottom; int samples; image *out; } row_view;
-
-static void clear_rows(const void *view, int64_t begin, int64_t end)
-{
-    const row_view *v = view;
-    const canvas *c = v->c;
-    for (int y = (int)begin; y < end; y++)
-        for (int x = 0; x < c->width; x++) {
-            size_t k = (size_t)y*(size_t)c->width + (size_t)x;
-            c->color[k] = vec_mix(v->top, v->bottom, (float)y/(float)c->height);
-            c->depth[k] = INFINITY;
-            if (c->surface) c->surface[k] = INFINITY;
-        }
-}
-
-static tobi_status make_canvas(canvas *c, const tobi_picture *f, tobi_error *err)
-{
-    *c = (canvas){ .width = f->width*f->samples, .height = f->height*f->samples,
-                    .palette = f->palette, .palette_count = f->palette_count };
-    size_t n = (size_t)c->width*(size_t)c->height;
-    bool water = f->dimension == 3 && f->particle_count > 0;
+    c->clarity = f->clarity > 0 ? (float)f->clarity : (float)(0.22*sqrt(size));
+    const size_t n = (size_t)c->width*(size_t)c->height;
     c->color = malloc(n*sizeof *c->color);
-    c->depth = malloc(n*sizeof(float));
-    if (water) {
-        c->surface = malloc(n*sizeof(float));
-        c->thickness = calloc(n, sizeof(float));
-        c->value = calloc(n, sizeof(float));
-        c->scratch = calloc(n, sizeof(float));
-    }
-    if (!c->color || !c->depth || (water && (!c->surface || !c->thickness || !c->value || !c->scratch))) {
-        free_canvas(c);
-        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d samples", c->width,
-                         c->height);
-    }
-    const row_view view = { .c = c, .top = linear_color(f->background_top),
-                            .bottom = linear_color(f->background_bottom) };
-    tobi_loop(0, c->height, 0, clear_rows, &view);
-    return TOBI_OK;
+    c->depth = malloc(n*sizeof *c->depth);
+    s->row = malloc(((size_t)f->particle_count + 1)*sizeof *s->row);
+    view_find_range(f, &s->low, &s->high);
+    if (f->values && f->particle_count > 0) s->color = view_color_particles(f, s->low, s->high);
+    return c->color && c->depth && s->row && (s->color || !f->values || f->particle_count == 0) ? TOBI_OK
+        : no_memory(f, err);
 }
 
-static void average_rows(const void *view, int64_t begin, int64_t end)
+/* The particles that are opaque, or those that are not. */
+static surface_request choose(scene *s, bool opaque)
 {
-    const row_view *v = view;
-    const canvas *c = v->c;
-    const int s = v->samples, width = v->out->width;
-    for (int y = (int)begin; y < end; y++)
-        for (int x = 0; x < width; x++) {
-            vec sum = { 0, 0, 0 };
-            for (int j = 0; j < s; j++)
-                for (int i = 0; i < s; i++) {
-                    vec one = c->color[(size_t)(y*s + j)*(size_t)c->width + (size_t)(x*s + i)];
-                    /* A sample brighter than white must not spread over its pixel's edge. */
-                    sum = vec_add(sum, (vec){ fminf(one.x, 1), fminf(one.y, 1), fminf(one.z, 1) });
-                }
-            v->out->color[(size_t)y*(size_t)width + (size_t)x] = vec_scale(1/(float)(s*s), sum);
+    const tobi_picture *f = s->f;
+    surface_request r = { .f = f, .row = s->row, .color = s->color, .plain = { 0.010f, 0.135f, 0.215f } };
+    for (int64_t i = 0; i < f->particle_count; i++)
+        if ((f->opaque && f->opaque[i]) == opaque) s->row[r.count++] = (int32_t)i;
+    return r;
+}
+
+static tobi_status add_surfaces(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    for (int i = 0; i < f->mesh_count; i++)
+        if (!view_add_mesh(&s->solids, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
+    if (f->opaque) {
+        surface_request r = choose(s, true);
+        r.plain = (vec){ 0.20f, 0.30f, 0.45f };
+        r.drop = 1.1f*(float)f->radius;
+        TOBI_TRY(view_add_surface(&s->solids, &s->c, &r, err));
+    }
+    surface_request r = choose(s, false);
+    r.drop = 1.0f*(float)f->radius;
+    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->c, &r, err));
+    TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
+    return view_project(&s->water, &s->c.camera, f->threads, err);
+}
+
+/* Discs over larger, darker ones that close the gaps. */
+static tobi_status add_discs(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    const float size = (float)(f->box_max[0] - f->box_min[0] + f->box_max[1] - f->box_min[1]);
+    geometry *g = &s->solids;
+    if (!view_reserve(g, 0, 0, 2*f->particle_count)) return no_memory(f, err);
+    for (int64_t i = 0; i < f->particle_count; i++) {
+        vec p = view_point(&s->c.camera, f->positions[i]);
+        if (!(fabsf(p.x) + fabsf(p.y) < 1e9f)) continue;
+        for (int k = 0; k < 2; k++) {
+            p.z = size*(float)(k + 10);
+            const vec color = s->color ? s->color[i] : view_color_of(f, 0);
+            g->balls[g->ball_count++] = (ball){ p, (k ? 1.45f : 0.95f)*(float)f->radius,
+                                                vec_scale(k ? 0.8f : 1, color) };
         }
-}
-
-/* Averages the samples of each pixel. */
-static tobi_status develop(const canvas *c, const tobi_picture *f, image *out, tobi_error *err)
-{
-    *out = (image){ f->width, f->height, malloc((size_t)f->width*(size_t)f->height*sizeof(vec)) };
-    if (!out->color) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
-    const row_view view = { .c = c, .samples = f->samples, .out = out };
-    tobi_loop(0, f->height, 0, average_rows, &view);
-    return TOBI_OK;
-}
-
-static void find_range(const tobi_picture *f, double *low, double *high)
-{
-    *low = f->value_min;
-    *high = f->value_max;
-    if (*low < *high && isfinite(*low) && isfinite(*high)) return;
-    *low = *high = 0;
-    for (int64_t i = 0; f->values && i < f->particle_count; i++) {
-        if (!isfinite(f->values[i])) continue;
-        *low = fmin(*low, f->values[i]);
-        *high = fmax(*high, f->values[i]);
     }
-    if (!(*low < *high)) *high = *low + 1;
+    for (int i = 0; i < f->mesh_count; i++)
+        if (!view_add_mesh(g, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
+    return view_project(g, &s->c.camera, f->threads, err);
 }
 
-static tobi_status draw(canvas *c, const char *path, const tobi_picture *f, double low, double high,
-                        tobi_error *err)
+static tobi_status draw_water(scene *s, tobi_error *err)
 {
-    if (f->dimension == 2) {
-        aim_front(c, f);
-        view_draw_floor(c, f);
-        TOBI_TRY(view_draw_discs(c, f, low, high, err));
-        TOBI_TRY(view_draw_meshes(c, f, err));
-    } else {
-        TOBI_TRY(aim_camera(c, path, f, err));
-        TOBI_TRY(view_make_shadow(c, f, err));
-        view_draw_floor(c, f);
-        TOBI_TRY(view_draw_meshes(c, f, err));
-        if (f->opaque) TOBI_TRY(view_draw_grains(c, f, low, high, err));
-        if (f->particle_count > 0) TOBI_TRY(view_draw_water(c, f, low, high, err));
-    }
-    view_draw_box(c, f);
+    canvas *c = &s->c;
+    const size_t n = (size_t)c->width*(size_t)c->height;
+    vec *under = malloc(n*sizeof *under);
+    if (!under) return no_memory(s->f, err);
+    memcpy(under, c->color, n*sizeof *under);
+    const tobi_status status = view_paint(c, &s->water, c->kernels->water_tiles, under, err);
+    free(under);
+    return status;
+}
+
+static bool has_water(const scene *s) { return s->water.faces > 0 || s->water.ball_count > 0; }
+
+/* What the water's samples are compared with. */
+static tobi_status make_water_planes(scene *s, tobi_error *err)
+{
+    canvas *c = &s->c;
+    const int64_t across = (c->width + TILE - 1)/TILE, down = (c->height + TILE - 1)/TILE;
+    const int64_t n = across*down*TILE*TILE*c->samples*c->samples;
+    c->front = malloc((size_t)c->width*(size_t)c->height*sizeof *c->front);
+    c->nearness = malloc((size_t)n*sizeof *c->nearness);
+    c->covered = malloc((size_t)(across*down));
+    return c->front && c->nearness && c->covered ? TOBI_OK : no_memory(s->f, err);
+}
+
+static tobi_status draw(scene *s, const char *path, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    canvas *c = &s->c;
+    TOBI_TRY(view_aim(c, path, f, err));
+    TOBI_TRY(f->dimension == 3 ? add_surfaces(s, err) : add_discs(s, err));
+    if (has_water(s)) TOBI_TRY(make_water_planes(s, err));
+    end_stage(s, STAGE_SURFACE);
+    if (f->dimension == 3) TOBI_TRY(view_make_shadow(c, f, &s->solids, err));
+    end_stage(s, STAGE_SHADOW);
+    view_draw_background(c, f);
+    view_draw_floor(c, f);
+    TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, NULL, err));
+    view_draw_box(c, f, false);
+    end_stage(s, STAGE_SOLIDS);
+    if (has_water(s)) TOBI_TRY(draw_water(s, err));
+    end_stage(s, STAGE_WATER);
+    if (c->front) view_draw_box(c, f, true);
+    if (f->title) view_draw_title(c, f->title);
+    if (f->label) view_draw_color_bar(c, f, s->low, s->high);
+    end_stage(s, STAGE_LINES);
     return TOBI_OK;
 }
 
@@ -305,19 +252,11 @@ tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi
     TOBI_NEED(path, "the path");
     TOBI_NEED(frame, "the picture");
     TOBI_TRY(check_frame(path, frame, err));
-    canvas c;
-    image i = { 0 };
-    double low, high;
-    find_range(frame, &low, &high);
-    TOBI_TRY(make_canvas(&c, frame, err));
-    tobi_status status = draw(&c, path, frame, low, high, err);
-    if (status == TOBI_OK) status = develop(&c, frame, &i, err);
-    free_canvas(&c);
-    if (status == TOBI_OK) {
-        if (frame->title) view_draw_title(&i, frame->title);
-        if (frame->label) view_draw_color_bar(&i, frame->label, low, high);
-        status = view_write_png(path, &i, err);
-    }
-    free(i.color);
+    scene s = { .f = frame, .clock = processor_clock() };
+    tobi_status status = make_canvas(&s, err);
+    if (status == TOBI_OK) status = draw(&s, path, err);
+    if (status == TOBI_OK) status = view_write_png(path, &s.c, err);
+    end_stage(&s, STAGE_PNG);
+    free_scene(&s);
     return status;
 }

@@ -1,11 +1,11 @@
-/* Averages samples to pixels, converts to sRGB, and writes by libpng, whose errors jump. Drawback:
-   compression is on one thread. */
+/* Converts to sRGB and writes by libpng, whose errors jump. Drawback: compression is on one thread. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
 #include "base/file.h"
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
+#include <zlib.h>
 
 enum { CURVE = 4096 };
 
@@ -24,7 +24,8 @@ static void leave(png_structp png, png_const_charp text)
     png_longjmp(png, 1);
 }
 
-/* libpng leaves by longjmp, so nothing here may live in a register across it. */
+/* libpng leaves by longjmp, so nothing here may live in a register across it. Of one filter and runs
+   alone: larger by a third than at libpng's own choice, and several times quicker. */
 static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
 {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, leave, stay_silent);
@@ -37,7 +38,9 @@ static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
     png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(png, 4);
+    png_set_compression_level(png, 1);
+    png_set_compression_strategy(png, Z_RLE);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_write_info(png, info);
     for (int y = 0; y < height; y++) png_write_row(png, bytes + (size_t)y*(size_t)width*3);
     png_write_end(png, NULL);
@@ -45,35 +48,48 @@ static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
     return true;
 }
 
-static unsigned char encode_channel(const unsigned char *curve, float linear)
+typedef struct encoding {
+    const canvas *c;
+    unsigned char *bytes;
+    unsigned char curve[CURVE];      /* of linear light the sRGB value */
+} encoding;
+
+static unsigned char encode_channel(const encoding *e, float linear)
 {
-    return curve[(int)(clampf(linear, 0, 1)*(CURVE - 1) + 0.5f)];
+    return e->curve[(int)(clampf(linear, 0, 1)*(CURVE - 1) + 0.5f)];
+}
+
+static void encode_rows(const void *view, int64_t begin, int64_t end)
+{
+    const encoding *e = view;
+    for (int64_t k = begin*e->c->width; k < end*e->c->width; k++) {
+        const vec color = e->c->color[k];
+        e->bytes[3*k] = encode_channel(e, color.x);
+        e->bytes[3*k + 1] = encode_channel(e, color.y);
+        e->bytes[3*k + 2] = encode_channel(e, color.z);
+    }
 }
 
 /* Dither-free sRGB; 4096 steps of the curve are finer than 8 bits except in the darkest tones. */
-static void encode_colors(const image *i, unsigned char *bytes)
+static void encode_colors(const canvas *c, unsigned char *bytes)
 {
-    unsigned char curve[CURVE];
+    encoding e = { c, bytes, { 0 } };
     for (int k = 0; k < CURVE; k++) {
         float l = (float)k/(CURVE - 1), s = l <= 0.0031308f ? 12.92f*l : 1.055f*powf(l, 1/2.4f) - 0.055f;
-        curve[k] = (unsigned char)(255*s + 0.5f);
+        e.curve[k] = (unsigned char)(255*s + 0.5f);
     }
-    for (size_t k = 0; k < (size_t)i->width*(size_t)i->height; k++) {
-        bytes[3*k] = encode_channel(curve, i->color[k].x);
-        bytes[3*k + 1] = encode_channel(curve, i->color[k].y);
-        bytes[3*k + 2] = encode_channel(curve, i->color[k].z);
-    }
+    tobi_loop(c->threads, c->height, 0, encode_rows, &e);
 }
 
-tobi_status view_write_png(const char *path, const image *i, tobi_error *err)
+tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err)
 {
-    unsigned char *bytes = malloc((size_t)i->width*(size_t)i->height*3);
+    unsigned char *bytes = malloc((size_t)c->width*(size_t)c->height*3);
     if (!bytes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
-    encode_colors(i, bytes);
+    encode_colors(c, bytes);
     tobi_file file;
     tobi_status status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
-        if (encode(&file, i->width, i->height, bytes)) {
+        if (encode(&file, c->width, c->height, bytes)) {
             status = tobi_file_commit(&file, err);
         } else {
             tobi_file_abandon(&file);

@@ -1,9 +1,10 @@
-/* What the bodies keep from the key light: their depth seen from the light, once per picture. */
+/* What is opaque keeps the key light from others: its depth seen from the light, once per picture.
+   Drawback: water keeps no light away. */
 #include "view/draw.h"
 #include <stdlib.h>
 
 /* A block is wider than the reach of view_lit_at. */
-enum { SIDE = 1024, BLOCK = 8, ACROSS = SIDE/BLOCK };
+enum { SIDE = SHADOW_SIDE, BLOCK = SHADOW_BLOCK, ACROSS = SHADOW_ACROSS };
 
 static vec turn(const shadow *s, vec p)
 {
@@ -11,67 +12,79 @@ static vec turn(const shadow *s, vec p)
     return (vec){ vec_dot(p, s->right), vec_dot(p, s->up), vec_dot(p, s->forward) };
 }
 
-/* Camera of the light over the sphere around the box: orthographic, in world space. */
-static camera light_camera(const camera *view, const shadow *s, double radius)
+/* What the light sees: the same faces and balls, turned. */
+static bool turn_geometry(const shadow *s, const geometry *g, geometry *out)
 {
-    camera c = { .orthographic = true, .focal = (float)(0.5*SIDE/radius), .center_x = 0.5f*SIDE,
-                 .center_y = 0.5f*SIDE, .near = -INFINITY };
-    for (int k = 0; k < 3; k++) {
-        c.eye[k] = view->eye[k] + s->center.x*view->right[k] + s->center.y*view->up[k]
-            + s->center.z*view->forward[k];
-        c.right[k] = s->right.x*view->right[k] + s->right.y*view->up[k] + s->right.z*view->forward[k];
-        c.up[k] = s->up.x*view->right[k] + s->up.y*view->up[k] + s->up.z*view->forward[k];
-        c.forward[k] = s->forward.x * view->right[k] + s->forward.y * view->up[k] +
-                       s->forward.z * view->forward[k];
+    *out = (geometry){ 0 };
+    if (!view_reserve(out, g->vertices, 0, g->ball_count)) return false;
+    out->face = g->face, out->faces = g->faces, out->vertices = g->vertices, out->ball_count = g->ball_count;
+    for (int64_t i = 0; i < g->vertices; i++) out->place[i] = turn(s, g->place[i]);
+    for (int64_t i = 0; i < g->ball_count; i++) {
+        out->balls[i] = g->balls[i];
+        out->balls[i].place = turn(s, g->balls[i].place);
     }
-    return c;
+    return true;
 }
 
-/* Squares at the depth of the grains' middles: half a grain deep, so that none shades itself. */
-static void cast_grains(canvas *light, const tobi_picture *frame)
+static void find_block_ranges(const void *view, int64_t begin, int64_t end)
 {
-    int half = (int)clampf(1.2f*(float)frame->radius*light->camera.focal, 1, 40);
-    for (int64_t i = 0; i < frame->particle_count; i++) {
-        if (!frame->opaque[i]) continue;
-        spot at = project(&light->camera, view_point(&light->camera, frame->positions[i]));
-        if (!(at.x > 0 && at.y > 0 && at.x < SIDE && at.y < SIDE)) continue;
-        for (int y = (int)at.y - half; y <= (int)at.y + half; y++)
-            for (int x = (int)at.x - half; x <= (int)at.x + half; x++) {
-                if (x < 0 || y < 0 || x >= SIDE || y >= SIDE) continue;
-                float *depth = &light->depth[(size_t)y*SIDE + (size_t)x];
-                if (at.z < *depth) *depth = at.z;
+    const shadow *s = view;
+    float *block = s->range + 2*ACROSS*ACROSS;
+    for (int64_t j = begin; j < end; j++)
+        for (int i = 0; i < ACROSS; i++) {
+            float low = INFINITY, high = -INFINITY;
+            for (int y = 0; y < BLOCK; y++) {
+                const float *row = s->depth + (j*BLOCK + y)*SIDE + (int64_t)i*BLOCK;
+                for (int x = 0; x < BLOCK; x++) {
+                    low = row[x] < low ? row[x] : low;
+                    high = row[x] > high ? row[x] : high;
+                }
             }
-    }
+            block[2*(j*ACROSS + i)] = low, block[2*(j*ACROSS + i) + 1] = high;
+        }
 }
 
-/* The least and the largest depth of each block of samples and the eight around it. */
-static void find_ranges(shadow *s)
+/* The least and the largest depth of each block of samples and the eight around it; beyond the map all is
+   lit. */
+static void spread_ranges(const void *view, int64_t begin, int64_t end)
 {
-    float low[ACROSS*ACROSS], high[ACROSS*ACROSS];
-    for (int k = 0; k < ACROSS*ACROSS; k++) low[k] = INFINITY, high[k] = -INFINITY;
-    for (int y = 0; y < SIDE; y++)
-        for (int x = 0; x < SIDE; x++) {
-            int k = y/BLOCK*ACROSS + x/BLOCK;
-            float depth = s->depth[(size_t)y*SIDE + (size_t)x];
-            low[k] = depth < low[k] ? depth : low[k];
-            high[k] = depth > high[k] ? depth : high[k];
-        }
-    for (int y = 0; y < ACROSS; y++)
+    const shadow *s = view;
+    const float *block = s->range + 2*ACROSS*ACROSS;
+    for (int y = (int)begin; y < end; y++)
         for (int x = 0; x < ACROSS; x++) {
             float *range = &s->range[2*(y*ACROSS + x)];
             range[0] = INFINITY, range[1] = -INFINITY;
             for (int k = 0; k < 9; k++) {
-                int i = x + k%3 - 1, j = y + k/3 - 1;
-                bool inside = i >= 0 && j >= 0 && i < ACROSS && j < ACROSS;      /* beyond all is lit */
-                range[0] = fminf(range[0], inside ? low[j*ACROSS + i] : INFINITY);
-                range[1] = fmaxf(range[1], inside ? high[j*ACROSS + i] : INFINITY);
+                const int i = x + k%3 - 1, j = y + k/3 - 1;
+                const bool inside = i >= 0 && j >= 0 && i < ACROSS && j < ACROSS;
+                const float low = inside ? block[2*(j*ACROSS + i)] : INFINITY;
+                const float high = inside ? block[2*(j*ACROSS + i) + 1] : INFINITY;
+                range[0] = low < range[0] ? low : range[0];
+                range[1] = high > range[1] ? high : range[1];
             }
         }
 }
 
-tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, tobi_error *err)
+static tobi_status draw_map(const canvas *c, const geometry *g, tobi_error *err)
 {
-    if (frame->mesh_count == 0 && !frame->opaque) return TOBI_OK;
+    const shadow *s = &c->shadow;
+    geometry turned;
+    canvas light = { .width = SIDE, .height = SIDE, .samples = 1, .threads = c->threads,
+                     .kernels = c->kernels,
+                     .depth = s->depth };
+    light.camera = (camera){ .orthographic = true, .focal = s->focal, .center_x = 0.5f*SIDE,
+                             .center_y = 0.5f*SIDE, .near = -INFINITY };
+    tobi_status status = turn_geometry(s, g, &turned) ? view_project(&turned, &light.camera, c->threads, err)
+        : tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
+    if (status == TOBI_OK) status = view_paint(&light, &turned, c->kernels->depth_tiles, NULL, err);
+    turned.face = NULL;      /* the caller's */
+    view_geometry_free(&turned);
+    return status;
+}
+
+tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometry *g, tobi_error *err)
+{
+    if (g->faces == 0 && g->ball_count == 0) return TOBI_OK;
     double middle[3], size = 0;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5*(frame->box_min[k] + frame->box_max[k]);
@@ -83,15 +96,13 @@ tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, tobi_error *e
     vec aside = fabsf(s->forward.x) < 0.8f ? (vec){ 1, 0, 0 } : (vec){ 0, 1, 0 };
     s->right = vec_unit(vec_cross(s->forward, aside));
     s->up = vec_cross(s->right, s->forward);
-    canvas light = { .width = SIDE, .height = SIDE, .camera = light_camera(&c->camera, s, sqrt(size)) };
-    s->depth = light.depth = malloc((size_t)SIDE*SIDE*sizeof(float));
-    s->range = malloc((size_t)ACROSS*ACROSS*2*sizeof(float));
+    s->focal = (float)(0.5*SIDE/sqrt(size));
+    s->depth = malloc((size_t)SIDE*SIDE*sizeof(float));
+    s->range = malloc((size_t)ACROSS*ACROSS*4*sizeof(float));
     if (!s->depth || !s->range) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
-    for (size_t k = 0; k < (size_t)SIDE*SIDE; k++) light.depth[k] = INFINITY;
-    s->focal = light.camera.focal;
-    if (frame->opaque) cast_grains(&light, frame);
-    TOBI_TRY(view_draw_meshes(&light, frame, err));
-    find_ranges(s);
+    TOBI_TRY(draw_map(c, g, err));
+    tobi_loop(c->threads, ACROSS, 0, find_block_ranges, s);
+    tobi_loop(c->threads, ACROSS, 0, spread_ranges, s);
     return TOBI_OK;
 }
 
@@ -104,7 +115,7 @@ float view_lit_at(const canvas *c, vec p)
         { 0.92f, 0.38f }, { -0.38f, 0.92f }, { -0.92f, -0.38f }, { 0.38f, -0.92f }
     };
     vec q = turn(s, p);
-    float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
+    const float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
     int lit = 0;
     if (x >= 0 && y >= 0 && x < SIDE && y < SIDE) {      /* most points are far from every edge of a shadow */
         const float *range = &s->range[2*((int)y/BLOCK*ACROSS + (int)x/BLOCK)];

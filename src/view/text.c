@@ -58,7 +58,7 @@ static float text_width(const char *text, float unit)
     return width > 0 ? (width - 2)*unit : 0;
 }
 
-static void draw_stroke(image *i, const float a[2], const float b[2], float pen, vec color)
+static void draw_stroke(canvas *i, const float a[2], const float b[2], float pen, vec color)
 {
     float reach = 0.5f*pen + 1, d[2] = { b[0] - a[0], b[1] - a[1] }, square = d[0]*d[0] + d[1]*d[1];
     int x0 = (int)fmaxf(fminf(a[0], b[0]) - reach, 0);
@@ -77,7 +77,7 @@ static void draw_stroke(image *i, const float a[2], const float b[2], float pen,
 }
 
 /* x, y: left end of the baseline; unit: pixels of a grid step. */
-static void draw_text(image *i, float x, float y, float unit, const char *text, vec color)
+static void draw_text(canvas *i, float x, float y, float unit, const char *text, vec color)
 {
     for (; *text; text++) {
         const char *s = find_strokes(*text);
@@ -98,12 +98,12 @@ static void draw_text(image *i, float x, float y, float unit, const char *text, 
 
 static const vec ink = { 0.02f, 0.03f, 0.05f };
 
-static float letter_unit(const image *i)
+static float letter_unit(const canvas *i)
 {
     return fmaxf(fminf((float)i->height, (float)i->width)/300, 1);
 }
 
-void view_draw_title(image *i, const char *text)
+void view_draw_title(canvas *i, const char *text)
 {
     float unit = 1.15f*letter_unit(i);
     draw_text(i, 9*unit, 14*unit, unit, text, ink);
@@ -116,7 +116,7 @@ static double tick_step(double range)
 }
 
 /* On the right: colours from low to high, ticks at round values. */
-void view_draw_color_bar(image *i, const char *label, double low, double high)
+void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double high)
 {
     float unit = 0.9f*letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
     float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
@@ -124,7 +124,7 @@ void view_draw_color_bar(image *i, const char *label, double low, double high)
         for (int column = 0; column < (int)width; column++) {
             int px = (int)x + column, py = (int)bottom - 1 - row;
             bool edge = row == 0 || row == (int)height - 1 || column == 0 || column == (int)width - 1;
-            vec color = edge ? ink : view_map_color((float)row/(height - 1));
+            vec color = edge ? ink : view_color_of(f, (float)row/(height - 1));
             i->color[(size_t)py*(size_t)i->width + (size_t)px] = color;
         }
     double step = tick_step(high - low);
@@ -135,7 +135,7 @@ void view_draw_color_bar(image *i, const char *label, double low, double high)
         draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
         draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);
     }
-    float right = (float)i->width - 6*unit, wide = text_width(label, unit);
+    float right = (float)i->width - 6*unit, wide = text_width(f->label, unit);
     float left = fminf(x - 2*unit, right - wide);
-    draw_text(i, left, bottom - height - 7*unit, unit, label, ink);
+    draw_text(i, left, bottom - height - 7*unit, unit, f->label, ink);
 }

@@ -76,10 +76,10 @@ static material material_at(const tobi_world *w, int m)
     return (material){ def->color, core, def->visible, def->model == TOBI_LIQUID };
 }
 
-static void set_color(const double *color, float out[3])
+static void set_color(const double *color, int liquid, float out[3])
 {
-    static const float plain[3] = { 0.04f, 0.36f, 0.70f };
-    for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? plain[k] : (float)(color[k] / 255.0);
+    static const float plain[2][3] = { { 0.04f, 0.36f, 0.70f }, { 0.10f, 0.40f, 0.50f } };
+    for (int k = 0; k < 3; k++) out[k] = color[0] < 0 ? plain[liquid != 0][k] : (float)(color[k] / 255.0);
 }
 
 /* Where a particle of a material is: at its surface, below it, at the face of a cut. */
@@ -102,7 +102,7 @@ static void mix(float color[3], const float with[3], float share)
 static void find_color(const material *look, int part, int tint, float out[3])
 {
     static const float white[3] = { 1, 1, 1 }, black[3] = { 0, 0, 0 };
-    set_color(part == SKIN ? look->color : look->core, out);
+    set_color(part == SKIN ? look->color : look->core, look->liquid, out);
     const int pale = out[0] + out[1] + out[2] > 2;
     if (part == FACE && look->core == look->color) mix(out, pale ? black : white, 0.4f);
     if (tint > 0) mix(out, tints[tint - 1], 0.3f);
@@ -275,7 +275,11 @@ static void set_frame(const tobi_run *run, tobi_drawing *d)
     frame->meshes = d->meshes;
     snprintf(d->title, sizeof d->title, "t = %.4f s", tobi_world_time(run->world));
     frame->title = d->title;
-    frame->label = d->has_palette ? NULL : "speed [m/s]";
+    frame->threads = run->world->sim.exec.threads;
+    /* Water in 3-D looks like water; what else has no colour of its own shows its speed. */
+    const int natural = def->dimension == 3 && !d->has_palette && !d->opaque;
+    if (natural) frame->values = NULL;
+    frame->label = d->has_palette || natural ? NULL : "speed [m/s]";
 }
 
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)

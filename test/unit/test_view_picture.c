@@ -157,18 +157,25 @@ static void solids_hide_what_is_behind(void **state)
     free(without);
 }
 
-static void threads_do_not_matter(void **state)
+static void threads_and_instructions_do_not_matter(void **state)
 {
     (void)state;
     tobi_picture f = make_frame();
-    int threads = omp_get_max_threads();
-    omp_set_num_threads(1);
+    f.threads = 1;
     unsigned char *one = draw(&f);
-    omp_set_num_threads(4);
-    unsigned char *four = draw(&f);
-    omp_set_num_threads(threads);
-    assert_memory_equal(one, four, 3*W*H);
-    free(one), free(four);
+    for (int k = 0; k < 5; k++) {
+        static const char *const isa[] = { "4", "4", "4", "3", "2" };
+        static const int threads[] = { 2, 4, 3, 1, 2 };
+        setenv("TOBIUO_ISA", isa[k], 1);
+        f.threads = threads[k];
+        unsigned char *other = draw(&f);
+        assert_memory_equal(one, other, 3*W*H);
+        free(other);
+    }
+    setenv("TOBIUO_ISA", "5", 1);
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "TOBIUO_ISA is \"5\"");
+    unsetenv("TOBIUO_ISA");
+    free(one);
 }
 
 static void place_does_not_matter(void **state)
@@ -332,7 +339,8 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(things_are_where_they_belong), cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(things_are_where_they_belong),
+            cmocka_unit_test(threads_and_instructions_do_not_matter),
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)

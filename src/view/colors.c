@@ -1,0 +1,67 @@
+/* Colours of values: the picture's own palette, or from deep blue over light blue to white. */
+#include "view/draw.h"
+#include <stdlib.h>
+
+vec view_color_of(const tobi_picture *f, float value)
+{
+    static const float usual[5][3] = {
+        { 0.02f, 0.16f, 0.42f }, { 0.04f, 0.36f, 0.70f }, { 0.22f, 0.60f, 0.87f }, { 0.62f, 0.85f, 0.96f },
+        { 0.98f, 0.99f, 1.00f }
+    };
+    const float (*map)[3] = f->palette ? f->palette : usual;
+    const int last = f->palette ? f->palette_count - 1 : 4;
+    const float t = clampf(value, 0, 1)*(float)last;
+    const int i = t < (float)last ? (int)t : last, next = i < last ? i + 1 : last;
+    return vec_mix(linear_color(map[i]), linear_color(map[next]), t - (float)i);
+}
+
+void view_find_range(const tobi_picture *f, double *low, double *high)
+{
+    *low = f->value_min;
+    *high = f->value_max;
+    if (*low < *high && isfinite(*low) && isfinite(*high)) return;
+    *low = *high = 0;
+    for (int64_t i = 0; f->values && i < f->particle_count; i++) {
+        if (!isfinite(f->values[i])) continue;
+        *low = fmin(*low, f->values[i]);
+        *high = fmax(*high, f->values[i]);
+    }
+    if (!(*low < *high)) *high = *low + 1;
+}
+
+enum { STEPS = 1024 };
+
+typedef struct coloring {
+    const tobi_picture *f;
+    double low, high;
+    vec step[STEPS + 1];
+    vec *palette, *out;
+} coloring;
+
+static void color_range(const void *view, int64_t begin, int64_t end)
+{
+    const coloring *c = view;
+    for (int64_t i = begin; i < end; i++) {
+        const double t = c->f->values ? (c->f->values[i] - c->low)/(c->high - c->low) : 0;
+        const float value = t == t ? clampf((float)t, 0, 1) : 1;
+        const float exact = value*(float)(c->f->palette_count - 1);
+        const bool number = c->f->palette && exact == (float)(int)exact;      /* of a colour */
+        c->out[i] = number ? c->palette[(int)exact] : c->step[(int)(value*STEPS + 0.5f)];
+    }
+}
+
+vec *view_color_particles(const tobi_picture *f, double low, double high)
+{
+    coloring c = { .f = f, .low = low, .high = high, .out = malloc(((size_t)f->particle_count
+                                                                    + 1)*sizeof(vec)) };
+    if (f->palette) c.palette = malloc((size_t)f->palette_count*sizeof *c.palette);
+    if (!c.out || (f->palette && !c.palette)) {
+        free(c.out);
+        return NULL;
+    }
+    for (int k = 0; f->palette && k < f->palette_count; k++) c.palette[k] = linear_color(f->palette[k]);
+    for (int k = 0; k <= STEPS; k++) c.step[k] = view_color_of(f, (float)k/STEPS);
+    tobi_loop(f->threads, f->particle_count, 0, color_range, &c);
+    free(c.palette);
+    return c.out;
+}

@@ -1,0 +1,329 @@
+/* The loops of a picture over samples of tiles and nodes of blocks, compiled once per instruction set. A
+   tile is drawn by one thread, item by item, then its pixels are lit: each once where its samples see one
+   surface, else for each surface. Drawback: light is computed pixel by pixel, not eight at once. */
+#include "view/raster.h"
+#include "view/shade.h"
+#include <string.h>
+
+#define JOIN_(a, b) a##_##b
+#define JOIN(a, b) JOIN_(a, b)
+
+/* The samples of a tile. */
+typedef struct layer {
+    float   nearness[MOST_SIDE*MOST_SIDE];
+    int32_t item[MOST_SIDE*MOST_SIDE];      /* -1: nothing */
+} layer;
+
+static square tile_square(const canvas *c, const tiles *t, int64_t k)
+{
+    return (square){ .left = (float)((int)(k%t->across)*TILE), .top = (float)((int)(k/t->across)*TILE),
+                     .side = TILE*c->samples, .step = 1/(float)c->samples };
+}
+
+static void draw_items(const painting *p, int64_t tile, const square *q, layer *l)
+{
+    const canvas *c = p->c;
+    const geometry *g = p->g;
+    for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++) {
+        const int32_t item = p->t->item[i];
+        if (item < g->faces) {
+            face_setup f;
+            if (set_up_face(&f, &g->at[g->face[item][0]], &g->at[g->face[item][1]], &g->at[g->face[item][2]]))
+                fill_face(&f, q, item, l->nearness, l->item);
+        } else {
+            fill_ball(&c->camera, &g->balls[item - g->faces], q, item, l->nearness, l->item);
+        }
+    }
+}
+
+/* Adds an item's point at a place of the canvas to a batch. */
+static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item, float x, float y)
+{
+    const int i = b->count++;
+    b->plain[i] = 0;
+    if (item >= g->faces) {
+        const ball *ball = &g->balls[item - g->faces];
+        const spot at = project(&c->camera, ball->place);
+        const float size = ball->radius*scale_at(&c->camera, ball->place.z);
+        const float u = clampf((x - at.x)/size, -1, 1), v = clampf((at.y - y)/size, -1, 1);
+        b->nx[i] = u, b->ny[i] = v, b->nz[i] = -sqrtf(above(1 - u*u - v*v));
+        b->x[i] = ball->place.x + ball->radius*u, b->y[i] = ball->place.y + ball->radius*v;
+        b->z[i] = ball->place.z + ball->radius*b->nz[i];
+        b->r[i] = ball->color.x, b->g[i] = ball->color.y, b->b[i] = ball->color.z;
+        b->plain[i] = c->camera.orthographic;
+        return;
+    }
+    const int32_t *v = g->face[item];
+    const spot *p = &g->at[v[0]], *q = &g->at[v[1]], *r = &g->at[v[2]];
+    const vec *n = g->normal, *color = g->color;
+    float s0 = (r->x - q->x)*(y - q->y) - (r->y - q->y)*(x - q->x);
+    float s1 = (p->x - r->x)*(y - r->y) - (p->y - r->y)*(x - r->x);
+    float s2 = (q->x - p->x)*(y - p->y) - (q->y - p->y)*(x - p->x);
+    const float by = 1/(s0 + s1 + s2);
+    s0 = clampf(s0*by, 0, 1), s1 = clampf(s1*by, 0, 1), s2 = clampf(s2*by, 0, 1);
+    const float sum = 1/(s0 + s1 + s2), nearness = (s0*p->nearness + s1*q->nearness + s2*r->nearness)*sum;
+    const float z = depth_of(&c->camera, nearness), scale = c->camera.orthographic ? 1/c->camera.focal
+        : z/c->camera.focal;
+    if (!c->camera.orthographic) s0 *= p->nearness, s1 *= q->nearness, s2 *= r->nearness;
+    const float one = 1/(s0 + s1 + s2);
+    s0 *= one, s1 *= one, s2 *= one;
+    b->x[i] = (x - c->camera.center_x)*scale, b->y[i] = (c->camera.center_y - y)*scale, b->z[i] = z;
+    b->nx[i] = s0*n[v[0]].x + s1*n[v[1]].x + s2*n[v[2]].x;
+    b->ny[i] = s0*n[v[0]].y + s1*n[v[1]].y + s2*n[v[2]].y;
+    b->nz[i] = s0*n[v[0]].z + s1*n[v[1]].z + s2*n[v[2]].z;
+    b->r[i] = s0*color[v[0]].x + s1*color[v[1]].x + s2*color[v[2]].x;
+    b->g[i] = s0*color[v[0]].y + s1*color[v[1]].y + s2*color[v[2]].y;
+    b->b[i] = s0*color[v[0]].z + s1*color[v[1]].z + s2*color[v[2]].z;
+}
+
+/* Of a pixel: its different surfaces, each with its number of samples and the sum of their places. */
+typedef struct share { int32_t item; int count; float x, y, nearness; } share;
+
+/* Faces whose nearness differs less than this share of it are one surface, if `join`. */
+static const float same_surface = 0.02f;
+
+static bool is_same(const geometry *g, const share *s, int32_t item, float nearness, bool join)
+{
+    if (s->item == item) return true;
+    return join && item < g->faces && s->item < g->faces
+        && fabsf(nearness - s->nearness) <= same_surface*fabsf(s->nearness);
+}
+
+/* Returns how many there are; *most is the nearness of the nearest. */
+static int find_shares(const layer *l, const square *q, const geometry *g, int samples, int px, int py,
+                       bool join,
+                       share out[], float *most)
+{
+    int n = 0;
+    *most = -INFINITY;
+    for (int j = 0; j < samples; j++)
+        for (int i = 0; i < samples; i++) {
+            const int k = (py*samples + j)*q->side + px*samples + i;
+            const int32_t item = l->item[k];
+            const float nearness = l->nearness[k];
+            int m = 0;
+            if (item < 0) continue;
+            *most = nearness > *most ? nearness : *most;
+            while (m < n && !is_same(g, &out[m], item, nearness, join)) m++;
+            if (m == n) out[n++] = (share){ .item = item, .nearness = nearness };
+            out[m].count++;
+            out[m].x += q->left + ((float)(px*samples + i) + 0.5f)*q->step;
+            out[m].y += q->top + ((float)(py*samples + j) + 0.5f)*q->step;
+        }
+    return n;
+}
+
+/* Pixels of the tile that are on the canvas. */
+static void tile_pixels(const canvas *c, const square *q, int *across, int *down)
+{
+    const int x = c->width - (int)q->left, y = c->height - (int)q->top;
+    *across = x < TILE ? x : TILE;
+    *down = y < TILE ? y : TILE;
+}
+
+static void clear_layer(layer *l, const square *q)
+{
+    const int n = q->side*q->side;
+    for (int k = 0; k < n; k++) l->nearness[k] = -INFINITY;
+    for (int k = 0; k < n; k++) l->item[k] = -1;
+}
+
+/* The surfaces of a pixel to the batch; what lies behind keeps the rest of the pixel. Returns the depth
+   of the nearest. */
+static float add_pixel(const painting *p, const layer *l, const square *q, int px, int py, bool join,
+                       float thickness,
+                       batch *b)
+{
+    canvas *c = p->c;
+    const float all = 1/(float)(c->samples*c->samples);
+    const int32_t k = ((int32_t)q->top + py)*c->width + (int32_t)q->left + px;
+    share part[MOST_SAMPLES*MOST_SAMPLES];
+    float nearest, rest = 1;
+    const int n = find_shares(l, q, p->g, c->samples, px, py, join, part, &nearest);
+    for (int m = 0; m < n; m++) {
+        const float one = 1/(float)part[m].count, weight = (float)part[m].count*all;
+        const int i = b->count;
+        add_point(c, p->g, b, part[m].item, part[m].x*one, part[m].y*one);
+        b->pixel[i] = k;
+        b->weight[i] = weight;
+        const bool drop = part[m].item >= p->g->faces;
+        b->thickness[i] = drop ? 1.3f*p->g->balls[part[m].item - p->g->faces].radius : above(thickness);
+        rest -= weight;
+    }
+    if (n > 0) c->color[k] = vec_scale(above(rest), c->color[k]);
+    return n > 0 ? depth_of(&c->camera, nearest) : INFINITY;
+}
+
+/* Room for the surfaces of one pixel. */
+static bool is_full(const batch *b) { return b->count > BATCH - MOST_SAMPLES*MOST_SAMPLES; }
+
+static void paint_opaque(const painting *p, int64_t tile, layer *l, batch *b)
+{
+    canvas *c = p->c;
+    const square q = tile_square(c, p->t, tile);
+    int across, down;
+    const bool empty = p->t->first[tile] == p->t->first[tile + 1];
+    if (c->nearness) c->covered[tile] = !empty;
+    if (empty) return;
+    clear_layer(l, &q);
+    draw_items(p, tile, &q, l);
+    tile_pixels(c, &q, &across, &down);
+    if (c->nearness)
+        memcpy(c->nearness + tile*q.side*q.side, l->nearness, (size_t)(q.side*q.side)*sizeof *l->nearness);
+    for (int py = 0; py < down; py++)
+        for (int px = 0; px < across; px++) {
+            const float z = add_pixel(p, l, &q, px, py, false, 0, b);
+            c->depth[((int64_t)q.top + py)*c->width + (int64_t)q.left + px] = z;
+            if (is_full(b)) shade_solids(c, b);
+        }
+    shade_solids(c, b);
+}
+
+static void opaque_tiles(const void *view, int64_t begin, int64_t end)
+{
+    layer l;
+    batch b = { .count = 0 };
+    for (int64_t k = begin; k < end; k++) paint_opaque(view, k, &l, &b);
+}
+
+/* Metres of water behind each pixel's middle, in front of what is opaque. */
+static void add_thickness(const painting *p, int64_t tile, const square *q, float *thickness)
+{
+    const canvas *c = p->c;
+    const geometry *g = p->g;
+    float solid[TILE*TILE];
+    int across, down;
+    tile_pixels(c, q, &across, &down);
+    for (int y = 0; y < TILE; y++)
+        for (int x = 0; x < TILE; x++) {
+            const int64_t k = ((int64_t)q->top + y)*c->width + (int64_t)q->left + x;
+            solid[y*TILE + x] = x < across && y < down ? c->depth[k] : INFINITY;
+            thickness[y*TILE + x] = 0;
+        }
+    const square pixels = { q->left, q->top, TILE, 1 };
+    for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++) {
+        const int32_t item = p->t->item[i];
+        face_setup f;
+        if (item >= g->faces) continue;
+        if (set_up_face(&f, &g->at[g->face[item][0]], &g->at[g->face[item][1]], &g->at[g->face[item][2]]))
+            add_face_depth(&f, &pixels, c->camera.orthographic, solid, thickness);
+    }
+}
+
+static void paint_water(const painting *p, int64_t tile, layer *l, float *thickness, batch *b)
+{
+    canvas *c = p->c;
+    const square q = tile_square(c, p->t, tile);
+    int across, down;
+    if (p->t->first[tile] == p->t->first[tile + 1]) return;
+    tile_pixels(c, &q, &across, &down);
+    clear_layer(l, &q);
+    if (c->covered[tile])
+        memcpy(l->nearness, c->nearness + tile*q.side*q.side, (size_t)(q.side*q.side)*sizeof *l->nearness);
+    draw_items(p, tile, &q, l);
+    add_thickness(p, tile, &q, thickness);
+    for (int py = 0; py < down; py++)
+        for (int px = 0; px < across; px++) {
+            const float z = add_pixel(p, l, &q, px, py, true, thickness[py*TILE + px], b);
+            c->front[((int64_t)q.top + py)*c->width + (int64_t)q.left + px] = z;
+            if (is_full(b)) shade_waters(c, p->under, b);
+        }
+    shade_waters(c, p->under, b);
+}
+
+static void water_tiles(const void *view, int64_t begin, int64_t end)
+{
+    layer l;
+    batch b = { .count = 0 };
+    float thickness[TILE*TILE];
+    for (int64_t k = begin; k < end; k++) paint_water(view, k, &l, thickness, &b);
+}
+
+/* The map of a shadow: c->depth, whose rows are as long as the map; and the range of each of its blocks. */
+static void depth_tiles(const void *view, int64_t begin, int64_t end)
+{
+    const painting *p = view;
+    canvas *c = p->c;
+    layer l;
+    for (int64_t tile = begin; tile < end; tile++) {
+        const square q = tile_square(c, p->t, tile);
+        clear_layer(&l, &q);
+        draw_items(p, tile, &q, &l);
+        for (int y = 0; y < TILE; y++)
+            for (int x = 0; x < TILE; x++)
+                c->depth[((int64_t)q.top + y)*c->width + (int64_t)q.left + x] = -l.nearness[y*TILE + x];
+    }
+}
+
+static void sum_block(const node_view *v, int64_t b)
+{
+    float *node = v->node + b*BLOCK_NODES;
+    const float inverse = 1/(v->reach*v->reach);
+    memset(node, 0, BLOCK_NODES*sizeof *node);
+    for (int64_t e = v->first[b]; e < v->first[b + 1]; e++) {
+        float at[3];
+        int low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            at[k] = v->place[v->entry[e]][k] - (float)(BLOCK_EDGE*v->block[b][k]);
+            const float from = at[k] - v->reach, to = at[k] + v->reach;
+            low[k] = from > 0 ? (int)from + 1 : 0;
+            high[k] = to < BLOCK_EDGE - 1 ? (int)to : BLOCK_EDGE - 1;
+        }
+        float along[BLOCK_EDGE];
+        TOBI_SIMD
+        for (int x = 0; x < BLOCK_EDGE; x++) along[x] = ((float)x - at[0])*((float)x - at[0])*inverse;
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++) {
+                const float dz = (float)z - at[2], dy = (float)y - at[1], rest = 1 - (dz*dz + dy*dy)*inverse;
+                float *row = node + (z*BLOCK_EDGE + y)*BLOCK_EDGE;
+                if (rest <= 0) continue;
+                TOBI_SIMD
+                for (int x = 0; x < BLOCK_EDGE; x++) {
+                    const float t = rest - along[x], w = t > 0 ? t : 0;
+                    row[x] += w*w*w;
+                }
+            }
+    }
+}
+
+static void sum_nodes(const void *view, int64_t begin, int64_t end)
+{
+    for (int64_t b = begin; b < end; b++) sum_block(view, b);
+}
+
+/* The nearest particle counts most by far: colours stay sharp. */
+static void sum_block_colors(const node_view *v, int64_t b)
+{
+    float *colors = v->colors + (int64_t)v->colored[b]*4*BLOCK_NODES;
+    const float inverse = 1/(v->reach*v->reach);
+    memset(colors, 0, 4*BLOCK_NODES*sizeof *colors);
+    for (int64_t e = v->first[b]; e < v->first[b + 1]; e++) {
+        const vec color = v->color[v->entry[e]];
+        float at[3];
+        int low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            at[k] = v->place[v->entry[e]][k] - (float)(BLOCK_EDGE*v->block[b][k]);
+            const float from = at[k] - v->reach, to = at[k] + v->reach;
+            low[k] = from > 0 ? (int)from + 1 : 0;
+            high[k] = to < BLOCK_EDGE - 1 ? (int)to : BLOCK_EDGE - 1;
+        }
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int x = low[0]; x <= high[0]; x++) {
+                    const float dz = (float)z - at[2], dy = (float)y - at[1], dx = (float)x - at[0];
+                    const float t = 1 - (dx*dx + dy*dy + dz*dz)*inverse, w = power_16(t > 0 ? t : 0);
+                    float *to = colors + 4*((z*BLOCK_EDGE + y)*BLOCK_EDGE + x);
+                    to[0] += w*color.x, to[1] += w*color.y, to[2] += w*color.z, to[3] += w;
+                }
+    }
+}
+
+static void sum_colors(const void *view, int64_t begin, int64_t end)
+{
+    const node_view *v = view;
+    for (int64_t b = begin; b < end; b++)
+        if (v->colored[b] >= 0) sum_block_colors(v, b);
+}
+
+const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, sum_nodes,
+                                                    sum_colors };
