@@ -92,6 +92,7 @@ typedef struct canvas {
     float  *front;               /* of pixels: of the water; NULL: no water                        */
     float  *nearness;            /* of samples, tile by tile, of what is opaque; NULL: no water    */
     uint8_t *covered;            /* of tiles: 1 if nearness is set there, else nothing is opaque   */
+    bool    submerged;           /* the eye is in the water                                        */
     float   clarity;             /* m after which 1/e of the light is left in water                */
 } canvas;
 
@@ -167,9 +168,9 @@ typedef struct painting {
     canvas *c;
     const geometry *g;
     const tiles *t;
-    vec    *under;               /* water: pixels with all that is opaque, read where light is bent */
+    vec    *out;                 /* pixels; water reads the canvas's where light is bent           */
 } painting;
-tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *under, tobi_error *err);
+tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out, tobi_error *err);
 
 /* isosurface.c */
 typedef struct surface_request {
@@ -180,7 +181,9 @@ typedef struct surface_request {
     vec     plain;
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
 } surface_request;
-tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, tobi_error *err);
+/* *around: 1 if the eye is inside of the surface. */
+tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, bool *around,
+                             tobi_error *err);
 
 enum { BLOCK_EDGE = 8, BLOCK_NODES = BLOCK_EDGE*BLOCK_EDGE*BLOCK_EDGE };
 /* What the kernels over blocks of nodes need. Lengths are in cells. */

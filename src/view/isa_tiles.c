@@ -56,17 +56,23 @@ static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item
     const int32_t *v = g->face[item];
     const spot *p = &g->at[v[0]], *q = &g->at[v[1]], *r = &g->at[v[2]];
     const vec *n = g->normal, *color = g->color;
+    /* Areas of the parts of the triangle, then shares: perspective makes near corners count more. */
     float s0 = (r->x - q->x)*(y - q->y) - (r->y - q->y)*(x - q->x);
     float s1 = (p->x - r->x)*(y - r->y) - (p->y - r->y)*(x - r->x);
     float s2 = (q->x - p->x)*(y - p->y) - (q->y - p->y)*(x - p->x);
-    const float by = 1/(s0 + s1 + s2);
-    s0 = clampf(s0*by, 0, 1), s1 = clampf(s1*by, 0, 1), s2 = clampf(s2*by, 0, 1);
-    const float sum = 1/(s0 + s1 + s2), nearness = (s0*p->nearness + s1*q->nearness + s2*r->nearness)*sum;
-    const float z = depth_of(&c->camera, nearness), scale = c->camera.orthographic ? 1/c->camera.focal
-        : z/c->camera.focal;
-    if (!c->camera.orthographic) s0 *= p->nearness, s1 *= q->nearness, s2 *= r->nearness;
-    const float one = 1/(s0 + s1 + s2);
-    s0 *= one, s1 *= one, s2 *= one;
+    const float sign = s0 + s1 + s2 < 0 ? -1.0f : 1.0f;
+    s0 = above(sign*s0), s1 = above(sign*s1), s2 = above(sign*s2);
+    const float area = s0 + s1 + s2, w0 = s0*p->nearness, w1 = s1*q->nearness, w2 = s2*r->nearness;
+    float z, scale;
+    if (c->camera.orthographic) {
+        const float one = 1/area;
+        z = -(w0 + w1 + w2)*one, scale = 1/c->camera.focal;
+        s0 *= one, s1 *= one, s2 *= one;
+    } else {
+        const float one = 1/(w0 + w1 + w2);
+        z = area*one, scale = z/c->camera.focal;
+        s0 = w0*one, s1 = w1*one, s2 = w2*one;
+    }
     b->x[i] = (x - c->camera.center_x)*scale, b->y[i] = (c->camera.center_y - y)*scale, b->z[i] = z;
     b->nx[i] = s0*n[v[0]].x + s1*n[v[1]].x + s2*n[v[2]].x;
     b->ny[i] = s0*n[v[0]].y + s1*n[v[1]].y + s2*n[v[2]].y;
@@ -150,7 +156,7 @@ static float add_pixel(const painting *p, const layer *l, const square *q, int p
         b->thickness[i] = drop ? 1.3f*p->g->balls[part[m].item - p->g->faces].radius : above(thickness);
         rest -= weight;
     }
-    if (n > 0) c->color[k] = vec_scale(above(rest), c->color[k]);
+    if (n > 0) p->out[k] = vec_scale(above(rest), c->color[k]);
     return n > 0 ? depth_of(&c->camera, nearest) : INFINITY;
 }
 
@@ -174,9 +180,9 @@ static void paint_opaque(const painting *p, int64_t tile, layer *l, batch *b)
         for (int px = 0; px < across; px++) {
             const float z = add_pixel(p, l, &q, px, py, false, 0, b);
             c->depth[((int64_t)q.top + py)*c->width + (int64_t)q.left + px] = z;
-            if (is_full(b)) shade_solids(c, b);
+            if (is_full(b)) shade_solids(c, p->out, b);
         }
-    shade_solids(c, b);
+    shade_solids(c, p->out, b);
 }
 
 static void opaque_tiles(const void *view, int64_t begin, int64_t end)
@@ -186,27 +192,39 @@ static void opaque_tiles(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) paint_opaque(view, k, &l, &b);
 }
 
-/* Metres of water behind each pixel's middle, in front of what is opaque. */
-static void add_thickness(const painting *p, int64_t tile, const square *q, float *thickness)
+/* The depth of what is opaque at the middles of a tile's pixels. */
+static void copy_depth(const canvas *c, const square *q, float *solid)
 {
-    const canvas *c = p->c;
-    const geometry *g = p->g;
-    float solid[TILE*TILE];
     int across, down;
     tile_pixels(c, q, &across, &down);
     for (int y = 0; y < TILE; y++)
         for (int x = 0; x < TILE; x++) {
             const int64_t k = ((int64_t)q->top + y)*c->width + (int64_t)q->left + x;
             solid[y*TILE + x] = x < across && y < down ? c->depth[k] : INFINITY;
-            thickness[y*TILE + x] = 0;
         }
+}
+
+/* The front of the water into samples, and metres of water behind each pixel's middle, in front of what is
+   opaque. The eye sees back faces from within water only. */
+static void draw_water(const painting *p, int64_t tile, const square *q, layer *l, float *thickness)
+{
+    const canvas *c = p->c;
+    const geometry *g = p->g;
+    float solid[TILE*TILE];
     const square pixels = { q->left, q->top, TILE, 1 };
+    copy_depth(c, q, solid);
+    memset(thickness, 0, TILE*TILE*sizeof *thickness);
     for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++) {
         const int32_t item = p->t->item[i];
         face_setup f;
-        if (item >= g->faces) continue;
-        if (set_up_face(&f, &g->at[g->face[item][0]], &g->at[g->face[item][1]], &g->at[g->face[item][2]]))
-            add_face_depth(&f, &pixels, c->camera.orthographic, solid, thickness);
+        if (item >= g->faces) {
+            fill_ball(&c->camera, &g->balls[item - g->faces], q, item, l->nearness, l->item);
+            continue;
+        }
+        const int32_t *v = g->face[item];
+        if (!set_up_face(&f, &g->at[v[0]], &g->at[v[1]], &g->at[v[2]])) continue;
+        if (f.facing > 0 || c->submerged) fill_face(&f, q, item, l->nearness, l->item);
+        add_face_depth(&f, &pixels, c->camera.orthographic, solid, thickness);
     }
 }
 
@@ -220,15 +238,14 @@ static void paint_water(const painting *p, int64_t tile, layer *l, float *thickn
     clear_layer(l, &q);
     if (c->covered[tile])
         memcpy(l->nearness, c->nearness + tile*q.side*q.side, (size_t)(q.side*q.side)*sizeof *l->nearness);
-    draw_items(p, tile, &q, l);
-    add_thickness(p, tile, &q, thickness);
+    draw_water(p, tile, &q, l, thickness);
     for (int py = 0; py < down; py++)
         for (int px = 0; px < across; px++) {
             const float z = add_pixel(p, l, &q, px, py, true, thickness[py*TILE + px], b);
             c->front[((int64_t)q.top + py)*c->width + (int64_t)q.left + px] = z;
-            if (is_full(b)) shade_waters(c, p->under, b);
+            if (is_full(b)) shade_waters(c, p->out, b);
         }
-    shade_waters(c, p->under, b);
+    shade_waters(c, p->out, b);
 }
 
 static void water_tiles(const void *view, int64_t begin, int64_t end)

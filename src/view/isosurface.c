@@ -507,7 +507,24 @@ static bool make_mesh(grid *s)
     return true;
 }
 
-tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, tobi_error *err)
+/* Whether the eye is inside of the surface. */
+static bool is_around(const grid *s, const double eye[3])
+{
+    float place[3];
+    for (int k = 0; k < 3; k++) {
+        const double at = (eye[k] - s->low[k])/s->edge;
+        if (!(at >= 1 && at < s->size[k]*BLOCK_EDGE - 1)) return false;
+        place[k] = (float)at;
+    }
+    for (int n = 0; n < 8; n++)
+        if (*block_at(s, ((int)place[0] + (n & 1))/BLOCK_EDGE, ((int)place[1] + (n >> 1 & 1))/BLOCK_EDGE,
+                      ((int)place[2] + (n >> 2))/BLOCK_EDGE) < 0)
+            return false;
+    return sum_at(s, place) > level;
+}
+
+tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, bool *around,
+                             tobi_error *err)
 {
     grid s = { .c = c };
     double low[3], high[3];
@@ -526,6 +543,7 @@ tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request
         enough = enough && make_blocks(&s, r->count) && list_particles(&s, r->count) &&
                  sum_particles(&s, r, colors) && make_mesh(&s);
     }
+    *around = enough && any && is_around(&s, c->camera.eye);
     if (enough && r->drop > 0) enough = add_drops(&s, r, g);
     for (int k = 0; k < 2*ROUNDS && enough && any; k++) smooth(&s, k & 1 ? -0.52f : 0.5f);
     if (enough && any) enough = add_faces(&s, r, g);

@@ -162,15 +162,16 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     const tobi_picture *f = s->f;
     for (int i = 0; i < f->mesh_count; i++)
         if (!view_add_mesh(&s->solids, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
+    bool within;
     if (f->opaque) {
         surface_request r = choose(s, true);
         r.plain = (vec){ 0.20f, 0.30f, 0.45f };
         r.drop = 1.1f*(float)f->radius;
-        TOBI_TRY(view_add_surface(&s->solids, &s->c, &r, err));
+        TOBI_TRY(view_add_surface(&s->solids, &s->c, &r, &within, err));
     }
     surface_request r = choose(s, false);
     r.drop = 1.0f*(float)f->radius;
-    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->c, &r, err));
+    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->c, &r, &s->c.submerged, err));
     TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
     return view_project(&s->water, &s->c.camera, f->threads, err);
 }
@@ -197,15 +198,24 @@ static tobi_status add_discs(scene *s, tobi_error *err)
     return view_project(g, &s->c.camera, f->threads, err);
 }
 
+typedef struct copying { canvas *c; const vec *from; } copying;
+
+static void copy_water(const void *view, int64_t begin, int64_t end)
+{
+    const copying *v = view;
+    for (int64_t k = begin*v->c->width; k < end*v->c->width; k++)
+        if (v->c->front[k] < INFINITY) v->c->color[k] = v->from[k];
+}
+
 static tobi_status draw_water(scene *s, tobi_error *err)
 {
     canvas *c = &s->c;
-    const size_t n = (size_t)c->width*(size_t)c->height;
-    vec *under = malloc(n*sizeof *under);
-    if (!under) return no_memory(s->f, err);
-    memcpy(under, c->color, n*sizeof *under);
-    const tobi_status status = view_paint(c, &s->water, c->kernels->water_tiles, under, err);
-    free(under);
+    vec *out = malloc((size_t)c->width*(size_t)c->height*sizeof *out);
+    if (!out) return no_memory(s->f, err);
+    const tobi_status status = view_paint(c, &s->water, c->kernels->water_tiles, out, err);
+    const copying view = { c, out };
+    if (status == TOBI_OK) tobi_loop(c->threads, c->height, 0, copy_water, &view);
+    free(out);
     return status;
 }
 
@@ -235,7 +245,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     end_stage(s, STAGE_SHADOW);
     view_draw_background(c, f);
     view_draw_floor(c, f);
-    TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, NULL, err));
+    TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, c->color, err));
     view_draw_box(c, f, false);
     end_stage(s, STAGE_SOLIDS);
     if (has_water(s)) TOBI_TRY(draw_water(s, err));

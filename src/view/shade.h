@@ -67,16 +67,16 @@ static inline vec face_eye(vec n, vec eye)
 
 static inline float above(float x) { return x > 0 ? x : 0; }
 
-static inline void add_light(const canvas *c, const batch *b, int i, vec color, bool plain)
+static inline void add_light(vec *out, const batch *b, int i, vec color, bool plain)
 {
     if (plain) color = (vec){ b->r[i], b->g[i], b->b[i] };
-    vec *to = &c->color[b->pixel[i]];
+    vec *to = &out[b->pixel[i]];
     to->x += b->weight[i]*(color.x < 1 ? color.x : 1);      /* what is brighter than white must not spread */
     to->y += b->weight[i]*(color.y < 1 ? color.y : 1);
     to->z += b->weight[i]*(color.z < 1 ? color.z : 1);
 }
 
-static inline void shade_solids(const canvas *c, batch *b)
+static inline void shade_solids(const canvas *c, vec *out, batch *b)
 {
     const bool shadows = c->shadow.depth != NULL;
     const float keep = c->camera.orthographic ? 0 : 1;
@@ -104,7 +104,7 @@ static inline void shade_solids(const canvas *c, batch *b)
         b->under_b[i] = b->b[i]*(0.19f + 0.33f*fill + 0.92f*lambert) + shine + rim*sky.z;
     }
     for (int i = 0; i < n_points; i++)
-        add_light(c, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, b->plain[i]);
+        add_light(out, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, b->plain[i]);
     b->count = 0;
 }
 
@@ -139,7 +139,7 @@ static inline void bend_rays(const canvas *c, batch *b)
 }
 
 /* What is seen there, unless it is in front of the water. */
-static inline void look_under(const canvas *c, const vec *under, batch *b)
+static inline void look_under(const canvas *c, batch *b)
 {
     for (int i = 0; i < b->count; i++) {
         float x = b->to_x[i], y = b->to_y[i];
@@ -148,21 +148,21 @@ static inline void look_under(const canvas *c, const vec *under, batch *b)
             x = (float)(b->pixel[i]%c->width) + 0.5f;
             y = (float)(b->pixel[i]/c->width) + 0.5f;
         }
-        const vec color = color_between(c, under, x, y);
+        const vec color = color_between(c, c->color, x, y);
         b->under_r[i] = color.x, b->under_g[i] = color.y, b->under_b[i] = color.z;
     }
 }
 
 /* Water at points of its front: what lies below, bent and dimmed, the colour of the water itself, the sky
    that it mirrors, the light's glint. */
-static inline void shade_waters(const canvas *c, const vec *under, batch *b)
+static inline void shade_waters(const canvas *c, vec *out, batch *b)
 {
     const float keep = c->camera.orthographic ? 0 : 1;
     const int n_points = b->count;
     const float inverse = 1/c->clarity;
     const vec light = c->light, up = c->sky_up;
     bend_rays(c, b);
-    look_under(c, under, b);
+    look_under(c, b);
     for (int i = 0; i < n_points; i++)
         b->lit[i] = c->shadow.depth ? view_lit_at(c, (vec){ b->x[i], b->y[i], b->z[i] }) : 1;
     TOBI_SIMD
@@ -186,6 +186,6 @@ static inline void shade_waters(const canvas *c, const vec *under, batch *b)
         b->under_b[i] = l + mirror*(sky.z - l) + shine;
     }
     for (int i = 0; i < n_points; i++)
-        add_light(c, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, false);
+        add_light(out, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, false);
     b->count = 0;
 }

@@ -84,11 +84,11 @@ void view_tiles_free(tiles *t)
     t->item = NULL;
 }
 
-tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *under, tobi_error *err)
+tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out, tobi_error *err)
 {
     tiles t;
     TOBI_TRY(view_tiles_build(&t, c, g, err));
-    const painting view = { c, g, &t, under };
+    const painting view = { c, g, &t, out };
     tobi_loop(c->threads, (int64_t)t.across*t.down, 1, kernel, &view);
     view_tiles_free(&t);
     return TOBI_OK;
