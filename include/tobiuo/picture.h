@@ -64,6 +64,8 @@ TOBI_API tobi_picture tobi_default_picture(void);
 /* TOBI_INVALID for sizes, ranges or indices out of bounds and for NULL where something must stand,
    TOBI_NO_MEMORY, TOBI_IO. The file appears whole or not at all. */
 TOBI_API tobi_status tobi_picture_write(const char *path, const tobi_picture *picture, tobi_error *err);
+/* The same picture into rgb, width x height x 3 bytes, sRGB, row by row from the top. */
+TOBI_API tobi_status tobi_picture_draw(const tobi_picture *picture, uint8_t *rgb, tobi_error *err);
 
 #ifdef __cplusplus
 }

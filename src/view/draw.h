@@ -215,9 +215,12 @@ vec  view_color_of(const tobi_picture *f, float value);
 void view_find_range(const tobi_picture *f, double *low, double *high);
 vec *view_color_particles(const tobi_picture *f, double low, double high);
 
-/* text.c */
+/* text.c: a letter as strokes on a small grid, and how many of its steps the next letter is away. */
+const char *view_letter_strokes(char letter);
+int view_letter_advance(char letter);
 void view_draw_title(canvas *c, const char *text);
 void view_draw_color_bar(canvas *c, const tobi_picture *f, double value_min, double value_max);
 
-/* png.c */
+/* png.c: width x height x 3 bytes, sRGB. */
+void view_encode_colors(const canvas *c, unsigned char *bytes);
 tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err);

@@ -257,16 +257,34 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     return TOBI_OK;
 }
 
+/* name: begins messages. The caller frees the scene, on failure too. */
+static tobi_status draw_scene(scene *s, const char *name, const tobi_picture *frame, tobi_error *err)
+{
+    *s = (scene){ .f = frame, .clock = processor_clock() };
+    TOBI_TRY(check_frame(name, frame, err));
+    TOBI_TRY(make_canvas(s, err));
+    return draw(s, name, err);
+}
+
 tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err)
 {
     TOBI_NEED(path, "the path");
     TOBI_NEED(frame, "the picture");
-    TOBI_TRY(check_frame(path, frame, err));
-    scene s = { .f = frame, .clock = processor_clock() };
-    tobi_status status = make_canvas(&s, err);
-    if (status == TOBI_OK) status = draw(&s, path, err);
+    scene s;
+    tobi_status status = draw_scene(&s, path, frame, err);
     if (status == TOBI_OK) status = view_write_png(path, &s.c, err);
     end_stage(&s, STAGE_PNG);
+    free_scene(&s);
+    return status;
+}
+
+tobi_status tobi_picture_draw(const tobi_picture *frame, uint8_t *rgb, tobi_error *err)
+{
+    TOBI_NEED(frame, "the picture");
+    TOBI_NEED(rgb, "the place for its pixels");
+    scene s;
+    tobi_status status = draw_scene(&s, "picture", frame, err);
+    if (status == TOBI_OK) view_encode_colors(&s.c, rgb);
     free_scene(&s);
     return status;
 }

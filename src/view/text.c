@@ -35,18 +35,18 @@ static const char *const strokes[128] = {
     ['?'] = "07183847462524 2222", [' '] = ""
 };
 
-static const char *find_strokes(char letter)
+const char *view_letter_strokes(char letter)
 {
     const char *s = letter > 0 ? strokes[(int)letter] : NULL;
     return s ? s : "0242480802";       /* an empty box for what has no glyph */
 }
 
 /* Grid units to the next letter. Digits are equally wide, so that numbers stand still in a film. */
-static int advance(char letter)
+int view_letter_advance(char letter)
 {
     int widest = letter == ' ' ? 2 : 0;
     if (letter >= '0' && letter <= '9') return 6;
-    for (const char *s = find_strokes(letter); *s; s += *s == ' ' ? 1 : 2)
+    for (const char *s = view_letter_strokes(letter); *s; s += *s == ' ' ? 1 : 2)
         if (*s != ' ' && *s - '0' > widest) widest = *s - '0';
     return widest + 2;
 }
@@ -54,7 +54,7 @@ static int advance(char letter)
 static float text_width(const char *text, float unit)
 {
     float width = 0;
-    for (; *text; text++) width += (float)advance(*text);
+    for (; *text; text++) width += (float)view_letter_advance(*text);
     return width > 0 ? (width - 2)*unit : 0;
 }
 
@@ -80,7 +80,7 @@ static void draw_stroke(canvas *i, const float a[2], const float b[2], float pen
 static void draw_text(canvas *i, float x, float y, float unit, const char *text, vec color)
 {
     for (; *text; text++) {
-        const char *s = find_strokes(*text);
+        const char *s = view_letter_strokes(*text);
         float last[2] = { 0, 0 };
         int points = 0;
         for (; *s; s += *s == ' ' ? 1 : 2) {
@@ -92,7 +92,7 @@ static void draw_text(canvas *i, float x, float y, float unit, const char *text,
             if (points++ > 0) draw_stroke(i, last, at, 0.85f*unit, color);
             memcpy(last, at, sizeof last);
         }
-        x += (float)advance(*text)*unit;
+        x += (float)view_letter_advance(*text)*unit;
     }
 }
 

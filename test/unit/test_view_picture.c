@@ -178,6 +178,22 @@ static void threads_and_instructions_do_not_matter(void **state)
     free(one);
 }
 
+static void bytes_are_those_of_the_file(void **state)
+{
+    (void)state;
+    static unsigned char bytes[3*W*H];
+    tobi_error err = { 0 };
+    tobi_picture f = make_frame();
+    unsigned char *file = draw(&f);
+    assert_int_equal(tobi_picture_draw(&f, bytes, &err), TOBI_OK);
+    assert_memory_equal(file, bytes, 3*W*H);
+    free(file);
+    REFUSED(tobi_picture_draw(NULL, bytes, &err), TOBI_INVALID, "the picture is NULL");
+    REFUSED(tobi_picture_draw(&f, NULL, &err), TOBI_INVALID, "the place for its pixels is NULL");
+    f.width = 8;
+    REFUSED(tobi_picture_draw(&f, bytes, &err), TOBI_INVALID, "picture: a picture of 8 x 180 pixels");
+}
+
 static void place_does_not_matter(void **state)
 {
     (void)state;
@@ -341,7 +357,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(things_are_where_they_belong),
             cmocka_unit_test(threads_and_instructions_do_not_matter),
-        cmocka_unit_test(place_does_not_matter), cmocka_unit_test(flat_scenes_are_discs),
+        cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file), cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
