@@ -18,6 +18,7 @@ extern "C" {
 
 /* Numbers of the particles that the vertices shall have too: mean of the particles around, by the kernel. */
 typedef struct tobi_surface_field {
+    const char *name;                  /* in files, "velocity"; NULL = "field"                           */
     int components;                    /* 1 to 9                                                         */
     const double *values;              /* particle_count x components                                    */
 } tobi_surface_field;
@@ -53,6 +54,9 @@ typedef struct tobi_surface {
     uint8_t *sides;                    /* of each vertex, a bit for each flat side it lies on: 1, 2, 4 at
                                           box_min of x, y, z; 8, 16, 32 at box_max. A triangle whose three
                                           vertices share a bit belongs to a cap.                         */
+    int field_count;
+    char field_names[TOBI_SURFACE_FIELD_LIMIT][40];
+    int field_components[TOBI_SURFACE_FIELD_LIMIT];
     float *fields[TOBI_SURFACE_FIELD_LIMIT];     /* vertex_count x components each                       */
 } tobi_surface;
 
@@ -63,6 +67,28 @@ TOBI_API tobi_surface_def tobi_default_surface(void);
 TOBI_API tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err);
 /* NULL is fine. */
 TOBI_API void tobi_surface_free(tobi_surface *surface);
+
+/* Writes a surface as its path ends: .vtp (group, normals and fields), .ply (binary, the same), .obj
+   (normals), .stl (binary), .glb (glTF 2.0, one frame of tobi_surface_movie_add). TOBI_INVALID for another
+   ending, TOBI_IO. The file appears whole or not at all. */
+TOBI_API tobi_status tobi_surface_write(const char *path, const tobi_surface *surface, tobi_error *err);
+
+/* A movie of surfaces as one glTF 2.0 file (.glb): each frame is a mesh of its own, shown by its scale from
+   its time to that of the next, as Blender, assimp and viewers in browsers play it. The file appears whole or
+   not at all when it is finished, and holds less than 4 GB. */
+typedef struct tobi_surface_movie tobi_surface_movie;
+/* frames: at most, 1 to 100000. up: direction that is shown upwards, not zero (glTF: y). */
+TOBI_API tobi_status tobi_surface_movie_create(const char *path, int frames, const double up[3],
+                                               tobi_surface_movie **movie, tobi_error *err);
+/* The colours of vertices: those of a field (by number; of 3 components its size) from low to high, or, with
+   field -1, one for each group. Times rise. */
+TOBI_API tobi_status tobi_surface_movie_add(tobi_surface_movie *movie, double time,
+                                            const tobi_surface *surface,
+                                            int field, double low, double high, tobi_error *err);
+/* Ends the last frame one frame later and writes the file. The movie must be freed after it too. */
+TOBI_API tobi_status tobi_surface_movie_finish(tobi_surface_movie *movie, tobi_error *err);
+/* NULL is fine; without finish nothing is left. */
+TOBI_API void tobi_surface_movie_free(tobi_surface_movie *movie);
 
 #ifdef __cplusplus
 }

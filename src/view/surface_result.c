@@ -2,6 +2,7 @@
    coarse sphere. */
 #include "view/surface.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +75,7 @@ tobi_status surface_make_result(surface_work *w, tobi_surface **surface, tobi_er
     }
     s->vertex_count = n;
     s->triangle_count = m;
+    s->field_count = w->def->field_count;
     s->vertices = tobi_array_make(n + 1, sizeof *s->vertices);
     s->normals = tobi_array_make(n + 1, sizeof *s->normals);
     s->triangles = tobi_array_make(m + 1, sizeof *s->triangles);
@@ -84,6 +86,9 @@ tobi_status surface_make_result(surface_work *w, tobi_surface **surface, tobi_er
         return surface_no_memory(err, 53.0*(double)n + 12.0*(double)m);
     }
     for (int f = 0; f < w->def->field_count; f++) {
+        const tobi_surface_field *field = &w->def->fields[f];
+        snprintf(s->field_names[f], sizeof s->field_names[f], "%s", field->name ? field->name : "field");
+        s->field_components[f] = field->components;
         s->fields[f] = w->fields[f];
         w->fields[f] = NULL;
     }

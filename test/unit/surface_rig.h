@@ -17,7 +17,7 @@ static int rig_order(const void *a, const void *b)
 
 /* Every edge belongs to two triangles that run along it in opposite directions, and the triangles around
    each vertex form one ring. */
-static bool rig_is_closed(const tobi_surface *s)
+static inline bool rig_is_closed(const tobi_surface *s)
 {
     const int64_t n = 3*s->triangle_count;
     rig_edge *e = malloc((size_t)n*sizeof *e + 1);
@@ -49,7 +49,7 @@ static bool rig_is_closed(const tobi_surface *s)
     return good;
 }
 
-static double rig_volume(const tobi_surface *s)
+static inline double rig_volume(const tobi_surface *s)
 {
     double sum = 0;
     for (int64_t t = 0; t < s->triangle_count; t++) {
@@ -67,7 +67,7 @@ static int32_t rig_root(int32_t *part, int32_t i)
 }
 
 /* Parts of the mesh that are not connected. */
-static int64_t rig_parts(const tobi_surface *s)
+static inline int64_t rig_parts(const tobi_surface *s)
 {
     int32_t *part = malloc((size_t)s->vertex_count*sizeof *part + 1);
     for (int64_t i = 0; i < s->vertex_count; i++) part[i] = (int32_t)i;
@@ -81,14 +81,14 @@ static int64_t rig_parts(const tobi_surface *s)
 
 typedef struct rig_points { int64_t count; double (*position)[3]; } rig_points;
 
-static double rig_random(uint64_t *seed)
+static inline double rig_random(uint64_t *seed)
 {
     *seed = *seed*6364136223846793005u + 1442695040888963407u;
     return (double)(*seed >> 11)/9007199254740992.0 - 0.5;
 }
 
 /* Points (i + 1/2) d of a box of n[0] x n[1] x n[2] spacings at its corner, each moved by up to jitter/2. */
-static rig_points rig_box(const int n[3], const double corner[3], double d, double jitter)
+static inline rig_points rig_box(const int n[3], const double corner[3], double d, double jitter)
 {
     rig_points p = { 0, malloc((size_t)n[0]*(size_t)n[1]*(size_t)n[2]*24) };
     uint64_t seed = 7;
@@ -103,7 +103,7 @@ static rig_points rig_box(const int n[3], const double corner[3], double d, doub
 }
 
 /* Those of them within a ball. */
-static void rig_cut_ball(rig_points *p, const double middle[3], double radius)
+static inline void rig_cut_ball(rig_points *p, const double middle[3], double radius)
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < p->count; i++) {

@@ -206,7 +206,7 @@ static void test_fields(void **state)
     rig_points p = rig_box((int[3]){ 14, 14, 14 }, zero, D, 0.2);
     double *one = malloc((size_t)p.count*sizeof *one);
     for (int64_t i = 0; i < p.count; i++) one[i] = 4;
-    const tobi_surface_field fields[2] = { { 1, one }, { 3, &p.position[0][0] } };
+    const tobi_surface_field fields[2] = { { NULL, 1, one }, { "place", 3, &p.position[0][0] } };
     tobi_surface_def d = tobi_default_surface();
     d.fields = fields, d.field_count = 2;
     tobi_surface *s = make(&p, d);
@@ -234,7 +234,7 @@ static void test_same_bits(void **state)
 {
     (void)state;
     rig_points p = rig_box((int[3]){ 30, 30, 20 }, zero, D, 1.5);
-    const tobi_surface_field field = { 3, &p.position[0][0] };
+    const tobi_surface_field field = { "place", 3, &p.position[0][0] };
     tobi_surface_def d = tobi_default_surface();
     d.fields = &field, d.field_count = 1, d.threads = 1;
     for (int a = 0; a < 3; a++) d.box_max[a] = 0.3, d.flat_min[a] = d.flat_max[a] = 1;
@@ -286,7 +286,7 @@ static void test_mistakes(void **state)
     WRONG(d.group = group, "particle 1 is of group 1048576");
     WRONG(d.flat_max[1] = 1, "the box is empty along y");
     WRONG(d.field_count = 33, "33 fields, allowed are 0 to 32");
-    const tobi_surface_field wide = { 10, &p[0][0] }, empty = { 1, NULL };
+    const tobi_surface_field wide = { NULL, 10, &p[0][0] }, empty = { NULL, 1, NULL };
     WRONG((d.field_count = 1, d.fields = &wide), "field 0 has 10 components and some values");
     WRONG((d.field_count = 1, d.fields = &empty), "no values");
 }

@@ -1,0 +1,347 @@
+/* Surfaces as one glTF 2.0 file: a JSON part, then a binary part (Khronos Group, glTF 2.0 Specification).
+   Each frame is a node with a mesh of its own. Players cannot switch nodes on and off by time,
+       but all of them
+   play scales with steps: 1 in a frame's time, 0 before and after it. The binary part is written as frames
+   come; the JSON part has its room before it, filled with blanks as the format allows, and is written at the
+   end. Drawback: positions are floats, measured from the middle of the first frame. */
+#define _GNU_SOURCE 1
+#include "base/file.h"
+#include "tobiuo/surface.h"
+#include <assert.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FRAME_ROOM = 2200, HEAD_ROOM = 2600, ACCESSORS = 4, VIEWS = 4 };
+/* of GLB and glTF */
+enum { MAGIC = 0x46546c67, JSON_PART = 0x4e4f534a, BINARY_PART = 0x004e4942,
+       FLOAT_NUMBERS = 5126, WORD_NUMBERS = 5125, BYTE_NUMBERS = 5121, VERTEX_DATA = 34962,
+           INDEX_DATA = 34963 };
+
+typedef struct frame {
+    double time;
+    int64_t vertices, triangles;
+    uint64_t at;                 /* of its bytes in the binary part */
+    float low[3], high[3];
+} frame;
+
+struct tobi_surface_movie {
+    tobi_file file;
+    char *path;
+    frame *frame;
+    int count, room;
+    double up[3], middle[3];
+    uint64_t bytes;              /* of the binary part so far */
+    char *text;                  /* of the JSON part */
+    size_t length, limit;
+};
+
+static uint64_t json_room(int frames) { return ((uint64_t)frames*FRAME_ROOM + HEAD_ROOM + 3)/4*4; }
+
+tobi_status tobi_surface_movie_create(const char *path, int frames, const double up[3],
+                                      tobi_surface_movie **movie, tobi_error *err)
+{
+    TOBI_NEED(movie, "movie");
+    *movie = NULL;
+    TOBI_NEED(path, "path");
+    TOBI_NEED(up, "up");
+    if (frames < 1 || frames > 100000)
+        return tobi_fail(err, TOBI_INVALID, "%s: a movie of %d frames, allowed are 1 to 100000", path,
+                         frames);
+    const double size = sqrt(up[0]*up[0] + up[1]*up[1] + up[2]*up[2]);
+    if (!(size > 0) || !isfinite(size))
+        return tobi_fail(err, TOBI_INVALID, "%s: the direction upwards is %g %g %g", path, up[0], up[1],
+                         up[2]);
+    tobi_surface_movie *m = calloc(1, sizeof *m);
+    if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "%s: out of memory", path);
+    m->room = frames;
+    for (int a = 0; a < 3; a++) m->up[a] = up[a]/size;
+    m->path = strdup(path);
+    m->frame = calloc((size_t)frames, sizeof *m->frame);
+    m->limit = json_room(frames);
+    m->text = malloc(m->limit + 1);
+    tobi_status status = m->path && m->frame && m->text
+        ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "%s: out of memory", path);
+    if (status == TOBI_OK) status = tobi_file_open(&m->file, path, err);
+    if (status != TOBI_OK) {
+        tobi_surface_movie_free(m);
+        return status;
+    }
+    memset(m->text, ' ', m->limit);
+    const uint32_t head[5] = { MAGIC, 2, 0, (uint32_t)m->limit, JSON_PART };
+    tobi_file_write(&m->file, head, sizeof head);
+    tobi_file_write(&m->file, m->text, m->limit);
+    tobi_file_write(&m->file, (const uint32_t[2]){ 0, BINARY_PART }, 8);
+    *movie = m;
+    return TOBI_OK;
+}
+
+void tobi_surface_movie_free(tobi_surface_movie *m)
+{
+    if (!m) return;
+    tobi_file_abandon(&m->file);
+    free(m->path);
+    free(m->frame);
+    free(m->text);
+    free(m);
+}
+
+/* Linear RGB: of a field dark blue, blue, white, of groups one after the other. */
+static void find_color(const tobi_surface *s, int64_t i, int field, double low, double high, uint8_t out[4])
+{
+    static const float ramp[4][3] = {
+        { 0.005f, 0.03f, 0.12f }, { 0.01f, 0.14f, 0.45f }, { 0.10f, 0.55f, 0.85f }, { 0.95f, 0.97f, 1.0f } };
+    static const float group[6][3] = {
+        { 0.02f, 0.20f, 0.50f }, { 0.62f, 0.10f, 0.05f }, { 0.85f, 0.75f, 0.45f },
+        { 0.10f, 0.35f, 0.10f }, { 0.60f, 0.30f, 0.03f }, { 0.25f, 0.12f, 0.40f } };
+    const float *color = group[s->group[i]%6];
+    float mixed[3];
+    if (field >= 0) {
+        const int n = s->field_components[field];
+        double square = 0, value = s->fields[field][i*n];
+        for (int c = 0; c < n; c++) square += pow((double)s->fields[field][i*n + c], 2);
+        if (n > 1) value = sqrt(square);
+        const double share = high > low ? fmin(1, fmax(0, (value - low)/(high - low))) : 0;
+        const int k = share < 1 ? (int)(3*share) : 2;
+        const float part = (float)(3*share - k);
+        for (int c = 0; c < 3; c++) mixed[c] = ramp[k][c] + part*(ramp[k + 1][c] - ramp[k][c]);
+        color = mixed;
+    }
+    for (int c = 0; c < 3; c++) out[c] = (uint8_t)lrintf(255*color[c]);
+    out[3] = 255;
+}
+
+static void write_frame(tobi_surface_movie *m, frame *f, const tobi_surface *s, int field, double low,
+                        double high)
+{
+    for (int a = 0; a < 3; a++) f->low[a] = INFINITY, f->high[a] = -INFINITY;
+    for (int64_t i = 0; i < s->vertex_count && !m->file.error; i++) {
+        float p[3];
+        for (int a = 0; a < 3; a++) {
+            p[a] = (float)(s->vertices[i][a] - m->middle[a]);
+            f->low[a] = fminf(f->low[a], p[a]);
+            f->high[a] = fmaxf(f->high[a], p[a]);
+        }
+        tobi_file_write(&m->file, p, sizeof p);
+    }
+    tobi_file_write(&m->file, s->normals, (size_t)s->vertex_count*sizeof *s->normals);
+    for (int64_t i = 0; i < s->vertex_count && !m->file.error; i++) {
+        uint8_t color[4];
+        find_color(s, i, field, low, high, color);
+        tobi_file_write(&m->file, color, sizeof color);
+    }
+    tobi_file_write(&m->file, s->triangles, (size_t)s->triangle_count*sizeof *s->triangles);
+}
+
+static tobi_status check_frame(const tobi_surface_movie *m, double time, const tobi_surface *s, int field,
+                               tobi_error *err)
+{
+    if (m->count == m->room)
+        return tobi_fail(err, TOBI_INVALID, "%s: more than the %d frames that were announced", m->path,
+                         m->room);
+    if (!isfinite(time) || (m->count > 0 && !(time > m->frame[m->count - 1].time)))
+        return tobi_fail(err, TOBI_INVALID, "%s: frame %d is at %g s, not after the one before it", m->path,
+                         m->count,
+                         time);
+    if (field < -1 || field >= s->field_count)
+        return tobi_fail(err, TOBI_INVALID, "%s: the surface has no field %d, but %d", m->path, field,
+                         s->field_count);
+    const uint64_t bytes = m->bytes + (uint64_t)s->vertex_count*28 + (uint64_t)s->triangle_count*12;
+    if (bytes + m->limit + 28 > UINT32_MAX)
+        return tobi_fail(err, TOBI_INVALID,
+                         "%s: more than 4 GB at %g s, which a .glb cannot hold; a larger cell "
+                         "or fewer frames take less", m->path, time);
+    return TOBI_OK;
+}
+
+tobi_status tobi_surface_movie_add(tobi_surface_movie *m, double time, const tobi_surface *s, int field,
+                                   double low, double high, tobi_error *err)
+{
+    TOBI_NEED(m, "movie");
+    TOBI_NEED(s, "surface");
+    TOBI_TRY(check_frame(m, time, s, field, err));
+    for (int a = 0; a < 3 && m->bytes == 0 && s->vertex_count > 0; a++) m->middle[a] = s->vertices[0][a];
+    frame *f = &m->frame[m->count++];
+    *f = (frame){ .time = time, .vertices = s->vertex_count, .triangles = s->triangle_count, .at = m->bytes };
+    write_frame(m, f, s, field, low, high);
+    m->bytes += (uint64_t)s->vertex_count*28 + (uint64_t)s->triangle_count*12;
+    return TOBI_OK;
+}
+
+/* Adds to the JSON part; what has no room is seen at the end. */
+static void put(tobi_surface_movie *m, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(tobi_surface_movie *m, const char *format, ...)
+{
+    char line[700];
+    va_list arguments;
+    const locale_t before = uselocale(m->file.plain);
+    va_start(arguments, format);
+    const int n = vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    uselocale(before);
+    if (n > 0 && n < (int)sizeof line && m->length + (size_t)n <= m->limit)
+        memcpy(m->text + m->length, line, (size_t)n);
+    m->length += (size_t)n;
+}
+
+static bool is_empty(const frame *f) { return f->triangles == 0; }
+
+/* Turns up to y, and moves the frames back to where they are. */
+static void put_root(tobi_surface_movie *m)
+{
+    const double *u = m->up, *p = m->middle;
+    double q[4] = { -u[2], 0, u[0], 1 + u[1] };       /* up x y, and 1 + up . y */
+    const double size = sqrt(q[0]*q[0] + q[2]*q[2] + q[3]*q[3]);
+    if (size < 1e-9) q[0] = 1, q[3] = 0;
+    else for (int k = 0; k < 4; k++) q[k] /= size;
+    put(m, "{\"name\":\"run\",\"rotation\":[%.9g,%.9g,%.9g,%.9g],\"children\":[1]},"
+        "{\"name\":\"place\",\"translation\":[%.9g,%.9g,%.9g],\"children\":[", q[0], q[1], q[2], q[3],
+        p[0], p[1], p[2]);
+    for (int k = 0; k < m->count; k++) put(m, "%s%d", k ? "," : "", k + 2);
+    put(m, "]}");
+}
+
+static void put_nodes(tobi_surface_movie *m)
+{
+    int mesh = 0;
+    put_root(m);
+    for (int k = 0; k < m->count; k++) {
+        const char *scale = k == 0 ? "" : ",\"scale\":[0,0,0]";
+        if (is_empty(&m->frame[k])) put(m, ",{\"name\":\"frame_%06d\"%s}", k, scale);
+        else put(m, ",{\"name\":\"frame_%06d\",\"mesh\":%d%s}", k, mesh++, scale);
+    }
+}
+
+static void put_meshes(tobi_surface_movie *m)
+{
+    int n = 0;
+    for (int k = 0; k < m->count; k++) {
+        if (is_empty(&m->frame[k])) continue;
+        put(m, "%s{\"name\":\"surface_%06d\",\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,"
+            "\"COLOR_0\":%d},\"indices\":%d,\"material\":0}]}", n ? "," : "", k, n, n + 1, n + 2, n + 3);
+        n += ACCESSORS;
+    }
+}
+
+static void put_accessors(tobi_surface_movie *m)
+{
+    int n = 0;
+    for (int k = 0; k < m->count; k++) {
+        const frame *f = &m->frame[k];
+        if (is_empty(f)) continue;
+        put(m, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%" PRId64 ",\"type\":\"VEC3\","
+            "\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]}", n ? "," : "", n, FLOAT_NUMBERS, f->vertices,
+            (double)f->low[0], (double)f->low[1], (double)f->low[2], (double)f->high[0], (double)f->high[1],
+            (double)f->high[2]);
+        put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"count\":%" PRId64 ",\"type\":\"VEC3\"}", n + 1,
+            FLOAT_NUMBERS, f->vertices);
+        put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"normalized\":true,\"count\":%" PRId64
+            ",\"type\":\"VEC4\"}", n + 2, BYTE_NUMBERS, f->vertices);
+        put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"count\":%" PRId64 ",\"type\":\"SCALAR\"}", n + 3,
+            WORD_NUMBERS, 3*f->triangles);
+        n += VIEWS;
+    }
+}
+
+/* Four views of each frame; behind them the times and scales of the animation. */
+static void put_views(tobi_surface_movie *m)
+{
+    int n = 0;
+    for (int k = 0; k < m->count; k++) {
+        const frame *f = &m->frame[k];
+        const uint64_t v = (uint64_t)f->vertices, size[VIEWS] = { 12*v, 12*v, 4*v,
+                                                                  12*(uint64_t)f->triangles };
+        uint64_t at = f->at;
+        for (int q = 0; q < VIEWS && !is_empty(f); q++, n++) {
+            put(m, "%s{\"buffer\":0,\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 ",\"target\":%d}",
+                n ? "," : "", at, size[q], q == 3 ? INDEX_DATA : VERTEX_DATA);
+            at += size[q];
+        }
+    }
+}
+
+/* Times and scales of a frame: shown from its own time to that of the next. */
+static int list_keys(const tobi_surface_movie *m, int k, float time[3], float scale[3][3])
+{
+    const double first = m->frame[0].time, last = m->frame[m->count - 1].time;
+    const double step = m->count > 1 ? (last - first)/(m->count - 1) : 1;
+    const double begin = m->frame[k].time - first;
+    const double end = k + 1 < m->count ? m->frame[k + 1].time - first : begin + step;
+    int n = 0;
+    if (k > 0) time[n++] = 0;
+    time[n++] = (float)begin;
+    time[n++] = (float)end;
+    for (int q = 0; q < n; q++)
+        for (int a = 0; a < 3; a++) scale[q][a] = q == n - 2 || (k + 1 == m->count && q == n - 1) ? 1 : 0;
+    return n;
+}
+
+static void put_animation(tobi_surface_movie *m, int accessors)
+{
+    put(m, "],\"animations\":[{\"name\":\"frames\",\"channels\":[");
+    for (int k = 0; k < m->count; k++)
+        put(m, "%s{\"sampler\":%d,\"target\":{\"node\":%d,\"path\":\"scale\"}}", k ? "," : "", k, k + 2);
+    put(m, "],\"samplers\":[");
+    for (int k = 0; k < m->count; k++)
+        put(m, "%s{\"input\":%d,\"output\":%d,\"interpolation\":\"STEP\"}", k ? "," : "", accessors + 2*k,
+            accessors + 2*k + 1);
+    put(m, "]}");
+}
+
+static void write_animation(tobi_surface_movie *m, int accessors)
+{
+    uint64_t at = m->bytes;
+    for (int k = 0; k < m->count; k++) {
+        float time[3], scale[3][3];
+        const int n = list_keys(m, k, time, scale);
+        tobi_file_write(&m->file, time, (size_t)n*sizeof *time);
+        tobi_file_write(&m->file, scale, (size_t)n*sizeof *scale);
+        put(m, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%d,\"type\":\"SCALAR\",\"min\":[%.9g],"
+            "\"max\":[%.9g]},{\"bufferView\":%d,\"componentType\":%d,\"count\":%d,\"type\":\"VEC3\"}",
+            accessors + k ? "," : "", accessors + 2*k, FLOAT_NUMBERS, n, (double)time[0], (double)time[n - 1],
+            accessors + 2*k + 1, FLOAT_NUMBERS, n);
+        m->bytes += (uint64_t)n*16;
+    }
+    put(m, "],\"bufferViews\":[");
+    put_views(m);
+    for (int k = 0; k < m->count; k++) {
+        const uint64_t n = k > 0 ? 3 : 2;
+        put(m, "%s{\"buffer\":0,\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 "},{\"buffer\":0,"
+            "\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 "}", accessors + k ? "," : "", at, 4*n,
+            at + 4*n, 12*n);
+        at += 16*n;
+    }
+}
+
+tobi_status tobi_surface_movie_finish(tobi_surface_movie *m, tobi_error *err)
+{
+    TOBI_NEED(m, "movie");
+    if (m->count == 0) return tobi_fail(err, TOBI_INVALID, "%s: a movie without a frame", m->path);
+    int accessors = 0;
+    for (int k = 0; k < m->count; k++) accessors += is_empty(&m->frame[k]) ? 0 : ACCESSORS;
+    put(m, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tobiuo %s\"},\"scene\":0,"
+        "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[", TOBI_VERSION);
+    put_nodes(m);
+    put(m, "],\"materials\":[{\"name\":\"surface\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+        "\"roughnessFactor\":0.15}}]");
+    if (accessors > 0) {
+        put(m, ",\"meshes\":[");
+        put_meshes(m);
+        put(m, "]");
+    }
+    put(m, ",\"accessors\":[");
+    put_accessors(m);
+    write_animation(m, accessors);
+    put_animation(m, accessors);
+    put(m, "],\"buffers\":[{\"byteLength\":%" PRIu64 "}]}", m->bytes);
+    assert(m->length <= m->limit);                   /* FRAME_ROOM is enough */
+    if (m->length > m->limit) m->file.error = EFBIG;
+    tobi_file_patch(&m->file, 8, &(uint32_t){ (uint32_t)(28 + m->limit + m->bytes) }, 4);
+    tobi_file_patch(&m->file, 20, m->text, m->limit);
+    tobi_file_patch(&m->file, (off_t)(20 + m->limit), &(uint32_t){ (uint32_t)m->bytes }, 4);
+    return tobi_file_commit(&m->file, err);
+}
