@@ -276,6 +276,10 @@ typedef struct tobi_output_def {
     int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */
     int         ply;                  /* 1: write the fluid's positions as PLY                        */
     int         obj;                  /* 1: write each body's surface as OBJ                          */
+    int         surface;              /* 1: write the surface of fluids and solids as VTP             */
+    double      surface_cell;         /* spacings, cell of its grid                                   */
+    int         surface_smoothing;    /* rounds                                                       */
+    const char *surface_fields;       /* names separated by commas, of its vertices                   */
     double      camera_position[3];   /* m, the eye of the pictures                                   */
     double      camera_look_at[3];    /* m, what it looks at                                          */
     double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */

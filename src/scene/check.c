@@ -335,6 +335,15 @@ static void check_field(const tobi_scene *scene, tobi_source *source, const tobi
     else tobi_source_mistake(source, place, "there is no field \"%s\"; allowed are %s", field, all);
 }
 
+static void check_names(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                        const char *names)
+{
+    char *copy = strdup(names ? names : ""), *next = copy;
+    for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
+        if (*field) check_field(scene, source, place, field);
+    free(copy);
+}
+
 static void check_output(const tobi_scene *scene, tobi_source *source)
 {
     enum { MOST_OUTPUTS = 1000000 };
@@ -348,14 +357,15 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
     tobi_place grid = { &output, "grid", 0 };
     if (scene->output.grid && tobi_method_describe(scene->world.method, &method) && !method.grid)
         tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method.name);
+    tobi_place surface = { &output, "surface", 0 }, of_surface = { &surface, "fields", 0 };
+    if (scene->output.surface && scene->world.dimension == 2)
+        tobi_source_mistake(source, &surface, "is of 3-D scenes only");
     tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
     if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
-    char *copy = strdup(scene->output.fields ? scene->output.fields : ""), *next = copy;
-    for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
-        if (*field) check_field(scene, source, &fields, field);
-    free(copy);
+    check_names(scene, source, &fields, scene->output.fields);
+    if (scene->output.surface) check_names(scene, source, &of_surface, scene->output.surface_fields);
 }
 
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)

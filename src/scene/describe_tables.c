@@ -23,6 +23,7 @@ static const char head[] =
     "bodies over time; `.vtu` in folders beside |\n"
     "| `all.pvd` | everything in one list with one time base |\n"
     "| `grid.pvd` | nodes of the grid of mlsmpm, with `output.grid` |\n"
+    "| `surface.pvd` | the surface of fluids and pieces of solids, with `output.surface.write` |\n"
     "| `BODY.pvd` | the moving surface of each body: `.vtp` and `.stl` in `surfaces/` |\n"
     "| `frames/` | a picture per output, with `--frames` |\n"
     "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"

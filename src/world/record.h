@@ -55,6 +55,7 @@ typedef struct tobi_snapshot {
     double (**surface)[3];                /* vertices of each body                   */
     int surfaces;
     struct tobi_drawing *drawing;         /* NULL: no picture                        */
+    struct tobi_record_surface *skin;     /* NULL: no surface                        */
     tobi_csv_rows bodies, history;
     bool bodies_written;                  /* so that a second try adds no row twice  */
 } tobi_snapshot;
@@ -70,6 +71,8 @@ struct tobi_run {
     bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
+    tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
+    int surface_fields;
     char (*body_file)[80];                /* names of the bodies' surface files      */
     struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
     int skin_count;
@@ -126,6 +129,9 @@ void tobi_snapshot_free_skins(tobi_run *run);
 /* Reads "velocity,pressure" of output.fields into run->field. */
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
 /* Names, folders and empty lists. */
+/* A field of the world's methods; key: of the scene, for the message. */
+tobi_status tobi_record_find_field(const tobi_run *run, const char *key, const char *name, size_t length,
+                                   tobi_record_field *field, tobi_error *err);
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err);
 /* The files of an output, then the lists including it. */
@@ -138,6 +144,13 @@ void tobi_series_free(tobi_run *run);
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_drawing_free(struct tobi_drawing *drawing);
+
+/* record_surface.c: the surface of fluids and solids of an output, which has its particles already. */
+/* Reads output.surface_fields. */
+tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err);
+tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_record_write_surface(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+void tobi_record_free_surface(struct tobi_record_surface *surface);
 
 /* record_writer.c: the thread. */
 tobi_status tobi_writer_start(tobi_run *run, tobi_error *err);

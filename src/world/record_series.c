@@ -33,19 +33,25 @@ static tobi_status find_field(const char *name, size_t length, tobi_record_field
     return TOBI_NOT_FOUND;
 }
 
+tobi_status tobi_record_find_field(const tobi_run *run, const char *key, const char *name, size_t length,
+                                   tobi_record_field *field, tobi_error *err)
+{
+    const char *known;
+    const tobi_world *w = run->world;
+    int has = 0;
+    for (int n = 0; n < w->system_count && find_field(name, length, field) == TOBI_OK; n++)
+        for (int k = 0; (known = tobi_method_field(w->system[n].method->name, k)); k++)
+            has |= known == field->name;
+    if (has) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s: there is no field '%.*s' of %s", key, (int)length, name,
+                     w->system[0].method->name);
+}
+
 /* A name twice counts once. */
 static tobi_status add_field(tobi_run *run, const char *name, size_t length, tobi_error *err)
 {
-    const char *known;
     tobi_record_field field = { 0 };
-    const tobi_world *w = run->world;
-    int has = 0;
-    for (int n = 0; n < w->system_count && find_field(name, length, &field) == TOBI_OK; n++)
-        for (int k = 0; (known = tobi_method_field(w->system[n].method->name, k)); k++)
-            has |= known == field.name;
-    if (!has)
-        return tobi_fail(err, TOBI_INVALID, "output.fields: there is no field '%.*s' of %s",
-                         (int)length, name, w->system[0].method->name);
+    TOBI_TRY(tobi_record_find_field(run, "output.fields", name, length, &field, err));
     bool again = strcmp(field.name, "position") == 0;      /* always written, as the points */
     for (int k = 0; k < run->field_count; k++) again |= run->field[k].name == field.name;
     if (again) return TOBI_OK;
@@ -82,12 +88,12 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
         TOBI_TRY(usual ? add_usual(run, err) : add_field(run, p, length, err));
         p += length;
     }
-    return TOBI_OK;
+    return tobi_record_surface_fields(run, err);
 }
 
 static bool is_taken(const tobi_run *run, int count, const char *name)
 {
-    static const char *const ours[] = { "all", "fluid", "bodies", "grid" };
+    static const char *const ours[] = { "all", "fluid", "bodies", "grid", "surface" };
     for (size_t k = 0; k < sizeof ours/sizeof *ours; k++)
         if (strcmp(ours[k], name) == 0) return true;
     for (int k = 0; k < count; k++)
@@ -126,6 +132,7 @@ static int series_at(const tobi_run *run, int number, series *out)
     const int has[TOBI_SETS] = { 1, bodies > 0, run->output.grid };
     for (int k = 0; k < TOBI_SETS; k++)
         if (has[k] && number-- == 0) return *out = (series){ set_names[k], set_names[k], "vtu" }, 1;
+    if (run->output.surface && number-- == 0) return *out = (series){ "surface", "surface", "vtp" }, 1;
     if (!run->output.surfaces || number >= bodies) return 0;
     *out = (series){ run->body_file[number], "surfaces", "vtp" };
     return 1;
@@ -147,6 +154,7 @@ tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err)
     if (run->output.frames) TOBI_TRY(tobi_record_make_dir(run->dir, "frames", err));
     if (run->output.ply) TOBI_TRY(tobi_record_make_dir(run->dir, "ply", err));
     if (run->output.grid) TOBI_TRY(tobi_record_make_dir(run->dir, "grid", err));
+    if (run->output.surface) TOBI_TRY(tobi_record_make_dir(run->dir, "surface", err));
     if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
     TOBI_TRY(tobi_record_make_dir(run->dir, "bodies", err));
     if (run->output.obj) TOBI_TRY(tobi_record_make_dir(run->dir, "obj", err));
@@ -302,6 +310,7 @@ tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error 
     for (int b = 0; o->surfaces && b < s->surfaces; b++)
         for (int kind = 0; kind < 2; kind++) TOBI_TRY(write_surface(run, s, b, kind, err));
     if (o->grid) TOBI_TRY(write_set(run, s, TOBI_SET_GRID, err));
+    if (o->surface) TOBI_TRY(tobi_record_write_surface(run, s, err));
     if (o->ply) TOBI_TRY(write_ply(run, s, err));
     for (int b = 0; o->obj && b < s->surfaces; b++) TOBI_TRY(write_surface(run, s, b, 2, err));
     if (o->frames) TOBI_TRY(tobi_drawing_write(run, s, err));

@@ -6,6 +6,7 @@
 #include "base/param.h"
 #include "world/record.h"
 #include "world/world.h"
+#include <math.h>
 
 /* By tobi_compression: none, zlib, LZ4, ASCII. Measured on the shipped scenes, as the constants below. */
 static const double packed[] = { 1, 0.6, 0.72, 1.9 };
@@ -41,6 +42,15 @@ static void add_surface(tobi_run_size *size, const tobi_output_def *o, const tob
     if (o->obj) add_files(size, 1, 36*v + 16*t);
 }
 
+/* The surface of a compact body of so many particles,
+    at the usual cell twice: nothing is known of its shape. */
+static double surface_bytes(const tobi_run *run, double particles)
+{
+    double vertices = 2*6*cbrt(particles)*cbrt(particles), each = 3*sizeof(double) + 16 + 2*20;
+    for (int k = 0; k < run->surface_fields; k++) each += 4*run->surface_field[k].components;
+    return vertices*each/pow(run->output.surface_cell/0.75, 2);
+}
+
 /* Files and bytes of one output, which is in so many lists besides that of all. */
 static tobi_run_size size_output(const tobi_run *run, double particles, double body_particles, int lists)
 {
@@ -52,6 +62,7 @@ static tobi_run_size size_output(const tobi_run *run, double particles, double b
     add_files(&size, bodies > 0, HEAD + pack*row_bytes(run, 1)*body_particles);
     for (int b = 0; b < bodies; b++) add_surface(&size, o, &run->world->sim.bodies[b].mesh);
     add_files(&size, o->grid, HEAD + pack*NODE*0.5*particles);
+    if (o->surface) add_files(&size, 1, 0.5*HEAD + pack*surface_bytes(run, particles));
     add_files(&size, o->ply, 12*particles);
     add_files(&size, o->frames, PICTURE);
     return size;
@@ -70,7 +81,7 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
     TOBI_TRY(tobi_world_estimate(world, &particles, &body_particles, &memory, err));
     const double every = output->checkpoint_interval;
     const int bodies = tobi_world_body_count(world), checkpoints = every > 0 && every < end ? 2 : 1,
-              lists = 1 + (bodies > 0) + output->grid + (output->surfaces ? bodies : 0),
+              lists = 1 + (bodies > 0) + output->grid + output->surface + (output->surfaces ? bodies : 0),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
     size->outputs = tobi_record_count(output->interval, end);
