@@ -47,8 +47,9 @@ static const tobi_param output_rows[] = {
     { .key = "surface.smoothing", INT, AT(tobi_output_def, surface_smoothing), .def = { 20 }, RANGE(0, 100),
       .unit = "rounds", .doc = "Rounds of smoothing; drops and threads are left as they are." },
     { .key = "surface.fields", TEXT, AT(tobi_output_def, surface_fields), .unit = "names",
-      .text = "velocity,pressure",
-          .doc = "Fields of the vertices of the surface: means of the particles around." },
+      .text = "usual",
+      .doc = "Fields of the surface's vertices, means of the particles around. usual, alone or among others, "
+             "stands for velocity and pressure." },
     { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), PLACE, .unit = "m",
       .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." },
     { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), PLACE, .unit = "m",

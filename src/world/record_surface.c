@@ -20,6 +20,16 @@ void tobi_record_free_surface(tobi_record_surface *s)
     free(s);
 }
 
+static tobi_status add_field(tobi_run *run, const char *name, size_t length, tobi_error *err)
+{
+    tobi_record_field field = { 0 };
+    TOBI_TRY(tobi_record_find_field(run, "output.surface.fields", name, length, &field, err));
+    for (int k = 0; k < run->surface_fields; k++)
+        if (run->surface_field[k].name == field.name) return TOBI_OK;
+    run->surface_field[run->surface_fields++] = field;
+    return TOBI_OK;
+}
+
 tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err)
 {
     run->surface_fields = 0;
@@ -32,11 +42,9 @@ tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err)
         p += strspn(p, ", ");
         const size_t length = strcspn(p, ", ");
         if (length == 0) break;
-        tobi_record_field field = { 0 };
-        TOBI_TRY(tobi_record_find_field(run, "output.surface.fields", p, length, &field, err));
-        for (int k = 0; k < run->surface_fields; k++)
-            if (run->surface_field[k].name == field.name) field.name = NULL;
-        if (field.name) run->surface_field[run->surface_fields++] = field;
+        const bool usual = length == 5 && memcmp(p, "usual", 5) == 0;
+        TOBI_TRY(add_field(run, usual ? "velocity" : p, usual ? 8 : length, err));
+        if (usual) TOBI_TRY(add_field(run, "pressure", 8, err));
         p += length;
     }
     return TOBI_OK;

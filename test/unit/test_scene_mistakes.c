@@ -563,6 +563,17 @@ static void files_that_are_none(void **state)
     assert_int_equal(tobi_report_count(NULL), 0);
 }
 
+static void surfaces_of_scenes(void **state)
+{
+    (void)state;
+    CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
+          "\"end_time\": 1, \"fluids\": [{ \"name\": \"w\", \"fill\": [{ \"box\":\n"
+          "{ \"min\": [0, 0], \"max\": [1, 0.5] } }] }],\n"
+          "\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
+          { "s.json:4:24: output.surface: ", "is of 3-D scenes only" },
+          { "s.json:4:58: output.surface.fields: ", "there is no field \"sped\"" });
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -573,7 +584,7 @@ int main(void)
         cmocka_unit_test(duplicates),
         cmocka_unit_test(domain_and_regions),
         cmocka_unit_test(bodies_and_motions),
-        cmocka_unit_test(rules_between_values),
+        cmocka_unit_test(rules_between_values), cmocka_unit_test(surfaces_of_scenes),
         cmocka_unit_test(references_to_nothing),
         cmocka_unit_test(names_are_no_formulas),
         cmocka_unit_test(motions_one_at_a_time),

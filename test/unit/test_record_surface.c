@@ -1,0 +1,74 @@
+/* Surfaces beside a run: files for each output, in the lists, the same for any number of threads; mistakes. */
+#include "record_rig.h"
+
+static void test_files(void **state)
+{
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    const char *const names[] = { "cube", "surface" };
+    write_file(at("cube.obj"), "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0 0 0.01\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    for (int threads = 1; threads <= 2; threads++) {
+        tobi_world *world = make_world(2, names);
+        tobi_output_def output = make_output();
+        output.surface = 1;
+        output.surface_fields = "usual,density,velocity";
+        tobi_run *run = create(world, &output, at("%d", threads), 0);
+        step_until(run, 0.008);
+        tobi_run_free(run);
+        tobi_world_destroy(world);
+    }
+    for (int k = 0; k < 3; k++) {
+        const char *one = at("1/surface/surface_%06d.vtp", k), *two = at("2/surface/surface_%06d.vtp", k);
+        assert_same_file(one, two);
+        size_t n;
+        char *text = read_file(one, &n);
+        assert_true(strstr(text, "velocity") && strstr(text, "pressure") && strstr(text, "density") && strstr(text, "normals"));
+        free(text);
+    }
+    size_t n;
+    char *list = read_file(at("1/surface.pvd"), &n), *all = read_file(at("1/all.pvd"), &n);
+    assert_non_null(strstr(list, "surface/surface_000002.vtp"));
+    assert_non_null(strstr(all, "surface/surface_000002.vtp"));
+    assert_true(exists(at("1/surface_2.pvd")));       /* of the body with that name */
+    free(list);
+    free(all);
+    char command[600];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    assert_int_equal(system(command), 0);
+}
+
+static void expect_refused(tobi_world *world, const tobi_output_def *output, const char *words)
+{
+    tobi_run *run = NULL;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_run_create(world, output, at("wrong"), 0, NULL, &run, &err), TOBI_INVALID);
+    if (!strstr(err.text, words)) fail_msg("'%s' without '%s'", err.text, words);
+}
+
+static void test_mistakes(void **state)
+{
+    (void)state;
+    tobi_output_def output = make_output();
+    output.surface = 1;
+    tobi_world *world = make_world(0, NULL);
+    output.surface_fields = "velocity,sped";
+    expect_refused(world, &output, "output.surface.fields: there is no field 'sped' of dfsph");
+    output.surface_fields = "velocity";
+    output.surface_cell = 0.01;
+    expect_refused(world, &output, "surface.cell");
+    tobi_world_destroy(world);
+    tobi_world_def flat = tobi_default_world_def();
+    tobi_error err = { 0 };
+    flat.dimension = 2, flat.spacing = 0.1;
+    for (int a = 0; a < 2; a++) flat.domain_min[a] = 0, flat.domain_max[a] = 1;
+    assert_int_equal(tobi_world_create(&flat, NULL, &world, &err), TOBI_OK);
+    output.surface_cell = 0.75;
+    expect_refused(world, &output, "a world of 2 dimensions has no surface");
+    tobi_world_destroy(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_mistakes) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
