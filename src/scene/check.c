@@ -365,7 +365,7 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
     check_names(scene, source, &fields, scene->output.fields);
-    if (scene->output.surface) check_names(scene, source, &of_surface, scene->output.surface_fields);
+    check_names(scene, source, &of_surface, scene->output.surface_fields);
 }
 
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
