@@ -568,7 +568,7 @@ static void surfaces_of_scenes(void **state)
     (void)state;
     CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
           "\"end_time\": 1,\n\n\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
-          { "s.json:1:1: fluids: is missing or empty", "" }, { "s.json:4:24: output.surface: ", "is of 3-D scenes only" },
+          { "s.json:1:1: fluids: is missing", "" }, { "s.json:4:24: output.surface: ", "is of 3-D scenes only" },
           { "s.json:4:51: output.surface.fields: ", "there is no field \"sped\"" });
 }
 
