@@ -22,7 +22,10 @@ enum {
     TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024
 };
 
-typedef enum tobi_smoothing { TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE } tobi_smoothing;
+typedef enum tobi_smoothing {
+    TOBI_KERNEL_WENDLAND_C2, TOBI_KERNEL_CUBIC_SPLINE, TOBI_KERNEL_QUARTIC_SPLINE, TOBI_KERNEL_QUINTIC_SPLINE,
+    TOBI_KERNEL_WENDLAND_C4, TOBI_KERNEL_WENDLAND_C6
+} tobi_smoothing;
 typedef enum tobi_friction { TOBI_SLIP, TOBI_NO_SLIP } tobi_friction;
 typedef enum tobi_compression {
     TOBI_COMPRESS_NONE,

@@ -9,28 +9,64 @@
 
 static const double PI = 3.14159265358979323846;
 
+/* Of a shape in 2-D and 3-D: W = a/(b pi h^dimension) shape; -dW/dr / r = W/shape steepness/h^powers
+   falloff. wide: support over that of wendland-c2 at the same second moment in 3-D (Dehnen & Aly 2012). */
+static const struct { double a[2], b[2], steepness; int powers; double wide; } table[TOBI_SHAPES] = {
+    [TOBI_SHAPE_WENDLAND] = { { 7, 21 }, { 1, 2 }, 20, 2, 1 },
+    [TOBI_SHAPE_CUBIC] = { { 40, 8 }, { 7, 1 }, 6, 1, 1 },
+    [TOBI_SHAPE_QUARTIC] = { { 8625, 2875 }, { 1199, 256 }, 250/23.0, 1, 1.05 },
+    [TOBI_SHAPE_QUINTIC] = { { 2079, 297 }, { 239, 20 }, 405/22.0, 1, 1.15 },
+    [TOBI_SHAPE_WENDLAND_C4] = { { 9, 495 }, { 1, 32 }, 56/3.0, 2, 1.15 },
+    [TOBI_SHAPE_WENDLAND_C6] = { { 78, 1365 }, { 7, 64 }, 22, 2, 1.25 },
+};
+
 /* Integral normalisation of the shape, 1/m^dim. */
 static double norm(int shape, int dimension, double h)
 {
-    if (shape == TOBI_SHAPE_WENDLAND)
-        return dimension == 3 ? 21/(2*PI*h*h*h) : 7/(PI*h*h);
-    return dimension == 3 ? 8/(PI*h*h*h) : 40/(7*PI*h*h);
+    const double a = table[shape].a[dimension - 2], b = table[shape].b[dimension - 2];
+    return dimension == 3 ? a/(b*PI*h*h*h) : a/(b*PI*h*h);
 }
+
+static double steepness(int shape, double h)
+{
+    return table[shape].steepness/(table[shape].powers == 2 ? h*h : h);
+}
+
+double tobi_smoothing_support(int shape, double support) { return table[shape].wide*support; }
+
+static double positive(double x) { return x > 0 ? x : 0; }
 
 double tobi_smoothing_w(int shape, int dimension, double h, double r)
 {
-    double q = r/h, t = 1 - q, u = 0.5 - q;
+    const double q = r/h, t = 1 - q, u = positive(0.5 - q), n = norm(shape, dimension, h);
     if (q >= 1) return 0;
-    if (shape == TOBI_SHAPE_WENDLAND) return norm(shape, dimension, h)*t*t*t*t*(1 + 4*q);
-    return norm(shape, dimension, h)*(2*t*t*t - (u > 0 ? 8*u*u*u : 0));
+    switch (shape) {
+    case TOBI_SHAPE_WENDLAND: return n*t*t*t*t*(1 + 4*q);
+    case TOBI_SHAPE_CUBIC: return n*(2*t*t*t - 8*u*u*u);
+    case TOBI_SHAPE_QUARTIC:
+        return n*125/46*(pow(t, 4) - 5*pow(positive(0.6 - q), 4) + 10*pow(positive(0.2 - q), 4));
+    case TOBI_SHAPE_QUINTIC:
+        return n*81/22*(pow(t, 5) - 6*pow(positive(2/3.0 - q), 5) + 15*pow(positive(1/3.0 - q), 5));
+    case TOBI_SHAPE_WENDLAND_C4: return n*pow(t, 6)*(1 + 6*q + 35/3.0*q*q);
+    default: return n*pow(t, 8)*(1 + 8*q + 25*q*q + 32*q*q*q);
+    }
 }
 
 double tobi_smoothing_f(int shape, int dimension, double h, double r)
 {
-    double q = r/h, t = 1 - q, u = 0.5 - q;
+    const double q = r/h, t = 1 - q, u = positive(0.5 - q), n = norm(shape, dimension, h),
+                 k = steepness(shape, h), over = r > 0 ? r : 1e-30;
     if (q >= 1) return 0;
-    if (shape == TOBI_SHAPE_WENDLAND) return norm(shape, dimension, h)*20/(h*h)*t*t*t;
-    return norm(shape, dimension, h)*6/h*(t*t - (u > 0 ? 4*u*u : 0))/(r > 0 ? r : 1e-30);
+    switch (shape) {
+    case TOBI_SHAPE_WENDLAND: return n*20/(h*h)*t*t*t;
+    case TOBI_SHAPE_CUBIC: return n*6/h*(t*t - 4*u*u)/over;
+    case TOBI_SHAPE_QUARTIC:
+        return n*k*(pow(t, 3) - 5*pow(positive(0.6 - q), 3) + 10*pow(positive(0.2 - q), 3))/over;
+    case TOBI_SHAPE_QUINTIC:
+        return n*k*(pow(t, 4) - 6*pow(positive(2/3.0 - q), 4) + 15*pow(positive(1/3.0 - q), 4))/over;
+    case TOBI_SHAPE_WENDLAND_C4: return n*k*pow(t, 5)*(1 + 5*q);
+    default: return n*k*pow(t, 7)*(1 + 7*q + 16*q*q);
+    }
 }
 
 /* Sums over lattice neighbours: kernel, that of those with x > 0, second moment xx, gradient of those with
@@ -110,6 +146,6 @@ void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, 
     c->rate = s.rate*c->slope_correction;
     double n = norm(shape, dimension, h)*c->volume;
     c->weight = n*c->weight_correction;
-    c->slope = n*(shape == TOBI_SHAPE_WENDLAND ? 20/(h*h) : 6/h)*c->slope_correction;
+    c->slope = n*steepness(shape, h)*c->slope_correction;
     fill_plane(c, s.slope_half, s.behind*c->weight_correction);
 }

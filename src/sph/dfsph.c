@@ -78,7 +78,8 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
 {
     const tobi_dfsph_def *d = def;
     *shape = d->kernel;
-    *support = d->support > 0 ? d->support : driven ? SHIFTING_SUPPORT : 2;
+    *support = d->support > 0 ? d->support
+               : tobi_smoothing_support(d->kernel, driven ? SHIFTING_SUPPORT : 2);
 }
 
 static int reaches_far(const tobi_system *s)

@@ -12,26 +12,26 @@
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
 
-/* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one. */
+/* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one: two shapes
+   have loops of their own, the others share one and are told apart in it, eight neighbours at a time. */
+#define PAIR_OF(K, NAME, SHAPE)                                                                     \
+    typedef K##_acc K##_##NAME##_acc;                                                               \
+    TOBI_FN void K##_##NAME##_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \
+    TOBI_FN void K##_##NAME##_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, K##_acc *a)    \
+    { K##_pair(v, i, n, a, SHAPE); }                                                                \
+    TOBI_FN void K##_##NAME##_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)           \
+    { K##_finish(v, i, a, t); }                                                                     \
+    TOBI_PAIR_LOOP(K##_##NAME, sph_view, run_##K##_##NAME)
 #define PAIR(K, SUMS, MAXIMA, DOC)                                                                  \
-    typedef K##_acc K##_wendland_acc, K##_cubic_acc;                                                \
-    TOBI_FN void K##_wendland_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \
-    TOBI_FN void K##_cubic_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); }  \
-    TOBI_FN void K##_wendland_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, K##_acc *a) \
-    { K##_pair(v, i, n, a, TOBI_SHAPE_WENDLAND); }                                                  \
-    TOBI_FN void K##_cubic_pair(const sph_view *v, int64_t i, const tobi_neighbors *n, K##_acc *a)  \
-    { K##_pair(v, i, n, a, TOBI_SHAPE_CUBIC); }                                                     \
-    TOBI_FN void K##_wendland_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)            \
-    { K##_finish(v, i, a, t); }                                                                     \
-    TOBI_FN void K##_cubic_finish(const sph_view *v, int64_t i, K##_acc *a, double *t)               \
-    { K##_finish(v, i, a, t); }                                                                     \
-    TOBI_PAIR_LOOP(K##_wendland, sph_view, run_##K##_wendland)                                      \
-    TOBI_PAIR_LOOP(K##_cubic, sph_view, run_##K##_cubic)
+    PAIR_OF(K, wendland, TOBI_SHAPE_WENDLAND)                                                       \
+    PAIR_OF(K, cubic, TOBI_SHAPE_CUBIC)                                                             \
+    PAIR_OF(K, other, v->shape)
 #define FOR(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, sph_view, run_##K)
 #define COUPLE(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_couple_view, run_##K)
 #define IMAGE(K, SUMS, MAXIMA, DOC)                                                                 \
     ISPH_LOOP(K, TOBI_SHAPE_WENDLAND, run_##K##_wendland)                                           \
-    ISPH_LOOP(K, TOBI_SHAPE_CUBIC, run_##K##_cubic)
+    ISPH_LOOP(K, TOBI_SHAPE_CUBIC, run_##K##_cubic)                                                 \
+    ISPH_LOOP(K, v->shape, run_##K##_other)
 #define ISPH(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, isph_view, run_##K)
 #include "sph/kernels.def"
 #undef PAIR
@@ -40,7 +40,7 @@
 #undef IMAGE
 #undef ISPH
 
-const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
+const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
     {
 #define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_wendland, SUMS, MAXIMA},
 #define FOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
@@ -52,6 +52,11 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[2] = {
     },
     {
 #define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_cubic, SUMS, MAXIMA},
+#include "sph/kernels.def"
+#undef PAIR
+    },
+    {
+#define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_other, SUMS, MAXIMA},
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR

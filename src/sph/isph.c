@@ -43,7 +43,7 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
     const tobi_isph_def *d = def;
     (void)driven;
     *shape = d->kernel;
-    *support = d->support > 0 ? d->support : 2.5;
+    *support = d->support > 0 ? d->support : tobi_smoothing_support(d->kernel, 2.5);
 }
 
 static tobi_status create(tobi_system *s, tobi_error *err)

@@ -52,6 +52,7 @@ void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
     m->exec = &s->sim->exec;
     m->def = def;
     v->dimension = c->dimension;
+    v->shape = c->shape;
     m->kernel = sph_kernels_for(s->sim->exec.isa, c->shape);
     v->inverse_h = (float)(1/c->h);
     v->spacing = c->spacing;

@@ -23,6 +23,7 @@ typedef struct isph_coupling { double f[6]; } isph_coupling;
 typedef struct isph_view {
     int64_t count;
     int dimension;
+    int shape;                       /* TOBI_SHAPE_*                                                */
     int open;                        /* 1: there may be a free surface                              */
     double spacing, h, volume;       /* m, m, m3                                                    */
     double weight, slope;            /* core/smoothing.h                                            */

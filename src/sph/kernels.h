@@ -20,4 +20,8 @@ typedef struct sph_kernels {
 /* shape: TOBI_SHAPE_*; isa: exec's level. Static data, never NULL. */
 const sph_kernels *sph_kernels_for(int isa, int shape);
 
-extern const sph_kernels sph_kernels_v2[2], sph_kernels_v3[2], sph_kernels_v4[2];
+/* Two smoothing kernels have a table each; the others share the last one, which reads the view's shape. */
+enum { SPH_TABLES = 3 };
+static inline int sph_table_of(int shape) { return shape < SPH_TABLES - 1 ? shape : SPH_TABLES - 1; }
+
+extern const sph_kernels sph_kernels_v2[SPH_TABLES], sph_kernels_v3[SPH_TABLES], sph_kernels_v4[SPH_TABLES];

@@ -80,7 +80,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list;
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
-    v->h = (float)c->h; v->inverse_h = (float)(1/c->h);
+    v->h = (float)c->h; v->inverse_h = (float)(1/c->h); v->shape = c->shape;
     v->weight = (float)c->weight; v->slope = (float)c->slope;
     v->wall_share = (float)c->wall_share; v->wall_lattice = (float)c->wall_lattice;
     v->spacing = (float)c->spacing; v->volume = (float)c->volume;

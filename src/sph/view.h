@@ -38,6 +38,7 @@ typedef struct sph_view {
     /* constants of the discretisation */
     float from_fixed[3];
     float h, inverse_h, weight, slope;        /* see core/smoothing.h */
+    int   shape;                              /* TOBI_SHAPE_*                                */
     float wall_share, wall_lattice;           /* eq. (5b) */
     float spacing, volume;
     int   dimension;

@@ -39,7 +39,7 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
     const tobi_wcsph_def *d = def;
     (void)driven;
     *shape = d->kernel;
-    *support = d->support > 0 ? d->support : 2;
+    *support = d->support > 0 ? d->support : tobi_smoothing_support(d->kernel, 2);
 }
 
 static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)

@@ -1,6 +1,7 @@
 /* The SPH kernels once more, in double, from the equations of docs/theory: every pair of particles is
    looked at, there are no lists, no records, no tables of production code. Slow on purpose. */
 #pragma once
+#include "kernel/smoothing_oracle.h"
 #include "sph/view.h"
 #include <math.h>
 #include <stdlib.h>
@@ -44,27 +45,8 @@ typedef struct oracle {
     tobi_reference reference, reference_before;
 } oracle;
 
-/* Wendland (1995) C2 and the cubic spline of Monaghan (1992), support h, integral 1. */
-static double oracle_w(const oracle *o, double r)
-{
-    double q = r/o->h, h = o->h, pi = acos(-1);
-    if (q >= 1) return 0;
-    if (o->shape == TOBI_SHAPE_WENDLAND)
-        return (o->dimension == 3 ? 21/(2*pi*h*h*h) : 7/(pi*h*h))*pow(1 - q, 4)*(1 + 4*q);
-    double n = o->dimension == 3 ? 8/(pi*h*h*h) : 40/(7*pi*h*h);
-    return q <= 0.5 ? n*(6*(q*q*q - q*q) + 1) : n*2*pow(1 - q, 3);
-}
-
-/* -W'(r)/r */
-static double oracle_f(const oracle *o, double r)
-{
-    double q = r/o->h, h = o->h, pi = acos(-1);
-    if (q >= 1) return 0;
-    if (o->shape == TOBI_SHAPE_WENDLAND)
-        return (o->dimension == 3 ? 21/(2*pi*h*h*h) : 7/(pi*h*h))*20*pow(1 - q, 3)/(h*h);
-    double n = o->dimension == 3 ? 8/(pi*h*h*h) : 40/(7*pi*h*h);
-    return n*(q <= 0.5 ? 6*(2 - 3*q)/(h*h) : 6*(1 - q)*(1 - q)/(h*r));
-}
+static double oracle_w(const oracle *o, double r) { return kernel_w(o->shape, o->dimension, o->h, r); }
+static double oracle_f(const oracle *o, double r) { return kernel_f(o->shape, o->dimension, o->h, r); }
 
 /* Integral of W over the plane (line in 2-D) at distance s, Simpson. */
 static double plane_integral(const oracle *o, double s)

@@ -68,7 +68,7 @@ static void rig_bind(rig *g, const rig_case *k, const double rho[2], const doubl
     v->pressure = f->pressure; v->fluid = p->fluid;
     v->list = g->cells.list; v->list_start = g->cells.list_start; v->list_groups = g->cells.list_groups;
     for (int a = 0; a < 3; a++) v->from_fixed[a] = g->box.from_fixed[a];
-    v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h);
+    v->h = (float)g->c.h; v->inverse_h = (float)(1/g->c.h); v->shape = k->shape;
     v->weight = (float)g->c.weight; v->slope = (float)g->c.slope;
     v->wall_share = (float)g->c.wall_share; v->wall_lattice = (float)g->c.wall_lattice;
     v->spacing = (float)g->c.spacing; v->volume = (float)g->c.volume;

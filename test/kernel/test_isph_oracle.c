@@ -5,6 +5,7 @@
 #define TOBI_ISA scalar
 #include "sph/isa_sph.c"
 #include "core/smoothing.h"
+#include "kernel/smoothing_oracle.h"
 #include "unit/poisson_rig.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,6 +17,7 @@ static poisson pool;
 static isph_view view;
 static const sph_kernels *kernel;
 static int shape;
+static tobi_smoothing_constants scaled;
 
 /* The arrays of the view that kernels write, or that this test fills. */
 #define ARRAYS(X)                                                                                   \
@@ -61,14 +63,14 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     const int n[3] = {12, dimension == 2 ? 14 : 9, 10};
     if (poisson_fill(&pool, dimension, n, closed, 2) != TOBI_OK) fail();
     const int64_t count = pool.p.count;
-    tobi_smoothing_constants c;
+    const tobi_smoothing_constants *c = &scaled;
     shape = smoothing;
     bodies = body;
-    tobi_smoothing_init(&c, shape, dimension, pool.d, 2.5);
+    tobi_smoothing_init(&scaled, shape, dimension, pool.d, 2.5);
     kernel = sph_kernels_for(pool.exec.isa, shape);
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .spacing = pool.d,
-                       .h = pool.h, .volume = c.volume, .weight = c.weight, .slope = c.slope,
-                       .full = 2*c.rate, .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3,
+                       .h = pool.h, .volume = c->volume, .weight = c->weight, .slope = c->slope,
+                       .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000, .dt = 1e-3,
                        .motion_dt = 2e-3,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5};
     memcpy(view.size, pool.box.size, sizeof view.size);
@@ -129,16 +131,15 @@ typedef struct sums {
            gradient[3], force[3], core[3], normal[3], slope[9];
 } sums;
 
+/* As scaled on the lattice. */
 static double falloff(double r)
 {
-    const double q = r/view.h, t = 1 - q, u = q < 0.5 ? 0.5 - q : 0;
-    return view.slope*(shape == TOBI_SHAPE_WENDLAND ? t*t*t : (t*t - 4*u*u)/(r + 1e-30));
+    return view.volume*scaled.slope_correction*kernel_f(shape, view.dimension, view.h, r + 1e-30);
 }
 
 static double weight(double r)
 {
-    const double q = r/view.h, t = 1 - q, u = q < 0.5 ? 0.5 - q : 0;
-    return view.weight*(shape == TOBI_SHAPE_WENDLAND ? t*t*t*t*(1 + 4*q) : 2*t*t*t - 8*u*u*u);
+    return view.volume*scaled.weight_correction*kernel_w(shape, view.dimension, view.h, r);
 }
 
 /* Velocity of an image: its part across a wall is mirrored, less what gravity gave and its wall took. */
@@ -188,7 +189,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
 static sums sum_pairs(int64_t i)
 {
     const int dim = view.dimension;
-    sums s = {.concentration = view.weight};
+    sums s = {.concentration = weight(0)};
     for (int64_t j = 0; j < view.count; j++)
         for (int code = 0; code < (dim == 3 ? 27 : 9); code++) {
             image m = {.j = j, .self = i == j && code == 0};
@@ -400,9 +401,9 @@ static void prepare(int k)
 
 static void follow_the_equations(int scalar)
 {
-    for (int k = 0; k < 16; k++) {
-        open_pool(2 + k%2, k/2%2, k/4%2 ? TOBI_SHAPE_CUBIC : TOBI_SHAPE_WENDLAND, k/8);
-        if (scalar) kernel = &sph_kernels_scalar[shape];
+    for (int k = 0; k < 8*TOBI_SHAPES; k++) {
+        open_pool(2 + k%2, k/2%2, k/4%TOBI_SHAPES, k/4/TOBI_SHAPES);
+        if (scalar) kernel = &sph_kernels_scalar[sph_table_of(shape)];
         for (int n = 0; n < KERNELS; n++) {
             double t[TOBI_TOTALS], force[3] = {0}, div = 0;
             check c = {kernels[n].name, 0};
@@ -492,8 +493,8 @@ static void walk(const sph_kernels *other)
 static void instruction_sets_give_the_same_bits(void **state)
 {
     (void)state;
-    for (int k = 0; k < 8; k++) {
-        open_pool(2 + k%2, 0, k/2%2, k/4);
+    for (int k = 0; k < 4*TOBI_SHAPES; k++) {
+        open_pool(2 + k%2, 0, k/2%TOBI_SHAPES, k/2/TOBI_SHAPES);
         for (int isa = 2; isa < pool.exec.isa; isa++) walk(sph_kernels_for(isa, shape));
         close_pool();
     }

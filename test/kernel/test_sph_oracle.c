@@ -81,6 +81,10 @@ static const rig_case cases[] = {
     {2, TOBI_SHAPE_CUBIC,    2.0, {0, 0, 0}, 0, 1, 0.2, 0, 2},
     {2, TOBI_SHAPE_WENDLAND, 2.5, {0, 0, 0}, 1, 1, 0.2, 0, 1},
     {3, TOBI_SHAPE_WENDLAND, 2.5, {0, 0, 0}, 1, 1, 0.2, 0, 1},
+    {2, TOBI_SHAPE_QUARTIC,  2.5, {0, 0, 0}, 0, 2, 0.2, 0, 0},
+    {3, TOBI_SHAPE_QUINTIC,  2.6, {0, 0, 0}, 0, 1, 0.2, 0, 2},
+    {2, TOBI_SHAPE_WENDLAND_C4, 3.0, {0, 0, 0}, 1, 1, 0.2, 0, 1},
+    {3, TOBI_SHAPE_WENDLAND_C6, 2.6, {1, 1, 0}, 0, 1, 0.2, 5, 0},
 };
 enum { CASES = sizeof cases/sizeof *cases };
 
@@ -185,7 +189,7 @@ static void kernels_follow_the_equations(void **state)
 static void read_scalar(rig *g, int k, const row *in, row *out, double *totals)
 {
     (void)in;
-    const sph_kernels *table = &sph_kernels_scalar[g->o.shape];
+    const sph_kernels *table = &sph_kernels_scalar[sph_table_of(g->o.shape)];
     tobi_launch(&g->exec, kernel_at(table, k), &g->view, 0, g->p.count, totals);
     rig_get(g, out);
 }
@@ -470,21 +474,24 @@ static void walls_brake_by_their_law(void **state)
 static void walls_hold_a_uniform_pressure(void **state)
 {
     (void)state;
-    for (int n = 0; n < 4; n++) {
-        rig_case k = {2 + n/2, n%2, 2.0, {0, 0, 0}, 1, 1, 0, 0, 0};
+    for (int n = 0; n < 2*TOBI_SHAPES; n++) {
+        rig_case k = {2 + n%2, n/2, 2.0, {0, 0, 0}, 1, 1, 0, 0, 0};
         wall_errors e;
         measure_walls(&k, &e);
-        printf("%d-D %-8s", k.dimension, k.shape ? "cubic" : "wendland");
+        printf("%d-D shape %d", k.dimension, k.shape);
         for (int w = 0; w <= k.dimension; w++)
             printf("  %d walls: density %.3f accel %.3f surface %d;", w, e.density[w], e.accel[w],
                    e.open[w]);
         printf("\n");
         /* One wall: exact, eq. (5b). Along edges the fractions multiply, and (5b) takes them for a plane
-           that is nearer; particles there count as a free surface. */
+           that is nearer; particles there count as a free surface. Kernels that fall off sooner see less of
+           such an edge. */
+        const double more = k.shape > TOBI_SHAPE_CUBIC ? 2 : 1;
         assert_int_equal(e.open[0] + e.open[1], 0);
         assert_true(e.density[0] < 0.006 && e.density[1] < 0.006);
-        assert_true(e.density[2] < 0.06 && e.density[3] < 0.1);
-        assert_true(e.accel[0] < 0.06 && e.accel[1] < 0.04 && e.accel[2] < 0.08 && e.accel[3] < 0.14);
+        assert_true(e.density[2] < 0.06*more && e.density[3] < 0.1*more);
+        assert_true(e.accel[0] < 0.06 && e.accel[1] < 0.04);
+        assert_true(e.accel[2] < 0.08*more && e.accel[3] < 0.14*more);
     }
 }
 
