@@ -12,8 +12,8 @@
 #define JOIN_(a, b) a##_##b
 #define JOIN(a, b) JOIN_(a, b)
 
-/* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one: two shapes
-   have loops of their own, the others share one and are told apart in it, eight neighbours at a time. */
+/* The pair functions take the smoothing shape as a constant, so that each loop is compiled for one: two
+   shapes have loops of their own, the others share one and are told apart in it, eight pairs at a time. */
 #define PAIR_OF(K, NAME, SHAPE)                                                                     \
     typedef K##_acc K##_##NAME##_acc;                                                               \
     TOBI_FN void K##_##NAME##_start(const sph_view *v, int64_t i, K##_acc *a) { K##_start(v, i, a); } \

@@ -11,9 +11,9 @@
       .doc = "Smoothing kernel. The first two are the fastest." },                    \
     { .key = "support", REAL, AT(type_, support), RANGE(2, 4), .unit = "spacings",      \
       .text = "automatic",                                                            \
-      .doc = "Support radius of the kernel (CSML): 2 is fast, 3 to 4 is more accurate. " \
-             "Automatic is 2; dfsph takes 2.5 where liquid fills the domain and a body or a side moves, isph " \
-             "always; kernels that fall off sooner get up to 1.25 times that." }
+      .doc = "Support radius of the kernel (CSML): 2 is fast, 3 to 4 is more accurate. Automatic is 2; "    \
+             "dfsph takes 2.5 where liquid fills the domain and a body or a side moves, isph always; "      \
+             "kernels that fall off sooner get up to 1.25 times that." }
 
 static const tobi_param dfsph_rows[] = {
     SMOOTHING(tobi_dfsph_def),

@@ -8,7 +8,8 @@ static double oracle_power(double x, int n) { return x > 0 ? pow(x, n) : 0; }
 /* B-splines as Price (2012) writes them, over x = k q, where the support is k of their own lengths. */
 static double oracle_spline(int order, double x)
 {
-    if (order == 4) return oracle_power(2.5 - x, 4) - 5*oracle_power(1.5 - x, 4) + 10*oracle_power(0.5 - x, 4);
+    if (order == 4)
+        return oracle_power(2.5 - x, 4) - 5*oracle_power(1.5 - x, 4) + 10*oracle_power(0.5 - x, 4);
     return oracle_power(3 - x, 5) - 6*oracle_power(2 - x, 5) + 15*oracle_power(1 - x, 5);
 }
 
