@@ -38,6 +38,7 @@ typedef struct tobi_picture {
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
     const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
+    const int32_t *group;              /* surfaces of solids: one around each group; NULL = all are one */
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */

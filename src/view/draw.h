@@ -74,6 +74,7 @@ typedef struct tile_kernels {
     tobi_range depth_tiles;      /* nearness of what is opaque, of a shadow's map                  */
     tobi_range opaque_tiles;
     tobi_range water_tiles;
+    tobi_range drop_tiles;
     tobi_range sum_nodes;        /* of isosurface.c                                                */
     tobi_range sum_colors;
 } tile_kernels;
@@ -181,8 +182,8 @@ typedef struct surface_request {
     vec     plain;
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
 } surface_request;
-/* *around: 1 if the eye is inside of the surface. */
-tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, bool *around,
+/* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
+tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r, bool *around,
                              tobi_error *err);
 
 enum { BLOCK_EDGE = 8, BLOCK_NODES = BLOCK_EDGE*BLOCK_EDGE*BLOCK_EDGE };

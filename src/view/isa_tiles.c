@@ -152,8 +152,7 @@ static float add_pixel(const painting *p, const layer *l, const square *q, int p
         add_point(c, p->g, b, part[m].item, part[m].x*one, part[m].y*one);
         b->pixel[i] = k;
         b->weight[i] = weight;
-        const bool drop = part[m].item >= p->g->faces;
-        b->thickness[i] = drop ? 1.3f*p->g->balls[part[m].item - p->g->faces].radius : above(thickness);
+        b->thickness[i] = above(thickness);
         rest -= weight;
     }
     if (n > 0) p->out[k] = vec_scale(above(rest), c->color[k]);
@@ -216,12 +215,8 @@ static void draw_water(const painting *p, int64_t tile, const square *q, layer *
     memset(thickness, 0, TILE*TILE*sizeof *thickness);
     for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++) {
         const int32_t item = p->t->item[i];
-        face_setup f;
-        if (item >= g->faces) {
-            fill_ball(&c->camera, &g->balls[item - g->faces], q, item, l->nearness, l->item);
-            continue;
-        }
         const int32_t *v = g->face[item];
+        face_setup f;
         if (!set_up_face(&f, &g->at[v[0]], &g->at[v[1]], &g->at[v[2]])) continue;
         if (f.facing > 0 || c->submerged) fill_face(&f, q, item, l->nearness, l->item);
         add_face_depth(&f, &pixels, c->camera.orthographic, solid, thickness);
@@ -254,6 +249,44 @@ static void water_tiles(const void *view, int64_t begin, int64_t end)
     batch b = { .count = 0 };
     float thickness[TILE*TILE];
     for (int64_t k = begin; k < end; k++) paint_water(view, k, &l, thickness, &b);
+}
+
+/* Drops in front of all else. */
+static void paint_drops(const painting *p, int64_t tile, layer *l, batch *b)
+{
+    canvas *c = p->c;
+    const square q = tile_square(c, p->t, tile);
+    int across, down;
+    if (p->t->first[tile] == p->t->first[tile + 1]) return;
+    tile_pixels(c, &q, &across, &down);
+    clear_layer(l, &q);
+    if (c->covered[tile])
+        memcpy(l->nearness, c->nearness + tile*q.side*q.side, (size_t)(q.side*q.side)*sizeof *l->nearness);
+    draw_items(p, tile, &q, l);
+    for (int py = 0; py < down; py++)
+        for (int px = 0; px < across; px++) {
+            const int64_t k = ((int64_t)q.top + py)*c->width + (int64_t)q.left + px;
+            const vec before = c->color[k];
+            const int count = b->count;
+            const float z = add_pixel(p, l, &q, px, py, false, 0, b);
+            if (z >= c->front[k]) {      /* none, or under water */
+                b->count = count;
+                c->color[k] = before;
+                continue;
+            }
+            c->front[k] = z;
+            for (int i = count; i < b->count; i++)
+                b->under_r[i] = before.x, b->under_g[i] = before.y, b->under_b[i] = before.z;
+            if (is_full(b)) shade_drops(c, p->out, b);
+        }
+    shade_drops(c, p->out, b);
+}
+
+static void drop_tiles(const void *view, int64_t begin, int64_t end)
+{
+    layer l;
+    batch b = { .count = 0 };
+    for (int64_t k = begin; k < end; k++) paint_drops(view, k, &l, &b);
 }
 
 /* The map of a shadow: c->depth, whose rows are as long as the map; and the range of each of its blocks. */
@@ -342,5 +375,5 @@ static void sum_colors(const void *view, int64_t begin, int64_t end)
         if (v->colored[b] >= 0) sum_block_colors(v, b);
 }
 
-const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, sum_nodes,
+const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, drop_tiles, sum_nodes,
                                                     sum_colors };

@@ -425,39 +425,78 @@ static vec color_at(const grid *s, const float point[3], vec otherwise)
     return sum[3] > 0 ? (vec){ sum[0]/sum[3], sum[1]/sum[3], sum[2]/sum[3] } : otherwise;
 }
 
+/* The wall that a quad lies in: its axis, or -1. */
+static int find_wall(const grid *s, const int32_t corner[4])
+{
+    for (int k = 0; k < 3; k++) {
+        int in = 0;
+        for (int n = 0; n < 4; n++)
+            in += (s->locked[corner[n]] >> k & 1) && s->point[corner[n]][k] == s->point[corner[0]][k];
+        if (in == 4) return k;
+    }
+    return -1;
+}
+
+/* A vertex again, for faces in a wall: the surface is sharp there. */
+static int32_t copy_to_wall(geometry *g, int32_t (*copy)[3], int64_t first, int32_t corner, int axis, vec normal)
+{
+    int32_t *to = &copy[corner][axis];
+    if (*to < 0) {
+        *to = (int32_t)g->vertices++;
+        g->place[*to] = g->place[first + corner];
+        g->color[*to] = g->color[first + corner];
+        g->normal[*to] = normal;
+    }
+    return *to;
+}
+
+static void add_vertices(const grid *s, const surface_request *r, geometry *g)
+{
+    const camera *c = &s->c->camera;
+    const vec base = view_point(c, s->low);
+    vec axis[3];
+    for (int k = 0; k < 3; k++)
+        axis[k] = vec_scale((float)s->edge, (vec){ (float)c->right[k], (float)c->up[k], (float)c->forward[k] });
+    for (int64_t v = 0; v < s->vertex[s->blocks]; v++) {
+        const float *p = s->point[v];
+        const int64_t i = g->vertices++;
+        g->place[i] = vec_add(vec_add(base, vec_scale(p[0], axis[0])),
+                              vec_add(vec_scale(p[1], axis[1]), vec_scale(p[2], axis[2])));
+        g->normal[i] = (vec){ 0, 0, 0 };
+        g->color[i] = r->color ? color_at(s, p, r->plain) : r->plain;
+    }
+}
+
 /* From cells to view space, with normals from the faces around. */
 static bool add_faces(const grid *s, const surface_request *r, geometry *g)
 {
     const int64_t vertices = s->vertex[s->blocks], quads = s->quad[s->blocks], first = g->vertices;
-    if (!view_reserve(g, vertices, 2*quads, 0)) return false;
-    const camera *c = &s->c->camera;
-    const vec base = view_point(c, s->low);
-    const float e = (float)s->edge;
-    for (int64_t v = 0; v < vertices; v++) {
-        const float *p = s->point[v];
-        vec sum = { 0, 0, 0 };
-        for (int k = 0; k < 3; k++)
-            sum = vec_add(sum, vec_scale(p[k], (vec){ (float)c->right[k], (float)c->up[k],
-                                                      (float)c->forward[k] }));
-        g->place[first + v] = vec_add(base, vec_scale(e, sum));
-        g->normal[first + v] = (vec){ 0, 0, 0 };
-        g->color[first + v] = r->color ? color_at(s, p, r->plain) : r->plain;
+    int32_t (*copy)[3] = malloc(((size_t)vertices + 1)*sizeof *copy);
+    if (!copy || !view_reserve(g, 4*vertices, 2*quads, 0)) {
+        free(copy);
+        return false;
     }
-    g->vertices += vertices;
+    memset(copy, -1, (size_t)vertices*sizeof *copy);
+    add_vertices(s, r, g);
     for (int64_t q = 0; q < quads; q++) {
+        const int32_t *corner = s->corner[q];
+        const int wall = find_wall(s, corner);
         int32_t i[4];
-        for (int k = 0; k < 4; k++) i[k] = (int32_t)(first + s->corner[q][k]);
-        const vec *p = g->place, a = vec_sub(p[i[2]], p[i[0]]), b = vec_sub(p[i[3]], p[i[1]]),
-            n = vec_cross(a, b);
-        /* the shorter diagonal parts the quad */
-        const int from = vec_dot(a, a) <= vec_dot(b, b) ? 0 : 1;
-        for (int k = 0; k < 4; k++) g->normal[i[k]] = vec_add(g->normal[i[k]], n);
+        for (int k = 0; k < 4; k++) i[k] = (int32_t)(first + corner[k]);
+        const vec *p = g->place, a = vec_sub(p[i[2]], p[i[0]]), b = vec_sub(p[i[3]], p[i[1]]);
+        const vec n = vec_cross(a, b);
+        const int from = vec_dot(a, a) <= vec_dot(b, b) ? 0 : 1;      /* the shorter diagonal parts it */
+        for (int k = 0; k < 4; k++) {
+            if (wall < 0) g->normal[i[k]] = vec_add(g->normal[i[k]], n);
+            else i[k] = copy_to_wall(g, copy, first, corner[k], wall, vec_unit(n));
+        }
         for (int t = 0; t < 2; t++) {
             int32_t *face = g->face[g->faces++];
             face[0] = i[from], face[1] = i[(from + 1 + t) & 3], face[2] = i[(from + 2 + t) & 3];
         }
     }
-    for (int64_t v = first; v < g->vertices; v++) g->normal[v] = vec_unit(g->normal[v]);
+    free(copy);
+    for (int64_t v = first; v < first + vertices; v++) g->normal[v] = vec_unit(g->normal[v]);
     return true;
 }
 
@@ -523,7 +562,7 @@ static bool is_around(const grid *s, const double eye[3])
     return sum_at(s, place) > level;
 }
 
-tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request *r, bool *around,
+tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r, bool *around,
                              tobi_error *err)
 {
     grid s = { .c = c };
@@ -544,7 +583,7 @@ tobi_status view_add_surface(geometry *g, const canvas *c, const surface_request
                  sum_particles(&s, r, colors) && make_mesh(&s);
     }
     *around = enough && any && is_around(&s, c->camera.eye);
-    if (enough && r->drop > 0) enough = add_drops(&s, r, g);
+    if (enough && r->drop > 0) enough = add_drops(&s, r, drops);
     for (int k = 0; k < 2*ROUNDS && enough && any; k++) smooth(&s, k & 1 ? -0.52f : 0.5f);
     if (enough && any) enough = add_faces(&s, r, g);
     free(colors);

@@ -81,7 +81,7 @@ const tile_kernels *tile_kernels_for(int isa)
 typedef struct scene {
     const tobi_picture *f;
     canvas c;
-    geometry solids, water;
+    geometry solids, water, drops;
     vec *color;                  /* of particles; NULL: water in its own colour */
     int32_t *row;                /* of particles                                */
     double low, high;            /* values of the colour map's ends             */
@@ -116,6 +116,7 @@ static void free_scene(scene *s)
     free(s->c.shadow.range);
     view_geometry_free(&s->solids);
     view_geometry_free(&s->water);
+    view_geometry_free(&s->drops);
     free(s->color);
     free(s->row);
 }
@@ -136,7 +137,7 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
     tobi_exec_free(&exec);
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
-    c->clarity = f->clarity > 0 ? (float)f->clarity : (float)(0.22*sqrt(size));
+    c->clarity = f->clarity > 0 ? (float)f->clarity : (float)(0.16*sqrt(size));
     const size_t n = (size_t)c->width*(size_t)c->height;
     c->color = malloc(n*sizeof *c->color);
     c->depth = malloc(n*sizeof *c->depth);
@@ -151,10 +152,48 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
 static surface_request choose(scene *s, bool opaque)
 {
     const tobi_picture *f = s->f;
-    surface_request r = { .f = f, .row = s->row, .color = s->color, .plain = { 0.010f, 0.135f, 0.215f } };
+    surface_request r = { .f = f, .row = s->row, .color = s->color, .plain = { 0.006f, 0.095f, 0.180f } };
     for (int64_t i = 0; i < f->particle_count; i++)
         if ((f->opaque && f->opaque[i]) == opaque) s->row[r.count++] = (int32_t)i;
     return r;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* Particles of one group lie side by side. */
+static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *row)
+{
+    uint64_t *key = malloc(((size_t)r->count + 1)*sizeof *key);
+    if (!key) return false;
+    for (int64_t i = 0; i < r->count; i++)
+        key[i] = ((uint64_t)(uint32_t)f->group[row[i]] ^ 0x80000000u) << 32 | (uint32_t)row[i];
+    qsort(key, (size_t)r->count, sizeof *key, compare_keys);
+    for (int64_t i = 0; i < r->count; i++) row[i] = (int32_t)(uint32_t)key[i];
+    free(key);
+    return true;
+}
+
+/* A surface around each group of solids. */
+static tobi_status add_solids(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    surface_request all = choose(s, true);
+    bool within;
+    all.plain = (vec){ 0.20f, 0.30f, 0.45f };
+    all.drop = 1.1f*(float)f->radius;
+    if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
+    for (int64_t begin = 0, end; begin < all.count; begin = end) {
+        for (end = begin + 1; end < all.count; end++)
+            if (f->group && f->group[s->row[end]] != f->group[s->row[begin]]) break;
+        surface_request r = all;
+        r.row += begin, r.count = end - begin;
+        TOBI_TRY(view_add_surface(&s->solids, &s->solids, &s->c, &r, &within, err));
+    }
+    return TOBI_OK;
 }
 
 static tobi_status add_surfaces(scene *s, tobi_error *err)
@@ -162,16 +201,10 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     const tobi_picture *f = s->f;
     for (int i = 0; i < f->mesh_count; i++)
         if (!view_add_mesh(&s->solids, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
-    bool within;
-    if (f->opaque) {
-        surface_request r = choose(s, true);
-        r.plain = (vec){ 0.20f, 0.30f, 0.45f };
-        r.drop = 1.1f*(float)f->radius;
-        TOBI_TRY(view_add_surface(&s->solids, &s->c, &r, &within, err));
-    }
+    if (f->opaque) TOBI_TRY(add_solids(s, err));
     surface_request r = choose(s, false);
     r.drop = 1.0f*(float)f->radius;
-    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->c, &r, &s->c.submerged, err));
+    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->drops, &s->c, &r, &s->c.submerged, err));
     TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
     return view_project(&s->water, &s->c.camera, f->threads, err);
 }
@@ -216,10 +249,11 @@ static tobi_status draw_water(scene *s, tobi_error *err)
     const copying view = { c, out };
     if (status == TOBI_OK) tobi_loop(c->threads, c->height, 0, copy_water, &view);
     free(out);
-    return status;
+    if (status != TOBI_OK || s->drops.ball_count == 0) return status;
+    return view_paint(c, &s->drops, c->kernels->drop_tiles, c->color, err);
 }
 
-static bool has_water(const scene *s) { return s->water.faces > 0 || s->water.ball_count > 0; }
+static bool has_water(const scene *s) { return s->water.faces > 0 || s->drops.ball_count > 0; }
 
 /* What the water's samples are compared with. */
 static tobi_status make_water_planes(scene *s, tobi_error *err)

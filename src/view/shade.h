@@ -138,13 +138,15 @@ static inline void bend_rays(const canvas *c, batch *b)
     }
 }
 
-/* What is seen there, unless it is in front of the water. */
+/* What is seen there, unless it is in front of the water, or behind something that the unbent ray meets: the way
+   through the water is that of the unbent ray. */
 static inline void look_under(const canvas *c, batch *b)
 {
     for (int i = 0; i < b->count; i++) {
         float x = b->to_x[i], y = b->to_y[i];
         const int px = (int)clampf(x, 0, (float)c->width - 1), py = (int)clampf(y, 0, (float)c->height - 1);
-        if (!(c->depth[(int64_t)py*c->width + px] > b->z[i])) {
+        const float there = c->depth[(int64_t)py*c->width + px], here = c->depth[b->pixel[i]];
+        if (!(there > b->z[i]) || there > 1.05f*here) {
             x = (float)(b->pixel[i]%c->width) + 0.5f;
             y = (float)(b->pixel[i]/c->width) + 0.5f;
         }
@@ -161,6 +163,8 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     const int n_points = b->count;
     const float inverse = 1/c->clarity;
     const vec light = c->light, up = c->sky_up;
+    /* A second, wider light beyond the water, whose reflection shows its waves. */
+    const vec window = vec_unit(vec_add(vec_scale(0.45f, up), (vec){ 0.25f, 0, 0.9f }));
     bend_rays(c, b);
     look_under(c, b);
     for (int i = 0; i < n_points; i++)
@@ -168,14 +172,15 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     TOBI_SIMD
     for (int i = 0; i < n_points; i++) {
         const vec p = { b->x[i], b->y[i], b->z[i] }, n = { b->nx[i], b->ny[i], b->nz[i] };
-        const vec eye = eye_from(keep, p), sum = vec_add(light, eye);
-        const float path = b->thickness[i]*inverse, lit = b->lit[i], fill = 0.5f + 0.5f*vec_dot(n, up);
+        const vec eye = eye_from(keep, p), sum = vec_add(light, eye), back = vec_add(window, eye);
+        const float path = b->thickness[i]*inverse + 0.10f, lit = b->lit[i], fill = 0.5f + 0.5f*vec_dot(n, up);
         const float wrap = 0.60f*lit*clampf(0.35f + 0.65f*vec_dot(n, light), 0, 1),
             around = 0.25f + 0.35f*fill;
         const float facing = clampf(vec_dot(n, eye), 0, 1), away = 1 - facing;
         const float mirror = 0.02f + 0.98f*away*away*away*away*away;      /* Schlick 1994 */
         const float between = clampf(vec_dot(n, sum)/sqrtf(vec_dot(sum, sum) + 1e-20f), 0, 1);
-        const float shine = 1.2f*lit*power_16(power_16(between));
+        const float behind = clampf(vec_dot(n, back)/sqrtf(vec_dot(back, back) + 1e-20f), 0, 1);
+        const float shine = 1.2f*lit*power_16(power_16(between)) + 0.55f*power_64(behind)*(0.3f + 0.7f*away);
         const vec sky = sky_color(2*facing*vec_dot(n, up) - vec_dot(eye, up));
         const float pr = fade(1.9f*path), pg = fade(0.85f*path), pb = fade(0.60f*path);
         const float r = pr*b->under_r[i] + (1 - pr)*b->r[i]*(wrap + 0.85f*around);
@@ -187,5 +192,25 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     }
     for (int i = 0; i < n_points; i++)
         add_light(out, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, false);
+    b->count = 0;
+}
+
+/* Drops, small balls of water: an upside-down view of what is around, dim at the rim, and the light's glint. */
+static inline void shade_drops(const canvas *c, vec *out, batch *b)
+{
+    const float keep = c->camera.orthographic ? 0 : 1;
+    for (int i = 0; i < b->count; i++) {
+        const vec p = { b->x[i], b->y[i], b->z[i] }, eye = eye_from(keep, p), sum = vec_add(c->light, eye);
+        const vec n = face_eye((vec){ b->nx[i], b->ny[i], b->nz[i] }, eye);
+        const vec under = { b->under_r[i], b->under_g[i], b->under_b[i] };
+        const float up = vec_dot(n, c->sky_up), facing = clampf(vec_dot(n, eye), 0, 1), away = 1 - facing;
+        const float mirror = 0.02f + 0.98f*away*away*away*away*away;
+        const vec through = vec_mix(sky_color(0.25f - 0.6f*up), under, 0.35f + 0.35f*facing*facing);
+        const vec tint = { 1 - 0.2f*facing, 1 - 0.07f*facing, 1 - 0.03f*facing };
+        const vec color = vec_mix(vec_mul(through, tint), sky_color(2*facing*up - vec_dot(eye, c->sky_up)), mirror);
+        const float between = clampf(vec_dot(n, sum)/sqrtf(vec_dot(sum, sum) + 1e-20f), 0, 1);
+        const float shine = 1.5f*power_64(between);
+        add_light(out, b, i, vec_add(vec_scale(0.88f, color), (vec){ shine, shine, shine }), false);
+    }
     b->count = 0;
 }

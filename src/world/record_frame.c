@@ -26,6 +26,7 @@ typedef struct tobi_drawing {
     int has_palette;                   /* 0: colours by speed                           */
     uint8_t *tint;                     /* of each piece, or NULL: nothing can part      */
     uint8_t *opaque;                   /* n, or NULL: all are liquid                    */
+    int32_t *group;                    /* n, with opaque: material or piece             */
     int mesh_count;
     tobi_picture_mesh *meshes;
 } tobi_drawing;
@@ -38,6 +39,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->palette);
     free(d->tint);
     free(d->opaque);
+    free(d->group);
     free(d->meshes);
     free(d);
 }
@@ -190,7 +192,10 @@ static void color_system(const tobi_world *w, const tobi_system *s, int64_t *fro
         if (!look.visible) continue;
         memmove(d->positions + 3 * to, d->positions + 3 * i, 3 * sizeof *d->positions);
         if (d->opaque) d->opaque[to] = !look.liquid;
-        const int color = (m * TINTS + (piece >= 0 ? d->tint[piece] : 0)) * PARTS + find_part(s, row);
+        if (d->group) d->group[to] = piece >= 0 ? 1 + piece : -m;
+        /* In 3-D the pieces have surfaces of their own. */
+        const int tint = piece >= 0 && w->sim.def.dimension == 2 ? d->tint[piece] : 0;
+        const int color = (m * TINTS + tint) * PARTS + find_part(s, row);
         d->values[to] = d->has_palette ? (float)color : d->values[i];
         d->count++;
     }
@@ -211,7 +216,8 @@ static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *e
     }
     if (!hidden && !d->has_palette && !solids) return TOBI_OK;
     if (solids) d->opaque = malloc((size_t)d->count + 1);
-    if (solids && !d->opaque) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    if (solids) d->group = malloc(((size_t)d->count + 1)*sizeof *d->group);
+    if (solids && (!d->opaque || !d->group)) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     int64_t from = 0;
     d->count = 0;
     for (int k = 0; k < w->system_count; k++) color_system(w, &w->system[k], &from, d);
@@ -263,6 +269,7 @@ static void set_frame(const tobi_run *run, tobi_drawing *d)
     frame->values = d->values;
     frame->radius = 0.5 * def->spacing;
     frame->opaque = d->opaque;
+    frame->group = d->group;
     frame->value_max = d->has_palette ? d->colors - 1 : color_speed(def);
     if (d->has_palette) {
         frame->palette = (const float (*)[3])d->palette;
