@@ -180,10 +180,12 @@ typedef struct surface_request {
     int64_t count;
     const vec *color;            /* linear, of all particles; NULL = one colour for all            */
     vec     plain;
+    float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
 } surface_request;
 /* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
-tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r, bool *around,
+tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
+                             bool *around,
                              tobi_error *err);
 
 enum { BLOCK_EDGE = 8, BLOCK_NODES = BLOCK_EDGE*BLOCK_EDGE*BLOCK_EDGE };

@@ -375,5 +375,6 @@ static void sum_colors(const void *view, int64_t begin, int64_t end)
         if (v->colored[b] >= 0) sum_block_colors(v, b);
 }
 
-const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, drop_tiles, sum_nodes,
+const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, drop_tiles,
+                                                    sum_nodes,
                                                     sum_colors };

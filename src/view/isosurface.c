@@ -8,7 +8,6 @@
 
 enum { ROUNDS = 4, APRON = BLOCK_EDGE + 1, BLOCKS_AT_MOST = 1 << 22 };
 
-static const float level = 0.5f;         /* of the sum, whose value inside is 1                  */
 static const float reach_in_spacings = 2;
 static const int64_t many = 200000;      /* particles: from here on cells are larger, by a quarter */
 
@@ -17,6 +16,7 @@ typedef struct grid {
     double edge, low[3];                 /* m, of a cell; m, of the first node                   */
     float  wall[3][2];                   /* cells from the first node, of the domain             */
     float  reach;                        /* cells                                                */
+    float  level;                        /* of the sum, whose value inside is 1                  */
     int    size[3];                      /* blocks                                               */
     int32_t *at;                         /* of each place the block there, or -1                 */
     int64_t blocks, entries;
@@ -178,7 +178,7 @@ static void limit_block(const grid *s, int64_t b)
             const float at = (float)(BLOCK_EDGE*s->block[b][k] + i);
             const float l = at - s->wall[k][0], h = s->wall[k][1] - at, inside = l < h ? l : h;
             factor[k][i] = 1/(share_inside(l/s->reach)*share_inside(h/s->reach));
-            most[k][i] = level + 0.5f*inside;
+            most[k][i] = s->level + 0.5f*inside;
         }
     for (int z = 0; z < BLOCK_EDGE; z++)
         for (int y = 0; y < BLOCK_EDGE; y++) {
@@ -216,7 +216,7 @@ static bool fill_apron(const grid *s, int64_t b, apron *a)
                                                                       + x] = node ? node[x] : 0;
             }
             int mask = 0;
-            for (int x = 0; x < APRON; x++) mask |= (row[x] >= level) << x;
+            for (int x = 0; x < APRON; x++) mask |= (row[x] >= s->level) << x;
             a->inside[z][y] = (uint16_t)mask;
             any |= mask, all &= mask == (1 << APRON) - 1;
         }
@@ -268,8 +268,8 @@ static void place_vertex(const grid *s, const apron *a, const int at[3], const i
         const float p = a->node[at[2] + from[2]][at[1] + from[1]][at[0] + from[0]];
         const float q = a->node[at[2] + from[2] + (axis == 2)][at[1] + from[1] + (axis == 1)]
             [at[0] + from[0] + (axis == 0)];
-        if ((p >= level) == (q >= level)) continue;
-        const float t = (level - p)/(q - p);
+        if ((p >= s->level) == (q >= s->level)) continue;
+        const float t = (s->level - p)/(q - p);
         for (int k = 0; k < 3; k++) sum[k] += (float)from[k] + (k == axis ? t : 0);
         count++;
     }
@@ -399,9 +399,9 @@ static bool add_drops(const grid *s, const surface_request *r, geometry *g)
                               (int)(place[2] + 0.5f)) > 0.8f)
             continue;
         const float sum = inside ? sum_at(s, place) : 0;
-        if (sum > 0.40f) continue;
+        if (sum > 0.8f*r->level) continue;
         g->balls[g->ball_count++] = (ball){ view_point(&s->c->camera, p),
-                                            r->drop*clampf(1.5f - sum/0.40f, 0.5f, 1),
+                                            r->drop*clampf(1.5f - 1.25f*sum/r->level, 0.5f, 1),
                                             r->color ? r->color[r->row[i]] : r->plain };
     }
     return true;
@@ -438,7 +438,8 @@ static int find_wall(const grid *s, const int32_t corner[4])
 }
 
 /* A vertex again, for faces in a wall: the surface is sharp there. */
-static int32_t copy_to_wall(geometry *g, int32_t (*copy)[3], int64_t first, int32_t corner, int axis, vec normal)
+static int32_t copy_to_wall(geometry *g, int32_t (*copy)[3], int64_t first, int32_t corner, int axis,
+                            vec normal)
 {
     int32_t *to = &copy[corner][axis];
     if (*to < 0) {
@@ -456,7 +457,8 @@ static void add_vertices(const grid *s, const surface_request *r, geometry *g)
     const vec base = view_point(c, s->low);
     vec axis[3];
     for (int k = 0; k < 3; k++)
-        axis[k] = vec_scale((float)s->edge, (vec){ (float)c->right[k], (float)c->up[k], (float)c->forward[k] });
+        axis[k] = vec_scale((float)s->edge, (vec){ (float)c->right[k], (float)c->up[k],
+                                                   (float)c->forward[k] });
     for (int64_t v = 0; v < s->vertex[s->blocks]; v++) {
         const float *p = s->point[v];
         const int64_t i = g->vertices++;
@@ -559,13 +561,14 @@ static bool is_around(const grid *s, const double eye[3])
         if (*block_at(s, ((int)place[0] + (n & 1))/BLOCK_EDGE, ((int)place[1] + (n >> 1 & 1))/BLOCK_EDGE,
                       ((int)place[2] + (n >> 2))/BLOCK_EDGE) < 0)
             return false;
-    return sum_at(s, place) > level;
+    return sum_at(s, place) > s->level;
 }
 
-tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r, bool *around,
+tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
+                             bool *around,
                              tobi_error *err)
 {
-    grid s = { .c = c };
+    grid s = { .c = c, .level = r->level };
     double low[3], high[3];
     vec *colors = NULL;
     bool enough = true;

@@ -152,7 +152,9 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
 static surface_request choose(scene *s, bool opaque)
 {
     const tobi_picture *f = s->f;
-    surface_request r = { .f = f, .row = s->row, .color = s->color, .plain = { 0.006f, 0.095f, 0.180f } };
+    surface_request r = { .f = f, .row = s->row, .color = s->color, .level = 0.5f, .plain = { 0.006f,
+                                                                                              0.095f,
+                                                                                                  0.180f } };
     for (int64_t i = 0; i < f->particle_count; i++)
         if ((f->opaque && f->opaque[i]) == opaque) s->row[r.count++] = (int32_t)i;
     return r;
@@ -184,6 +186,7 @@ static tobi_status add_solids(scene *s, tobi_error *err)
     surface_request all = choose(s, true);
     bool within;
     all.plain = (vec){ 0.20f, 0.30f, 0.45f };
+    all.level = 0.38f;
     all.drop = 1.1f*(float)f->radius;
     if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
     for (int64_t begin = 0, end; begin < all.count; begin = end) {

@@ -138,8 +138,8 @@ static inline void bend_rays(const canvas *c, batch *b)
     }
 }
 
-/* What is seen there, unless it is in front of the water, or behind something that the unbent ray meets: the way
-   through the water is that of the unbent ray. */
+/* What is seen there, unless it is in front of the water, or behind something that the unbent ray meets:
+   the way through the water is that of the unbent ray. */
 static inline void look_under(const canvas *c, batch *b)
 {
     for (int i = 0; i < b->count; i++) {
@@ -173,7 +173,8 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     for (int i = 0; i < n_points; i++) {
         const vec p = { b->x[i], b->y[i], b->z[i] }, n = { b->nx[i], b->ny[i], b->nz[i] };
         const vec eye = eye_from(keep, p), sum = vec_add(light, eye), back = vec_add(window, eye);
-        const float path = b->thickness[i]*inverse + 0.10f, lit = b->lit[i], fill = 0.5f + 0.5f*vec_dot(n, up);
+        const float path = b->thickness[i]*inverse + 0.10f, lit = b->lit[i], fill = 0.5f + 0.5f*vec_dot(n,
+                                                                                                        up);
         const float wrap = 0.60f*lit*clampf(0.35f + 0.65f*vec_dot(n, light), 0, 1),
             around = 0.25f + 0.35f*fill;
         const float facing = clampf(vec_dot(n, eye), 0, 1), away = 1 - facing;
@@ -195,7 +196,8 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     b->count = 0;
 }
 
-/* Drops, small balls of water: an upside-down view of what is around, dim at the rim, and the light's glint. */
+/* Drops, small balls of water: an upside-down view of what is around, dim at the rim, and the light's
+   glint. */
 static inline void shade_drops(const canvas *c, vec *out, batch *b)
 {
     const float keep = c->camera.orthographic ? 0 : 1;
@@ -207,7 +209,8 @@ static inline void shade_drops(const canvas *c, vec *out, batch *b)
         const float mirror = 0.02f + 0.98f*away*away*away*away*away;
         const vec through = vec_mix(sky_color(0.25f - 0.6f*up), under, 0.35f + 0.35f*facing*facing);
         const vec tint = { 1 - 0.2f*facing, 1 - 0.07f*facing, 1 - 0.03f*facing };
-        const vec color = vec_mix(vec_mul(through, tint), sky_color(2*facing*up - vec_dot(eye, c->sky_up)), mirror);
+        const vec color = vec_mix(vec_mul(through, tint), sky_color(2*facing*up - vec_dot(eye, c->sky_up)),
+                                  mirror);
         const float between = clampf(vec_dot(n, sum)/sqrtf(vec_dot(sum, sum) + 1e-20f), 0, 1);
         const float shine = 1.5f*power_64(between);
         add_light(out, b, i, vec_add(vec_scale(0.88f, color), (vec){ shine, shine, shine }), false);

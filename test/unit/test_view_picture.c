@@ -357,7 +357,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(things_are_where_they_belong),
             cmocka_unit_test(threads_and_instructions_do_not_matter),
-        cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file), cmocka_unit_test(flat_scenes_are_discs),
+        cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file),
+            cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
