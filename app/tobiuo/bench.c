@@ -248,6 +248,7 @@ const struct argp bench_argp = {
            "  bodies  200 rigid boxes fall into a bin, seconds\n"
            "  bodies_in_water   a pool of 100 000 particles with one small body and with 1000\n"
            "  frame   a picture of 68 000 and of 500 000 particles, per stage, on --threads (1), seconds\n"
+           "  surface the surface of 500 000 particles at two cells, on --threads (1), seconds\n"
            "\nTimes are wall clock; run it on a machine that does nothing else."
 };
 
@@ -260,10 +261,11 @@ int tobiuo_bench(int argc, char **argv)
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
     int cut = strcmp(which, "cut") == 0, other = !strcmp(which, "wcsph") || !strcmp(which, "isph");
     int in_water = strcmp(which, "bodies_in_water") == 0, frame = strcmp(which, "frame") == 0;
-    if (!tank && !small && !other && !ball && !cut && !bodies && !in_water && !frame &&
+    int surface = strcmp(which, "surface") == 0;
+    if (!tank && !small && !other && !ball && !cut && !bodies && !in_water && !frame && !surface &&
         strcmp(which, "fish") != 0) {
         complain("bench: there is no case '%s'; known are small, tank, wcsph, isph, fish, ball, "
-                 "cut, bodies, bodies_in_water and frame", which);
+                 "cut, bodies, bodies_in_water, frame and surface", which);
         return EXIT_USAGE;
     }
     bench_find_machine(o.threads, &o.machine);
@@ -273,6 +275,7 @@ int tobiuo_bench(int argc, char **argv)
     if (bodies) return bench_bodies(&o);
     if (in_water) return bench_bodies_in_water(&o);
     if (frame) return bench_frame(&o);
+    if (surface) return bench_surface(&o);
     if (other) return measure_method(&o, which);
     if (tank) return measure_tank(&o, 0.004, 100);
     return small ? measure_tank(&o, 0.008, 100) : measure_fish(&o);

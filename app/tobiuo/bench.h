@@ -82,3 +82,4 @@ int bench_bodies(const bench_options *o);
 int bench_bodies_in_water(const bench_options *o);
 /* bench_frame.c: the processor time of a picture. */
 int bench_frame(const bench_options *o);
+int bench_surface(const bench_options *o);

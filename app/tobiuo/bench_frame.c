@@ -1,9 +1,10 @@
-/* tobiuo bench frame: the processor time of a picture. The water is made here, not computed: a pool with
-   waves, a body in it and spray above it, so that the case starts at once and is the same everywhere.
-   Drawback: a real flow has another share of spray. */
+/* tobiuo bench frame and bench surface: the processor time of a picture, and of a surface. The water is made
+   here, not computed: a pool with waves, a body in it and spray above it, so that the case starts at once and
+   is the same everywhere. Drawback: a real flow has another share of spray. */
 #define _GNU_SOURCE
 #include "bench.h"
 #include "tobiuo/picture.h"
+#include "tobiuo/surface.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,6 +112,22 @@ static int draw_often(tobi_picture *p, const char *path, int times, double *best
     return 0;
 }
 
+static int make_cloud(cloud *c, int64_t count)
+{
+    c->spacing = cbrt(pool[0]*pool[1]*0.33/(double)count);
+    c->position = malloc((size_t)count*sizeof *c->position);
+    c->speed = malloc((size_t)count*sizeof *c->speed);
+    if (!c->position || !c->speed) return complain("out of memory");
+    fill_pool(c, count);
+    return 0;
+}
+
+static void free_cloud(cloud *c)
+{
+    if (c) free(c->position), free(c->speed);
+    free(c);
+}
+
 static int measure(const bench_options *o, cloud *c, int64_t count, const char *path)
 {
     double best, stage[TOBI_PICTURE_STAGES];
@@ -120,11 +137,7 @@ static int measure(const bench_options *o, cloud *c, int64_t count, const char *
                                      .triangle_count = BALL_TRIANGLES,
                                      .triangles = (const int32_t (*)[3])c->triangle,
                                      .color = { 0.93f, 0.62f, 0.28f } };
-    c->spacing = cbrt(pool[0]*pool[1]*0.33/(double)count);
-    c->position = malloc((size_t)count*sizeof *c->position);
-    c->speed = malloc((size_t)count*sizeof *c->speed);
-    if (!c->position || !c->speed) return complain("out of memory");
-    fill_pool(c, count);
+    if (make_cloud(c, count) != 0) return EXIT_ERROR;
     for (int k = 0; k < 3; k++) p.box_max[k] = pool[k];
     p.particle_count = c->count;
     p.positions = (const double (*)[3])c->position;
@@ -157,8 +170,50 @@ int bench_frame(const bench_options *o)
         failed = measure(o, c, counts[k], path);
         free(c->position);
         free(c->speed);
+        c->position = NULL;
+        c->speed = NULL;
     }
     if (file >= 0) unlink(path);
-    free(c);
+    free_cloud(c);
+    return failed;
+}
+
+/* The quickest of some surfaces of the cloud, with one field. */
+static int measure_surface(const bench_options *o, const cloud *c, double cell)
+{
+    const tobi_surface_field field = { "place", 3, &c->position[0][0] };
+    tobi_surface_def d = tobi_default_surface();
+    tobi_surface *s;
+    tobi_error err = { 0 };
+    double best = INFINITY;
+    int64_t triangles = 0;
+    d.particle_count = c->count;
+    d.positions = (const double (*)[3])c->position;
+    d.spacing = c->spacing;
+    d.cell = cell;
+    d.fields = &field;
+    d.field_count = 1;
+    d.threads = o->threads > 0 ? o->threads : 1;
+    for (int a = 0; a < 3; a++) d.box_max[a] = pool[a], d.flat_min[a] = d.flat_max[a] = 1;
+    for (int k = 0; k < (o->steps ? o->steps : 5); k++) {
+        const double begun = processor_clock();
+        if (tobi_surface_make(&d, &s, &err) != TOBI_OK) return complain("%s", err.text);
+        best = fmin(best, processor_clock() - begun);
+        triangles = s->triangle_count;
+        tobi_surface_free(s);
+    }
+    printf("%lld particles, cell %.2f d, %lld triangles: %.0f ms of processor time, %.2f million particles "
+           "per second and core\n", (long long)c->count, cell, (long long)triangles, 1e3*best,
+           1e-6*(double)c->count/best);
+    return 0;
+}
+
+int bench_surface(const bench_options *o)
+{
+    static const double cells[] = { 0.75, 0.5 };
+    cloud *c = calloc(1, sizeof *c);
+    int failed = c ? make_cloud(c, 500000) : complain("out of memory");
+    for (int k = 0; k < 2 && !failed; k++) failed = measure_surface(o, c, cells[k]);
+    free_cloud(c);
     return failed;
 }

@@ -18,6 +18,8 @@ static const command commands[] = {
       &import_argp },
     { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot, &plot_argp },
     { "movie", "DIR", "make a movie of the pictures of a run", tobiuo_movie, &movie_argp },
+    { "surface", "DIR", "make the surfaces of a run, for ParaView, Blender and others", tobiuo_surface,
+      &surface_argp },
     { "report", "DIR", "write one page about a run: pictures, tables, what to trust", tobiuo_report,
       &report_argp },
     { "inspect", "SCENE", "write the neighbour search of a particle and the kernels as files", tobiuo_inspect,

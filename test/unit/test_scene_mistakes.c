@@ -570,7 +570,7 @@ static void surfaces_of_scenes(void **state)
     (void)state;
     CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
           "\"end_time\": 1,\n\n\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
-          { "s.json:1:1: fluids: is missing", "" }, { "s.json:4:24: output.surface: ", "is of 3-D scenes only" },
+          { "s.json:1:1: fluids: ", "is missing" }, { "s.json:4:24: output.surface: ", "is of 3-D scenes" },
           { "s.json:4:51: output.surface.fields: ", "there is no field \"sped\"" });
 }
 
@@ -584,7 +584,8 @@ int main(void)
         cmocka_unit_test(duplicates),
         cmocka_unit_test(domain_and_regions),
         cmocka_unit_test(bodies_and_motions),
-        cmocka_unit_test(rules_between_values), cmocka_unit_test(surfaces_of_scenes),
+        cmocka_unit_test(rules_between_values),
+        cmocka_unit_test(surfaces_of_scenes),
         cmocka_unit_test(references_to_nothing),
         cmocka_unit_test(names_are_no_formulas),
         cmocka_unit_test(motions_one_at_a_time),

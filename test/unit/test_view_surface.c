@@ -133,6 +133,29 @@ static void test_tank(void **state)
     free(p.position);
 }
 
+/* A wave of 12 spacings keeps 0.8 of its height, though smoothing reaches as far. */
+static void test_wave(void **state)
+{
+    (void)state;
+    const double length = 12*D, pi = 3.14159265358979323846;
+    rig_points p = rig_box((int[3]){ 48, 16, 12 }, zero, D, 0);
+    for (int64_t i = 0; i < p.count; i++)
+        p.position[i][2] *= 1 + 0.08*sin(2*pi*p.position[i][0]/length);
+    tobi_surface_def d = tobi_default_surface();
+    const double top[3] = { 0.48, 0.16, 0.3 };
+    for (int a = 0; a < 3; a++) d.box_max[a] = top[a], d.flat_min[a] = d.flat_max[a] = 1;
+    tobi_surface *s = make(&p, d);
+    expect_closed(s);
+    double sum = 0;
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->vertex_count; i++)
+        if (!s->sides[i]) sum += s->vertices[i][2]*sin(2*pi*s->vertices[i][0]/length), n++;
+    const double height = 2*sum/(double)n/(0.08*0.12);
+    if (!(height > 0.78 && height < 1.05)) fail_msg("%.3g of its height", height);
+    tobi_surface_free(s);
+    free(p.position);
+}
+
 /* Two halves that touch stay two surfaces, and what is negative is left out. */
 static void test_groups(void **state)
 {
@@ -295,7 +318,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cases), cmocka_unit_test(test_ball), cmocka_unit_test(test_box_alone),
-        cmocka_unit_test(test_tank), cmocka_unit_test(test_groups), cmocka_unit_test(test_thin),
+        cmocka_unit_test(test_tank),
+        cmocka_unit_test(test_wave), cmocka_unit_test(test_groups), cmocka_unit_test(test_thin),
         cmocka_unit_test(test_noise), cmocka_unit_test(test_fields), cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_nothing), cmocka_unit_test(test_mistakes),
     };

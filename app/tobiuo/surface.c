@@ -1,0 +1,355 @@
+/* tobiuo surface DIR: the surfaces of fluids and solids of a finished run,
+    from its particles: a file for each
+   output, or one glTF with all of them as an animation. */
+#define _GNU_SOURCE
+#include "app.h"
+#include "tobiuo/results.h"
+#include "tobiuo/surface.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct surface_options {
+    const char *dir, *format, *field;
+    double cell;
+    int smooth, threads, last;
+} surface_options;
+
+enum { KEY_CELL = 256, KEY_SMOOTH, KEY_FIELD, KEY_THREADS, KEY_LAST };
+
+static const struct argp_option options[] = {
+    { "format", 'f', "FORMAT", 0, "vtp (default), obj, ply, stl, or glb: one file, an animation", 0 },
+    { "cell", KEY_CELL, "C", 0, "cell of the grid, spacings (0.75)", 0 },
+    { "smooth", KEY_SMOOTH, "N", 0, "rounds of smoothing (20)", 0 },
+    { "field", KEY_FIELD, "NAME", 0,
+      "field of the vertices, \"speed\" among them; vtp and ply: without it all; "
+      "glb: their colour", 0 },
+    { "last", KEY_LAST, NULL, 0, "the last output only", 0 },
+    { "threads", KEY_THREADS, "N", 0, "threads (all cores)", 0 },
+    { 0 }
+};
+
+static const char *const formats[] = { "vtp", "obj", "ply", "stl", "glb" };
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    surface_options *o = state->input;
+    char *end;
+    switch (key) {
+    case 'f':
+        o->format = NULL;
+        for (size_t k = 0; k < sizeof formats/sizeof *formats; k++)
+            if (strcmp(formats[k], value) == 0) o->format = formats[k];
+        if (!o->format) argp_error(state, "--format: '%s' is none of vtp, obj, ply, stl, glb", value);
+        break;
+    case KEY_CELL:
+        o->cell = parse_positive(state, "--cell", value);
+        if (!(o->cell >= 0.1 && o->cell <= 2)) argp_error(state, "--cell: %s is not from 0.1 to 2 spacings",
+                                                          value);
+        break;
+    case KEY_SMOOTH:
+        o->smooth = (int)strtol(value, &end, 10);
+        if (end == value || *end || o->smooth < 0 || o->smooth > 100)
+            argp_error(state, "--smooth: '%s' is not a number from 0 to 100", value);
+        break;
+    case KEY_FIELD: o->field = value; break;
+    case KEY_LAST: o->last = 1; break;
+    case KEY_THREADS: o->threads = parse_threads(state, value); break;
+    default: return parse_argument(state, key, value, "DIR", &o->dir);
+    }
+    return 0;
+}
+
+/* What the arrays of an output become. */
+typedef struct input {
+    tobi_moment moment;
+    tobi_surface_def def;
+    tobi_surface_field field[TOBI_SURFACE_FIELD_LIMIT];
+    double *speed;
+    int32_t *group;
+} input;
+
+static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
+{
+    for (int k = 0; k < m->field_count; k++)
+        if (strcmp(m->fields[k].name, name) == 0) return &m->fields[k];
+    return NULL;
+}
+
+static int complain_field(const surface_options *o, const tobi_moment *m)
+{
+    char all[900] = "", name[200];
+    for (int k = 0; k < m->field_count; k++) {
+        const size_t used = strlen(all);
+        snprintf(name, sizeof name, ", %s", m->fields[k].name);
+        if (used + strlen(name) < sizeof all) strcat(all, name);
+    }
+    return complain("%s has no field '%s'; it has speed%s", o->dir, o->field, all);
+}
+
+static void free_input(input *in)
+{
+    tobi_moment_free(&in->moment);
+    free(in->speed);
+    free(in->group);
+    in->speed = NULL;
+    in->group = NULL;
+}
+
+/* A fluid or solid is one, each piece of a solid too, if the files know them. */
+static int make_groups(input *in)
+{
+    enum { MATERIALS = 264, GROUPS = 1 << 20 };
+    const tobi_moment *m = &in->moment;
+    const tobi_moment_field *material = find_field(m, "material"), *piece = find_field(m, "piece");
+    in->group = malloc((size_t)m->count*sizeof *in->group + 1);
+    if (!in->group) return complain("out of memory");
+    for (int64_t i = 0; i < m->count; i++) {
+        const double p = piece ? piece->values[i] : -1, s = material ? material->values[i] : 0;
+        in->group[i] = p >= 0 ? (int32_t)fmod(MATERIALS + p, GROUPS) : s >= 0 &&
+            s < MATERIALS ? (int32_t)s : 0;
+    }
+    in->def.group = in->group;
+    return 0;
+}
+
+static int make_speed(input *in)
+{
+    const tobi_moment *m = &in->moment;
+    const tobi_moment_field *v = find_field(m, "velocity");
+    in->speed = v ? malloc((size_t)m->count*sizeof *in->speed + 1) : NULL;
+    if (v && !in->speed) return complain("out of memory");
+    for (int64_t i = 0; v && i < m->count; i++) {
+        const double *u = v->values + 3*i;
+        in->speed[i] = sqrt(u[0]*u[0] + u[1]*u[1] + u[2]*u[2]);
+    }
+    return 0;
+}
+
+/* The field that was asked for, or all that are not numbers of something. */
+static int take_fields(const surface_options *o, input *in)
+{
+    const tobi_moment *m = &in->moment;
+    int n = 0;
+    int code = make_speed(in);
+    if (code != 0) return code;
+    if (in->speed && (!o->field || strcmp(o->field, "speed") == 0))
+        in->field[n++] = (tobi_surface_field){ "speed", 1, in->speed };
+    for (int k = 0; k < m->field_count && n < TOBI_SURFACE_FIELD_LIMIT; k++) {
+        const tobi_moment_field *f = &m->fields[k];
+        const int number = strstr(f->name, "_id") || strcmp(f->name, "material") == 0 ||
+                           strcmp(f->name, "piece") == 0 || strcmp(f->name, "cut_side") == 0;
+        if (o->field ? strcmp(o->field, f->name) == 0 : !number)
+            in->field[n++] = (tobi_surface_field){ f->name, f->components, f->values };
+    }
+    if (o->field && n == 0) return complain_field(o, m);
+    in->def.fields = in->field;
+    in->def.field_count = n;
+    return 0;
+}
+
+static int read_input(const surface_options *o, const tobi_results *results, int64_t k, input *in)
+{
+    tobi_error err = { 0 };
+    if (tobi_results_read(results, k, &in->moment, &err) != TOBI_OK) return complain("%s", err.text);
+    in->def.particle_count = in->moment.count;
+    in->def.positions = (const double (*)[3])in->moment.positions;
+    const int code = make_groups(in);
+    return code == 0 ? take_fields(o, in) : code;
+}
+
+static tobi_surface *make_one(const surface_options *o, const tobi_results *results, int64_t k, input *in)
+{
+    tobi_surface *s = NULL;
+    tobi_error err = { 0 };
+    if (read_input(o, results, k, in) != 0) return NULL;
+    if (tobi_surface_make(&in->def, &s, &err) != TOBI_OK) complain("%s", err.text);
+    return s;
+}
+
+/* Least and largest value of the one field, sizes of vectors, over all outputs. */
+static int find_range(const surface_options *o, const tobi_results *results, int64_t first, input *in,
+                      double range[2])
+{
+    range[0] = INFINITY, range[1] = -INFINITY;
+    for (int64_t k = first; k < tobi_results_count(results); k++) {
+        const int code = read_input(o, results, k, in);
+        for (int64_t i = 0; code == 0 && i < in->moment.count; i++) {
+            const int n = in->field[0].components;
+            const double *v = in->field[0].values + n*i;
+            double square = 0;
+            for (int c = 0; c < n; c++) square += v[c]*v[c];
+            const double value = n == 1 ? *v : sqrt(square);
+            range[0] = fmin(range[0], value);
+            range[1] = fmax(range[1], value);
+        }
+        free_input(in);
+        if (code != 0) return code;
+    }
+    return 0;
+}
+
+static char *make_path(const char *dir, const char *name)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", dir, name) < 0) exit(complain("out of memory"));
+    return path;
+}
+
+typedef struct totals { int64_t files, vertices, triangles; double particles, seconds; } totals;
+
+static void add_totals(totals *t, const input *in, const tobi_surface *s)
+{
+    t->files++;
+    t->vertices += s->vertex_count;
+    t->triangles += s->triangle_count;
+    t->particles += (double)in->moment.count;
+}
+
+static int write_movie(const surface_options *o, const tobi_results *results, const double up[3],
+                       int64_t first,
+                       input *in, totals *t)
+{
+    double range[2] = { 0, 1 };
+    tobi_surface_movie *movie = NULL;
+    tobi_error err = { 0 };
+    const int64_t last = tobi_results_count(results);
+    char *path = make_path(o->dir, "surface.glb");
+    int code = o->field ? find_range(o, results, first, in, range) : 0;
+    if (code == 0 && tobi_surface_movie_create(path, (int)(last - first), up, &movie, &err) != TOBI_OK)
+        code = complain("%s", err.text);
+    for (int64_t k = first; code == 0 && k < last; k++) {
+        tobi_surface *s = make_one(o, results, k, in);
+        const double time = tobi_results_time(results, k);
+        if (!s) code = EXIT_ERROR;
+        else if (tobi_surface_movie_add(movie, time, s, o->field ? 0 : -1, range[0], range[1],
+                                        &err) != TOBI_OK)
+            code = complain("%s", err.text);
+        else add_totals(t, in, s);
+        tobi_surface_free(s);
+        free_input(in);
+    }
+    if (code == 0 && tobi_surface_movie_finish(movie, &err) != TOBI_OK) code = complain("%s", err.text);
+    tobi_surface_movie_free(movie);
+    if (code == 0) printf("surface: %s, %lld frames", path, (long long)t->files);
+    free(path);
+    return code;
+}
+
+/* DIR/surface, which must be no link. */
+static int make_folder(const char *path)
+{
+    struct stat st;
+    if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain("cannot make %s: %s", path,
+                                                                   strerror(errno));
+    if (lstat(path, &st) != 0 || !S_ISDIR(st.st_mode)) return complain("%s is no folder", path);
+    return 0;
+}
+
+/* ParaView's list of the files, those of VTP only. */
+static int write_list(const char *dir, const tobi_results *results, int64_t first)
+{
+    char *path = make_path(dir, "surface.pvd"), *part = make_path(dir, "surface.pvd.part");
+    unlink(part);
+    FILE *file = fopen(part, "wx");
+    if (file)
+        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n", file);
+    for (int64_t k = first; file && k < tobi_results_count(results); k++)
+        fprintf(file, "<DataSet timestep=\"%.17g\" name=\"surface\" file=\"surface/surface_%06lld.vtp\"/>\n",
+                tobi_results_time(results, k), (long long)k);
+    if (file) fputs("</Collection>\n</VTKFile>\n", file);
+    const int bad = !file || ferror(file);
+    int code = (file && fclose(file) != 0) || bad || rename(part, path) != 0
+        ? complain("cannot write %s: %s", path, strerror(errno)) : 0;
+    free(path);
+    free(part);
+    return code;
+}
+
+static int write_files(const surface_options *o, const tobi_results *results, int64_t first, input *in,
+                       totals *t)
+{
+    char *folder = make_path(o->dir, "surface"), name[64];
+    int code = make_folder(folder);
+    for (int64_t k = first; code == 0 && k < tobi_results_count(results); k++) {
+        tobi_error err = { 0 };
+        snprintf(name, sizeof name, "surface_%06lld.%s", (long long)k, o->format);
+        char *path = make_path(folder, name);
+        tobi_surface *s = make_one(o, results, k, in);
+        if (!s) code = EXIT_ERROR;
+        else if (tobi_surface_write(path, s, &err) != TOBI_OK) code = complain("%s", err.text);
+        else add_totals(t, in, s);
+        tobi_surface_free(s);
+        free_input(in);
+        free(path);
+    }
+    if (code == 0 && strcmp(o->format, "vtp") == 0) code = write_list(o->dir, results, first);
+    if (code == 0) printf("surface: %s, %lld files", folder, (long long)t->files);
+    free(folder);
+    return code;
+}
+
+/* Spacing and domain, from the scene that the run has left. */
+static int read_scene(const surface_options *o, input *in, double up[3])
+{
+    tobi_scene *scene = NULL;
+    tobi_report *mistakes = NULL;
+    tobi_error err = { 0 };
+    char *path = make_path(o->dir, "resolved.json");
+    if (access(path, F_OK) != 0) {
+        free(path);
+        return complain_run(o->dir, "there are no results of a run (no resolved.json)");
+    }
+    const tobi_status status = tobi_scene_load(path, NULL, &scene, &mistakes, &err);
+    free(path);
+    if (status != TOBI_OK) return complain_scene(mistakes, &err);
+    tobi_report_free(mistakes);
+    const tobi_world_def *w = tobi_scene_world_def(scene);
+    const int dimension = w->dimension;
+    double weight = 0;
+    in->def = tobi_default_surface();
+    in->def.spacing = w->spacing;
+    in->def.cell = o->cell;
+    in->def.smoothing = o->smooth;
+    in->def.threads = o->threads;
+    for (int a = 0; a < 3; a++) {
+        in->def.box_min[a] = w->domain_min[a], in->def.box_max[a] = w->domain_max[a];
+        in->def.flat_min[a] = in->def.flat_max[a] = 1;
+        up[a] = -w->gravity[a];
+        weight += up[a]*up[a];
+    }
+    if (!(weight > 0)) up[2] = 1;
+    tobi_scene_free(scene);
+    return dimension == 3 ? 0 : complain("%s is a run in 2-D, which has no surface", o->dir);
+}
+
+const struct argp surface_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Make the surfaces of the fluids and of each piece of the solids of the run in DIR from its "
+           "particles: closed meshes in DIR/surface, for each output, or DIR/surface.glb, for Blender." };
+
+int tobiuo_surface(int argc, char **argv)
+{
+    surface_options o = { .format = "vtp", .cell = 0.75, .smooth = 20 };
+    tobi_results *results = NULL;
+    tobi_error err = { 0 };
+    input in = { 0 };
+    totals t = { 0 };
+    double up[3];
+    parse_arguments(&surface_argp, argc, argv, &o);
+    int code = read_scene(&o, &in, up);
+    if (code != 0) return code;
+    if (tobi_results_open(o.dir, &results, &err) != TOBI_OK) return complain("%s", err.text);
+    const double begun = wall_clock();
+    const int64_t first = o.last ? tobi_results_count(results) - 1 : 0;
+    code = strcmp(o.format, "glb") == 0 ? write_movie(&o, results, up, first, &in, &t)
+                                        : write_files(&o, results, first, &in, &t);
+    if (code == 0)
+        printf(", %.3g million triangles, %.3g million particles in %.3g s\n", 1e-6*(double)t.triangles,
+               1e-6*t.particles, wall_clock() - begun);
+    free_input(&in);
+    tobi_results_free(results);
+    return code;
+}

@@ -1,0 +1,112 @@
+#!/bin/bash
+# tobiuo surface: surfaces of a run in all formats, those beside a run, VTK's reading of them, messages.
+# usage: surface.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/checks.sh" "$1"
+
+# vtk WHAT FILE [KEY=VALUE...]: VTK reads it and finds that (without VTK, code 77, nothing is checked)
+vtk() {
+    local code=0 what=$1
+    shift
+    /usr/bin/python3 "$here/read_vtk.py" "$@" > out.txt || code=$?
+    check "$what: $(tail -1 out.txt)" test $code = 0 -o $code = 77
+}
+
+cat > dam.json <<'END'
+{ "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "gravity": [0, 0, -9.81], "spacing": 0.02, "end_time": 0.1,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0, 0], "max": [0.2, 0.2, 0.2]}}]}],
+  "output": {"interval": 0.05, "surface": {"write": true, "fields": ["velocity"]}} }
+END
+expect 0 "" run dam.json --out dam --quiet
+vtk "beside the run" dam/surface/surface_000002.vtp 'arrays={"group": 1, "normals": 3, "velocity": 3}'
+vtk "its list" dam/surface.pvd 'times=[0, 0.05, 0.1]'
+cp -r dam/surface own
+
+for format in vtp obj ply stl; do
+    expect 0 "" surface dam --format $format
+    check "$format: three files" test -s dam/surface/surface_000002.$format
+done
+vtk "afterwards" dam/surface/surface_000002.vtp 'arrays={"group": 1, "normals": 3, "speed": 1, "pressure": 1}'
+vtk "its list" dam/surface.pvd 'times=[0, 0.05, 0.1]'
+check "no parts are left" test -z "$(find dam -name '*.part')"
+
+# The same bits for any number of threads; glTF as a reader of JSON sees it.
+expect 0 "" surface dam --format glb --field speed --threads 1
+mv dam/surface.glb one.glb
+expect 0 "" surface dam --format glb --field speed --threads 3
+check "the same bits" cmp one.glb dam/surface.glb
+$python - <<'END'
+import json, struct
+data = open("one.glb", "rb").read()
+magic, version, length, size, kind = struct.unpack("<4sIIII", data[:20])
+assert (magic, version, length, kind) == (b"glTF", 2, len(data), 0x4e4f534a)
+g = json.loads(data[20:20 + size])
+binary, = struct.unpack("<I", data[20 + size:24 + size])
+assert binary == g["buffers"][0]["byteLength"] == length - size - 28
+assert len(g["meshes"]) == 3 and len(g["animations"][0]["channels"]) == 3
+for view in g["bufferViews"]:
+    assert view["byteOffset"] + view["byteLength"] <= binary
+    assert view["byteOffset"] % 4 == 0
+# every frame is shown from its own time to that of the next
+at = 28 + size
+def numbers(accessor):
+    a = g["accessors"][accessor]
+    v = g["bufferViews"][a["bufferView"]]
+    return struct.unpack_from(f"<{v['byteLength']//4}f", data, at + v["byteOffset"])
+for k, s in enumerate(g["animations"][0]["samplers"]):
+    times, scales = numbers(s["input"]), numbers(s["output"])
+    assert s["interpolation"] == "STEP"
+    for t in (0, 1, 2):
+        step = max(i for i, x in enumerate(times) if x <= t*0.05 + 1e-4)
+        assert scales[3*step] == (t == k), (k, t, times, scales)
+# water stands below the top of the column, upwards is y
+low = min(g["accessors"][m["primitives"][0]["attributes"]["POSITION"]]["min"][2] for m in g["meshes"])
+high = max(g["accessors"][m["primitives"][0]["attributes"]["POSITION"]]["max"][2] for m in g["meshes"])
+assert 0.19 < high - low < 0.22, (low, high)
+r = g["nodes"][0]["rotation"]
+assert abs(r[0] + 0.5**0.5) < 1e-6 and abs(r[3] - 0.5**0.5) < 1e-6
+END
+check "glTF holds what it should" test $? = 0
+if command -v assimp > /dev/null; then
+    check "assimp reads it" assimp info one.glb
+fi
+
+# The volume of the water is that of its particles, but for what water beside walls stands too high.
+expect 0 "" surface dam --format stl --smooth 25 --cell 0.5 --last
+$python - <<'END'
+import struct
+data = open("dam/surface/surface_000002.stl", "rb").read()
+n, = struct.unpack_from("<I", data, 80)
+total = 0
+for k in range(n):
+    a, b, c = (struct.unpack_from("<3f", data, 84 + 50*k + 12 + 12*q) for q in range(3))
+    total += (a[0]*(b[1]*c[2] - b[2]*c[1]) + a[1]*(b[2]*c[0] - b[0]*c[2]) + a[2]*(b[0]*c[1] - b[1]*c[0]))/6
+assert abs(total/0.008 - 1) < 0.05, total
+END
+check "the volume is right" test $? = 0
+
+expect 1 "dam has no field 'sped'; it has speed, velocity, pressure" surface dam --field sped
+expect 1 "there are no results of a run" surface nowhere
+expect 2 "--cell: 7 is not from 0.1 to 2 spacings" surface dam --cell 7
+expect 2 "--smooth: '101' is not a number from 0 to 100" surface dam --smooth 101
+expect 2 "none of vtp, obj, ply, stl, glb" surface dam --format vtk
+expect 2 "which DIR?" surface
+rm -r dam/surface && : > dam/surface
+expect 1 "dam/surface is no folder" surface dam
+sed 's/"gravity".*"spacing"/"dimension": 2, "spacing"/; s/, 0\.[23]\]/]/g; s/\[0, 0, 0\]/[0, 0]/g; s/"output".*/"output": {"interval": 0.05} }/' \
+    dam.json > flat.json
+sed -i 's/"max": \[0.4, 0.2\]/"max": [0.4, 0.3]/' flat.json
+expect 0 "" run flat.json --out flat --quiet
+expect 1 "flat is a run in 2-D, which has no surface" surface flat
+# Too small a cell for the memory: the number is told. First, how much memory a large cell needs.
+rm -f dam/surface
+in_memory() { (ulimit -v "$1"; OMP_NUM_THREADS=1 "$program" surface dam --cell "$2" --threads 1 --last > out.txt 2> err.txt); }
+room=40000
+until in_memory $room 2 || [ $room -gt 400000 ]; do room=$((room + 5000)); done
+got=0; in_memory $room 0.1 || got=$?
+check "no memory: exit code 1 (was $got)" test $got = 1
+check "no memory: the number is told" grep -q "surface: no memory for [0-9.e+-]* GB; a larger cell needs less" err.txt
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
