@@ -253,11 +253,14 @@ static void rules_between_values(void **state)
           "\"end_time\": 1, \"gravity\": [0, -9.81, 1],\n"
           "\"dfsph\": { \"divergence_iterations_min\": 9, \"divergence_iterations_max\": 3 },\n"
           "\"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 1] },\n"
-          "\"velocity\": [0, 0, 1] } ] } ] }",
+          "\"velocity\": [0, 0, 1] } ] } ],\n"
+          "\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
           { "s.json:2:27: gravity: ", "is 1 m/s2 in z, must be 0 in a 2-D scene" },
           { "s.json:3:41: dfsph.divergence_iterations_min: ",
             "is 9, must not be above divergence_iterations_max, 3" },
-          { "s.json:4:38: fluids[0].fill[0]: ", "moves in z, which a 2-D scene does not have" });
+          { "s.json:4:38: fluids[0].fill[0]: ", "moves in z, which a 2-D scene does not have" },
+          { "s.json:6:24: output.surface: ", "is of 3-D scenes only" },
+          { "s.json:6:51: output.surface.fields: ", "there is no field \"sped\"" });
     CHECK(make(spacing, box,
                ", \"bodies\": [\n"
                "{ \"name\": \"b\", \"mesh\": \"/\", \"rotation\": { \"axis\": [0, 0, 0] } },\n"
@@ -565,15 +568,6 @@ static void files_that_are_none(void **state)
     assert_int_equal(tobi_report_count(NULL), 0);
 }
 
-static void surfaces_of_scenes(void **state)
-{
-    (void)state;
-    CHECK("{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
-          "\"end_time\": 1,\n\n\"output\": { \"surface\": { \"write\": true, \"fields\": [\"sped\"] } } }",
-          { "s.json:1:1: fluids: ", "is missing" }, { "s.json:4:24: output.surface: ", "is of 3-D scenes" },
-          { "s.json:4:51: output.surface.fields: ", "there is no field \"sped\"" });
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -585,7 +579,6 @@ int main(void)
         cmocka_unit_test(domain_and_regions),
         cmocka_unit_test(bodies_and_motions),
         cmocka_unit_test(rules_between_values),
-        cmocka_unit_test(surfaces_of_scenes),
         cmocka_unit_test(references_to_nothing),
         cmocka_unit_test(names_are_no_formulas),
         cmocka_unit_test(motions_one_at_a_time),
