@@ -70,7 +70,7 @@ static tobi_status run_stages(surface_work *w, tobi_surface **surface, tobi_erro
     return surface_make_result(w, surface, err);
 }
 
-static void free_work(surface_work *w)
+void surface_free_work(surface_work *w)
 {
     void *const arrays[] = {
         w->x, w->y, w->z, w->count, w->strength, w->of, w->bin_key, w->block_key, w->bin_begin, w->node,
@@ -93,6 +93,6 @@ tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surfac
     tobi_status status = tobi_exec_init(&w.exec, def->threads, err);
     if (status == TOBI_OK) status = tobi_exec_reserve(&w.exec, 8*def->particle_count + TOBI_BLOCK, err);
     if (status == TOBI_OK) status = run_stages(&w, surface, err);
-    free_work(&w);
+    surface_free_work(&w);
     return status;
 }

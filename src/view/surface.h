@@ -57,6 +57,8 @@ static inline int surface_in_cap(const uint8_t *sides, const int32_t t[3])
     return (sides[t[0]] & sides[t[1]] & sides[t[2]] & ~SURFACE_WITHIN) != 0;
 }
 
+/* surface.c: the arrays, not w itself. */
+void surface_free_work(surface_work *w);
 /* surface_bins.c */
 tobi_status surface_place_points(surface_work *w, tobi_error *err);
 /* Sorts keys below limit; order[k]: the old place. */
