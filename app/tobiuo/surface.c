@@ -14,11 +14,11 @@
 
 typedef struct surface_options {
     const char *dir, *format, *field;
-    double cell;
+    double cell, slow;
     int smooth, threads, last;
 } surface_options;
 
-enum { KEY_CELL = 256, KEY_SMOOTH, KEY_FIELD, KEY_THREADS, KEY_LAST };
+enum { KEY_CELL = 256, KEY_SMOOTH, KEY_FIELD, KEY_THREADS, KEY_LAST, KEY_SLOW };
 
 static const struct argp_option options[] = {
     { "format", 'f', "FORMAT", 0, "vtp (default), obj, ply, stl, or glb: one file, an animation", 0 },
@@ -27,6 +27,7 @@ static const struct argp_option options[] = {
     { "field", KEY_FIELD, "NAME", 0,
       "field of the vertices, \"speed\" among them; vtp and ply: without it all; "
       "glb: their colour", 0 },
+    { "slow", KEY_SLOW, "X", 0, "glb: so many times slower than the scene (1)", 0 },
     { "last", KEY_LAST, NULL, 0, "the last output only", 0 },
     { "threads", KEY_THREADS, "N", 0, "threads (all cores)", 0 },
     { 0 }
@@ -56,6 +57,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
             argp_error(state, "--smooth: '%s' is not a number from 0 to 100", value);
         break;
     case KEY_FIELD: o->field = value; break;
+    case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
     case KEY_LAST: o->last = 1; break;
     case KEY_THREADS: o->threads = parse_threads(state, value); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
@@ -223,7 +225,7 @@ static int write_movie(const surface_options *o, const tobi_results *results, co
         code = complain("%s", err.text);
     for (int64_t k = first; code == 0 && k < last; k++) {
         tobi_surface *s = make_one(o, results, k, in);
-        const double time = tobi_results_time(results, k);
+        const double time = o->slow*tobi_results_time(results, k);
         if (!s) code = EXIT_ERROR;
         else if (tobi_surface_movie_add(movie, time, s, o->field ? 0 : -1, range[0], range[1],
                                         &err) != TOBI_OK)
@@ -332,7 +334,7 @@ const struct argp surface_argp = { .options = options, .parser = parse, .args_do
 
 int tobiuo_surface(int argc, char **argv)
 {
-    surface_options o = { .format = "vtp", .cell = 0.75, .smooth = 20 };
+    surface_options o = { .format = "vtp", .cell = 0.75, .slow = 1, .smooth = 20 };
     tobi_results *results = NULL;
     tobi_error err = { 0 };
     input in = { 0 };

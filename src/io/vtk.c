@@ -311,11 +311,14 @@ static tobi_status write_vertex_cells(document *doc, int64_t n, tobi_error *err)
 
 static void begin_point_data(tobi_file *file, const tobi_vtk_array *arrays, int count)
 {
-    const char *mark = "";
-    for (int i = 0; i < count; i++)
+    tobi_file_print(file, "<PointData");
+    for (int i = 0; i < count; i++) {
         if (arrays[i].components == 2 && strcmp(arrays[i].name, "texture_coordinates") == 0)
-            mark = " TCoords=\"texture_coordinates\"";
-    tobi_file_print(file, "<PointData%s>\n", mark);
+            tobi_file_print(file, " TCoords=\"texture_coordinates\"");
+        if (arrays[i].components == 3 && strcmp(arrays[i].name, "normals") == 0)
+            tobi_file_print(file, " Normals=\"normals\"");
+    }
+    tobi_file_print(file, ">\n");
 }
 
 static tobi_status write_particles(document *doc, int64_t n, const double (*points)[3],

@@ -10,7 +10,8 @@
 #include "base/error.h"
 #include "base/type.h"
 
-/* Point data of 2 components named "texture_coordinates" are marked as those that pictures are put on by. */
+/* Point data of 2 components named "texture_coordinates" are marked as those that pictures are put on by,
+   those of 3 named "normals" as normals. */
 typedef struct tobi_vtk_array {
     const char   *name;
     tobi_type type;

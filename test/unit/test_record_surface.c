@@ -24,7 +24,7 @@ static void test_files(void **state)
         size_t n;
         char *text = read_file(one, &n);
         assert_true(strstr(text, "velocity") && strstr(text, "pressure"));
-        assert_true(strstr(text, "density") && strstr(text, "normals"));
+        assert_true(strstr(text, "density") && strstr(text, "<PointData Normals=\"normals\">"));
         free(text);
     }
     size_t n;

@@ -1,0 +1,56 @@
+/* Reading the results of a run back: particles, their fields, and the surfaces of bodies, output by output.
+   Only files of tobi_run are read (fluid/NAME.vtu and surfaces/NAME.vtp, raw, zlib, LZ4 or ASCII), by their
+   list all.pvd, which is whole at every moment: a run that still goes on can be read. */
+#ifndef TOBIUO_RESULTS_H
+#define TOBIUO_RESULTS_H
+#include "tobiuo/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tobi_results tobi_results;
+
+/* A field of particles as it stands in the file. */
+typedef struct tobi_moment_field {
+    char   *name;                      /* "velocity"                                              */
+    int     components;
+    double *values;                    /* count x components, row-major                           */
+} tobi_moment_field;
+
+/* The surface of a body. */
+typedef struct tobi_moment_surface {
+    char   *name;                      /* of the body                                             */
+    int64_t vertex_count, triangle_count;
+    double (*vertices)[3];             /* m                                                       */
+    int32_t (*triangles)[3];
+} tobi_moment_surface;
+
+/* All that one output holds. Owned by the caller: tobi_moment_free. */
+typedef struct tobi_moment {
+    double  time;                      /* s                                                       */
+    int64_t count;                     /* particles of fluids and solids                          */
+    double (*positions)[3];            /* m                                                       */
+    int     field_count, surface_count;
+    tobi_moment_field *fields;
+    tobi_moment_surface *surfaces;
+} tobi_moment;
+
+/* Opens the results in dir. TOBI_NOT_FOUND: there is no run; TOBI_DAMAGED: its list is no list. */
+TOBI_API tobi_status tobi_results_open(const char *dir, tobi_results **results, tobi_error *err);
+/* Looks for outputs that came since; on failure the list is as it was. */
+TOBI_API tobi_status tobi_results_refresh(tobi_results *results, tobi_error *err);
+/* Outputs by number from 0, and the time of each, s. */
+TOBI_API int64_t tobi_results_count(const tobi_results *results);
+TOBI_API double tobi_results_time(const tobi_results *results, int64_t output);
+/* Reads an output; surfaces whose file is missing are left out. TOBI_INVALID: there is no such output;
+   TOBI_DAMAGED: a file that this library did not write, or a part of one. On failure *moment is empty. */
+TOBI_API tobi_status tobi_results_read(const tobi_results *results, int64_t output, tobi_moment *moment,
+                                       tobi_error *err);
+TOBI_API void tobi_moment_free(tobi_moment *moment);           /* leaves it empty */
+TOBI_API void tobi_results_free(tobi_results *results);        /* NULL is fine    */
+
+#ifdef __cplusplus
+}
+#endif
+#endif
