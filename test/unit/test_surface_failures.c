@@ -49,7 +49,8 @@ static void test_every_allocation(void **state)
             if (status != TOBI_NO_MEMORY && status != TOBI_OK)
                 fail_msg("allocation %ld: status %d, %s", n, (int)status, err.text);
         }
-        if (mallinfo2().uordblks > in_use) fail_msg("allocation %ld: %zu bytes are left", n, (size_t)mallinfo2().uordblks - in_use);
+        const size_t now = mallinfo2().uordblks;
+        if (now > in_use) fail_msg("allocation %ld: %zu bytes are left", n, now - in_use);
         const char *const parts[] = { "f.ply.part", "f.vtp.part", "f.glb.part" };
         for (int k = 0; k < 3; k++) assert_int_equal(access(parts[k], F_OK), -1);
     }
