@@ -91,7 +91,8 @@ static void place_grid(surface_work *w, const double low[3])
         w->view.low[a] = INT32_MIN;
         w->view.high[a] = INT32_MAX;
         if (d->flat_min[a]) w->view.low[a] = (int32_t)margin;
-        if (d->flat_max[a]) w->view.high[a] = (int32_t)floor((d->box_max[a] - w->origin[a])/cell + 0.5);
+        const double top = floor((d->box_max[a] - w->origin[a])/cell + 0.5);
+        if (d->flat_max[a] && top < INT32_MAX/2) w->view.high[a] = (int32_t)top;      /* or out of reach */
     }
 }
 

@@ -285,6 +285,20 @@ static void test_nothing(void **state)
     tobi_surface_free(NULL);
 }
 
+/* A side that is far away is no concern of the particles here. */
+static void test_far_side(void **state)
+{
+    (void)state;
+    rig_points p = rig_box((int[3]){ 10, 10, 10 }, zero, D, 0.2);
+    tobi_surface_def d = tobi_default_surface();
+    for (int a = 0; a < 3; a++) d.box_max[a] = 1e12, d.flat_min[a] = d.flat_max[a] = 1;
+    tobi_surface *s = make(&p, d);
+    expect_closed(s);
+    expect_near(rig_volume(s), 1e-3, 0.02);
+    tobi_surface_free(s);
+    free(p.position);
+}
+
 static void test_mistakes(void **state)
 {
     (void)state;
@@ -321,7 +335,7 @@ int main(void)
         cmocka_unit_test(test_tank),
         cmocka_unit_test(test_wave), cmocka_unit_test(test_groups), cmocka_unit_test(test_thin),
         cmocka_unit_test(test_noise), cmocka_unit_test(test_fields), cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_nothing), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_nothing), cmocka_unit_test(test_far_side), cmocka_unit_test(test_mistakes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
