@@ -29,6 +29,19 @@ for format in vtp obj ply stl; do
 done
 vtk "afterwards" dam/surface/surface_000002.vtp 'arrays={"group": 1, "normals": 3, "speed": 1, "pressure": 1}'
 vtk "its list" dam/surface.pvd 'times=[0, 0.05, 0.1]'
+if /usr/bin/python3 -c "import vtk" 2> /dev/null; then
+    check "closed as VTK sees it" /usr/bin/python3 -c '
+import vtk
+reader, edges = vtk.vtkXMLPolyDataReader(), vtk.vtkFeatureEdges()
+reader.SetFileName("dam/surface/surface_000002.vtp")
+edges.SetInputConnection(reader.GetOutputPort())
+edges.FeatureEdgesOff()
+edges.BoundaryEdgesOn()
+edges.NonManifoldEdgesOn()
+edges.Update()
+assert reader.GetOutput().GetNumberOfPolys() > 500 and edges.GetOutput().GetNumberOfCells() == 0
+assert reader.GetOutput().GetPointData().GetNormals() is not None'
+fi
 check "no parts are left" test -z "$(find dam -name '*.part')"
 
 # The same bits for any number of threads; glTF as a reader of JSON sees it.
