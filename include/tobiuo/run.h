@@ -7,6 +7,7 @@
    DIR/fluid.pvd, fluid/        the fluid's particles, VTU per output
    DIR/bodies.pvd, bodies/      the bodies' particles
    DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
+   DIR/<body>_tractions.pvd, tractions/    pressure and shear on it, if asked
    DIR/grid.pvd, grid/          nodes of the grid of mlsmpm, if asked
    DIR/all.pvd                  the four above in one list: the same times, a part for each
    DIR/frames/                  pictures, if asked

@@ -276,6 +276,7 @@ typedef struct tobi_output_def {
     const char *fields;               /* names separated by commas, see tobi_world_field_name; "usual" */
     int         surfaces;             /* 1: write each body's surface as VTP and STL                  */
     int         frames;               /* 1: write a PNG picture at each output                        */
+    int         tractions;            /* 1: write pressure and shear on each body's surface           */
     int         grid;                 /* 1: write the nodes of the grid of mlsmpm                     */
     int         ply;                  /* 1: write the fluid's positions as PLY                        */
     int         obj;                  /* 1: write each body's surface as OBJ                          */

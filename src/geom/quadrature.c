@@ -42,9 +42,11 @@ static void place_point(double out[3], const double bary[3], const double *const
     for (int k = 0; k < 3; k++) out[k] = bary[0]*x[0][k] + bary[1]*x[1][k] + bary[2]*x[2][k];
 }
 
-/* Cuts one triangle; writes pieces from *count on if out is given, and counts them. */
-static void cut_triangle(const double *const x[3], double spacing, int32_t t, tobi_quadrature *out,
-                         int64_t *count)
+/* Takes a piece of triangle t that is small enough. */
+typedef void take_piece(void *user, int32_t t, const piece *p);
+
+/* Cuts one triangle. */
+static void cut_triangle(const double *const x[3], double spacing, int32_t t, take_piece *take, void *user)
 {
     piece stack[64 + 1] = {{.corner = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .fraction = 1}};
     int top = 1;
@@ -61,13 +63,7 @@ static void cut_triangle(const double *const x[3], double spacing, int32_t t, to
             }
         }
         if (longest <= spacing*spacing*(1 + 1e-12) || top + 2 > 64) {
-            if (out) {
-                out->triangle[*count] = t;
-                out->fraction[*count] = p.fraction;
-                for (int i = 0; i < 3; i++)
-                    out->a[*count][i] = (p.corner[0][i] + p.corner[1][i] + p.corner[2][i])/3;
-            }
-            ++*count;
+            take(user, t, &p);
             continue;
         }
         piece half = p;
@@ -80,22 +76,42 @@ static void cut_triangle(const double *const x[3], double spacing, int32_t t, to
     }
 }
 
+static void find_middle(const piece *p, double middle[3])
+{
+    for (int i = 0; i < 3; i++) middle[i] = (p->corner[0][i] + p->corner[1][i] + p->corner[2][i])/3;
+}
+
+/* Counts the pieces, and keeps them if there is where. */
+typedef struct keeping { tobi_quadrature *out; int64_t count; } keeping;
+
+static void keep_piece(void *user, int32_t t, const piece *p)
+{
+    keeping *k = user;
+    if (k->out) {
+        k->out->triangle[k->count] = t;
+        k->out->fraction[k->count] = p->fraction;
+        find_middle(p, k->out->a[k->count]);
+    }
+    k->count++;
+}
+
 static tobi_status build_triangles(const tobi_mesh *mesh, double spacing, tobi_quadrature *out,
                                    tobi_error *err)
 {
     for (int pass = 0; pass < 2; pass++) {
-        int64_t count = 0;
+        keeping k = { pass ? out : NULL, 0 };
         for (int64_t t = 0; t < mesh->triangle_count; t++) {
             const int32_t *v = mesh->triangles[t];
             const double *x[3] = {mesh->vertices[v[0]], mesh->vertices[v[1]], mesh->vertices[v[2]]};
             double longest2 = fmax(vec3_distance2(x[0], x[1]),
                                    fmax(vec3_distance2(x[1], x[2]), vec3_distance2(x[2], x[0])));
-            if (!(longest2/(spacing*spacing) < (double)MAX_PIECES) || count > MAX_PIECES)
+            if (!(longest2/(spacing*spacing) < (double)MAX_PIECES) || k.count > MAX_PIECES)
                 return tobi_fail(err, TOBI_INVALID, "a surface in pieces of %g m needs more than %lld of "
                                  "them; allow larger ones", spacing, MAX_PIECES);
-            cut_triangle(x, spacing, (int32_t)t, pass ? out : NULL, &count);
+            cut_triangle(x, spacing, (int32_t)t, keep_piece, &k);
         }
-        if (pass == 0) TOBI_TRY(allocate_surface(out, count, 3, err));
+        if (pass == 0) TOBI_TRY(allocate_surface(out, k.count, 3, err));
+        out->spacing = spacing;
     }
     return TOBI_OK;
 }
@@ -145,6 +161,46 @@ tobi_status tobi_quadrature_build(const tobi_mesh *mesh, double spacing, int dim
         return tobi_fail(err, TOBI_INVALID, "dimension is %d; allowed are 2 and 3", dimension);
     return dimension == 2 ? build_section(mesh, spacing, out, err)
                           : build_triangles(mesh, spacing, out, err);
+}
+
+/* Pieces come in the order of the cut; those that were left out are not looked at. */
+typedef struct placing {
+    const tobi_quadrature *s;
+    const double (*vertices)[3];
+    const int32_t (*triangles)[3];
+    double (*corners)[3];
+    int64_t next;
+} placing;
+
+static void place_piece(void *user, int32_t t, const piece *p)
+{
+    placing *q = user;
+    double middle[3];
+    find_middle(p, middle);
+    if (q->next == q->s->count || q->s->triangle[q->next] != t ||
+        memcmp(q->s->a[q->next], middle, sizeof middle) != 0)
+        return;
+    const int32_t *v = q->triangles[t];
+    const double *x[3] = {q->vertices[v[0]], q->vertices[v[1]], q->vertices[v[2]]};
+    for (int i = 0; i < 3; i++) place_point(q->corners[3*q->next + i], p->corner[i], x);
+    q->next++;
+}
+
+void tobi_quadrature_corners(const tobi_quadrature *s, const tobi_mesh *mesh, const double (*vertices)[3],
+                          double (*corners)[3])
+{
+    placing q = { s, vertices, (const int32_t (*)[3])mesh->triangles, corners, 0 };
+    for (int64_t i = 0; s->dimension == 2 && i < s->count; i++) {
+        const int32_t *v = mesh->triangles[s->triangle[i]];
+        const double *x[3] = {vertices[v[0]], vertices[v[1]], vertices[v[2]]};
+        place_point(corners[2*i], s->a[i], x);
+        place_point(corners[2*i + 1], s->b[i], x);
+    }
+    for (int64_t t = 0; s->dimension == 3 && t < mesh->triangle_count; t++) {
+        const int32_t *v = mesh->triangles[t];
+        const double *x[3] = {mesh->vertices[v[0]], mesh->vertices[v[1]], mesh->vertices[v[2]]};
+        cut_triangle(x, s->spacing, (int32_t)t, place_piece, &q);
+    }
 }
 
 void tobi_quadrature_move(tobi_quadrature *s, int64_t from, int64_t to)

@@ -12,6 +12,7 @@ typedef struct tobi_quadrature {
     double  (*a)[3];         /* barycentric: 3-D the middle of the piece; 2-D its first end       */
     double  (*b)[3];         /* 2-D its second end, the inside on the left; NULL in 3-D           */
     double  *fraction;       /* 1, of the triangle's area; NULL in 2-D                            */
+    double  spacing;         /* m, that it was cut by                                             */
 } tobi_quadrature;
 
 /* Cuts the surface of an oriented mesh into pieces whose longest edge (2-D: length) is at most
@@ -32,6 +33,11 @@ void tobi_quadrature_move(tobi_quadrature *surface, int64_t from, int64_t to);
 void tobi_quadrature_update(const tobi_quadrature *surface, const double (*vertices)[3],
                          const int32_t (*triangles)[3], double (*position)[3], double (*normal)[3],
                          double *area);
+
+/* Where the corners of every piece are, m: corners[3 i] to [3 i + 2] in 3-D, the ends [2 i] and [2 i + 1] in
+   2-D. mesh: the one that was cut, in the pose that it was cut in; vertices: of the pose that is wanted. */
+void tobi_quadrature_corners(const tobi_quadrature *surface, const tobi_mesh *mesh, const double (*vertices)[3],
+                          double (*corners)[3]);
 
 /* Values of the vertices (velocities) at the middle of every piece. */
 void tobi_quadrature_interpolate(const tobi_quadrature *surface, const int32_t (*triangles)[3],

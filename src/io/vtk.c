@@ -379,32 +379,37 @@ tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const
     return close_document(&doc, "PolyData", status, err);
 }
 
-static tobi_status write_vertices(document *doc, int64_t n, const double (*points)[3],
-                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+/* Cells of one, two or three points that no other cell has. Arrays of single points are theirs. */
+static tobi_status write_cells(document *doc, const tobi_vtk_cells *s, tobi_error *err)
 {
+    static const char *const kinds[] = { "Verts", "Lines", "Polys" };
+    const int n = s->corners;
+    const char *home = n == 1 ? "Point" : "Cell";
     tobi_file_print(&doc->file,
-                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"%" PRId64 "\" NumberOfLines=\"0\" "
-                    "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n", n, n);
-    begin_point_data(&doc->file, arrays, array_count);
-    TOBI_TRY(add_arrays(doc, arrays, array_count, n, err));
-    tobi_file_print(&doc->file, "</PointData>\n<CellData/>\n");
-    TOBI_TRY(write_points(doc, n, points, err));
-    tobi_file_print(&doc->file, "<Verts>\n");
-    TOBI_TRY(add_source(doc, (source){ "connectivity", TOBI_I64, 1, n, NULL, 0, 1, 0 }, err));
-    TOBI_TRY(add_source(doc, (source){ "offsets", TOBI_I64, 1, n, NULL, 1, 1, 0 }, err));
-    tobi_file_print(&doc->file, "</Verts>\n");
+                    "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfVerts=\"%" PRId64 "\" NumberOfLines=\"%"
+                    PRId64 "\" NumberOfStrips=\"0\" NumberOfPolys=\"%" PRId64 "\">\n%s<%sData>\n",
+                    n*s->count, n == 1 ? s->count : 0, n == 2 ? s->count : 0, n == 3 ? s->count : 0,
+                    n == 1 ? "" : "<PointData/>\n", home);
+    TOBI_TRY(add_arrays(doc, s->arrays, s->array_count, s->count, err));
+    tobi_file_print(&doc->file, "</%sData>\n%s", home, n == 1 ? "<CellData/>\n" : "");
+    TOBI_TRY(write_points(doc, n*s->count, s->points, err));
+    tobi_file_print(&doc->file, "<%s>\n", kinds[n - 1]);
+    TOBI_TRY(add_source(doc, (source){ "connectivity", TOBI_I64, 1, n*s->count, NULL, 0, 1, 0 }, err));
+    TOBI_TRY(add_source(doc, (source){ "offsets", TOBI_I64, 1, s->count, NULL, n, n, 0 }, err));
+    tobi_file_print(&doc->file, "</%s>\n", kinds[n - 1]);
     return TOBI_OK;
 }
 
-tobi_status tobi_vtp_write_points(const char *path, tobi_compression compression, int64_t n,
-                                  const double (*points)[3],
-                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err)
+tobi_status tobi_vtp_write_cells(const char *path, tobi_compression compression, const tobi_vtk_cells *s,
+                                 tobi_error *err)
 {
-    TOBI_TRY(check_arrays(path, arrays, array_count, n, err));
-    if (n > 0 && !points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
+    TOBI_TRY(check_arrays(path, s->arrays, s->array_count, s->count, err));
+    if (s->corners < 1 || s->corners > 3)
+        return tobi_fail(err, TOBI_INVALID, "%s: cells of %d points; allowed are 1 to 3", path, s->corners);
+    if (s->count > 0 && !s->points) return tobi_fail(err, TOBI_INVALID, "%s: no points", path);
     document doc;
-    TOBI_TRY(open_document(&doc, path, compression, "PolyData", array_count + 3, err));
-    tobi_status status = write_vertices(&doc, n, points, arrays, array_count, err);
+    TOBI_TRY(open_document(&doc, path, compression, "PolyData", s->array_count + 3, err));
+    tobi_status status = write_cells(&doc, s, err);
     return close_document(&doc, "PolyData", status, err);
 }
 

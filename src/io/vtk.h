@@ -38,10 +38,16 @@ typedef struct tobi_vtk_surface {
 tobi_status tobi_vtp_write(const char *path, tobi_compression compression, const tobi_vtk_surface *surface,
                            tobi_error *err);
 
-/* Points alone, as vertices of a VTP; as tobi_vtu_write. */
-tobi_status tobi_vtp_write_points(const char *path, tobi_compression compression, int64_t n,
-                                  const double (*points)[3],
-                                  const tobi_vtk_array *arrays, int array_count, tobi_error *err);
+/* Points, lines or triangles that share no point: cell k has the points corners*k and on. */
+typedef struct tobi_vtk_cells {
+    int corners;                            /* 1 to 3                        */
+    int64_t count;                          /* cells                         */
+    const double (*points)[3];              /* corners*count, m              */
+    const tobi_vtk_array *arrays;           /* count rows each; of single points, or of cells */
+    int array_count;
+} tobi_vtk_cells;
+tobi_status tobi_vtp_write_cells(const char *path, tobi_compression compression, const tobi_vtk_cells *cells,
+                                 tobi_error *err);
 
 /* Binary STL: little-endian floats, normals by the right-hand rule. At most 2^32 - 1 triangles. */
 tobi_status tobi_stl_write(const char *path, int64_t vertex_count, const double (*vertices)[3],

@@ -360,6 +360,9 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
     tobi_place surface = { &output, "surface", 0 }, of_surface = { &surface, "fields", 0 };
     if (scene->output.surface && scene->world.dimension == 2)
         tobi_source_mistake(source, &surface, "is of 3-D scenes only");
+    tobi_place tractions = { &output, "tractions", 0 };
+    if (scene->output.tractions && tobi_method_describe(scene->world.method, &method) && method.solids)
+        tobi_source_mistake(source, &tractions, "%s has no fluid that presses on bodies", method.name);
     tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
     if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)

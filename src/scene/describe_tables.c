@@ -25,6 +25,7 @@ static const char head[] =
     "| `grid.pvd` | nodes of the grid of mlsmpm, with `output.grid` |\n"
     "| `surface.pvd` | the surface of fluids and pieces of solids, with `output.surface.write` |\n"
     "| `BODY.pvd` | the moving surface of each body: `.vtp` and `.stl` in `surfaces/` |\n"
+    "| `BODY_tractions.pvd` | pressure and shear on it, in `tractions/`, with `output.tractions` |\n"
     "| `frames/` | a picture per output, with `--frames` |\n"
     "| `ply/`, `obj/` | positions of the fluid, surfaces of the bodies, with `output.ply`, `output.obj` |\n"
     "| `history.csv`, `bodies.csv`, `probes.csv` | the tables below |\n"

@@ -2,6 +2,7 @@
    walls. Drawback: a probe nearer than a support to a corner has few particles to ask. */
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
+#include "sph/around.h"
 #include "sph/probe.h"
 #include <math.h>
 #include <string.h>
@@ -11,62 +12,6 @@
 #define DRY 0.1             /* share of the kernel, a place with less before it is dry */
 #define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
 enum { BASIS = 4, VALUES = 4 };
-
-/* Cells of a box around x in box coordinates, not wrapped. */
-typedef struct range { int first[3], last[3]; } range;
-
-static range cells_around(const tobi_system *s, const double x[3], double reach)
-{
-    range r;
-    for (int a = 0; a < 3; a++) {
-        r.first[a] = (int)floor((x[a] - reach)*s->cells.inverse[a]);
-        r.last[a] = (int)floor((x[a] + reach)*s->cells.inverse[a]);
-        if (s->cells.periodic[a]) {
-            if (r.last[a] - r.first[a] >= s->cells.n[a]) r.last[a] = r.first[a] + s->cells.n[a] - 1;
-            continue;
-        }
-        /* particles that left the box are in its outermost cells */
-        r.first[a] = r.first[a] < 0 ? 0 : r.first[a] >= s->cells.n[a] ? s->cells.n[a] - 1 : r.first[a];
-        r.last[a] = r.last[a] < 0 ? 0 : r.last[a] >= s->cells.n[a] ? s->cells.n[a] - 1 : r.last[a];
-    }
-    return r;
-}
-
-static int wrap_cell(const tobi_system *s, int axis, int k)
-{
-    int n = s->cells.n[axis];
-    return s->cells.periodic[axis] ? ((k % n) + n) % n : k;
-}
-
-/* Offset of particle i from x, the nearest image along periodic axes. */
-static void offset_of(const tobi_system *s, int64_t i, const double x[3], double d[3])
-{
-    const double *p = &s->particles.position[i].x;
-    for (int a = 0; a < 3; a++) {
-        d[a] = p[a] - x[a];
-        if (s->box.periodic[a]) d[a] -= s->box.size[a]*round(d[a]/s->box.size[a]);
-    }
-    if (s->box.dimension == 2) d[2] = 0;
-}
-
-/* Calls see(user, i, offset) for every particle of the cells. */
-typedef void (*visitor)(void *user, int64_t i, const double d[3]);
-
-static void visit(const tobi_system *s, const double x[3], const range *r, visitor see, void *user)
-{
-    double d[3];
-    for (int z = r->first[2]; z <= r->last[2]; z++)
-        for (int y = r->first[1]; y <= r->last[1]; y++) {
-            int64_t row = tobi_cells_row(&s->cells, wrap_cell(s, 1, y), wrap_cell(s, 2, z));
-            for (int k = r->first[0]; k <= r->last[0]; k++) {
-                const int32_t *cell = s->cells.start + row + wrap_cell(s, 0, k);
-                for (int64_t i = cell[0]; i < cell[1]; i++) {
-                    offset_of(s, i, x, d);
-                    see(user, i, d);
-                }
-            }
-        }
-}
 
 /* Normal equations of the fit: basis 1, x, y, z in radii; right sides pressure and velocity. */
 typedef struct fit {
@@ -238,9 +183,9 @@ static double measure_wall(membrane *m)
             for (int a = 0; a < 3; a++) y[a] = m->foot[a] + r*(cos(turn)*u[a] + sin(turn)*v[a]);
             if (s->box.dimension == 2) y[2] = 0;
             if (!is_on_wall(m, y)) continue;
-            range cells = cells_around(s, y, s->smoothing.h + d);
+            sph_range cells = sph_cells_around(s, y, s->smoothing.h + d);
             m->traction = m->weight = 0;
-            visit(s, y, &cells, press, m);
+            sph_visit(s, y, &cells, press, m);
             if (!sph_of(s)->mirrors) sum += m->traction/open_share(m, y);
             else if (m->weight > DRY) sum += m->traction/m->weight;
             used++;
@@ -254,8 +199,8 @@ int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, 
     double local[3], value[VALUES] = {0};
     int n = 1 + s->box.dimension;
     for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
-    range r = cells_around(s, local, f.radius + s->smoothing.spacing);
-    visit(s, local, &r, add_to_fit, &f);
+    sph_range r = sph_cells_around(s, local, f.radius + s->smoothing.spacing);
+    sph_visit(s, local, &r, add_to_fit, &f);
     fit full = f;
     if (f.count >= 2*n && eliminate(&full, n)) substitute(&full, n, value);
     else if (f.count > 0)
@@ -294,11 +239,11 @@ double tobi_probe_level(const tobi_system *s, const double x[3])
         c.axis = a;
         c.sign = s->sim->def.gravity[a] > 0 ? -1 : 1;
     }
-    range r = cells_around(s, local, 2*d);
+    sph_range r = sph_cells_around(s, local, 2*d);
     r.first[c.axis] = 0;
     r.last[c.axis] = s->cells.n[c.axis] - 1;
     double floor_at = c.sign > 0 ? 0 : s->box.size[c.axis];
     c.top = floor_at;
-    visit(s, local, &r, look_for_top, &c);
+    sph_visit(s, local, &r, look_for_top, &c);
     return s->box.lower[c.axis] + (c.top == floor_at ? floor_at : c.top + 0.5*d*c.sign);
 }

@@ -32,6 +32,9 @@ static const tobi_param output_rows[] = {
              "there is a blade piece and cut_side, and texture_coordinates if a solid's mesh has them." },
     { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
       .doc = "Write the moving surface of each body as VTP and STL." },
+    { .key = "tractions", BOOL, AT(tobi_output_def, tractions),
+      .doc = "Write the pressure and the shear of the fluid on each body's surface, Pa, in pieces of at "
+             "most half a spacing, as VTP. Not of mlsmpm." },
     { .key = "frames", BOOL, AT(tobi_output_def, frames),
       .doc = "Write a PNG picture at each output." },
     { .key = "grid", BOOL, AT(tobi_output_def, grid),

@@ -54,6 +54,7 @@ typedef struct tobi_snapshot {
     tobi_point_set set[TOBI_SETS];
     double (**surface)[3];                /* vertices of each body                   */
     int surfaces;
+    struct tobi_tractions *tractions;     /* of each body; NULL: not asked           */
     struct tobi_drawing *drawing;         /* NULL: no picture                        */
     struct tobi_record_surface *skin;     /* NULL: no surface                        */
     tobi_csv_rows bodies, history;
@@ -74,6 +75,7 @@ struct tobi_run {
     tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
     int surface_fields;
     char (*body_file)[80];                /* names of the bodies' surface files      */
+    char (*traction_file)[96];            /* of their tractions                      */
     struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
     int skin_count;
     struct tobi_writer *writer;
@@ -139,6 +141,11 @@ tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *snapshot, tobi
 /* The lists anew, of what is there of outputs 0 .. run->outputs - 1; the rest is run->missing. */
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
 void tobi_series_free(tobi_run *run);
+
+/* record_tractions.c: pressure and shear on the surface of each body, in pieces. */
+tobi_status tobi_tractions_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+void tobi_tractions_free(tobi_snapshot *snapshot);
 
 /* record_frame.c: the picture of an output, which has its particles and surfaces already. */
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);

@@ -80,6 +80,9 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
     if (run->output.grid && !tobi_world_solids(run->world))
         return tobi_fail(err, TOBI_INVALID, "output.grid: %s has no grid",
                          run->world->system[0].method->name);
+    if (run->output.tractions && !tobi_world_fluids(run->world))
+        return tobi_fail(err, TOBI_INVALID, "output.tractions: %s has no fluid that presses on bodies",
+                         run->world->system[0].method->name);
     for (const char *p = run->output.fields ? run->output.fields : ""; *p;) {
         p += strspn(p, ", ");
         size_t length = strcspn(p, ", ");
@@ -97,8 +100,16 @@ static bool is_taken(const tobi_run *run, int count, const char *name)
     for (size_t k = 0; k < sizeof ours/sizeof *ours; k++)
         if (strcmp(ours[k], name) == 0) return true;
     for (int k = 0; k < count; k++)
-        if (strcmp(run->body_file[k], name) == 0) return true;
+        if (strcmp(run->body_file[k], name) == 0 || strcmp(run->traction_file[k], name) == 0) return true;
     return false;
+}
+
+/* A name and that of its tractions. */
+static bool is_free(const tobi_run *run, int count, const char *name)
+{
+    char tractions[96];
+    snprintf(tractions, sizeof tractions, "%s_tractions", name);
+    return !is_taken(run, count, name) && !is_taken(run, count, tractions);
 }
 
 /* A file name for each body: its own name with odd characters as '_', and a number if taken. */
@@ -106,7 +117,9 @@ static tobi_status name_bodies(tobi_run *run, tobi_error *err)
 {
     int count = tobi_world_body_count(run->world);
     run->body_file = calloc((size_t)count + 1, sizeof *run->body_file);
-    if (!run->body_file) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    run->traction_file = calloc((size_t)count + 1, sizeof *run->traction_file);
+    if (!run->body_file || !run->traction_file)
+        return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     for (int k = 0; k < count; k++) {
         char stem[64] = "", name[80];
         const char *own = tobi_world_body_name(run->world, k);
@@ -114,8 +127,9 @@ static tobi_status name_bodies(tobi_run *run, tobi_error *err)
             stem[n] = isalnum((unsigned char)own[n]) || strchr("-_", own[n]) ? own[n] : '_';
         if (!*stem) strcpy(stem, "body");
         snprintf(name, sizeof name, "%s", stem);
-        for (int i = 2; is_taken(run, k, name); i++) snprintf(name, sizeof name, "%s_%d", stem, i);
+        for (int i = 2; !is_free(run, k, name); i++) snprintf(name, sizeof name, "%s_%d", stem, i);
         strcpy(run->body_file[k], name);
+        snprintf(run->traction_file[k], sizeof run->traction_file[k], "%s_tractions", name);
     }
     return TOBI_OK;
 }
@@ -133,8 +147,11 @@ static int series_at(const tobi_run *run, int number, series *out)
     for (int k = 0; k < TOBI_SETS; k++)
         if (has[k] && number-- == 0) return *out = (series){ set_names[k], set_names[k], "vtu" }, 1;
     if (run->output.surface && number-- == 0) return *out = (series){ "surface", "surface", "vtp" }, 1;
-    if (!run->output.surfaces || number >= bodies) return 0;
-    *out = (series){ run->body_file[number], "surfaces", "vtp" };
+    if (run->output.surfaces && number < bodies)
+        return *out = (series){ run->body_file[number], "surfaces", "vtp" }, 1;
+    if (run->output.surfaces) number -= bodies;
+    if (!run->output.tractions || number >= bodies) return 0;
+    *out = (series){ run->traction_file[number], "tractions", "vtp" };
     return 1;
 }
 
@@ -158,6 +175,7 @@ tobi_status tobi_series_folders(const tobi_run *run, tobi_error *err)
     if (tobi_world_body_count(run->world) == 0) return TOBI_OK;
     TOBI_TRY(tobi_record_make_dir(run->dir, "bodies", err));
     if (run->output.obj) TOBI_TRY(tobi_record_make_dir(run->dir, "obj", err));
+    if (run->output.tractions) TOBI_TRY(tobi_record_make_dir(run->dir, "tractions", err));
     return run->output.surfaces ? tobi_record_make_dir(run->dir, "surfaces", err) : TOBI_OK;
 }
 
@@ -300,6 +318,7 @@ void tobi_series_free(tobi_run *run)
     forget_lists(run);
     free(run->list);
     free(run->body_file);
+    free(run->traction_file);
 }
 
 tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error *err)
@@ -309,6 +328,7 @@ tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error 
     if (s->surfaces) TOBI_TRY(write_set(run, s, TOBI_SET_BODIES, err));
     for (int b = 0; o->surfaces && b < s->surfaces; b++)
         for (int kind = 0; kind < 2; kind++) TOBI_TRY(write_surface(run, s, b, kind, err));
+    if (o->tractions) TOBI_TRY(tobi_tractions_write(run, s, err));
     if (o->grid) TOBI_TRY(write_set(run, s, TOBI_SET_GRID, err));
     if (o->surface) TOBI_TRY(tobi_record_write_surface(run, s, err));
     if (o->ply) TOBI_TRY(write_ply(run, s, err));

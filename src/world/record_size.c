@@ -12,7 +12,7 @@
 static const double packed[] = { 1, 0.6, 0.72, 1.9 };
 
 enum { HEAD = 1900, HISTORY_ROW = 300, BODY_ROW = 400, LIST_ENTRY = 110, PICTURE = 100000,
-       NODE = 80, CHECKPOINT = 30000, CHECKPOINT_PARTICLE = 90 };
+       NODE = 80, PIECE = 128, CHECKPOINT = 30000, CHECKPOINT_PARTICLE = 90 };
 
 /* A point with its cell, and the fields of the fluid's or the bodies' particles. */
 static double row_bytes(const tobi_run *run, int bodies)
@@ -32,13 +32,15 @@ static void add_files(tobi_run_size *size, int files, double bytes)
     size->bytes += files*bytes;
 }
 
-static void add_surface(tobi_run_size *size, const tobi_output_def *o, const tobi_mesh *m)
+static void add_surface(tobi_run_size *size, const tobi_output_def *o, const tobi_body *b)
 {
+    const tobi_mesh *m = &b->mesh;
     const double v = (double)m->vertex_count, t = (double)m->triangle_count;
     if (o->surfaces) {
         add_files(size, 1, 0.5*HEAD + packed[o->compression]*(v*3*sizeof(double) + t*20));    /* VTP */
         add_files(size, 1, 84 + 50*t);                                                        /* STL */
     }
+    if (o->tractions) add_files(size, 1, HEAD + packed[o->compression]*PIECE*(double)b->surface.count);
     if (o->obj) add_files(size, 1, 36*v + 16*t);
 }
 
@@ -60,7 +62,7 @@ static tobi_run_size size_output(const tobi_run *run, double particles, double b
     tobi_run_size size = { .bytes = HISTORY_ROW + BODY_ROW*bodies + 2*LIST_ENTRY*lists };
     add_files(&size, 1, HEAD + pack*row_bytes(run, 0)*particles);
     add_files(&size, bodies > 0, HEAD + pack*row_bytes(run, 1)*body_particles);
-    for (int b = 0; b < bodies; b++) add_surface(&size, o, &run->world->sim.bodies[b].mesh);
+    for (int b = 0; b < bodies; b++) add_surface(&size, o, &run->world->sim.bodies[b]);
     add_files(&size, o->grid, HEAD + pack*NODE*0.5*particles);
     if (o->surface) add_files(&size, 1, 0.5*HEAD + pack*surface_bytes(run, particles));
     add_files(&size, o->ply, 12*particles);
@@ -81,7 +83,8 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
     TOBI_TRY(tobi_world_estimate(world, &particles, &body_particles, &memory, err));
     const double every = output->checkpoint_interval;
     const int bodies = tobi_world_body_count(world), checkpoints = every > 0 && every < end ? 2 : 1,
-              lists = 1 + (bodies > 0) + output->grid + output->surface + (output->surfaces ? bodies : 0),
+              lists = 1 + (bodies > 0) + output->grid + output->surface +
+                      (output->surfaces + output->tractions)*bodies,
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
     size->outputs = tobi_record_count(output->interval, end);

@@ -113,6 +113,7 @@ static tobi_status take_all(tobi_run *run, tobi_snapshot *s, tobi_error *err)
     TOBI_TRY(take_particles(run, TOBI_FLUID, &s->set[TOBI_SET_FLUID], err));
     if (s->surfaces) TOBI_TRY(take_particles(run, TOBI_BODIES, &s->set[TOBI_SET_BODIES], err));
     if (run->output.surfaces || run->output.obj || run->output.frames) TOBI_TRY(take_surfaces(run, s, err));
+    if (run->output.tractions) TOBI_TRY(tobi_tractions_take(run, s, err));
     if (run->output.grid) TOBI_TRY(take_grid(run, &s->set[TOBI_SET_GRID], err));
     if (run->output.surface) TOBI_TRY(tobi_record_take_surface(run, s, err));
     if (run->output.frames) TOBI_TRY(tobi_drawing_take(run, s, err));
@@ -142,6 +143,7 @@ void tobi_snapshot_free(tobi_snapshot *s)
     for (int b = 0; s->surface && b < s->surfaces; b++) free(s->surface[b]);
     free(s->surface);
     tobi_record_free_surface(s->skin);
+    tobi_tractions_free(s);
     tobi_drawing_free(s->drawing);
     free(s->bodies.text);
     free(s->history.text);

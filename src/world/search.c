@@ -244,18 +244,24 @@ static int is_searched(const look *k, int64_t cell)
     return 1;
 }
 
+static tobi_status write_file(const look *k, const points *p, const char *name, const tobi_vtk_array *array,
+                              int arrays, tobi_error *err)
+{
+    const tobi_vtk_cells cells = { .corners = 1, .count = p->count, .points = (const double (*)[3])p->place,
+                                   .arrays = array, .array_count = arrays };
+    char *path = tobi_record_path(k->dir, "%s", name);
+    const tobi_status status = path ? tobi_vtp_write_cells(path, TOBI_COMPRESS_ZLIB, &cells, err)
+                                    : tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", name);
+    free(path);
+    return status;
+}
+
 static tobi_status write_points(const look *k, const points *p, const char *name, int arrays, tobi_error *err)
 {
     const tobi_vtk_array array[] = { { "particle_id", TOBI_I64, 1, p->id }, { "cell", TOBI_I64, 1, p->cell },
                                      { "distance", TOBI_F64, 1, p->distance },
                                      { "weight", TOBI_F64, 1, p->weight } };
-    char *path = tobi_record_path(k->dir, "%s", name);
-    const tobi_status status =
-        path ? tobi_vtp_write_points(path, TOBI_COMPRESS_ZLIB, p->count, (const double (*)[3])p->place, array,
-                                     arrays, err)
-             : tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", name);
-    free(path);
-    return status;
+    return write_file(k, p, name, array, arrays, err);
 }
 
 /* all, center, inCell, each_cell: rows that a question answers with yes. */
@@ -310,12 +316,7 @@ static tobi_status write_cells(const look *k, points *p, tobi_error *err)
     visit_cells(k->s, add_cell, &(cell_writing){ k, p, 1 });
     const tobi_vtk_array array[] = { { "cell", TOBI_I64, 1, p->cell }, { "particles", TOBI_I64, 1, p->id },
                                      { "searched", TOBI_F64, 1, p->distance } };
-    char *path = tobi_record_path(k->dir, "each_cell_position.vtp");
-    if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write the cells");
-    const tobi_status status = tobi_vtp_write_points(path, TOBI_COMPRESS_ZLIB, p->count,
-                                                     (const double (*)[3])p->place, array, 3, err);
-    free(path);
-    return status;
+    return write_file(k, p, "each_cell_position.vtp", array, 3, err);
 }
 
 static tobi_status write_all(const look *k, points *p, tobi_error *err)

@@ -233,6 +233,38 @@ static void wrong_arguments_are_refused(void **state)
     assert_non_null(strstr(err.text, "no/such/a.vtu: No such file or directory"));
 }
 
+/* Points, lines and triangles that share no corner. */
+static void loose_cells_are_read_by_vtk(void **state)
+{
+    (void)state;
+    const double load[3] = { 1, 2, 4 };
+    const tobi_vtk_array array = { "load", TOBI_F64, 1, load };
+    const int kinds[] = { 0, 1, 3, 5 };             /* VTK's numbers of vertex, line, triangle */
+    tobi_vtk_cells cells = { .points = points, .arrays = &array, .array_count = 1 };
+    tobi_error err;
+    FILE *out = fopen(in_folder("cells.json"), "w");
+    fprintf(out, "[");
+    for (cells.corners = 1; cells.corners <= 3; cells.corners++) {
+        char name[64];
+        cells.count = 3;
+        snprintf(name, sizeof name, "cells_%d.vtp", cells.corners);
+        assert_int_equal(tobi_vtp_write_cells(in_folder(name), TOBI_COMPRESS_ZLIB, &cells, &err), TOBI_OK);
+        fprintf(out, "{\"file\": \"%s\", \"points\": %d, \"cells\": 3, \"cell_type\": %d, \"sums\": "
+                "{\"load\": 17}},\n", name, 3*cells.corners, kinds[cells.corners]);
+    }
+    cells = (tobi_vtk_cells){ .corners = 3 };
+    assert_int_equal(tobi_vtp_write_cells(in_folder("no_cells.vtp"), TOBI_ASCII, &cells, &err), TOBI_OK);
+    fprintf(out, "{\"file\": \"no_cells.vtp\", \"points\": 0, \"cells\": 0}]\n");
+    fclose(out);
+    cells.corners = 4;
+    assert_int_equal(tobi_vtp_write_cells(in_folder("four.vtp"), TOBI_ASCII, &cells, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "cells of 4 points; allowed are 1 to 3"));
+    cells = (tobi_vtk_cells){ .corners = 1, .count = 1 };
+    assert_int_equal(tobi_vtp_write_cells(in_folder("none.vtp"), TOBI_ASCII, &cells, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "no points"));
+    require_vtk_answer(in_folder("cells.json"));
+}
+
 static int count_files(void)
 {
     char command[300], line[32] = "";
@@ -288,6 +320,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vtu_is_read_by_vtk), cmocka_unit_test(surfaces_are_read_by_vtk),
         cmocka_unit_test(stl_normals_point_outwards), cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(loose_cells_are_read_by_vtk),
         cmocka_unit_test(full_disk_leaves_nothing)
     };
     return cmocka_run_group_tests_name("io/vtk", tests, set_up, tear_down);

@@ -58,6 +58,16 @@ static void test_body_names_become_file_names(void **state)
     assert_int_equal(count_rows(at("names/bodies.csv")), 3);
     tobi_run_free(run);
     tobi_world_destroy(world);
+    /* A body that is named as the tractions of another. */
+    const char *const near[] = { "b_tractions", "b", "a" };
+    output.tractions = 1;
+    world = make_world(3, near);
+    run = create(world, &output, at("tractions"), 0);
+    assert_true(exists(at("tractions/a_tractions.pvd")) && exists(at("tractions/b_tractions.pvd")));
+    assert_true(exists(at("tractions/b_2.pvd")) && exists(at("tractions/b_2_tractions.pvd")));
+    assert_true(exists(at("tractions/tractions/b_2_tractions_000000.vtp")));
+    tobi_run_free(run);
+    tobi_world_destroy(world);
 }
 
 /* Particles of bodies have their own fields only, and one list has every file under the times of all. */

@@ -409,6 +409,10 @@ static void calls_are_refused_in_words(void **state)
     output.grid = 1;
     REFUSED(tobi_run_create(water, &output, "no_run", 0, NULL, &run, &err), TOBI_INVALID,
             "output.grid: dfsph has no grid");
+    output = tobi_default_output_def();
+    output.tractions = 1;
+    REFUSED(tobi_run_create(world, &output, "no_run", 0, NULL, &run, &err), TOBI_INVALID,
+            "output.tractions: mlsmpm has no fluid that presses on bodies");
     solid_step(world, 1);
     REFUSED(tobi_world_add_solid(world, &solid, &fill, 1, &err), TOBI_INVALID,
             "a started world takes no more solids");

@@ -256,6 +256,8 @@ static void methods_refuse_what_they_do_not_know(void **state)
     refuse(text, "s.json:2:11: solids: ", "dfsph takes fluids; solids need \"method\": \"mlsmpm\"");
     snprintf(text, sizeof text, "%s%s, \"output\": {\n\"grid\": true } }", plain, fluid);
     refuse(text, "s.json:3:9: output.grid: ", "dfsph has no grid; mlsmpm has one");
+    refuse(make(ball, ", \"output\": { \"tractions\": true }"), "s.json:6:28: output.tractions: ",
+           "mlsmpm has no fluid that presses on bodies");
     snprintf(text, sizeof text, "{ \"method\": \"mlsmpm\", \"domain\": { \"min\": [-1, -1, -1], \"max\": [1, "
            "1, 1],\n"
              "\"walls\": { \"x\": \"periodic\" } }, \"spacing\": 0.1, \"end_time\": 1,\n\"solids\": [ { "
