@@ -1,6 +1,6 @@
-/* Prescribed motion of a body: a user's Lua script, translation, rotation, oscillation, or keyframes from a
-   CSV file; and scripts that control a body or set a fluid in motion. docs/scripts.md says what a script may
-   define, docs/scene.md which columns keyframes have.
+/* Prescribed motion of a body: a user's Lua script, translation, rotation, oscillation, keyframes from a
+   CSV file, or several of them together; and scripts that control a body or set a fluid in motion.
+   docs/scripts.md says what a script may define, docs/scene.md which columns keyframes have.
 
    A motion is a pure function of time and rest position, so that rates by central difference, a
    restart and any order of evaluation give the same numbers. One motion belongs to one body; it is
@@ -41,6 +41,26 @@ TOBI_API tobi_status tobi_motion_rotation(const double centre[3], const double a
 TOBI_API tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_m,
                                     double frequency_hz, double phase_deg, tobi_motion **out,
                                     tobi_error *err);
+
+/* Turns to and fro about the line through centre (m) along axis, right-handed: by
+   amplitude sin(2 pi frequency t + phase), degrees. */
+TOBI_API tobi_status tobi_motion_swing(const double centre[3], const double axis[3], double amplitude_deg,
+                                       double frequency_hz, double phase_deg, tobi_motion **out,
+                                       tobi_error *err);
+
+/* When a motion by numbers is under way, s. A translation or rotation rests until start. Then its speed
+   rises by (1 - cos(pi s/ramp))/2 for `ramp` seconds and falls likewise in the last `ramp` seconds before
+   stop; then it rests. stop may be INFINITY. The amplitude of an oscillation is 0 until start and rises so;
+   its stop is INFINITY, and its sine counts from time 0. TOBI_INVALID for other kinds, and without time for
+   both ramps. */
+TOBI_API tobi_status tobi_motion_set_times(tobi_motion *motion, double start, double stop, double ramp,
+                                           tobi_error *err);
+
+/* Several motions of one body: turns one after the other, each about its own centre as given, then all shifts
+   together. Only the first may be a script that deforms. On success the sum owns the parts, else the caller.
+   TOBI_INVALID for parts that are sums. */
+TOBI_API tobi_status tobi_motion_sum(tobi_motion *const *parts, int count, tobi_motion **out,
+                                     tobi_error *err);
 
 /* Rows of a CSV file: position = pivot + shift + R (rest - pivot), cubic
    between the rows. Errors name file and line:

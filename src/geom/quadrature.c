@@ -186,8 +186,8 @@ static void place_piece(void *user, int32_t t, const piece *p)
     q->next++;
 }
 
-void tobi_quadrature_corners(const tobi_quadrature *s, const tobi_mesh *mesh, const double (*vertices)[3],
-                          double (*corners)[3])
+void tobi_quadrature_corners(const tobi_quadrature *s, const tobi_mesh *mesh,
+                             const double (*vertices)[3], double (*corners)[3])
 {
     placing q = { s, vertices, (const int32_t (*)[3])mesh->triangles, corners, 0 };
     for (int64_t i = 0; s->dimension == 2 && i < s->count; i++) {

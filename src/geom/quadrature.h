@@ -36,8 +36,8 @@ void tobi_quadrature_update(const tobi_quadrature *surface, const double (*verti
 
 /* Where the corners of every piece are, m: corners[3 i] to [3 i + 2] in 3-D, the ends [2 i] and [2 i + 1] in
    2-D. mesh: the one that was cut, in the pose that it was cut in; vertices: of the pose that is wanted. */
-void tobi_quadrature_corners(const tobi_quadrature *surface, const tobi_mesh *mesh, const double (*vertices)[3],
-                          double (*corners)[3]);
+void tobi_quadrature_corners(const tobi_quadrature *surface, const tobi_mesh *mesh,
+                             const double (*vertices)[3], double (*corners)[3]);
 
 /* Values of the vertices (velocities) at the middle of every piece. */
 void tobi_quadrature_interpolate(const tobi_quadrature *surface, const int32_t (*triangles)[3],

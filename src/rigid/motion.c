@@ -1,9 +1,11 @@
-/* The kinds of motion behind one type. Three are formulas, evaluated here; others ask a script or rows of
-   a file. All rigid kinds end in one place: pose a point about a pivot. */
+/* The kinds of motion behind one type. Four are formulas, evaluated here; others ask a script or rows of
+   a file, or are several motions together. All rigid kinds end in one place: turn a point about a pivot, then
+   shift it. Drawback: the library takes velocities from positions at the ends of a step. */
 #include "rigid/keyframes.h"
 #include "rigid/script.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -12,7 +14,9 @@ typedef enum motion_kind {
     KIND_TRANSLATION,
     KIND_ROTATION,
     KIND_OSCILLATION,
-    KIND_KEYFRAMES
+    KIND_SWING,
+    KIND_KEYFRAMES,
+    KIND_SUM
 } motion_kind;
 
 struct tobi_motion {
@@ -20,10 +24,14 @@ struct tobi_motion {
     tobi_script *script;    /* KIND_SCRIPT, owned                                          */
     tobi_keyframes *frames; /* KIND_KEYFRAMES, owned                                       */
     double vector[3];       /* velocity m/s | unit axis | unit direction                   */
-    double centre[3];       /* m, KIND_ROTATION and KIND_KEYFRAMES                         */
-    double amplitude;       /* m                                                           */
+    double centre[3];       /* m, of what turns                                            */
+    double amplitude;       /* m | degrees                                                 */
     double rate;            /* degrees/s | Hz                                              */
     double phase;           /* degrees                                                     */
+    double start, stop;     /* s, of translation and rotation; oscillations: start alone   */
+    double ramp;            /* s                                                           */
+    tobi_motion **part;     /* KIND_SUM, owned                                             */
+    int parts;
 };
 
 static tobi_status make(motion_kind kind, tobi_motion **out, tobi_error *err)
@@ -31,6 +39,7 @@ static tobi_status make(motion_kind kind, tobi_motion **out, tobi_error *err)
     *out = calloc(1, sizeof **out);
     if (!*out) return tobi_fail(err, TOBI_NO_MEMORY, "motion: out of memory");
     (*out)->kind = kind;
+    (*out)->stop = INFINITY;
     return TOBI_OK;
 }
 
@@ -113,6 +122,64 @@ tobi_status tobi_motion_oscillation(const double direction[3], double amplitude_
     return TOBI_OK;
 }
 
+tobi_status tobi_motion_swing(const double centre[3], const double axis[3], double amplitude_deg,
+                              double frequency_hz, double phase_deg, tobi_motion **out, tobi_error *err)
+{
+    TOBI_NEED(centre, "the centre");
+    TOBI_TRY(check_finite("centre", centre, 3, err));
+    TOBI_TRY(tobi_motion_oscillation(axis, amplitude_deg, frequency_hz, phase_deg, out, err));
+    (*out)->kind = KIND_SWING;
+    for (int a = 0; a < 3; a++) (*out)->centre[a] = centre[a];
+    return TOBI_OK;
+}
+
+tobi_status tobi_motion_set_times(tobi_motion *motion, double start, double stop, double ramp,
+                                  tobi_error *err)
+{
+    TOBI_NEED(motion, "the motion");
+    const motion_kind kind = motion->kind;
+    if (kind == KIND_SCRIPT || kind == KIND_KEYFRAMES || kind == KIND_SUM)
+        return tobi_fail(err, TOBI_INVALID, "motion: times are for motions by numbers");
+    const int swings = kind == KIND_OSCILLATION || kind == KIND_SWING;
+    if (!isfinite(start) || isnan(stop) || !isfinite(ramp) || ramp < 0)
+        return tobi_fail(err, TOBI_INVALID, "motion: start %g s, stop %g s, ramp %g s; start must be finite, "
+                         "ramp 0 or more", start, stop, ramp);
+    if (swings && isfinite(stop))
+        return tobi_fail(err, TOBI_INVALID, "motion: an oscillation does not stop");
+    if (!(stop - start >= 2*ramp) || !(stop > start))
+        return tobi_fail(err, TOBI_INVALID, "motion: from start %g s to stop %g s there is no time for two "
+                         "ramps of %g s", start, stop, ramp);
+    motion->start = start;
+    motion->stop = stop;
+    motion->ramp = ramp;
+    return TOBI_OK;
+}
+
+tobi_status tobi_motion_sum(tobi_motion *const *parts, int count, tobi_motion **out, tobi_error *err)
+{
+    TOBI_NEED(out, "where the motion goes");
+    *out = NULL;
+    TOBI_NEED(parts && count > 0, "the motions");
+    for (int k = 0; k < count; k++) {
+        TOBI_NEED(parts[k], "a motion");
+        if (parts[k]->kind == KIND_SUM || (k > 0 && !tobi_motion_is_rigid(parts[k])))
+            return tobi_fail(err, TOBI_INVALID, "motion: number %d %s", k + 1,
+                             parts[k]->kind == KIND_SUM ? "is a sum already"
+                                                        : "changes the shape; only the first may");
+    }
+    tobi_motion **own = calloc((size_t)count, sizeof *own);
+    if (!own) return tobi_fail(err, TOBI_NO_MEMORY, "motion: out of memory");
+    tobi_status status = make(KIND_SUM, out, err);
+    if (status != TOBI_OK) {
+        free(own);
+        return status;
+    }
+    for (int k = 0; k < count; k++) own[k] = parts[k];
+    (*out)->part = own;
+    (*out)->parts = count;
+    return TOBI_OK;
+}
+
 tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_motion **out,
                                   tobi_error *err)
 {
@@ -135,6 +202,8 @@ tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_
 void tobi_motion_free(tobi_motion *motion)
 {
     if (!motion) return;
+    for (int k = 0; k < motion->parts; k++) tobi_motion_free(motion->part[k]);
+    free(motion->part);
     tobi_keyframes_free(motion->frames);
     tobi_script_free(motion->script);
     free(motion);
@@ -142,7 +211,9 @@ void tobi_motion_free(tobi_motion *motion)
 
 int tobi_motion_is_rigid(const tobi_motion *motion)
 {
-    return motion && (motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script));
+    if (!motion) return 0;
+    if (motion->kind == KIND_SUM) return tobi_motion_is_rigid(motion->part[0]);
+    return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
 }
 
 /* Rodrigues' formula as a matrix; axis is a unit vector. The angle is brought to (-360, 360) first,
@@ -170,14 +241,6 @@ static void turn_points(const double m[3][3], const double p[3], const double sh
     }
 }
 
-static void pose_points(const tobi_pose *pose, int64_t n, const double (*rest)[3],
-                        double (*position)[3])
-{
-    double m[3][3];
-    fill_rotation(pose->axis, pose->degrees, m);
-    turn_points((const double (*)[3])m, pose->pivot, pose->shift, n, rest, position);
-}
-
 /* Pure shifts keep the points' shape to the last bit, so they skip the matrix. */
 static void shift_points(const double shift[3], int64_t n, const double (*rest)[3],
                          double (*position)[3])
@@ -186,11 +249,88 @@ static void shift_points(const double shift[3], int64_t n, const double (*rest)[
         for (int a = 0; a < 3; a++) position[i][a] = rest[i][a] + shift[a];
 }
 
-static void move_points(const tobi_pose *pose, int64_t n, const double (*rest)[3],
-                        double (*position)[3])
+/* Share of the full speed or amplitude, `since` s after the start of a ramp: half a cosine. */
+static double rise(double since, double ramp)
 {
-    if (pose->degrees == 0.0) shift_points(pose->shift, n, rest, position);
-    else pose_points(pose, n, rest, position);
+    return since <= 0 ? 0 : since >= ramp ? 1 : 0.5*(1 - cos(PI*since/ramp));
+}
+
+/* Its integral, s. */
+static double risen(double since, double ramp)
+{
+    if (since <= 0) return 0;
+    return since >= ramp ? since - 0.5*ramp : 0.5*(since - ramp*sin(PI*since/ramp)/PI);
+}
+
+/* The time that a translation or rotation at full speed would have taken to come as far, s. */
+static double count_time(const tobi_motion *m, double t)
+{
+    const double since = t - m->start, left = m->stop - t;
+    if (m->ramp == 0) return t >= m->stop ? m->stop - m->start : since > 0 ? since : 0;
+    if (left >= m->ramp) return risen(since, m->ramp);
+    return (m->stop - m->start - m->ramp) - risen(left, m->ramp);
+}
+
+static double swing(const tobi_motion *m, double t)
+{
+    double s = sin(2.0*PI*fmod(m->rate*t, 1.0) + m->phase*(PI/180.0));
+    return m->ramp > 0 || m->start != 0 ? m->amplitude*rise(t - m->start, m->ramp)*s : m->amplitude*s;
+}
+
+/* A rigid motion at a time: what turns, if anything, then shifts. */
+typedef struct placing { double turn[3][3], pivot[3], shift[3]; int turns; } placing;
+
+static tobi_status find_pose(const tobi_motion *m, double t, tobi_pose *pose, tobi_error *err)
+{
+    *pose = (tobi_pose){ .axis = { 0.0, 0.0, 1.0 } };
+    if (m->kind == KIND_SCRIPT) return tobi_script_place(m->script, t, pose, err);
+    const int turns = m->kind == KIND_ROTATION || m->kind == KIND_SWING;
+    for (int a = 0; a < 3; a++) {
+        if (turns) pose->axis[a] = m->vector[a];
+        if (turns) pose->pivot[a] = m->centre[a];
+        if (m->kind == KIND_TRANSLATION) pose->shift[a] = m->vector[a]*count_time(m, t);
+        if (m->kind == KIND_OSCILLATION) pose->shift[a] = m->vector[a]*swing(m, t);
+    }
+    if (m->kind == KIND_ROTATION) pose->degrees = m->rate*count_time(m, t);
+    if (m->kind == KIND_SWING) pose->degrees = swing(m, t);
+    return TOBI_OK;
+}
+
+static tobi_status find_placing(const tobi_motion *m, double t, placing *p, tobi_error *err)
+{
+    tobi_pose pose;
+    *p = (placing){ .turns = m->kind == KIND_KEYFRAMES };
+    memcpy(p->pivot, m->centre, sizeof p->pivot);
+    if (m->kind == KIND_KEYFRAMES) {
+        tobi_keyframes_pose(m->frames, t, p->shift, p->turn);
+        return TOBI_OK;
+    }
+    TOBI_TRY(find_pose(m, t, &pose, err));
+    memcpy(p->shift, pose.shift, sizeof p->shift);
+    memcpy(p->pivot, pose.pivot, sizeof p->pivot);
+    p->turns = pose.degrees != 0.0;
+    if (p->turns) fill_rotation(pose.axis, pose.degrees, p->turn);
+    return TOBI_OK;
+}
+
+/* Turns in the order of the parts, each about its own centre; then all shifts together. */
+static tobi_status move_by_sum(const tobi_motion *m, double t, int64_t n, const double (*rest)[3],
+                               double (*position)[3], tobi_error *err)
+{
+    static const double none[3] = { 0 };
+    double shift[3] = { 0 };
+    const int deforms = !tobi_motion_is_rigid(m->part[0]);
+    if (deforms) TOBI_TRY(tobi_script_deform(m->part[0]->script, t, n, rest, position, err));
+    else memcpy(position, rest, (size_t)n*sizeof *rest);
+    for (int k = deforms; k < m->parts; k++) {
+        placing p;
+        TOBI_TRY(find_placing(m->part[k], t, &p, err));
+        for (int a = 0; a < 3; a++) shift[a] += p.shift[a];
+        if (!p.turns) continue;
+        turn_points((const double (*)[3])p.turn, p.pivot, none, n, (const double (*)[3])position, position);
+    }
+    shift_points(shift, n, (const double (*)[3])position, position);
+    return TOBI_OK;
 }
 
 tobi_status tobi_motion_positions(void *user, double t, int64_t n, const double (*rest)[3],
@@ -198,35 +338,12 @@ tobi_status tobi_motion_positions(void *user, double t, int64_t n, const double 
 {
     TOBI_NEED(user, "the motion");
     const tobi_motion *motion = user;
-    tobi_pose pose = { .axis = { 0.0, 0.0, 1.0 } };
-    switch (motion->kind) {
-    case KIND_SCRIPT:
-        if (!tobi_script_is_rigid(motion->script))
-            return tobi_script_deform(motion->script, t, n, rest, position, err);
-        TOBI_TRY(tobi_script_place(motion->script, t, &pose, err));
-        break;
-    case KIND_TRANSLATION:
-        for (int a = 0; a < 3; a++) pose.shift[a] = motion->vector[a] * t;
-        break;
-    case KIND_ROTATION:
-        for (int a = 0; a < 3; a++) {
-            pose.axis[a] = motion->vector[a];
-            pose.pivot[a] = motion->centre[a];
-        }
-        pose.degrees = motion->rate * t;
-        break;
-    case KIND_OSCILLATION: {
-        double s = sin(2.0 * PI * fmod(motion->rate * t, 1.0) + motion->phase * (PI / 180.0));
-        for (int a = 0; a < 3; a++) pose.shift[a] = motion->vector[a] * motion->amplitude * s;
-        break;
-    }
-    case KIND_KEYFRAMES: {
-        double m[3][3];
-        tobi_keyframes_pose(motion->frames, t, pose.shift, m);
-        turn_points((const double (*)[3])m, motion->centre, pose.shift, n, rest, position);
-        return TOBI_OK;
-    }
-    }
-    move_points(&pose, n, rest, position);
+    placing p;
+    if (motion->kind == KIND_SUM) return move_by_sum(motion, t, n, rest, position, err);
+    if (!tobi_motion_is_rigid(motion))
+        return tobi_script_deform(motion->script, t, n, rest, position, err);
+    TOBI_TRY(find_placing(motion, t, &p, err));
+    if (p.turns) turn_points((const double (*)[3])p.turn, p.pivot, p.shift, n, rest, position);
+    else shift_points(p.shift, n, rest, position);
     return TOBI_OK;
 }

@@ -1,5 +1,5 @@
-/* A motion is a script, keyframes or numbers; exactly one of them. Drawback: sums of motions need a
-   script. */
+/* A motion is a script, keyframes or numbers, or a list of them: turns first, then all shifts. Drawback: what
+   the kinds share, as times, stands in the table of each. */
 #define _GNU_SOURCE 1
 #include "scene/motions.h"
 #include "scene/parts.h"
@@ -10,6 +10,21 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of what goes on at one speed, and of what swings. */
+#define TIMES(def) \
+    { .key = "start", REAL, AT(def, times.start), RANGE(-1e9, 1e9), .unit = "s", \
+      .doc = "Until then it rests." }, \
+    { .key = "stop", REAL, AT(def, times.stop), DURATION, .unit = "s", .text = "never", \
+      .doc = "From then on it rests where it is." }, \
+    { .key = "ramp", REAL, AT(def, times.ramp), RANGE(0, 1e9), .unit = "s", \
+      .doc = "Its speed rises like (1 - cos(pi s/ramp))/2 in so many seconds after start, and falls so " \
+             "before stop." }
+#define RISE(def) \
+    { .key = "start", REAL, AT(def, times.start), RANGE(-1e9, 1e9), .unit = "s", \
+      .doc = "Until then it rests; the sine counts from time 0 all the same." }, \
+    { .key = "ramp", REAL, AT(def, times.ramp), RANGE(0, 1e9), .unit = "s", \
+      .doc = "Its amplitude rises like (1 - cos(pi s/ramp))/2 in so many seconds after start." }
 
 static const tobi_param script_rows[] = {
     { .key = "script",
@@ -23,6 +38,7 @@ static const tobi_param script_rows[] = {
 static const tobi_param translation_rows[] = {
     { .key = "velocity", VEC3, AT(tobi_translation_def, velocity), SPEED, .unit = "m/s", .required = true,
       .doc = "Constant velocity." },
+    TIMES(tobi_translation_def),
     { 0 }
 };
 static const tobi_param rotation_rows[] = {
@@ -33,6 +49,7 @@ static const tobi_param rotation_rows[] = {
     { .key = "rate", REAL, AT(tobi_rotation_def, rate), RANGE(-1e9, 1e9),
       .unit = "degrees/s", .required = true,
       .doc = "Speed of the turn, by the right-hand rule." },
+    TIMES(tobi_rotation_def),
     { 0 }
 };
 static const tobi_param oscillation_rows[] = {
@@ -46,6 +63,22 @@ static const tobi_param oscillation_rows[] = {
       .doc = "Cycles per second." },
     { .key = "phase", REAL, AT(tobi_oscillation_def, phase), RANGE(-1e9, 1e9), .unit = "degrees",
       .doc = "Phase at time 0." },
+    RISE(tobi_oscillation_def),
+    { 0 }
+};
+#define SWING(measure) \
+    { .key = "amplitude", REAL, AT(tobi_degree_def, amplitude), PLACE, .unit = measure, .required = true, \
+      .doc = "It moves by amplitude sin(2 pi t/period + phase)." }, \
+    { .key = "period", REAL, AT(tobi_degree_def, period), DURATION, .unit = "s", .required = true, \
+      .doc = "Time of one cycle." }, \
+    { .key = "phase", REAL, AT(tobi_degree_def, phase), RANGE(-1e9, 1e9), .unit = "degrees", \
+      .doc = "Phase at time 0." }, \
+    RISE(tobi_degree_def)
+static const tobi_param shift_rows[] = { SWING("m"), { 0 } };
+static const tobi_param turn_rows[] = {
+    { .key = "center", VEC3, AT(tobi_degree_def, center), PLACE, .unit = "m",
+      .doc = "A point on the axis of the turn." },
+    SWING("degrees"),
     { 0 }
 };
 static const tobi_param keyframes_rows[] = {
@@ -71,8 +104,15 @@ static const tobi_param_table tables[] = {
       rotation_rows },
     { "oscillation", "motion.oscillation: to and fro along a line.", sizeof(tobi_oscillation_def),
       oscillation_rows },
-    { "keyframes", "motion.keyframes: rows of a CSV file.", sizeof(tobi_keyframes_def), keyframes_rows }
+    { "keyframes", "motion.keyframes: rows of a CSV file.", sizeof(tobi_keyframes_def), keyframes_rows },
+    { "surge", "motion.surge: to and fro along x.", sizeof(tobi_degree_def), shift_rows },
+    { "sway", "motion.sway: to and fro along y.", sizeof(tobi_degree_def), shift_rows },
+    { "heave", "motion.heave: to and fro along z.", sizeof(tobi_degree_def), shift_rows },
+    { "roll", "motion.roll: to and fro about an axis along x.", sizeof(tobi_degree_def), turn_rows },
+    { "pitch", "motion.pitch: to and fro about an axis along y.", sizeof(tobi_degree_def), turn_rows },
+    { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows }
 };
+enum { SCRIPT, TRANSLATION, ROTATION, OSCILLATION, KEYFRAMES, SURGE, ROLL = SURGE + 3 };
 enum { TABLE_COUNT = sizeof tables / sizeof tables[0] };
 
 const tobi_param_table *tobi_motion_table(int index)
@@ -85,7 +125,7 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
                                             const tobi_place *place)
 {
     const char *keys[TABLE_COUNT + 1] = { "params" };
-    char all[200] = "";
+    char all[300] = "";
     for (size_t i = 0, used = 0; i < TABLE_COUNT; i++) {
         keys[i + 1] = tables[i].name;
         if (used < sizeof all)
@@ -133,23 +173,57 @@ static tobi_status create_script(const tobi_motion_def *def, tobi_motion **motio
     return status;
 }
 
-static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motion, tobi_error *err)
+static tobi_status create_kind(const tobi_motion_def *def, int kind, tobi_motion **motion, tobi_error *err)
 {
     const tobi_rotation_def *turn = &def->as.rotation;
     const tobi_oscillation_def *swing = &def->as.oscillation;
-    if (def->table == &tables[0]) return create_script(def, motion, err);
-    if (def->table == &tables[1])
-        return tobi_motion_translation(def->as.translation.velocity, motion, err);
-    if (def->table == &tables[2])
-        return tobi_motion_rotation(turn->center, turn->axis, turn->rate, motion, err);
-    if (def->table == &tables[4])
+    const tobi_degree_def *degree = &def->as.degree;
+    const int axis = (kind - SURGE)%3;
+    const double along[3] = { axis == 0, axis == 1, axis == 2 };
+    switch (kind) {
+    case SCRIPT: return create_script(def, motion, err);
+    case TRANSLATION: return tobi_motion_translation(def->as.translation.velocity, motion, err);
+    case ROTATION: return tobi_motion_rotation(turn->center, turn->axis, turn->rate, motion, err);
+    case KEYFRAMES:
         return tobi_motion_keyframes(def->as.keyframes.file, def->as.keyframes.pivot, motion, err);
-    return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency,
-                                   swing->phase, motion, err);
+    case OSCILLATION:
+        return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency, swing->phase,
+                                       motion, err);
+    }
+    const double rate = 1/degree->period;
+    if (kind < ROLL)
+        return tobi_motion_oscillation(along, degree->amplitude, rate, degree->phase, motion, err);
+    return tobi_motion_swing(degree->center, along, degree->amplitude, rate, degree->phase, motion, err);
 }
 
-tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
-                              tobi_motion_def *def)
+static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motion, tobi_error *err)
+{
+    const int kind = (int)(def->table - tables);
+    const tobi_times_def *times = kind == TRANSLATION   ? &def->as.translation.times
+                                  : kind == ROTATION    ? &def->as.rotation.times
+                                  : kind == OSCILLATION ? &def->as.oscillation.times
+                                  : kind >= SURGE       ? &def->as.degree.times : NULL;
+    TOBI_TRY(create_kind(def, kind, motion, err));
+    if (!times) return TOBI_OK;
+    const tobi_status status = tobi_motion_set_times(
+        *motion, times->start, times->stop != 0 ? times->stop : INFINITY, times->ramp, err);
+    if (status == TOBI_OK) return TOBI_OK;
+    tobi_motion_free(*motion);
+    *motion = NULL;
+    return status;
+}
+
+/* Motions that leave the plane of a 2-D scene. */
+static void check_plane(const tobi_binder *binder, const tobi_param_table *table, const tobi_place *place)
+{
+    const int kind = (int)(table - tables);
+    if (binder->dimension == 2 && (kind == SURGE + 2 || kind == ROLL || kind == ROLL + 1))
+        tobi_source_mistake_at_key(binder->source, place,
+                                   "leaves the plane of a 2-D scene, which has surge, sway and yaw");
+}
+
+static tobi_motion *bind_one(const tobi_binder *binder, json_t *value, const tobi_place *place,
+                             tobi_motion_def *def)
 {
     const char *beside_script[TOBI_PARTS];
     tobi_part_keys("script", beside_script);
@@ -167,6 +241,7 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
     def->params = json_object_get(value, "params");
     if (table == &tables[0]) tobi_bind(binder, table, value, place, beside_script, &def->as);
     else tobi_bind(binder, table, json_object_get(value, table->name), &inner, NULL, &def->as);
+    check_plane(binder, table, &inner);
     if (def->params && table != &tables[0])
         tobi_source_mistake_at_key(binder->source, &params,
                                    "params belong to a script; %s takes none", table->name);
@@ -183,9 +258,39 @@ tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const to
     return motion;
 }
 
-json_t *tobi_motion_write(const tobi_motion_def *def)
+static tobi_motion *add_up(const tobi_binder *binder, const tobi_place *place, tobi_motion **part, int count)
 {
-    if (!def->table) return NULL;
+    tobi_motion *sum = NULL;
+    tobi_error err = { 0 };
+    if (tobi_motion_sum(part, count, &sum, &err) == TOBI_OK) return sum;
+    tobi_source_mistake(binder->source, place, "%s", err.text);
+    return NULL;
+}
+
+tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
+                              tobi_motion_def *def)
+{
+    tobi_motion *part[TOBI_MOTION_LIMIT], *sum = NULL;
+    if (!json_is_array(value)) return bind_one(binder, value, place, def);
+    const int count = (int)json_array_size(value);
+    if (count < 1 || count > TOBI_MOTION_LIMIT) {
+        tobi_source_mistake(binder->source, place, "has %d motions, allowed are 1 to %d", count,
+                            TOBI_MOTION_LIMIT);
+        return NULL;
+    }
+    int made = 0;
+    for (int k = 0; k < count; k++) {
+        const tobi_place entry = { place, NULL, (size_t)k };
+        part[k] = bind_one(binder, json_array_get(value, (size_t)k), &entry, &def[k]);
+        made += part[k] != NULL;
+    }
+    if (made == count) sum = add_up(binder, place, part, count);
+    for (int k = 0; k < count && !sum; k++) tobi_motion_free(part[k]);
+    return sum;
+}
+
+static json_t *write_one(const tobi_motion_def *def)
+{
     json_t *own = tobi_write_def(def->table, &def->as), *motion = own;
     int failed = !own;
     if (def->table == &tables[0]) {
@@ -196,5 +301,18 @@ json_t *tobi_motion_write(const tobi_motion_def *def)
     }
     if (!failed) return motion;
     json_decref(motion);
+    return NULL;
+}
+
+json_t *tobi_motion_write(const tobi_motion_def *def)
+{
+    if (!def[0].table) return NULL;
+    if (!def[1].table) return write_one(def);
+    json_t *list = json_array();
+    int failed = !list;
+    for (int k = 0; k < TOBI_MOTION_LIMIT && def[k].table; k++)
+        failed |= json_array_append_new(list, write_one(&def[k]));
+    if (!failed) return list;
+    json_decref(list);
     return NULL;
 }

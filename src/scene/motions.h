@@ -1,16 +1,25 @@
-/* The `motion` of a body in a scene: a script, keyframes, or translation, rotation, oscillation by
-   numbers. */
+/* The `motion` of a body in a scene: a script, keyframes, motions by numbers, or a list of them. */
 #pragma once
 #include "tobiuo/motion.h"
 #include "scene/bind.h"
 
-typedef struct tobi_translation_def { double velocity[3]; } tobi_translation_def;
+/* When it is under way, see tobi_motion_set_times; stop 0 = never. */
+typedef struct tobi_times_def { double start, stop, ramp; } tobi_times_def;
 
-typedef struct tobi_rotation_def { double center[3], axis[3], rate; } tobi_rotation_def;
+typedef struct tobi_translation_def { double velocity[3]; tobi_times_def times; } tobi_translation_def;
+
+typedef struct tobi_rotation_def { double center[3], axis[3], rate; tobi_times_def times; } tobi_rotation_def;
 
 typedef struct tobi_oscillation_def {
     double direction[3], amplitude, frequency, phase;
+    tobi_times_def times;
 } tobi_oscillation_def;
+
+/* Of one of the six degrees of freedom of a ship. */
+typedef struct tobi_degree_def {
+    double center[3], amplitude, period, phase;
+    tobi_times_def times;
+} tobi_degree_def;
 
 typedef struct tobi_script_def { const char *script; } tobi_script_def;
 
@@ -24,6 +33,7 @@ typedef struct tobi_motion_def {
         tobi_translation_def translation;
         tobi_rotation_def rotation;
         tobi_oscillation_def oscillation;
+        tobi_degree_def degree;
         tobi_keyframes_def keyframes;
     } as;
     json_t *params;                    /* of a script; borrowed from the scene, or NULL  */
@@ -32,8 +42,11 @@ typedef struct tobi_motion_def {
 /* The tables by index, NULL past the end; the first is the script's. */
 const tobi_param_table *tobi_motion_table(int index);
 
+/* So many motions of one body. */
+enum { TOBI_MOTION_LIMIT = 16 };
+
 /* Reads the value of a body's `motion`, reports its mistakes and creates the motion: NULL with a
-   line in the report when that fails. */
+   line in the report when that fails. def: TOBI_MOTION_LIMIT of them; those behind the last have no table. */
 tobi_motion *tobi_motion_bind(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               tobi_motion_def *def);
 /* As JSON, NULL when out of memory or if there is no motion. */

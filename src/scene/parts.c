@@ -29,7 +29,7 @@ static const tobi_part parts[] = {
     { "fill", "flow", TOBI_PART_OBJECT, &tobi_flow_table, 0, 0,
       "How what fills the region moves at the start, from place to place." },
     { "body", "motion", TOBI_PART_MOTION, NULL, 0, 0,
-      "How the body moves, exactly one kind; without it the body is fixed." },
+      "How the body moves: one kind, or a list of them; without it the body is fixed." },
     { "body", "control", TOBI_PART_OBJECT, &tobi_control_table, 0, 0,
       "The program of a controlled body." },
     { "control", "params", TOBI_PART_FREE, NULL, 0, 0,

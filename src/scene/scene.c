@@ -131,7 +131,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
             body->def.control_user = body->control;
         }
         if (!moves) continue;
-        body->motion = tobi_motion_bind(binder, moves, &motion, &body->motion_def);
+        body->motion = tobi_motion_bind(binder, moves, &motion, body->motion_def);
         if (!body->motion) continue;
         body->def.motion = tobi_motion_positions;
         body->def.motion_user = body->motion;
@@ -507,8 +507,8 @@ static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
     int failed = 0;
     tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
     json_object_del(object, body->def.mesh ? "box" : "mesh");
-    if (body->motion_def.table)
-        failed = json_object_set_new(object, "motion", tobi_motion_write(&body->motion_def));
+    if (body->motion_def[0].table)
+        failed = json_object_set_new(object, "motion", tobi_motion_write(body->motion_def));
     if (body->control)
         failed |= json_object_set_new(object, "control",
                                       tobi_control_write(TOBI_CONTROL_SCRIPT, &body->control_def));

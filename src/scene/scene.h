@@ -28,7 +28,7 @@ typedef struct tobi_scene_solid {
 typedef struct tobi_scene_body {
     tobi_body_def def;
     tobi_bound bound;              /* rows of the body table that the file gives  */
-    tobi_motion_def motion_def;
+    tobi_motion_def motion_def[TOBI_MOTION_LIMIT];
     tobi_motion *motion;           /* owned; NULL = fixed                         */
     tobi_control_def control_def;
     tobi_script *control;          /* owned; NULL = not controlled                */

@@ -210,7 +210,7 @@ static void put_row(json_t *schema, const tobi_param *row, const void *def)
 static json_t *make_table(const tobi_param_table *table);
 
 /* One of the motions: a script, whose keys stand in the motion itself, or one by numbers. */
-static json_t *make_motion(void)
+static json_t *make_one_motion(void)
 {
     const tobi_param_table *table = tobi_motion_table(0);
     json_t *schema = make_table(table), *kinds = json_array();
@@ -224,6 +224,13 @@ static json_t *make_motion(void)
     json_object_set_new(schema, "dependencies",
                         json_pack("{s[s]}", "params", tobi_motion_table(0)->name));
     return schema;
+}
+
+static json_t *make_motion(void)
+{
+    json_t *list = json_pack("{ss so si si}", "type", "array", "items", make_one_motion(), "minItems", 1,
+                             "maxItems", TOBI_MOTION_LIMIT);
+    return json_pack("{s[oo]}", "anyOf", make_one_motion(), list);
 }
 
 static json_t *make_part(const tobi_part *part)

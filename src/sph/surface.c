@@ -88,7 +88,7 @@ static double still_pressure(const tobi_system *s, const tobi_body *b, const sph
     const double all = sph_hydrostatic(s, place->x), still = tobi_reference_pressure(w, place->x);
     if (!(w->push > 0) || wet == TOBI_WET) return all;
     if (wet == TOBI_DRY) return all - still;
-    return all - still + w->push*fmax(tobi_reference_drop(w, place->x) - w->level, 0);
+    return all - still + w->push*fmax(tobi_reference_depth(w, place->x) - w->level, 0);
 }
 
 void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place *place, double *pressure,

@@ -46,7 +46,8 @@ static tobi_status look_at_body(const tobi_system *s, const tobi_body *b, tobi_t
     const int there = p.middle && p.normal && p.velocity && p.area && t->corner && t->pressure && t->shear;
     if (there) {
         tobi_quadrature_update(&b->surface, vertex, triangles, p.middle, p.normal, p.area);
-        tobi_quadrature_interpolate(&b->surface, triangles, (const double (*)[3])b->vertex_velocity, p.velocity);
+        tobi_quadrature_interpolate(&b->surface, triangles, (const double (*)[3])b->vertex_velocity,
+                                    p.velocity);
         tobi_quadrature_corners(&b->surface, &b->mesh, vertex, t->corner);
         for (int64_t k = 0; k < corners*t->count; k++)
             for (int a = 0; a < 3; a++) t->corner[k][a] += b->lower[a];

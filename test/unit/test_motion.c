@@ -95,6 +95,128 @@ static void test_formulas(void **state)
     assert_null(m);
 }
 
+/* Where a point is at t. */
+static const double *place_at(tobi_motion *m, double t, const double rest[3])
+{
+    static double p[1][3];
+    tobi_error err;
+    assert_int_equal(tobi_motion_positions(m, t, 1, REST((const void *)rest), p, &err), TOBI_OK);
+    return p[0];
+}
+
+static double speed_at(tobi_motion *m, double t, const double rest[3], int axis)
+{
+    const double e = 1e-5, before = place_at(m, t - e, rest)[axis];
+    return (place_at(m, t + e, rest)[axis] - before)/(2*e);
+}
+
+/* The speed is what the text of tobi_motion_set_times says, and the way its integral. */
+static void test_times(void **state)
+{
+    (void)state;
+    tobi_motion *m = NULL;
+    tobi_error err;
+    const double rest[3] = { 0.1, 0.2, 0.3 }, start = 0.5, stop = 3, ramp = 0.8, v = 2;
+    assert_int_equal(tobi_motion_translation((double[3]){ 0, 0, v }, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_set_times(m, start, stop, ramp, &err), TOBI_OK);
+    assert_true(place_at(m, 0.5, rest)[2] == 0.3 && place_at(m, 0, rest)[2] == 0.3);
+    double way = 0;
+    for (double t = 0.01; t < 4; t += 0.01) {
+        const double since = t - start, left = stop - t;
+        const double share = since <= 0 || left <= 0 ? 0 : since < ramp ? 0.5*(1 - cos(PI*since/ramp))
+                             : left < ramp ? 0.5*(1 - cos(PI*left/ramp)) : 1;
+        assert_true(fabs(speed_at(m, t, rest, 2) - v*share) < 1e-4);
+        way += 0.01*v*share;
+        assert_true(fabs(place_at(m, t + 0.005, rest)[2] - 0.3 - way) < 1e-3);
+    }
+    assert_true(fabs(place_at(m, 9, rest)[2] - 0.3 - v*(stop - start - ramp)) < 1e-12);
+    tobi_motion_free(m);
+
+    /* Without a ramp: at once, and at once at rest. */
+    assert_int_equal(tobi_motion_rotation((double[3]){ 0 }, (double[3]){ 0, 0, 1 }, 90, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_set_times(m, 1, 2, 0, &err), TOBI_OK);
+    assert_true(place_at(m, 1, rest)[0] == 0.1);
+    for (double t = 2; t < 4; t += 1) assert_true(fabs(place_at(m, t, rest)[0] + 0.2) < 1e-15);
+    tobi_motion_free(m);
+
+    assert_int_equal(tobi_motion_oscillation((double[3]){ 1, 0, 0 }, 0.3, 2, 40, &m, &err), TOBI_OK);
+    assert_int_equal(tobi_motion_set_times(m, 0.25, INFINITY, 1, &err), TOBI_OK);
+    for (double t = 0; t < 3; t += 0.0625) {
+        const double s = fmin(fmax(t - 0.25, 0), 1), wave = sin(4*PI*t + 40*PI/180);
+        assert_true(fabs(place_at(m, t, rest)[0] - 0.1 - 0.3*0.5*(1 - cos(PI*s))*wave) < 1e-14);
+    }
+    tobi_motion_free(m);
+}
+
+static void test_swing_and_sum(void **state)
+{
+    (void)state;
+    tobi_motion *part[3], *m = NULL;
+    tobi_error err;
+    const double centre[3] = { 1, 0, 2 }, rest[3] = { 1.5, 0.25, 2 }, about[3] = { 0, 3, 0 };
+    assert_int_equal(tobi_motion_swing(centre, about, 20, 0.5, 10, &part[1], &err), TOBI_OK);
+    assert_true(tobi_motion_is_rigid(part[1]));
+    for (double t = 0; t < 5; t += 0.125) {
+        const double angle = PI/9*sin(PI*t + PI/18);
+        const double *p = place_at(part[1], t, rest);
+        assert_true(fabs(p[0] - 1 - 0.5*cos(angle)) < 1e-14 && p[1] == 0.25);
+        assert_true(fabs(p[2] - 2 + 0.5*sin(angle)) < 1e-14);
+    }
+    /* The shift stands first and is added last: the centre of the turn does not move with it. */
+    assert_int_equal(tobi_motion_translation((double[3]){ 0.5, 0, 0 }, &part[0], &err), TOBI_OK);
+    assert_int_equal(tobi_motion_rotation(centre, (double[3]){ 0, 0, 1 }, 90, &part[2], &err), TOBI_OK);
+    assert_int_equal(tobi_motion_sum(part, 3, &m, &err), TOBI_OK);
+    for (double t = 0; t < 5; t += 0.125) {
+        const double angle = PI/9*sin(PI*t + PI/18), turn = PI/2*t, x = 0.5*cos(angle), y = 0.25;
+        const double *p = place_at(m, t, rest);
+        assert_true(fabs(p[0] - (1 + x*cos(turn) - y*sin(turn) + 0.5*t)) < 1e-14);
+        assert_true(fabs(p[1] - (x*sin(turn) + y*cos(turn))) < 1e-14);
+        assert_true(fabs(p[2] - (2 - 0.5*sin(angle))) < 1e-14);
+    }
+    assert_true(tobi_motion_is_rigid(m));
+    tobi_motion_free(m);
+
+    if (load("function deform(x, y, z, t) return x, y, z*(1 + t) end", NULL, &part[0], &err))
+        fail_msg("%s", err.text);
+    assert_int_equal(tobi_motion_rotation((double[3]){ 0 }, (double[3]){ 0, 1, 0 }, 90, &part[1], &err), 0);
+    assert_int_equal(tobi_motion_sum(part, 2, &m, &err), TOBI_OK);
+    assert_false(tobi_motion_is_rigid(m));
+    assert_true(fabs(place_at(m, 1, rest)[0] - 4) < 1e-14 && fabs(place_at(m, 1, rest)[2] + 1.5) < 1e-14);
+    tobi_motion_free(m);
+}
+
+static void expect_refused(tobi_status status, const tobi_error *err, const char *part)
+{
+    assert_int_equal(status, TOBI_INVALID);
+    if (!strstr(err->text, part)) fail_msg("<%s>, expected <%s>", err->text, part);
+}
+
+static void test_bad_times_and_sums(void **state)
+{
+    (void)state;
+    tobi_motion *part[2], *m = NULL;
+    tobi_error err;
+    assert_int_equal(tobi_motion_translation((double[3]){ 1, 0, 0 }, &part[0], &err), TOBI_OK);
+    expect_refused(tobi_motion_set_times(part[0], 0, 1, 0.6, &err), &err, "no time for two ramps of 0.6 s");
+    expect_refused(tobi_motion_set_times(part[0], 1, 1, 0, &err), &err, "no time for two ramps");
+    expect_refused(tobi_motion_set_times(part[0], NAN, 1, 0, &err), &err, "start must be finite");
+    expect_refused(tobi_motion_set_times(part[0], 0, 1, -1, &err), &err, "ramp 0 or more");
+    expect_refused(tobi_motion_set_times(NULL, 0, 1, 0, &err), &err, "NULL");
+    assert_int_equal(load("function deform(x, y, z, t) return x, y, z end", NULL, &part[1], &err), TOBI_OK);
+    expect_refused(tobi_motion_set_times(part[1], 0, 1, 0, &err), &err, "times are for motions by numbers");
+    expect_refused(tobi_motion_sum(part, 2, &m, &err), &err, "number 2 changes the shape; only the first");
+    expect_refused(tobi_motion_sum(part, 0, &m, &err), &err, "NULL");
+    assert_int_equal(tobi_motion_sum(part, 1, &m, &err), TOBI_OK);
+    expect_refused(tobi_motion_sum(&m, 1, &part[0], &err), &err, "number 1 is a sum already");
+    tobi_motion_free(part[1]);
+    tobi_motion_free(m);
+    assert_int_equal(tobi_motion_swing((double[3]){ 0 }, (double[3]){ 1, 0, 0 }, 5, 1, 0, &m, &err), TOBI_OK);
+    expect_refused(tobi_motion_set_times(m, 0, 5, 0, &err), &err, "an oscillation does not stop");
+    tobi_motion_free(m);
+    expect_refused(tobi_motion_swing((double[3]){ INFINITY }, (double[3]){ 1 }, 5, 1, 0, &m, &err), &err,
+                   "centre must be finite");
+}
+
 static void test_script_params_and_place(void **state)
 {
     (void)state;
@@ -209,6 +331,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_formulas),
+        cmocka_unit_test(test_times),
+        cmocka_unit_test(test_swing_and_sum),
+        cmocka_unit_test(test_bad_times_and_sums),
         cmocka_unit_test(test_script_params_and_place),
         cmocka_unit_test(test_mistakes_are_named),
         cmocka_unit_test(test_mathematics_only),

@@ -235,7 +235,7 @@ static void the_fish_is_the_described_one(void **state)
     assert_true(scene->bodies[0].def.spacing == 0.002 &&
                 scene->bodies[0].def.translation[2] == 0.24);
     assert_int_equal(scene->bodies[0].def.motion_rigid, 0);
-    json_t *lag = json_object_get(scene->bodies[0].motion_def.params, "lagAngle");
+    json_t *lag = json_object_get(scene->bodies[0].motion_def[0].params, "lagAngle");
     assert_true(json_number_value(lag) == 80);
     const tobi_fill_def *fill = &scene->fluids[0].fills[0].def;
     assert_true(fill->box_max[2] == 0.19 && fill->box_min[0] == 0);

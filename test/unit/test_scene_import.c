@@ -45,7 +45,7 @@ static void assert_vector(const double v[3], double x, double y, double z)
 
 static double param(const tobi_scene *scene, const char *key)
 {
-    return json_number_value(json_object_get(scene->bodies[0].motion_def.params, key));
+    return json_number_value(json_object_get(scene->bodies[0].motion_def[0].params, key));
 }
 
 static void the_flying_fish_of_the_users(void **state)
@@ -73,7 +73,7 @@ static void the_flying_fish_of_the_users(void **state)
     assert_non_null(strstr(fish->mesh, "flying_fish/meshes/fish.obj"));
     assert_true(param(scene, "lagAngle") == 72 && param(scene, "freq") == 10 &&
                 param(scene, "LEPos") == 0.06);
-    const json_t *params = scene->bodies[0].motion_def.params;
+    const json_t *params = scene->bodies[0].motion_def[0].params;
     assert_int_equal(json_array_size(json_object_get(params, "swimmingPosition")), 3);
     const tobi_output_def *o = tobi_scene_output_def(scene);
     assert_true(o->interval == 20*5e-5 && o->frames == 1 && o->ply == 0 && o->obj == 0);
