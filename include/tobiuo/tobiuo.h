@@ -158,7 +158,7 @@ TOBI_API tobi_status tobi_world_read_ids(tobi_world *world, tobi_set set, int64_
    and nothing is set, for numbers that are not finite or speeds above TOBI_SPEED_LIMIT. */
 TOBI_API tobi_status tobi_world_write(tobi_world *world, const char *field, const double *buffer,
                                       int64_t count, tobi_error *err);
-/* The moving surface of a body: vertices (m) and triangles, owned by the world. */
+/* The moving surface of a body: vertices (m) and triangles, owned by the world. While it is absent: none. */
 TOBI_API tobi_status tobi_world_surface(const tobi_world *world, int body, int64_t *vertex_count,
                                         const double (**vertices)[3], int64_t *triangle_count,
                                         const int32_t (**triangles)[3]);

@@ -226,6 +226,8 @@ typedef struct tobi_body_def {
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
     void  *motion_user;         /* handed to motion; owned by the caller, must outlive the world     */
     int    motion_rigid;        /* 1: the motion is one rigid transform for all points               */
+    double absent_from, absent_until;   /* s, of a prescribed body: nothing sees it in between; from 0 =
+                                   never, until 0 = to the end                                       */
     int    dynamics;            /* tobi_dynamics; what follows is for free and controlled bodies, but
                                    restitution and friction_coefficient for what touches any body    */
     double mass;                /* kg (per metre of depth in 2-D); 0 = density times volume          */

@@ -152,7 +152,7 @@ static tobi_status move_vertices(const tobi_body *b, double t, double (*out)[3],
 {
     TOBI_TRY(evaluate(b, t, b->mesh.vertex_count, (const double (*)[3])b->mesh.vertices, out, err));
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
-        for (int a = 0; a < 3; a++) out[i][a] -= b->lower[a];
+        for (int a = 0; a < 3; a++) out[i][a] += (b->is_absent ? b->away[a] : 0) - b->lower[a];
     return TOBI_OK;
 }
 
@@ -286,6 +286,7 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
 void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_at *place)
 {
     memcpy(b->vertex, vertex, (size_t)b->mesh.vertex_count*sizeof *b->vertex);
+    tobi_body_find_absence(b);
     update_surface(b);
     memcpy(b->centre, place->centre, sizeof b->centre);
     memcpy(b->frame, place->frame, sizeof b->frame);
@@ -501,6 +502,7 @@ static void predict_free(tobi_body *b, double dt)
 
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err)
 {
+    tobi_body_follow_absence(b, t);
     if (!b->motion && b->rigid.kind == TOBI_PRESCRIBED) {
         memcpy(b->next, b->vertex, (size_t)b->mesh.vertex_count*sizeof *b->next);
         return TOBI_OK;

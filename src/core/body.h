@@ -56,6 +56,9 @@ typedef struct tobi_body {
     void *motion_user;
     int motion_set;                  /* 1: not that of its definition any more                 */
     int motion_due;                  /* 1: so it was before a load, and must be set again      */
+    double absent[2];                /* s, from and until when nothing sees it; from 0: never  */
+    int is_absent;                   /* 1: its vertices are `away` from where they should be   */
+    double away[3];                  /* m, so far that nothing is near                         */
     double lower[3];                 /* the box's lower corner: origin of what follows         */
 
     double (*vertex)[3];             /* now                                                    */
@@ -118,6 +121,13 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
+/* When the body is absent. TOBI_INVALID for bodies that are not prescribed, and times in the wrong order. */
+tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
+                                   tobi_error *err);
+/* Takes it away, or brings it back, if that is due at t, s. Between two steps. */
+void tobi_body_follow_absence(tobi_body *b, double t);
+/* Whether it is away, by its vertices. */
+void tobi_body_find_absence(tobi_body *b);
 /* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
    vertices. */
 void tobi_body_set_point_velocities(tobi_body *b);

@@ -131,7 +131,7 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
         tobi_body_restore(b, (const double (*)[3])l->vertex, &l->place);
         memcpy(b->vertex_before, l->before, (size_t)b->mesh.vertex_count*sizeof *l->before);
     }
-    else tobi_body_place(b, 0, NULL);      /* by its state, or at rest: neither can fail */
+    else b->is_absent = 0, tobi_body_place(b, 0, NULL);      /* by its state, or at rest: neither can fail */
     b->rigid = rigid;                      /* placing a body at rest forgets its velocities */
     b->info = l->info;
     b->motion_set = b->motion_due = b->motion && l->load[6] > 0;

@@ -355,9 +355,9 @@ tobi_status tobi_world_surface(const tobi_world *w, int body, int64_t *vertex_co
     /* `next` is free between steps: it holds the pose in world coordinates. */
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < 3; a++) b->next[i][a] = b->vertex[i][a] + b->lower[a];
-    *vertex_count = b->mesh.vertex_count;
+    *vertex_count = b->is_absent ? 0 : b->mesh.vertex_count;
     *vertices = (const double (*)[3])b->next;
-    *triangle_count = b->mesh.triangle_count;
+    *triangle_count = b->is_absent ? 0 : b->mesh.triangle_count;
     *triangles = (const int32_t (*)[3])b->mesh.triangles;
     return TOBI_OK;
 }

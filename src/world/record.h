@@ -52,7 +52,7 @@ typedef struct tobi_point_set {
 typedef struct tobi_snapshot {
     int64_t number;                       /* of the output                           */
     tobi_point_set set[TOBI_SETS];
-    double (**surface)[3];                /* vertices of each body                   */
+    double (**surface)[3];                /* vertices of each body; NULL: it is absent */
     int surfaces;
     struct tobi_tractions *tractions;     /* of each body; NULL: not asked           */
     struct tobi_drawing *drawing;         /* NULL: no picture                        */

@@ -231,7 +231,7 @@ static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapsho
     if (!d->meshes) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int b = 0; b < snapshot->surfaces; b++) {
         const tobi_body *body = &run->world->sim.bodies[b];
-        if (!body->visible) continue;
+        if (!body->visible || !snapshot->surface[b]) continue;
         tobi_picture_mesh *m = &d->meshes[d->mesh_count++];
         *m = (tobi_picture_mesh){ .vertex_count = body->mesh.vertex_count,
                                 .vertices = (const double (*)[3])snapshot->surface[b],

@@ -232,7 +232,7 @@ static tobi_status write_vtp(const tobi_run *run, int body, const char *path, to
     tobi_compression form = (tobi_compression)run->output.compression;
     tobi_vtk_array uv;
     double (*vertices)[3] = NULL;
-    if (!run->world->sim.bodies[body].mesh.texture) return tobi_vtp_write(path, form, &s, err);
+    if (!run->world->sim.bodies[body].mesh.texture || s.vertex_count == 0) return tobi_vtp_write(path, form, &s, err);
     tobi_status status = put_on_skin(&run->skin[body], &s, &uv, &vertices, err);
     if (status == TOBI_OK) status = tobi_vtp_write(path, form, &s, err);
     free(vertices);
@@ -246,7 +246,9 @@ static tobi_status write_surface(const tobi_run *run, const tobi_snapshot *snaps
     static const char *const folders[] = { "surfaces", "surfaces", "obj" };
     static const char *const ends[] = { "vtp", "stl", "obj" };
     const tobi_mesh *mesh = &run->world->sim.bodies[body].mesh;
-    const tobi_vtk_surface s = { .vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count,
+    const int there = snapshot->surface[body] != NULL;
+    const tobi_vtk_surface s = { .vertex_count = there ? mesh->vertex_count : 0,
+                                 .triangle_count = there ? mesh->triangle_count : 0,
                                  .vertices = (const double (*)[3])snapshot->surface[body],
                                  .triangles = (const int32_t (*)[3])mesh->triangles };
     char *path = tobi_record_path(run->dir, "%s/%s_%06lld.%s", folders[kind], run->body_file[body],

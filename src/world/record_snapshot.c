@@ -100,9 +100,10 @@ static tobi_status take_surfaces(tobi_run *run, tobi_snapshot *s, tobi_error *er
     if (!s->surface) return fail_memory(err);
     for (int b = 0; b < s->surfaces; b++) {
         TOBI_TRY(tobi_world_surface(run->world, b, &vertices, &vertex, &triangles, &triangle));
+        if (vertices == 0) continue;
         s->surface[b] = malloc((size_t)vertices * sizeof *s->surface[b] + 1);
         if (!s->surface[b]) return fail_memory(err);
-        if (vertices > 0) memcpy(s->surface[b], vertex, (size_t)vertices * sizeof *s->surface[b]);
+        memcpy(s->surface[b], vertex, (size_t)vertices * sizeof *s->surface[b]);
         if (run->output.surfaces) TOBI_TRY(find_skin(run, b, err));
     }
     return TOBI_OK;

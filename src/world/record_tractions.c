@@ -41,7 +41,7 @@ static tobi_status look_at_body(const tobi_system *s, const tobi_body *b, tobi_t
     const int32_t (*triangles)[3] = (const int32_t (*)[3])b->mesh.triangles;
     pieces p = { s, b, malloc(n*sizeof *p.middle), malloc(n*sizeof *p.normal), malloc(n*sizeof *p.velocity),
                  malloc(n*sizeof *p.area), t };
-    *t = (tobi_tractions){ b->surface.count, malloc((size_t)corners*n*sizeof *t->corner),
+    *t = (tobi_tractions){ b->is_absent ? 0 : b->surface.count, malloc((size_t)corners*n*sizeof *t->corner),
                            malloc(n*sizeof *t->pressure), malloc(n*sizeof *t->shear) };
     const int there = p.middle && p.normal && p.velocity && p.area && t->corner && t->pressure && t->shear;
     if (there) {

@@ -124,6 +124,9 @@ const char *tobi_world_note(const tobi_world *w, int note)
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
+    if (b->absent[0] > 0 && w->system[0].method->solids)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': bodies of %s cannot be absent", b->name,
+                         w->system[0].method->name);
     const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)
@@ -159,7 +162,8 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_body_def placed = *def;
     if (!(def->spacing > 0)) placed.spacing = s->sim->def.spacing;
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
-    tobi_status status = check_body(w, b, err);
+    tobi_status status = tobi_body_plan_absence(b, &placed, &s->box, err);
+    if (status == TOBI_OK) status = check_body(w, b, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
     else s->sim->body_count++;
