@@ -1,5 +1,5 @@
-/* Bodies that are not there for a while: a gate that is taken away at once. Nothing that looks for bodies has to
-   know: the vertices of an absent body lie so far away that nothing sees them, and move there as they would
+/* Bodies that are not there for a while: a gate that is taken away at once. Nothing that looks for bodies has
+   to know: the vertices of an absent body lie so far away that nothing sees them, and move there as they would
    here. Drawback: a body goes and comes at the beginning of a step, up to a step late. */
 #include "core/body.h"
 #include <math.h>

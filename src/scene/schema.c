@@ -228,9 +228,10 @@ static json_t *make_one_motion(void)
 
 static json_t *make_motion(void)
 {
-    json_t *list = json_pack("{ss so si si}", "type", "array", "items", make_one_motion(), "minItems", 1,
+    static const char one[] = "#/definitions/motion";
+    json_t *list = json_pack("{ss s{ss} si si}", "type", "array", "items", "$ref", one, "minItems", 1,
                              "maxItems", TOBI_MOTION_LIMIT);
-    return json_pack("{s[oo]}", "anyOf", make_one_motion(), list);
+    return json_pack("{s[{ss}o]}", "anyOf", "$ref", one, list);
 }
 
 static json_t *make_part(const tobi_part *part)
@@ -314,6 +315,7 @@ char *tobi_scene_schema(void)
     json_object_update(schema, root);
     json_decref(root);
     require_matter(schema);
+    json_object_set_new(schema, "definitions", json_pack("{so}", "motion", make_one_motion()));
     put_text(schema, "description", "A simulation: SI units, angles in degrees.");
     char *text = tobi_write_json(schema);
     json_decref(schema);

@@ -51,7 +51,7 @@ static void wet_range(const void *view, int64_t begin, int64_t end, double *tota
         const tobi_body *b = &s->sim->bodies[k];
         const int64_t q = all - bins[k].item;
         const double *x = b->point[q], *n = b->normal[q];
-        if (b->wet[q] || !(tobi_reference_pressure(&state->reference, x) > 0)) continue;
+        if (b->wet[q] || b->is_absent || !(tobi_reference_pressure(&state->reference, x) > 0)) continue;
         if (faces_side(s, x, n) || faces_body(s, k, x, n)) b->wet[q] = TOBI_WET_GAP;
     }
 }

@@ -65,6 +65,7 @@ void sph_add_hydrostatic(tobi_system *s)
         if (push == 0) continue;
         for (int k = 0; k < s->sim->body_count; k++) {
             tobi_body *b = &s->sim->bodies[k];
+            if (b->is_absent) continue;
             b->load[s->number].pressure[a] -= push*b->info.volume;
             s->info.wall_force[a] += push*b->info.volume;
         }

@@ -66,11 +66,26 @@ static double follow(const tobi_system *s, double before, double low, double spe
     return fmin(fmax(low, before - rise), before + speed*s->dt);
 }
 
+/* Whether a body has just gone or come back: water that leaned on it is at rest no more, though no particle
+   has moved yet. For the time of a fall by half a spacing, of which steps take a part. */
+static int has_lost_support(const tobi_system *s)
+{
+    double g = 0;
+    for (int a = 0; a < 3; a++) g += s->sim->def.gravity[a]*s->sim->def.gravity[a];
+    const double lasting = sqrt(s->smoothing.spacing/sqrt(g));
+    for (int k = 0; k < s->sim->body_count; k++)
+        for (int i = 0; i < 2; i++) {
+            const double since = s->sim->time - s->sim->bodies[k].absent[i];
+            if (s->sim->bodies[k].absent[i] > 0 && since >= 0 && since < lasting) return 1;
+        }
+    return 0;
+}
+
 void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double speed, double *level)
 {
     sph_reference_set(s, *level);
     *before = sph_of(s)->reference;
-    *level = follow(s, *level, low, speed);
+    *level = has_lost_support(s) ? 0 : follow(s, *level, low, speed);
 }
 
 typedef struct referring { const tobi_system *s; int sign; } referring;

@@ -34,7 +34,8 @@ static const tobi_param body_rows[] = {
       RANGE(10, 170), .unit = "degrees",
       .doc = "Angle, measured in the liquid, at which a surface with tension meets the body." },
     { .key = "absent.from", REAL, AT(tobi_body_def, absent_from), DURATION, .unit = "s", .text = "never",
-      .doc = "From then on a prescribed body is not there: a gate that is taken away at once. Not in mlsmpm." },
+      .doc = "From then on a prescribed body is not there: a gate that is taken away at once. Not in "
+             "mlsmpm." },
     { .key = "absent.until", REAL, AT(tobi_body_def, absent_until), DURATION, .unit = "s", .text = "the end",
       .doc = "Then it is there again, and liquid in it is pushed out." },
     { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },

@@ -232,7 +232,8 @@ static tobi_status write_vtp(const tobi_run *run, int body, const char *path, to
     tobi_compression form = (tobi_compression)run->output.compression;
     tobi_vtk_array uv;
     double (*vertices)[3] = NULL;
-    if (!run->world->sim.bodies[body].mesh.texture || s.vertex_count == 0) return tobi_vtp_write(path, form, &s, err);
+    if (!run->world->sim.bodies[body].mesh.texture || s.vertex_count == 0)
+        return tobi_vtp_write(path, form, &s, err);
     tobi_status status = put_on_skin(&run->skin[body], &s, &uv, &vertices, err);
     if (status == TOBI_OK) status = tobi_vtp_write(path, form, &s, err);
     free(vertices);
