@@ -208,11 +208,16 @@ typedef struct tobi_control_output {
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 
-/* A body: the inside of a closed mesh or of a box, prescribed or moved by forces. */
+/* A body: the inside of a closed mesh, or of one of the shapes, prescribed or moved by forces. */
 typedef struct tobi_body_def {
     const char *name;
-    const char *mesh;           /* path: OBJ, STL or PLY; NULL = the box                              */
-    double box_min[3], box_max[3];  /* m, corners of a plain box, used when mesh is NULL              */
+    const char *mesh;           /* path: OBJ, STL or PLY; NULL = a shape                              */
+    double box_min[3], box_max[3];  /* m, corners of a plain box, when there is no mesh and no shape  */
+    double sphere_centre[3], sphere_radius;              /* m; a shape is there when its radius or    */
+    double cylinder_start[3], cylinder_end[3], cylinder_radius;      /* thickness is above 0          */
+    double capsule_start[3], capsule_end[3], capsule_radius;         /* half a sphere at both ends    */
+    double plate_centre[3], plate_normal[3], plate_along[3];         /* along: of its length; 0 = any */
+    double plate_length, plate_width, plate_thickness;
     double scale[3];            /* 1, per axis, about the mesh's own origin, first                   */
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */

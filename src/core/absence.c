@@ -1,6 +1,6 @@
 /* Bodies that are not there for a while: a gate that is taken away at once. Nothing that looks for bodies has
-   to know: the vertices of an absent body lie so far away that nothing sees them, and move there as they would
-   here. Drawback: a body goes and comes at the beginning of a step, up to a step late. */
+   to know: the vertices of an absent body lie so far away that nothing sees them, and move there as they
+   would here. Drawback: a body goes and comes at the beginning of a step, up to a step late. */
 #include "core/body.h"
 #include <math.h>
 
@@ -33,6 +33,10 @@ void tobi_body_follow_absence(tobi_body *b, double t)
     const int absent = when[0] > 0 && t >= when[0] && !(when[1] > 0 && t >= when[1]);
     if (absent == b->is_absent) return;
     b->is_absent = absent;
+    if (!absent && !b->motion) {     /* to the last bit where a load puts it; it cannot fail */
+        tobi_body_place(b, t, NULL);
+        return;
+    }
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < 3; a++) b->vertex[i][a] += absent ? b->away[a] : -b->away[a];
     tobi_body_update_surface(b);

@@ -327,35 +327,12 @@ static tobi_status check_pieces(const tobi_body *b, double point_spacing, int di
         b->name, b->spacing, inside, pieces, bytes / 1073741824, have / 1073741824);
 }
 
-/* The mesh of a plain box. In 2-D it reaches far to both sides of the plane that cuts it. */
-static tobi_status make_box(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
-{
-    static const int32_t triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
-                                             {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
-                                             {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    double corner[2][3], vertices[8][3];
-    memcpy(corner[0], def->box_min, sizeof corner[0]);
-    memcpy(corner[1], def->box_max, sizeof corner[1]);
-    if (dimension == 2) {
-        corner[1][2] = fmax(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1]);
-        corner[0][2] = -corner[1][2];
-    }
-    for (int a = 0; a < 3; a++)
-        if (!(corner[1][a] > corner[0][a]))
-            return tobi_fail(err, TOBI_INVALID,
-                             "body '%s': has no mesh, and its box has max %g not above min %g along %c",
-                             b->name, corner[1][a], corner[0][a], "xyz"[a]);
-    for (int k = 0; k < 8; k++)
-        for (int a = 0; a < 3; a++) vertices[k][a] = corner[k >> a & 1][a];
-    return tobi_mesh_build(b->name, 8, (const double (*)[3])vertices, 12, triangles, &b->mesh, err);
-}
-
 static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err)
 {
     int dimension = box->dimension;
     char hint[200];
-    TOBI_TRY(def->mesh ? tobi_mesh_read(def->mesh, &b->mesh, err) : make_box(b, def, dimension, err));
+    TOBI_TRY(tobi_body_make_mesh(b, def, dimension, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
     if (tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint) > 0)

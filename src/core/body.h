@@ -121,6 +121,9 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
+/* Its mesh, in the pose of the definition before scale, rotation and translation: the file's or that of its
+   one shape. body_shape.c */
+tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
 /* When the body is absent. TOBI_INVALID for bodies that are not prescribed, and times in the wrong order. */
 tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                                    tobi_error *err);

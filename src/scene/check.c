@@ -214,26 +214,51 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-static void check_body_box(const tobi_scene *scene, tobi_source *source, int body,
-                           const tobi_place *entry)
+static const char *const body_shapes[] = { "mesh", "box", "sphere", "cylinder", "capsule", "plate" };
+
+/* Which shapes an entry of bodies gives: how many, and the last. */
+static int count_shapes(json_t *value, const char **last)
+{
+    int count = 0;
+    for (size_t k = 0; k < sizeof body_shapes/sizeof *body_shapes; k++)
+        if (json_object_get(value, body_shapes[k])) count++, *last = body_shapes[k];
+    return count;
+}
+
+static void check_body_box(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry)
 {
     const tobi_body_def *def = &scene->bodies[body].def;
     json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
     json_t *given = json_object_get(value, "box");
-    int mesh = json_object_get(value, "mesh") != NULL, good = json_is_array(json_object_get(given, "min")) &&
-                                                              json_is_array(json_object_get(given, "max"));
     tobi_place box = { entry, "box", 0 };
-    if (!json_is_object(value)) return;
-    if (mesh == (given != NULL))
-        tobi_source_mistake(source, entry, "must have either a mesh or a box, it has %s",
-                            mesh ? "both" : "none");
-    else if (given && !good)
+    if (!json_is_array(json_object_get(given, "min")) || !json_is_array(json_object_get(given, "max"))) {
         tobi_source_mistake(source, &box, "must have two corners, min and max");
-    for (int a = 0; good && !mesh && a < scene->world.dimension; a++)
+        return;
+    }
+    for (int a = 0; a < scene->world.dimension; a++)
         if (!(def->box_max[a] > def->box_min[a]))
             tobi_source_mistake(source, &box,
                                 "min is %.10g and max is %.10g in %c, max must be greater",
                                 def->box_min[a], def->box_max[a], axis_name[a]);
+}
+
+/* One shape, with what makes it one. */
+static void check_shape(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry)
+{
+    json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)body);
+    const char *shape = NULL;
+    const int count = count_shapes(value, &shape);
+    if (!json_is_object(value)) return;
+    if (count != 1) {
+        tobi_source_mistake(source, entry, "must have one of mesh, box, sphere, cylinder, capsule and plate; "
+                            "it has %s", count ? "several" : "none");
+        return;
+    }
+    const char *size = strcmp(shape, "plate") == 0 ? "thickness" : "radius";
+    tobi_place place = { entry, shape, 0 };
+    if (strcmp(shape, "box") == 0) check_body_box(scene, source, body, entry);
+    else if (strcmp(shape, "mesh") != 0 && !json_object_get(json_object_get(value, shape), size))
+        tobi_source_mistake(source, &place, "must have a %s", size);
 }
 
 /* A body moves by a motion, or by forces. */
@@ -261,7 +286,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         tobi_place rotation = { &entry, "rotation", 0 }, axis = { &rotation, "axis", 0 };
         check_name(scene, source, &entry, BODIES);
         tobi_check_file(source, &mesh, body->def.mesh);
-        check_body_box(scene, source, i, &entry);
+        check_shape(scene, source, i, &entry);
         check_dynamics(scene, source, i, &entry);
         if (is_zero(body->def.rotation_axis))
             tobi_source_mistake(source, &axis, "is zero, must have a direction");

@@ -501,12 +501,27 @@ static json_t *write_solid(const tobi_scene *scene, const tobi_scene_solid *soli
     return write_fills(object, solid->fills, solid->fill_count);
 }
 
+/* Of the shapes only the body's own is written. */
+static void drop_shapes(const tobi_body_def *def, json_t *object)
+{
+    const struct { const char *key; int has; } shapes[] = {
+        { "mesh", def->mesh != NULL }, { "sphere", def->sphere_radius > 0 },
+        { "cylinder", def->cylinder_radius > 0 }, { "capsule", def->capsule_radius > 0 },
+        { "plate", def->plate_thickness > 0 } };
+    int box = 1;
+    for (size_t k = 0; k < sizeof shapes/sizeof *shapes; k++) {
+        if (!shapes[k].has) json_object_del(object, shapes[k].key);
+        box &= !shapes[k].has;
+    }
+    if (!box) json_object_del(object, "box");
+}
+
 static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
 {
     json_t *object = tobi_write_def(&tobi_body_table, &body->def);
     int failed = 0;
     tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
-    json_object_del(object, body->def.mesh ? "box" : "mesh");
+    drop_shapes(&body->def, object);
     if (body->motion_def[0].table)
         failed = json_object_set_new(object, "motion", tobi_motion_write(body->motion_def));
     if (body->control)

@@ -259,9 +259,17 @@ static void require_region(json_t *schema)
     require(box, "max");
     shapes = json_pack("[{s[s]}{s[s]}]", "required", "box", "required", "mesh");
     if (sphere) {
-        require(sphere, "centre");
+        if (!json_object_get(properties, "plate")) require(sphere, "centre");
         require(sphere, "radius");
         json_array_append_new(shapes, json_pack("{s[s]}", "required", "sphere"));
+    }
+    static const char *const more[][2] = { { "cylinder", "radius" }, { "capsule", "radius" },
+                                           { "plate", "thickness" } };
+    for (size_t k = 0; k < sizeof more/sizeof *more; k++) {
+        json_t *shape = json_object_get(properties, more[k][0]);
+        if (!shape) continue;
+        require(shape, more[k][1]);
+        json_array_append_new(shapes, json_pack("{s[s]}", "required", more[k][0]));
     }
     json_object_set_new(schema, "oneOf", shapes);
 }

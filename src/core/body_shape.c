@@ -1,0 +1,85 @@
+/* The mesh of a body: a file, or a shape by words. In 2-D a shape reaches far to both sides of the plane that
+   cuts it. Drawback: facets of round bodies follow the spacing: a coarser scene has coarser bodies. */
+#include "core/body.h"
+#include "geom/shapes.h"
+#include <math.h>
+#include <string.h>
+
+enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE };
+
+static tobi_status make_box(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    static const int32_t triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                             {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                             {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    double corner[2][3], vertices[8][3];
+    memcpy(corner[0], def->box_min, sizeof corner[0]);
+    memcpy(corner[1], def->box_max, sizeof corner[1]);
+    if (dimension == 2) {
+        corner[1][2] = fmax(corner[1][0] - corner[0][0], corner[1][1] - corner[0][1]);
+        corner[0][2] = -corner[1][2];
+    }
+    for (int a = 0; a < 3; a++)
+        if (!(corner[1][a] > corner[0][a]))
+            return tobi_fail(err, TOBI_INVALID,
+                             "body '%s': has no mesh, and its box has max %g not above min %g along %c",
+                             b->name, corner[1][a], corner[0][a], "xyz"[a]);
+    for (int k = 0; k < 8; k++)
+        for (int a = 0; a < 3; a++) vertices[k][a] = corner[k >> a & 1][a];
+    return tobi_mesh_build(b->name, 8, (const double (*)[3])vertices, 12, triangles, &b->mesh, err);
+}
+
+/* Round about the axis; a sphere in 2-D is a cylinder that the plane cuts to a disc. */
+static tobi_status make_round(tobi_body *b, const tobi_body_def *def, int kind, int dimension,
+                              tobi_error *err)
+{
+    const double *start = kind == CYLINDER ? def->cylinder_start
+                          : kind == CAPSULE ? def->capsule_start : def->sphere_centre;
+    const double *end = kind == CYLINDER ? def->cylinder_end
+                        : kind == CAPSULE ? def->capsule_end : def->sphere_centre;
+    const int disc = kind == SPHERE && dimension == 2;
+    tobi_round shape = { .radius = kind == CYLINDER ? def->cylinder_radius
+                                   : kind == CAPSULE ? def->capsule_radius : def->sphere_radius,
+                         .round_ends = kind != CYLINDER && !disc };
+    if (dimension == 2 && !disc)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': a 2-D scene has no cylinders and capsules; a "
+                         "sphere is a disc there", b->name);
+    memcpy(shape.start, start, sizeof shape.start);
+    memcpy(shape.end, end, sizeof shape.end);
+    if (disc) shape.start[2] = -shape.radius, shape.end[2] = shape.radius;
+    return tobi_mesh_round(b->name, &shape, b->spacing, &b->mesh, err);
+}
+
+static tobi_status make_plate(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    tobi_plate plate = { .length = def->plate_length, .width = def->plate_width,
+                         .thickness = def->plate_thickness };
+    memcpy(plate.centre, def->plate_centre, sizeof plate.centre);
+    memcpy(plate.normal, def->plate_normal, sizeof plate.normal);
+    memcpy(plate.along, def->plate_along, sizeof plate.along);
+    if (dimension == 2) {
+        plate.along[0] = -plate.normal[1];
+        plate.along[1] = plate.normal[0];
+        plate.normal[2] = plate.along[2] = 0;
+        plate.width = 2*plate.length;
+    }
+    if (!(plate.length > 0) || !(plate.width > 0))
+        return tobi_fail(err, TOBI_INVALID, "body '%s': its plate is %g m long and %g m wide; both must be "
+                         "above 0", b->name, plate.length, plate.width);
+    return tobi_mesh_plate(b->name, &plate, &b->mesh, err);
+}
+
+tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    const double size[] = { 0, def->sphere_radius, def->cylinder_radius, def->capsule_radius,
+                            def->plate_thickness };
+    int shapes = 0, kind = BOX;
+    for (int k = SPHERE; k <= PLATE; k++)
+        if (size[k] > 0) shapes++, kind = k;
+    if (shapes + (def->mesh != NULL) > 1)
+        return tobi_fail(err, TOBI_INVALID, "body '%s' has %d shapes; it may have one: a mesh, a box, a "
+                         "sphere, a cylinder, a capsule or a plate", b->name, shapes + (def->mesh != NULL));
+    if (def->mesh) return tobi_mesh_read(def->mesh, &b->mesh, err);
+    if (kind == BOX) return make_box(b, def, dimension, err);
+    return kind == PLATE ? make_plate(b, def, dimension, err) : make_round(b, def, kind, dimension, err);
+}

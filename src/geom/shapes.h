@@ -1,0 +1,16 @@
+/* Bodies by words: closed surfaces of a sphere, a cylinder, a capsule, a plate. */
+#pragma once
+#include "geom/mesh.h"
+
+/* A sphere has start = end. ends: round of a sphere and a capsule, else flat. */
+typedef struct tobi_round { double start[3], end[3], radius; int round_ends; } tobi_round;
+
+/* A surface of revolution in facets of about `edge`, m, 24 to 256 around. Its volume is that of the shape to
+   rounding; its moments of inertia are within 0.2 %. TOBI_INVALID, with name: a cylinder without length. */
+tobi_status tobi_mesh_round(const char *name, const tobi_round *shape, double edge, tobi_mesh *out,
+                            tobi_error *err);
+
+/* A box about a centre: along, across and through. along need not be normal to `normal`; zero: any direction
+   that is. TOBI_INVALID, with name: no direction. */
+typedef struct tobi_plate { double centre[3], normal[3], along[3], length, width, thickness; } tobi_plate;
+tobi_status tobi_mesh_plate(const char *name, const tobi_plate *plate, tobi_mesh *out, tobi_error *err);
