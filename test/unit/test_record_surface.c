@@ -39,6 +39,53 @@ static void test_files(void **state)
     assert_int_equal(system(command), 0);
 }
 
+/* A solid in two pieces has two surfaces, with numbers of their own. */
+static void test_pieces(void **state)
+{
+    (void)state;
+    char dir[] = "/tmp/tobiuo_pieces_XXXXXX", path[80], command[80];
+    tobi_error err = { 0 };
+    tobi_world *world = NULL;
+    tobi_run *run = NULL;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill[2] = { tobi_default_fill_def(), tobi_default_fill_def() };
+    tobi_output_def output = make_output();
+    assert_non_null(mkdtemp(dir));
+    w.method = "mlsmpm", w.spacing = 0.05, w.threads = 1;
+    for (int a = 0; a < 3; a++) {
+        w.domain_min[a] = 0, w.domain_max[a] = 2;
+        for (int k = 0; k < 2; k++) {
+            fill[k].box_min[a] = a == 0 ? 0.5 + 0.6*k : 0.5;
+            fill[k].box_max[a] = fill[k].box_min[a] + 0.3;
+        }
+    }
+    solid.name = "cubes", solid.youngs_modulus = 1e5;
+    output.surface = 1, output.compression = TOBI_ASCII;
+    if (tobi_world_create(&w, NULL, &world, &err) || tobi_world_add_solid(world, &solid, fill, 2, &err) ||
+        tobi_run_create(world, &output, dir, 1, NULL, &run, &err)) fail_msg("%s", err.text);
+    tobi_run_free(run);
+    tobi_world_destroy(world);
+    snprintf(path, sizeof path, "%s/surface/surface_000000.vtp", dir);
+    size_t n;
+    char *text = read_file(path, &n), *from = strstr(text, "Name=\"group\"");
+    assert_non_null(from);
+    int count[4] = { 0 };
+    for (from = strchr(from, '>') + 1;;) {
+        char *end;
+        const long group = strtol(from, &end, 10);
+        if (end == from) break;
+        if (group < 0 || group > 3) fail_msg("group %ld", group);
+        count[group]++;
+        from = end;
+    }
+    assert_int_equal(count[0] + count[3], 0);       /* the one solid is 0, its pieces come behind */
+    assert_true(count[1] > 100 && count[2] > 100);
+    free(text);
+    snprintf(command, sizeof command, "rm -r %s", dir);
+    assert_int_equal(system(command), 0);
+}
+
 static void expect_refused(tobi_world *world, const tobi_output_def *output, const char *words)
 {
     tobi_run *run = NULL;
@@ -71,6 +118,7 @@ static void test_mistakes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_mistakes) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_files), cmocka_unit_test(test_pieces),
+                                        cmocka_unit_test(test_mistakes) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
