@@ -10,7 +10,7 @@
 enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
-extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp,
+extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
                          inspect_argp, surface_argp;
 int tobiuo_run(int argc, char **argv);
@@ -20,6 +20,7 @@ int tobiuo_movie(int argc, char **argv);
 int tobiuo_inspect(int argc, char **argv);
 int tobiuo_surface(int argc, char **argv);
 int tobiuo_report(int argc, char **argv);
+int tobiuo_view(int argc, char **argv);
 int tobiuo_check(int argc, char **argv);
 int tobiuo_import(int argc, char **argv);
 int tobiuo_describe(int argc, char **argv);
@@ -105,9 +106,13 @@ typedef struct drive_options {
     const char *dir;      /* where the results go, for messages  */
     double end;           /* s                                   */
     int quiet;            /* 1: no progress line                 */
+    int (*between)(void *user, tobi_world *world);      /* before each step, 1: stop; or NULL */
+    void *user;
 } drive_options;
 /* Catches Ctrl-C and SIGTERM from here on. Returns the exit code; the run is finished, not freed. */
 int drive(tobi_world *world, tobi_run *run, const drive_options *options);
+/* 1 after Ctrl-C or SIGTERM. */
+int is_interrupted(void);
 
 /* watch.c: what is said at the end of a run. */
 typedef struct body_watch { double last[3], before[3], noise, force; int64_t steps; } body_watch;
@@ -155,6 +160,8 @@ int prepare_movie(const char *out, int force);
 int make_movie(const char *dir, const char *out, double slow, int force);
 /* The same, 640 pixels wide and at least 4 s long: *slow is how much slower it is than the scene. */
 int make_small_movie(const char *dir, const char *out, double *slow);
+/* A movie of DIR/frames with so many pictures per second; whatever is there is replaced. */
+int encode_pictures(const char *dir, const char *out, double rate);
 /* Number of pictures in DIR/frames. */
 int64_t count_pictures(const char *dir);
 /* sheet.c: a dozen of them in one PNG. Returns the exit code. */

@@ -17,17 +17,20 @@ static void catch_signals(void)
     sigaction(SIGTERM, &action, NULL);
 }
 
+int is_interrupted(void) { return caught != 0; }
+
 static int is_caught(void *user)
 {
     (void)user;
     return caught != 0;
 }
 
-static tobi_status step_to_end(const tobi_world *world, tobi_run *run, const drive_options *o, progress *p,
+static tobi_status step_to_end(tobi_world *world, tobi_run *run, const drive_options *o, progress *p,
                                watch *w, tobi_error *err)
 {
     while (!caught && !tobi_run_done(run, o->end)) {
         tobi_step_info info = { 0 };
+        if (o->between && o->between(o->user, world)) break;
         tobi_status status = tobi_run_step(run, o->end, &info, err);
         if (status == TOBI_STOPPED) break;
         if (status != TOBI_OK) return status;

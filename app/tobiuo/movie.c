@@ -159,6 +159,11 @@ int prepare_movie(const char *out, int force)
     return code < 0 ? complain("ffmpeg does not work") : code;
 }
 
+int encode_pictures(const char *dir, const char *out, double rate)
+{
+    return write_movie(dir, out, find_kind(out), rate);
+}
+
 /* s between the pictures of a run; 0 after a complaint. */
 static double check_pictures(const char *dir, int64_t count)
 {

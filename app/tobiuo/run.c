@@ -1,17 +1,18 @@
 /* tobiuo run SCENE */
 #define _GNU_SOURCE
 #include "app.h"
+#include "view.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct run_options {
-    const char *scene, *out, *movie;
+    const char *scene, *out, *movie, *keys;
     overrides set;
-    int force, quiet;
+    int force, quiet, window;
 } run_options;
 
-enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE };
+enum { KEY_FORCE = KEY_OWN, KEY_FRAMES, KEY_MOVIE, KEY_WINDOW, KEY_KEYS };
 
 static const struct argp_option options[] = {
     { "out", 'o', "DIR", 0, "where the results go (out/<scene>)", 0 },
@@ -20,6 +21,8 @@ static const struct argp_option options[] = {
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR, and write however much", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
     { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm or .gif", 0 },
+    { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
+    { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
     { 0 }
 };
@@ -41,6 +44,8 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->movie = value;
         break;
     case KEY_FORCE: o->force = 1; break;
+    case KEY_WINDOW: o->window = 1; break;
+    case KEY_KEYS: o->keys = value; break;
     default: return parse_scene_option(state, key, value, &o->set, &o->scene);
     }
     return 0;
@@ -82,8 +87,8 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     free(resolved);
     if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     if (status != TOBI_OK) return complain("%s", err.text);
-    drive_options d = { dir, tobi_scene_world_def(scene)->end_time, o->quiet };
-    int code = drive(world, run, &d);
+    drive_options d = { .dir = dir, .end = tobi_scene_world_def(scene)->end_time, .quiet = o->quiet };
+    int code = o->window ? drive_with_window(world, run, &d, scene, o->keys) : drive(world, run, &d);
     tobi_run_free(run);
     return code;
 }

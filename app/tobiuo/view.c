@@ -1,0 +1,146 @@
+/* tobiuo view DIR, and the window of tobiuo run: what of a scene the window needs. Drawback: without
+   resolved.json there is no domain to look at, so such results have no window. */
+#define _GNU_SOURCE
+#include "app.h"
+#include "view.h"
+#include <jansson.h>
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct view_options { const char *dir, *keys; int width, height; } view_options;
+
+enum { KEY_KEYS = KEY_OWN, KEY_SIZE };
+
+static const struct argp_option options[] = {
+    { "keys", KEY_KEYS, "LETTERS", 0, "keys typed at the start, one picture for each: \"ffsq\"", 0 },
+    { "size", KEY_SIZE, "WxH", 0, "pixels of the window (1280x720)", 0 },
+    { 0 }
+};
+
+static error_t parse(int key, char *value, struct argp_state *state)
+{
+    view_options *o = state->input;
+    char end;
+    if (key == KEY_KEYS) {
+        o->keys = value;
+    } else if (key == KEY_SIZE) {
+        if (sscanf(value, "%dx%d%c", &o->width, &o->height, &end) != 2 || o->width < 100 || o->height < 100 ||
+            o->width > 8192 || o->height > 8192)
+            argp_error(state, "--size: '%s' is not like 1280x720, each from 100 to 8192", value);
+    } else {
+        return parse_argument(state, key, value, "DIR", &o->dir);
+    }
+    return 0;
+}
+
+/* Colours of a list of things; those without a colour are -1. Returns how many there are. */
+static int read_colors(const json_t *list, float colors[MATERIALS][3], float none)
+{
+    const json_t *one;
+    int count = 0;
+    for (size_t k = 0; k < MATERIALS && (one = json_array_get(list, k)); k++, count++)
+        for (size_t c = 0; c < 3; c++) {
+            const json_t *value = json_array_get(json_object_get(one, "color"), c);
+            colors[k][c] = json_is_number(value) ? (float)json_number_value(value)/255 : none;
+        }
+    return count;
+}
+
+static window_def make_window(const tobi_scene *scene, const char *dir, const char *title)
+{
+    const tobi_world_def *w = tobi_scene_world_def(scene);
+    const tobi_output_def *out = tobi_scene_output_def(scene);
+    window_def d = { .title = title, .dir = dir };
+    d.stage.dimension = w->dimension;
+    d.stage.spacing = w->spacing;
+    for (int k = 0; k < 3; k++) {
+        d.stage.low[k] = w->domain_min[k];
+        d.stage.high[k] = w->domain_max[k];
+        d.stage.up[k] = -w->gravity[k];
+        d.eye[k] = out->camera_position[k];
+        d.target[k] = out->camera_look_at[k];
+    }
+    d.angle = w->dimension == 3 ? out->camera_angle : 0;
+    char *text = tobi_scene_resolved(scene);
+    json_t *json = text ? json_loads(text, 0, NULL) : NULL;
+    const json_t *solids = json_object_get(json, "solids");
+    d.stage.opaque = json_array_size(solids) > 0 && json_array_size(json_object_get(json, "fluids")) == 0;
+    d.stage.materials = read_colors(solids, d.stage.material, 0.6f);
+    d.stage.bodies = read_colors(json_object_get(json, "bodies"), d.stage.body, -1);
+    json_decref(json);
+    free(text);
+    return d;
+}
+
+/* --- a run and its window --- */
+
+typedef struct steps {
+    tobi_world *world;
+    tobi_run *run;
+    const drive_options *drive;
+    live *live;
+    int code;                   /* of the program */
+} steps;
+
+static int between(void *user, tobi_world *world) { return live_between(user, world, is_interrupted); }
+
+static void *take_steps(void *user)
+{
+    steps *s = user;
+    s->code = drive(s->world, s->run, s->drive);
+    live_end_steps(s->live, s->world);
+    return NULL;
+}
+
+int drive_with_window(tobi_world *world, tobi_run *run, const drive_options *o, const tobi_scene *scene,
+                      const char *keys)
+{
+    drive_options with = *o;
+    pthread_t thread;
+    steps s = { world, run, &with, live_create(), EXIT_ERROR };
+    if (!s.live) return complain("out of memory");
+    with.between = between;
+    with.user = s.live;
+    window_def d = make_window(scene, o->dir, tobi_scene_name(scene));
+    d.live = s.live;
+    d.keys = keys;
+    if (pthread_create(&thread, NULL, take_steps, &s) != 0) {
+        live_free(s.live);
+        complain("there is no window: no thread for it");
+        return drive(world, run, o);
+    }
+    if (window_show(&d) != 0) live_leave(s.live, LIVE_GOES_ON);
+    pthread_join(thread, NULL);
+    live_free(s.live);
+    return s.code;
+}
+
+const struct argp view_argp = { .options = options, .parser = parse, .args_doc = "DIR",
+    .doc = "Look at the results in DIR in a window; the key h lists its keys." };
+
+int tobiuo_view(int argc, char **argv)
+{
+    view_options o = { 0 };
+    overrides none = { 0 };
+    parse_arguments(&view_argp, argc, argv, &o);
+    char *path = NULL;
+    if (asprintf(&path, "%s/resolved.json", o.dir) < 0) return complain("out of memory");
+    if (access(path, F_OK) != 0) {
+        free(path);
+        return complain_run(o.dir, "there is no run to look at (no resolved.json)");
+    }
+    tobi_scene *scene = load_scene(path, &none);
+    free(path);
+    if (!scene) return EXIT_ERROR;
+    window_def d = make_window(scene, o.dir, o.dir);
+    d.keys = o.keys;
+    d.width = o.width;
+    d.height = o.height;
+    const int code = window_show(&d) == 0 ? 0 : EXIT_ERROR;
+    tobi_scene_free(scene);
+    return code;
+}
