@@ -67,7 +67,7 @@ void viewer_show(viewer *v, int64_t output)
     v->shown = output < 0 ? 0 : output > most ? most : output;
     v->changed = 1;
     if (v->shown == v->outputs) {
-        if (v->def.live) live_ask(v->def.live);
+        if (v->def.live) live_ask(v->def.live, 1);
         return;
     }
     if (tobi_results_read(v->results, v->shown, &m, &err) == TOBI_OK) viewer_adopt(v, moment_share(&m));
@@ -163,7 +163,7 @@ static void do_step(viewer *v)
     }
     if (!v->paused) do_pause(v);
     live_step(v->def.live);
-    live_ask(v->def.live);
+    live_ask(v->def.live, 0);
 }
 static void do_back(viewer *v) { viewer_show(v, v->shown - 1); }
 static void do_first(viewer *v) { viewer_show(v, 0); }

@@ -40,7 +40,8 @@ static void draw_head(const viewer *v, const canvas *c)
     x += tobi_overlay_text(c, x, 28, SIZE, state_of(v), grey) + 16;
     if (v->recording) tobi_overlay_text(c, x, 28, SIZE, "recording", mark);
     if (l->clip_axis < 0) return;
-    snprintf(text, sizeof text, "clip: %c %s %.4g m", "xyz"[l->clip_axis], l->clip_below ? ">" : "<", l->clip);
+    snprintf(text, sizeof text, "clip: %c %s %.4g m", "xyz"[l->clip_axis], l->clip_below ? ">" : "<",
+             l->clip);
     tobi_overlay_text(c, 16, 50, SIZE, text, ink);
 }
 

@@ -10,10 +10,10 @@
 struct live {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    int wanted, has_fresh, paused, steps, ended;
+    int wanted, again, has_fresh, paused, steps, ended;
     live_end leave;
     tobi_moment fresh;
-    double time;
+    double time, given;             /* s, of the last step; of the last moment */
     void (*wake)(void *user);
     void *user;
 };
@@ -24,7 +24,7 @@ live *live_create(void)
     if (!l) return NULL;
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->changed, NULL);
-    l->wanted = 1;
+    l->wanted = l->again = 1;
     return l;
 }
 
@@ -102,8 +102,9 @@ static tobi_moment copy_world(tobi_world *world)
 static void give(live *l, tobi_world *world)
 {
     l->time = tobi_world_time(world);
-    if (!l->wanted || l->has_fresh) return;
-    l->wanted = 0;
+    if (!l->wanted || l->has_fresh || (l->time == l->given && !l->again)) return;
+    l->wanted = l->again = 0;
+    l->given = l->time;
     pthread_mutex_unlock(&l->lock);
     tobi_moment m = copy_world(world);
     pthread_mutex_lock(&l->lock);
@@ -133,7 +134,7 @@ int live_between(live *l, tobi_world *world, int (*is_stopped)(void))
 void live_end_steps(live *l, tobi_world *world)
 {
     pthread_mutex_lock(&l->lock);
-    l->wanted = 1;
+    l->wanted = l->again = 1;
     if (l->has_fresh) tobi_moment_free(&l->fresh);
     l->has_fresh = 0;
     give(l, world);
@@ -142,10 +143,11 @@ void live_end_steps(live *l, tobi_world *world)
     pthread_mutex_unlock(&l->lock);
 }
 
-void live_ask(live *l)
+void live_ask(live *l, int again)
 {
     pthread_mutex_lock(&l->lock);
     l->wanted = 1;
+    l->again |= again;
     pthread_cond_signal(&l->changed);
     pthread_mutex_unlock(&l->lock);
 }

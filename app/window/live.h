@@ -20,7 +20,8 @@ int live_between(live *l, tobi_world *world, int (*is_stopped)(void));
 void live_end_steps(live *l, tobi_world *world);
 
 /* --- the window's thread --- */
-void live_ask(live *l);
+/* For a moment that is newer than the last one; again: for one in any case. */
+void live_ask(live *l, int again);
 /* 1: *moment is a new one, the caller's from now on. */
 int live_take(live *l, tobi_moment *moment);
 void live_pause(live *l, int paused);

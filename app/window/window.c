@@ -98,7 +98,7 @@ static void follow_run(viewer *v)
         if (present) v->shown = v->outputs;
         if (v->outputs != before) graph_read(v);
     }
-    if (v->shown == v->outputs && painter_is_idle(v->painter)) live_ask(v->def.live);
+    if (v->shown == v->outputs && painter_is_idle(v->painter)) live_ask(v->def.live, 0);
 }
 
 static void play(viewer *v)
