@@ -12,7 +12,7 @@ struct screen {
     GLFWwindow *window;
     event waiting[ROOM];
     int first, count;
-    double x, y;
+    double x, y;                /* of the last move: glfwGetCursorPos tells of those still to come too */
     GLuint texture;
 };
 
@@ -54,16 +54,17 @@ static void to_pixels(GLFWwindow *window, double *x, double *y)
 
 static void on_button(GLFWwindow *window, int button, int action, int mods)
 {
-    event e = { .kind = action == GLFW_PRESS ? EVENT_PRESS : EVENT_RELEASE,
-                .button = button != GLFW_MOUSE_BUTTON_LEFT, .shift = mods & GLFW_MOD_SHIFT };
-    glfwGetCursorPos(window, &e.x, &e.y);
-    to_pixels(window, &e.x, &e.y);
-    push(window, e);
+    const screen *s = glfwGetWindowUserPointer(window);
+    push(window, (event){ .kind = action == GLFW_PRESS ? EVENT_PRESS : EVENT_RELEASE, .x = s->x, .y = s->y,
+                          .button = button != GLFW_MOUSE_BUTTON_LEFT, .shift = mods & GLFW_MOD_SHIFT });
 }
 
 static void on_move(GLFWwindow *window, double x, double y)
 {
+    screen *s = glfwGetWindowUserPointer(window);
     to_pixels(window, &x, &y);
+    s->x = x;
+    s->y = y;
     push(window, (event){ .kind = EVENT_MOVE, .x = x, .y = y });
 }
 
