@@ -1,12 +1,13 @@
 #!/bin/bash
-# The flying fish at a coarse spacing: installs what is missing, builds, runs, says where to look.
+# The flying fish at a coarse spacing: installs what is missing, builds, runs, makes a movie, a picture sheet and
+# a report, says where to look.
 # usage: ./demo.sh [options of "tobiuo run"]     e.g. ./demo.sh --until 0.1
 # Every run gets a folder of its own: out/flying_fish, out/flying_fish_2, ...
 set -euo pipefail
 cd "$(dirname "$0")"
-case ${1:-} in -h|--help) sed -n '2,4s/^# //p' "$0"; exit 0 ;; esac
+case ${1:-} in -h|--help) sed -n '2,5s/^# //p' "$0"; exit 0 ;; esac
 
-tools/install_packages.sh
+tools/install_packages.sh --plot
 tools/build.sh release tobiuo
 
 out=out/flying_fish
@@ -17,7 +18,8 @@ mkdir -p out
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 program=build/release/tobiuo
 code=0
-"$program" run scenes/flying_fish --spacing 0.008 --frames --out "$out" "$@" || code=$?
+"$program" run scenes/flying_fish --spacing 0.01 --set output.interval=0.025 \
+    --set 'output.fields=["velocity", "pressure"]' --frames --out "$out" "$@" || code=$?
 if [ $code -ne 0 ]; then
     echo "demo: the run ended early (exit code $code)." >&2
     [ -d "$out" ] && echo "demo: what is finished is in $out; go on with: $program resume $out" >&2
@@ -42,6 +44,9 @@ frames=$(find "$out" -name '*.png' | sort | head -n 1)
 if [ -n "$frames" ]; then
     pictures=$(dirname "$frames")
     echo "Pictures: $pictures/"
-    # four times slower than the fish; without ffmpeg it says what to install
-    "$program" movie "$out" --slow 4 --force || true
+    "$program" movie "$out" --out "$out/sheet.png" --force || true
+    # two times slower than the fish; without ffmpeg it says what to install
+    "$program" movie "$out" --slow 2 --force || true
+    "$program" report "$out" --force || true
+    echo "Window:   $program view $out"
 fi
