@@ -169,7 +169,7 @@ static int measure_tank(const bench_options *o, double spacing, int settle)
     return failed;
 }
 
-/* That tank by another method, isph or wcsph. */
+/* That tank by another method. */
 static int measure_method(const bench_options *o, const char *method)
 {
     const double spacing = o->spacing > 0.0 ? o->spacing : 0.008;
@@ -242,6 +242,7 @@ const struct argp bench_argp = {
            "  tank    the settled tank at 4 mm, 466 000 particles, a minute\n"
            "  wcsph   that tank at 8 mm by wcsph, seconds\n"
            "  isph    that tank at 8 mm by isph, seconds\n"
+           "  eisph   that tank at 8 mm by eisph, seconds\n"
            "  fish    the flying fish at --spacing, --steps steps\n"
            "  ball    an elastic ball by mlsmpm at 5 mm, 268 000 particles, seconds\n"
            "  cut     a ball that a blade goes through, and the same without, half a minute\n"
@@ -259,12 +260,13 @@ int tobiuo_bench(int argc, char **argv)
     const char *which = o.which = o.which ? o.which : "small";
     int tank = strcmp(which, "tank") == 0, small = strcmp(which, "small") == 0;
     int ball = strcmp(which, "ball") == 0, bodies = strcmp(which, "bodies") == 0;
-    int cut = strcmp(which, "cut") == 0, other = !strcmp(which, "wcsph") || !strcmp(which, "isph");
+    int cut = strcmp(which, "cut") == 0,
+        other = !strcmp(which, "wcsph") || !strcmp(which, "isph") || !strcmp(which, "eisph");
     int in_water = strcmp(which, "bodies_in_water") == 0, frame = strcmp(which, "frame") == 0;
     int surface = strcmp(which, "surface") == 0;
     if (!tank && !small && !other && !ball && !cut && !bodies && !in_water && !frame && !surface &&
         strcmp(which, "fish") != 0) {
-        complain("bench: there is no case '%s'; known are small, tank, wcsph, isph, fish, ball, "
+        complain("bench: there is no case '%s'; known are small, tank, wcsph, isph, eisph, fish, ball, "
                  "cut, bodies, bodies_in_water, frame and surface", which);
         return EXIT_USAGE;
     }

@@ -39,6 +39,7 @@ TOBI_API tobi_world_def  tobi_default_world_def(void);
 TOBI_API tobi_dfsph_def  tobi_default_dfsph_def(void);
 TOBI_API tobi_wcsph_def  tobi_default_wcsph_def(void);
 TOBI_API tobi_isph_def   tobi_default_isph_def(void);
+TOBI_API tobi_eisph_def  tobi_default_eisph_def(void);
 TOBI_API tobi_mlsmpm_def tobi_default_mlsmpm_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
 TOBI_API tobi_solid_def  tobi_default_solid_def(void);

@@ -103,6 +103,18 @@ typedef struct tobi_isph_def {
     double shifting;                  /* 1, strength of particle shifting                             */
 } tobi_isph_def;
 
+typedef enum tobi_iteration { TOBI_ITERATION_JACOBI, TOBI_ITERATION_PSEUDO_TIME } tobi_iteration;
+
+typedef struct tobi_eisph_def {
+    int    kernel;                    /* tobi_smoothing                                               */
+    int    sweeps;                    /* per step; 0 = as many as the step needs                      */
+    int    iteration;                 /* tobi_iteration                                               */
+    double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
+    double sound_speed;               /* m/s; 0 = ten times the fastest flow                          */
+    double volume_gain;               /* 1, share of the error of volume in the source of pressure    */
+    double shifting;                  /* 1, strength of particle shifting                             */
+} tobi_eisph_def;
+
 /* Parameters of the MLS-MPM method. */
 typedef struct tobi_mlsmpm_def {
     double cell;                      /* grid cell in particle spacings: 2 = 8 particles per cell in 3-D */

@@ -8,7 +8,7 @@
 
 static const tobi_part parts[] = {
     { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 0, TOBI_FLUID_LIMIT,
-      "The fluids of the methods dfsph, wcsph and isph, which need at least one." },
+      "The fluids of the methods dfsph, wcsph, isph and eisph, which need at least one." },
     { "world", "solids", TOBI_PART_LIST, &tobi_solid_table, 0, TOBI_SOLID_LIMIT,
       "The solids, sands, snows and liquids of the method mlsmpm." },
     { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,

@@ -2,7 +2,7 @@
 #include "sph/kernels.h"
 #include "sph/couple.k.h"
 #include "sph/filter.k.h"
-#include "sph/isph.k.h"
+#include "sph/eisph.k.h"
 #include "sph/isph_loop.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"

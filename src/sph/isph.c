@@ -6,32 +6,16 @@
 #include "sph/boundary.h"
 #include "sph/isph.h"
 #include "sph/isph_forces.h"
-#include "sph/isph_solve.h"
+#include "sph/isph_verbs.h"
 #include "sph/kernels.h"
-#include "sph/stages.h"
-#include "sph/state.h"
-#include "sph/undo.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* MEMORY: numbers that survive a restart; steps in a row that may fail to converge. */
-enum { MEMORY = 3, FAILURES = 50 };
+/* Steps in a row that may fail to converge. */
+enum { FAILURES = 50 };
 
 static const double FULL_SHIFT_STEP = 0.2, SHIFT_AT_REST = 0.1;
-
-typedef struct isph {
-    sph_state common;
-    tobi_isph_def def;
-    sph_view view;                   /* of what it shares with the other SPH methods                */
-    const sph_kernels *kernel;
-    isph_solver solver;
-    sph_undo undo;
-    /* survives a restart; vessel: SPH_VESSEL_*; failures: steps in a row that did not converge */
-    struct { double speed, vessel, failures; } memory;
-    double motion_dt;                /* s, the step that motion alone allows                        */
-    double side_force[3];            /* N, of the pressure on the sides of the domain               */
-} isph;
 
 static void launch(tobi_system *s, isph *m, tobi_kernel k, double *totals)
 {
@@ -46,11 +30,11 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
     *support = d->support > 0 ? d->support : tobi_smoothing_support(d->kernel, 2.5);
 }
 
-static tobi_status create(tobi_system *s, tobi_error *err)
+tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_error *err)
 {
     isph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the isph state");
-    m->def = *(const tobi_isph_def *)s->def;
+    m->def = *def;
     m->common.mirrors = 1;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     isph_solver_begin(&m->solver, s, &m->def);
@@ -59,15 +43,16 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     return TOBI_OK;
 }
 
-static int list_memory(tobi_system *s, double **values)
+static tobi_status create(tobi_system *s, tobi_error *err) { return isph_create_state(s, s->def, err); }
+
+int isph_list_memory(tobi_system *s, double **values)
 {
     isph *m = s->state;
     *values = &m->memory.speed;
-    return MEMORY;
+    return ISPH_MEMORY;
 }
 
-/* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
-static double choose_dt(tobi_system *s)
+double isph_choose_dt(tobi_system *s)
 {
     isph *m = s->state;
     const double fixed = s->sim->def.time_step, most = s->sim->def.time_step_max;
@@ -102,19 +87,19 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     return TOBI_OK;
 }
 
-static tobi_status remember(tobi_system *s, tobi_error *err)
+tobi_status isph_remember(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
-    return sph_undo_begin(&m->undo, s, &m->memory.speed, MEMORY, err);
+    return sph_undo_begin(&m->undo, s, &m->memory.speed, ISPH_MEMORY, err);
 }
 
-static void take_back(tobi_system *s)
+void isph_take_back(tobi_system *s)
 {
     isph *m = s->state;
-    sph_undo_restore(&m->undo, s, &m->memory.speed, MEMORY);
+    sph_undo_restore(&m->undo, s, &m->memory.speed, ISPH_MEMORY);
 }
 
-static tobi_status begin(tobi_system *s, tobi_error *err)
+tobi_status isph_begin(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
     double clock = tobi_clock();
@@ -131,7 +116,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
 
 /* Viscosity, friction and tension are those of the other SPH methods, with gravity, and what walls make of
    it, left out: the images of the pressure equation know that. */
-static void forces(tobi_system *s)
+void isph_forces(tobi_system *s)
 {
     isph *m = s->state;
     double clock = tobi_clock();
@@ -157,7 +142,7 @@ static tobi_status judge(tobi_system *s, isph *m, const tobi_linear_report *repo
                      FAILURES + 1, s->sim->time, report->residual, report->iterations, m->def.tolerance);
 }
 
-static tobi_status solve(tobi_system *s, tobi_error *err)
+tobi_status isph_solve(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
     double t[TOBI_TOTALS], clock = tobi_clock();
@@ -166,6 +151,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     const tobi_linear_report report = isph_solver_run(&m->solver, s);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
+    m->memory.started = 1;
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
     isph_forces_correct(&m->solver, s);
     launch(s, m, m->kernel->isph_projection, t);
@@ -191,7 +177,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 
-static void move(tobi_system *s)
+void isph_move(tobi_system *s)
 {
     isph *m = s->state;
     double t[TOBI_TOTALS], clock = tobi_clock();
@@ -204,26 +190,26 @@ static void move(tobi_system *s)
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
 }
 
-static tobi_status refresh(tobi_system *s, tobi_error *err)
+tobi_status isph_refresh(tobi_system *s, tobi_error *err)
 {
     double clock = tobi_clock();
     return find_neighbors(s, s->state, &clock, err);
 }
 
-static void derive(tobi_system *s, const char *field)
+void isph_derive(tobi_system *s, const char *field)
 {
     isph *m = s->state;
     sph_derive(s, &m->view, m->kernel, field);
 }
 
 
-static int64_t count_bytes(const tobi_system *s)
+int64_t isph_count_bytes(const tobi_system *s)
 {
     const isph *m = s->state;
     return sph_bytes(s) + isph_solver_bytes(&m->solver);
 }
 
-static void free_state(void *state)
+void isph_free_state(void *state)
 {
     isph *m = state;
     if (m) tobi_boundary_links_free(&m->common.links);
@@ -236,23 +222,9 @@ const tobi_method tobi_isph = {
     .name = "isph",
     .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
     .params = &tobi_isph_table,
-    .fields = &sph_field_list,
-    .outputs = sph_outputs,
-    .needs = sph_needs,
     .smoothing = choose_smoothing,
     .create = create,
-    .remember = remember,
-    .take_back = take_back,
-    .max_dt = choose_dt,
-    .begin = begin,
-    .forces = forces,
-    .solve = solve,
-    .move = move,
-    .finish = sph_finish,
-    .refresh = refresh,
-    .read = sph_read,
-    .derive = derive,
-    .memory = list_memory,
-    .bytes = count_bytes,
-    .free = free_state,
+    .max_dt = isph_choose_dt,
+    .begin = isph_begin,
+    ISPH_VERBS
 };

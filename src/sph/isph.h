@@ -5,3 +5,7 @@
 
 extern const tobi_method tobi_isph;
 extern const tobi_param_table tobi_isph_table;
+
+/* The same with an explicit update of the pressure. */
+extern const tobi_method tobi_eisph;
+extern const tobi_param_table tobi_eisph_table;

@@ -224,7 +224,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     v->source[i] = isph_volume_source(v, i) + t.z + v->density/v->dt*v->slope*t.w;
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
-    v->solution[i] = v->pressure[i];
+    v->solution[i] = v->keep*v->pressure[i];
     totals[0] += excess;
 }
 

@@ -5,6 +5,7 @@
 #include "sph/fields.h"
 #include "sph/isph_forces.h"
 #include "sph/isph_surface.h"
+#include "sph/isph_sweeps.h"
 #include <math.h>
 #include <string.h>
 
@@ -61,6 +62,7 @@ void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
     v->weight = c->weight;
     v->slope = c->slope;
     v->full = 2*c->rate;
+    v->keep = 1;
     v->density = s->fluid[0].density;
     isph_surface_measure(v, c);
     memcpy(v->size, s->box.size, sizeof v->size);
@@ -189,12 +191,13 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     m->system = s;
     m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
-    const int grid = m->def->preconditioner == TOBI_MULTIGRID;
+    const int grid = m->def->preconditioner == TOBI_MULTIGRID && m->sweeps.count == 0;
     if (grid) set_grid(m, s);
     const tobi_linear_system system = { .rows = n, .singular = !(t[0] > 0), .user = m, .apply = apply,
                                         .precondition = grid ? precondition : precondition_by_diagonal,
                                         .stop = ask_stop };
-    const tobi_linear_report report = run(m, &system);
+    const tobi_linear_report report =
+        m->sweeps.count > 0 ? isph_sweep_all(m, system.singular) : run(m, &system);
     tobi_launch(m->exec, m->kernel->isph_store_pressure, &m->view, 0, n, NULL);
     m->view.gravity_dt = 0;
     return report;

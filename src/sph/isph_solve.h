@@ -17,6 +17,12 @@ typedef struct isph_body {
     double added_mass_factor[6][6];  /* 1: what of its own acceleration is left with that           */
 } isph_body;
 
+/* What eisph does in place of the solve. */
+typedef struct isph_sweeps {
+    int count;                       /* 0: solve                                                    */
+    int pseudo;                      /* 1: in pseudo-time, 0: Jacobi                                */
+} isph_sweeps;
+
 typedef struct isph_solver {
     isph_view view;
     const sph_kernels *kernel;
@@ -32,6 +38,7 @@ typedef struct isph_solver {
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->links, see isph_bodies.h                              */
     int64_t mirrors;                 /* room for them                                               */
+    isph_sweeps sweeps;
     int coupled;                     /* 1: bodies move by forces                                    */
     isph_coupling *coupling;         /* of s->links, see isph_forces.h                              */
     isph_point *point;               /* of all bodies                                               */

@@ -39,6 +39,8 @@ typedef struct isph_view {
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
     double volume_gain, shifting;    /* parameters                                                  */
+    double keep;                     /* 1: share of the last pressure that a solve starts from       */
+    double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
     /* particle arrays */
     const tobi_double3 *position;
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */

@@ -115,3 +115,30 @@ static const tobi_param isph_rows[] = {
 const tobi_param_table tobi_isph_table = {
     "isph", "Incompressible SPH: pressure by one Poisson equation per step, for forces and pressures.",
     sizeof(tobi_isph_def), isph_rows };
+
+static const tobi_param eisph_rows[] = {
+    SMOOTHING(tobi_eisph_def),
+    { .key = "sweeps", INT, AT(tobi_eisph_def, sweeps), .def = { 1 }, RANGE(0, 1000), .unit = "1",
+      .text = "automatic",
+      .doc = "Sweeps of the pressure equation per step, from the last pressure. Fewer need shorter "
+             "steps. Automatic (0) takes as many as the step of the motion needs." },
+    { .key = "iteration", CHOICE("jacobi|pseudo-time", 2), AT(tobi_eisph_def, iteration),
+      .doc = "jacobi: each pressure from those of its neighbours. pseudo-time: artificial "
+             "compressibility, with sound that is damped as fast as it can be; n sweeps allow 0.7 n "
+             "times the step, those of jacobi sqrt(n) times." },
+    { .key = "sound_speed", REAL, AT(tobi_eisph_def, sound_speed), RANGE(1e-6, TOBI_SPEED_LIMIT),
+      .unit = "m/s", .text = "automatic",
+      .doc = "Speed at which pressure spreads. Automatic is ten times the fastest flow, or fall over the "
+             "depth of the liquid, which keeps the density within 1 %." },
+    { .key = "volume_gain", REAL, AT(tobi_eisph_def, volume_gain), .def = { 0.1 }, RANGE(0, 0.5), .unit = "1",
+      .text = "off",
+      .doc = "Share of the error of volume that the pressure takes in per step of the motion. It forgets "
+             "twice as much of itself." },
+    { .key = "shifting", REAL, AT(tobi_eisph_def, shifting), .def = { 0.5 }, RANGE(0, 1), .unit = "1",
+      .text = "off", .doc = "Strength of particle shifting, as of isph." },
+    { 0 }
+};
+
+const tobi_param_table tobi_eisph_table = {
+    "eisph", "Explicit incompressible SPH: sweeps of the pressure equation in place of a solve.",
+    sizeof(tobi_eisph_def), eisph_rows };

@@ -52,6 +52,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_dfsph_table), 0);
     assert_int_equal(count_uncovered(&tobi_wcsph_table), 0);
     assert_int_equal(count_uncovered(&tobi_isph_table), hole);
+    assert_int_equal(count_uncovered(&tobi_eisph_table), hole);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), sizeof(tobi_flow_fn) + sizeof(void *));
     assert_int_equal(count_uncovered(&tobi_body_table), motion + control + 3*hole);
@@ -93,7 +94,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 13);
+    assert_int_equal(tables, 14);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }
@@ -129,6 +130,9 @@ static void words_follow_the_enums(void **state)
     const char *preconditioners = find_row(&tobi_isph_table, "preconditioner")->choices;
     assert_true(word_is(preconditioners, TOBI_MULTIGRID, "multigrid") &&
                 word_is(preconditioners, TOBI_JACOBI, "jacobi"));
+    const char *iterations = find_row(&tobi_eisph_table, "iteration")->choices;
+    assert_true(word_is(iterations, TOBI_ITERATION_JACOBI, "jacobi") &&
+                word_is(iterations, TOBI_ITERATION_PSEUDO_TIME, "pseudo-time"));
     const char *friction = find_row(&tobi_body_table, "friction")->choices;
     assert_true(word_is(friction, TOBI_SLIP, "slip") && word_is(friction, TOBI_NO_SLIP, "no-slip"));
     const char *forms = find_row(&tobi_output_table, "compression")->choices;
@@ -229,8 +233,9 @@ static void methods_are_found_by_name(void **state)
     assert_string_equal(tobi_method_name(0), "dfsph");
     assert_string_equal(tobi_method_name(1), "wcsph");
     assert_string_equal(tobi_method_name(2), "isph");
-    assert_string_equal(tobi_method_name(3), "mlsmpm");
-    assert_null(tobi_method_name(4));
+    assert_string_equal(tobi_method_name(3), "eisph");
+    assert_string_equal(tobi_method_name(4), "mlsmpm");
+    assert_null(tobi_method_name(5));
 }
 
 int main(void)

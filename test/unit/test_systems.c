@@ -179,10 +179,10 @@ static void insert_cube(tobi_system *s, double x)
    is the same for any number of threads. */
 static void rows_can_be_inserted(void **state)
 {
-    static const char *const methods[] = { "dfsph", "wcsph", "mlsmpm", "isph" };
+    static const char *const methods[] = { "dfsph", "wcsph", "mlsmpm", "isph", "eisph" };
     uint64_t hash[2];
     (void)state;
-    for (int m = 0; m < 4; m++) {
+    for (int m = 0; m < 5; m++) {
         for (int threads = 1; threads <= 2; threads++) {
             tobi_world *world = make_world(methods[m], m == 2 ? BLOCK : POOL, threads);
             tobi_step_info info;

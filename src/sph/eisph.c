@@ -1,0 +1,103 @@
+/* Explicit incompressible SPH: the step of isph with a few sweeps of the pressure equation, from the pressure
+   of the last step, in place of a solve. What they leave is sound, so the step is bounded by its speed, or
+   the sweeps are as many as the step needs (decision 51). The first step is solved. Drawback: liquid at rest
+   in deep tanks costs more than by isph, and pressure arrives with sound. */
+#include "sph/isph.h"
+#include "sph/isph_sweeps.h"
+#include "sph/isph_verbs.h"
+#include "sph/boundary.h"
+#include <math.h>
+
+/* Most sweeps that the method chooses itself. */
+enum { SWEEPS_MAX = 200 };
+/* Speed of sound over that of the flow; and what the pressure forgets over what it takes in of the error of
+   volume: below 1 sound gains energy (eq. E.8). */
+static const double SOUND = 10, FORGET = 2;
+
+static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
+{
+    const tobi_eisph_def *d = def;
+    (void)stirred;
+    *shape = d->kernel;
+    *support = d->support > 0 ? d->support : 2.5;
+}
+
+static tobi_status create(tobi_system *s, tobi_error *err)
+{
+    const tobi_eisph_def *d = s->def;
+    tobi_isph_def def;
+    tobi_param_defaults(&tobi_isph_table, &def);
+    def.kernel = d->kernel;
+    def.support = d->support;
+    def.volume_gain = d->volume_gain;
+    def.shifting = d->shifting;
+    if (tobi_couple_any(s))
+        return tobi_fail(err, TOBI_INVALID, "eisph knows bodies that are held or driven; those that move by "
+                         "forces need \"method\": \"isph\"");
+    return isph_create_state(s, &def, err);
+}
+
+/* m/s */
+static double sound(const tobi_system *s, const isph *m)
+{
+    const tobi_eisph_def *d = s->def;
+    const double *g = s->gravity, fall = 2*sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2])*m->memory.depth,
+                 speed = fmax(fmax(m->memory.speed, s->sim->body_speed), sqrt(fall));
+    return d->sound_speed > 0 ? d->sound_speed : SOUND*speed;
+}
+
+/* Of isph, and eq. (E.6) for the sweeps asked for, or the most. */
+static double choose_dt(tobi_system *s)
+{
+    const isph *m = s->state;
+    const tobi_eisph_def *d = s->def;
+    const double dt = isph_choose_dt(s), c = sound(s, m);
+    if (s->sim->def.time_step > 0 || !(c > 0) || m->memory.started == 0) return dt;
+    const double reach = isph_sweeps_reach(d->sweeps > 0 ? d->sweeps : SWEEPS_MAX, d->iteration);
+    return fmin(dt, sqrt(reach/m->solver.view.full)/c);
+}
+
+static int count_sweeps(const tobi_system *s, const isph *m)
+{
+    const tobi_eisph_def *d = s->def;
+    const double way = sound(s, m)*s->dt;
+    int n = 1;
+    if (d->sweeps > 0) return d->sweeps;
+    while (n < SWEEPS_MAX && isph_sweeps_reach(n, d->iteration) < way*way*m->solver.view.full) n++;
+    return n;
+}
+
+static void measure_depth(tobi_system *s, isph *m)
+{
+    double t[TOBI_TOTALS] = { 0 }, size = 0;
+    const isph_view *v = &m->solver.view;
+    for (int a = 0; a < v->dimension; a++) size += v->size[a]*v->size[a];
+    tobi_launch(&s->sim->exec, m->kernel->eisph_extent, v, 0, v->count, t);
+    m->memory.depth = fmax(0, t[6] + t[7] - 2*sqrt(size)) + v->spacing;
+}
+
+static tobi_status begin(tobi_system *s, tobi_error *err)
+{
+    isph *m = s->state;
+    const tobi_eisph_def *d = s->def;
+    isph_view *v = &m->solver.view;
+    TOBI_TRY(isph_begin(s, err));
+    measure_depth(s, m);
+    m->solver.sweeps = (isph_sweeps){ 0, d->iteration };
+    v->keep = 1;
+    if (m->memory.started == 0) return TOBI_OK;
+    m->solver.sweeps.count = count_sweeps(s, m);
+    v->keep = 1 - FORGET*v->volume_gain*v->dt/v->motion_dt;
+    return TOBI_OK;
+}
+
+const tobi_method tobi_eisph = {
+    .name = "eisph",
+    .doc = "Incompressible SPH with an explicit update of the pressure: a few sweeps in place of a solve.",
+    .params = &tobi_eisph_table,
+    .smoothing = choose_smoothing,
+    .create = create,
+    .max_dt = choose_dt,
+    .begin = begin,
+    ISPH_VERBS
+};

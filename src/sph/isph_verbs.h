@@ -1,0 +1,45 @@
+/* The state and the step of isph, which eisph shares. */
+#pragma once
+#include "sph/isph_solve.h"
+#include "sph/stages.h"
+#include "sph/state.h"
+#include "sph/undo.h"
+
+/* Numbers that survive a restart. */
+enum { ISPH_MEMORY = 5 };
+
+typedef struct isph {
+    sph_state common;
+    tobi_isph_def def;
+    sph_view view;                   /* of what it shares with the other SPH methods                */
+    const sph_kernels *kernel;
+    isph_solver solver;
+    sph_undo undo;
+    /* vessel: SPH_VESSEL_*; failures: steps in a row that did not converge; of eisph: depth: m, of the
+       liquid along gravity; started: 1 after the first solve */
+    struct { double speed, vessel, failures, depth, started; } memory;
+    double motion_dt;                /* s, the step that motion alone allows                        */
+    double side_force[3];            /* N, of the pressure on the sides of the domain               */
+} isph;
+
+tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_error *err);
+/* dt <= min(cfl d/|v|, 0.25 sqrt(d/g), viscous limit, that of surface tension). */
+double isph_choose_dt(tobi_system *s);
+int isph_list_memory(tobi_system *s, double **values);
+tobi_status isph_remember(tobi_system *s, tobi_error *err);
+void isph_take_back(tobi_system *s);
+tobi_status isph_begin(tobi_system *s, tobi_error *err);
+void isph_forces(tobi_system *s);
+tobi_status isph_solve(tobi_system *s, tobi_error *err);
+void isph_move(tobi_system *s);
+tobi_status isph_refresh(tobi_system *s, tobi_error *err);
+void isph_derive(tobi_system *s, const char *field);
+int64_t isph_count_bytes(const tobi_system *s);
+void isph_free_state(void *state);
+
+/* Of a tobi_method. */
+#define ISPH_VERBS                                                                                  \
+    .fields = &sph_field_list, .outputs = sph_outputs, .needs = sph_needs, .remember = isph_remember,   \
+    .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \
+    .finish = sph_finish, .refresh = isph_refresh, .read = sph_read, .derive = isph_derive,         \
+    .memory = isph_list_memory, .bytes = isph_count_bytes, .free = isph_free_state,
