@@ -92,7 +92,8 @@ static void bodies_that_move_by_forces_are_refused(void **state)
     body.density = 500;
     OK(tobi_world_add_body(world, &body, &err));
     REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_INVALID,
-            "eisph knows bodies that are held or driven; those that move by forces need \"method\": \"isph\"");
+            "eisph knows bodies that are held or driven; those that move by forces need \"method\": "
+            "\"isph\"");
     tobi_world_destroy(world);
 }
 
