@@ -419,7 +419,8 @@ static void follow_the_equations(int scalar)
             run(kernel_at(kernel, n), t);
             const int all = !strcmp(kernels[n].name, "isph_projection") ||
                             !strcmp(kernels[n].name, "isph_shift");
-            for (int64_t i = 0; i < view.count; i += all ? 1 : 7) {
+            const int some = !strncmp(kernels[n].name, "eisph", 5) ? 29 : 7;
+            for (int64_t i = 0; i < view.count; i += all ? 1 : some) {
                 before = old[i];
                 sums s = sum_pairs(i);
                 for (int a = 0; a < 3; a++) force[a] += s.force[a];
