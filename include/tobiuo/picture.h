@@ -22,6 +22,9 @@ typedef struct tobi_picture_mesh {
     float color[3];                    /* sRGB, 0 to 1                 */
 } tobi_picture_mesh;
 
+/* How particles look: water and solids; surfaces in the colours of values, opaque; balls in those colours. */
+enum { TOBI_LOOK_NATURAL, TOBI_LOOK_SURFACE, TOBI_LOOK_PARTICLES };
+
 /* Everything borrowed for the call. Obtain from tobi_default_picture and change members. */
 typedef struct tobi_picture {
     int width, height;                 /* pixels, 16 to 8192                                            */
@@ -43,6 +46,13 @@ typedef struct tobi_picture {
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
+    int look;                          /* TOBI_LOOK_*, 3-D only                                         */
+    int clip;                          /* not 0: particles beyond a plane are not drawn                 */
+    double clip_point[3], clip_normal[3];        /* m; from what is drawn to what is not                */
+    double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */
+    const double (*velocities)[3];     /* m/s, drawn as arrows; NULL = none                             */
+    int axes;                          /* not 0: ticks along edges of the box                           */
+    int transparent;                   /* not 0: the PNG's background is transparent                    */
     double clarity;                    /* m of water after which 1/e of the light is left; 0 = automatic */
 
     const tobi_picture_mesh *meshes;
@@ -61,6 +71,10 @@ enum { TOBI_PICTURE_STAGES = 6 };
 TOBI_API const char *tobi_picture_stage_name(int stage);      /* NULL beyond the last */
 
 TOBI_API tobi_picture tobi_default_picture(void);
+
+/* A palette that is even to the eye, by name, and its number of colours; NULL for an unknown name. */
+TOBI_API const float (*tobi_color_map(const char *name, int *count))[3];
+TOBI_API const char *tobi_color_map_name(int number);      /* NULL beyond the last */
 
 /* TOBI_INVALID for sizes, ranges or indices out of bounds and for NULL where something must stand,
    TOBI_NO_MEMORY, TOBI_IO. The file appears whole or not at all. */

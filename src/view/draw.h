@@ -89,6 +89,7 @@ typedef struct canvas {
     vec     light, sky_up;       /* unit vectors in view space: to the key light, against gravity  */
     shadow  shadow;
     vec    *color;               /* of pixels                                                      */
+    float  *alpha;               /* of pixels; NULL: the picture is opaque                         */
     float  *depth;               /* of pixels: of the nearest that is opaque, m; INFINITY = none   */
     float  *front;               /* of pixels: of the water; NULL: no water                        */
     float  *nearness;            /* of samples, tile by tile, of what is opaque; NULL: no water    */
@@ -221,9 +222,28 @@ vec *view_color_particles(const tobi_picture *f, double low, double high);
 /* text.c: a letter as strokes on a small grid, and how many of its steps the next letter is away. */
 const char *view_letter_strokes(char letter);
 int view_letter_advance(char letter);
+float view_letter_unit(const canvas *c);                 /* pixels of such a step */
+float view_text_width(const char *text, float unit);
+void view_draw_stroke(canvas *c, const float a[2], const float b[2], float pen, vec color);
+void view_draw_text(canvas *c, float x, float y, float unit, const char *text, vec color);
+double view_tick_step(double range);
 void view_draw_title(canvas *c, const char *text);
 void view_draw_color_bar(canvas *c, const tobi_picture *f, double value_min, double value_max);
 
-/* png.c: width x height x 3 bytes, sRGB. */
-void view_encode_colors(const canvas *c, unsigned char *bytes);
+/* axes.c; false: no memory. */
+void view_draw_axes(canvas *c, const tobi_picture *f);
+bool view_draw_arrows(canvas *c, const tobi_picture *f);
+
+/* On this side of the clip plane, or in the slice. */
+static inline bool view_is_shown(const tobi_picture *f, int64_t i)
+{
+    if (!f->clip) return true;
+    const double *p = f->positions[i], *n = f->clip_normal, *q = f->clip_point;
+    const double off = (p[0] - q[0])*n[0] + (p[1] - q[1])*n[1] + (p[2] - q[2])*n[2];
+    const double length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    return f->slice > 0 ? fabs(off) <= 0.5*f->slice*length : off <= 0;
+}
+
+/* png.c: width x height x channels bytes, sRGB; of 4 channels the last is alpha. */
+void view_encode_colors(const canvas *c, int channels, unsigned char *bytes);
 tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err);

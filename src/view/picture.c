@@ -50,6 +50,11 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
     if (f->dimension == 3 && !(f->field_of_view >= 1 && f->field_of_view <= 150))
         return tobi_fail(err, TOBI_INVALID, "%s: a field of view of %g degrees, allowed are 1 to 150", path,
                          f->field_of_view);
+    if (f->look < TOBI_LOOK_NATURAL || f->look > TOBI_LOOK_PARTICLES)
+        return tobi_fail(err, TOBI_INVALID, "%s: there is no look %d", path, f->look);
+    const double *n = f->clip_normal;
+    if (f->clip && !(n[0]*n[0] + n[1]*n[1] + n[2]*n[2] > 0 && isfinite(n[0] + n[1] + n[2])))
+        return tobi_fail(err, TOBI_INVALID, "%s: the normal of the clip plane has no direction", path);
     if (f->palette && f->palette_count < 1)
         return tobi_fail(err, TOBI_INVALID, "%s: a palette of %d colours, at least 1", path,
                          f->palette_count);
@@ -99,7 +104,7 @@ static double processor_clock(void)
 
 static void end_stage(scene *s, int stage)
 {
-    if (!s->f->stage_seconds) return;
+    if (!s->f || !s->f->stage_seconds) return;
     const double now = processor_clock();
     s->f->stage_seconds[stage] = now - s->clock;
     s->clock = now;
@@ -108,6 +113,7 @@ static void end_stage(scene *s, int stage)
 static void free_scene(scene *s)
 {
     free(s->c.color);
+    free(s->c.alpha);
     free(s->c.depth);
     free(s->c.front);
     free(s->c.nearness);
@@ -156,7 +162,8 @@ static surface_request choose(scene *s, bool opaque)
                                                                                               0.095f,
                                                                                                   0.180f } };
     for (int64_t i = 0; i < f->particle_count; i++)
-        if ((f->opaque && f->opaque[i]) == opaque) s->row[r.count++] = (int32_t)i;
+        if (view_is_shown(f, i) && (f->look || (f->opaque
+                                                && f->opaque[i])) == opaque) s->row[r.count++] = (int32_t)i;
     return r;
 }
 
@@ -199,12 +206,32 @@ static tobi_status add_solids(scene *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Every particle as a ball. */
+static tobi_status add_particles(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    geometry *g = &s->solids;
+    if (!view_reserve(g, 0, 0, f->particle_count)) return no_memory(f, err);
+    for (int64_t i = 0; i < f->particle_count; i++) {
+        const vec p = view_point(&s->c.camera, f->positions[i]);
+        if (!view_is_shown(f, i) || !(fabsf(p.x) + fabsf(p.y)
+                                      + fabsf(p.z) < 1e15f*(float)f->radius)) continue;
+        const vec color = s->color ? s->color[i] : view_color_of(f, 0);
+        g->balls[g->ball_count++] = (ball){ p, (float)f->radius, color };
+    }
+    return TOBI_OK;
+}
+
 static tobi_status add_surfaces(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
     for (int i = 0; i < f->mesh_count; i++)
         if (!view_add_mesh(&s->solids, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
-    if (f->opaque) TOBI_TRY(add_solids(s, err));
+    if (f->look == TOBI_LOOK_PARTICLES) {
+        TOBI_TRY(add_particles(s, err));
+        return view_project(&s->solids, &s->c.camera, f->threads, err);
+    }
+    if (f->opaque || f->look) TOBI_TRY(add_solids(s, err));
     surface_request r = choose(s, false);
     r.drop = 1.0f*(float)f->radius;
     if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->drops, &s->c, &r, &s->c.submerged, err));
@@ -221,7 +248,7 @@ static tobi_status add_discs(scene *s, tobi_error *err)
     if (!view_reserve(g, 0, 0, 2*f->particle_count)) return no_memory(f, err);
     for (int64_t i = 0; i < f->particle_count; i++) {
         vec p = view_point(&s->c.camera, f->positions[i]);
-        if (!(fabsf(p.x) + fabsf(p.y) < 1e9f)) continue;
+        if (!view_is_shown(f, i) || !(fabsf(p.x) + fabsf(p.y) < 1e9f)) continue;
         for (int k = 0; k < 2; k++) {
             p.z = size*(float)(k + 10);
             const vec color = s->color ? s->color[i] : view_color_of(f, 0);
@@ -288,6 +315,8 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     if (has_water(s)) TOBI_TRY(draw_water(s, err));
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
+    if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
+    if (f->axes) view_draw_axes(c, f);
     if (f->title) view_draw_title(c, f->title);
     if (f->label) view_draw_color_bar(c, f, s->low, s->high);
     end_stage(s, STAGE_LINES);
@@ -303,12 +332,36 @@ static tobi_status draw_scene(scene *s, const char *name, const tobi_picture *fr
     return draw(s, name, err);
 }
 
+/* Drawn before black and before white: the difference is what shines through. */
+static tobi_status draw_transparent(scene *s, const char *name, const tobi_picture *frame, tobi_error *err)
+{
+    tobi_picture f = *frame;
+    scene white;
+    for (int k = 0; k < 3; k++) f.background_top[k] = f.background_bottom[k] = 1;
+    tobi_status status = draw_scene(&white, name, &f, err);
+    for (int k = 0; k < 3; k++) f.background_top[k] = f.background_bottom[k] = 0;
+    if (status == TOBI_OK) status = draw_scene(s, name, &f, err);
+    const size_t n = (size_t)f.width*(size_t)f.height;
+    s->f = frame;
+    if (status == TOBI_OK && !(s->c.alpha = malloc(n*sizeof *s->c.alpha))) status = no_memory(frame, err);
+    for (size_t k = 0; status == TOBI_OK && k < n; k++) {
+        vec *color = &s->c.color[k];
+        const vec through = vec_sub(white.c.color[k], *color);
+        const float alpha = clampf(1 - (through.x + through.y + through.z)/3, 0, 1);
+        s->c.alpha[k] = alpha;
+        *color = vec_scale(alpha > 0 ? 1/alpha : 0, *color);
+    }
+    free_scene(&white);
+    return status;
+}
+
 tobi_status tobi_picture_write(const char *path, const tobi_picture *frame, tobi_error *err)
 {
     TOBI_NEED(path, "the path");
     TOBI_NEED(frame, "the picture");
-    scene s;
-    tobi_status status = draw_scene(&s, path, frame, err);
+    scene s = { 0 };
+    tobi_status status = frame->transparent ? draw_transparent(&s, path, frame, err)
+        : draw_scene(&s, path, frame, err);
     if (status == TOBI_OK) status = view_write_png(path, &s.c, err);
     end_stage(&s, STAGE_PNG);
     free_scene(&s);
@@ -321,7 +374,7 @@ tobi_status tobi_picture_draw(const tobi_picture *frame, uint8_t *rgb, tobi_erro
     TOBI_NEED(rgb, "the place for its pixels");
     scene s;
     tobi_status status = draw_scene(&s, "picture", frame, err);
-    if (status == TOBI_OK) view_encode_colors(&s.c, rgb);
+    if (status == TOBI_OK) view_encode_colors(&s.c, 3, rgb);
     free_scene(&s);
     return status;
 }

@@ -26,7 +26,7 @@ static void leave(png_structp png, png_const_charp text)
 
 /* libpng leaves by longjmp, so nothing here may live in a register across it. Of one filter and runs
    alone: about as small as at libpng's own choice, and twice as quick. */
-static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
+static bool encode(tobi_file *file, int width, int height, int channels, unsigned char *bytes)
 {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, leave, stay_silent);
     png_infop info = png ? png_create_info_struct(png) : NULL;
@@ -35,14 +35,15 @@ static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
         return false;
     }
     png_set_write_fn(png, file, put_bytes, put_nothing);
-    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
+    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8,
+                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(png, 1);
     png_set_compression_strategy(png, Z_RLE);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_write_info(png, info);
-    for (int y = 0; y < height; y++) png_write_row(png, bytes + (size_t)y*(size_t)width*3);
+    for (int y = 0; y < height; y++) png_write_row(png, bytes + (size_t)y*(size_t)width*(size_t)channels);
     png_write_end(png, NULL);
     png_destroy_write_struct(&png, &info);
     return true;
@@ -51,6 +52,7 @@ static bool encode(tobi_file *file, int width, int height, unsigned char *bytes)
 typedef struct encoding {
     const canvas *c;
     unsigned char *bytes;
+    int channels;
     unsigned char curve[CURVE];      /* of linear light the sRGB value */
 } encoding;
 
@@ -64,16 +66,18 @@ static void encode_rows(const void *view, int64_t begin, int64_t end)
     const encoding *e = view;
     for (int64_t k = begin*e->c->width; k < end*e->c->width; k++) {
         const vec color = e->c->color[k];
-        e->bytes[3*k] = encode_channel(e, color.x);
-        e->bytes[3*k + 1] = encode_channel(e, color.y);
-        e->bytes[3*k + 2] = encode_channel(e, color.z);
+        unsigned char *to = e->bytes + e->channels*k;
+        to[0] = encode_channel(e, color.x);
+        to[1] = encode_channel(e, color.y);
+        to[2] = encode_channel(e, color.z);
+        if (e->channels == 4) to[3] = (unsigned char)(255*e->c->alpha[k] + 0.5f);
     }
 }
 
 /* Dither-free sRGB; 4096 steps of the curve are finer than 8 bits except in the darkest tones. */
-void view_encode_colors(const canvas *c, unsigned char *bytes)
+void view_encode_colors(const canvas *c, int channels, unsigned char *bytes)
 {
-    encoding e = { c, bytes, { 0 } };
+    encoding e = { c, bytes, channels, { 0 } };
     for (int k = 0; k < CURVE; k++) {
         float l = (float)k/(CURVE - 1), s = l <= 0.0031308f ? 12.92f*l : 1.055f*powf(l, 1/2.4f) - 0.055f;
         e.curve[k] = (unsigned char)(255*s + 0.5f);
@@ -83,13 +87,14 @@ void view_encode_colors(const canvas *c, unsigned char *bytes)
 
 tobi_status view_write_png(const char *path, const canvas *c, tobi_error *err)
 {
-    unsigned char *bytes = malloc((size_t)c->width*(size_t)c->height*3);
+    const int channels = c->alpha ? 4 : 3;
+    unsigned char *bytes = malloc((size_t)c->width*(size_t)c->height*(size_t)channels);
     if (!bytes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory to write %s", path);
-    view_encode_colors(c, bytes);
+    view_encode_colors(c, channels, bytes);
     tobi_file file;
     tobi_status status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
-        if (encode(&file, c->width, c->height, bytes)) {
+        if (encode(&file, c->width, c->height, channels, bytes)) {
             status = tobi_file_commit(&file, err);
         } else {
             tobi_file_abandon(&file);

@@ -51,14 +51,14 @@ int view_letter_advance(char letter)
     return widest + 2;
 }
 
-static float text_width(const char *text, float unit)
+float view_text_width(const char *text, float unit)
 {
     float width = 0;
     for (; *text; text++) width += (float)view_letter_advance(*text);
     return width > 0 ? (width - 2)*unit : 0;
 }
 
-static void draw_stroke(canvas *i, const float a[2], const float b[2], float pen, vec color)
+void view_draw_stroke(canvas *i, const float a[2], const float b[2], float pen, vec color)
 {
     float reach = 0.5f*pen + 1, d[2] = { b[0] - a[0], b[1] - a[1] }, square = d[0]*d[0] + d[1]*d[1];
     int x0 = (int)fmaxf(fminf(a[0], b[0]) - reach, 0);
@@ -77,7 +77,7 @@ static void draw_stroke(canvas *i, const float a[2], const float b[2], float pen
 }
 
 /* x, y: left end of the baseline; unit: pixels of a grid step. */
-static void draw_text(canvas *i, float x, float y, float unit, const char *text, vec color)
+void view_draw_text(canvas *i, float x, float y, float unit, const char *text, vec color)
 {
     for (; *text; text++) {
         const char *s = view_letter_strokes(*text);
@@ -89,7 +89,7 @@ static void draw_text(canvas *i, float x, float y, float unit, const char *text,
                 continue;
             }
             float at[2] = { x + (float)(s[0] - '0')*unit, y - (float)(s[1] - '0' - 2)*unit };
-            if (points++ > 0) draw_stroke(i, last, at, 0.85f*unit, color);
+            if (points++ > 0) view_draw_stroke(i, last, at, 0.85f*unit, color);
             memcpy(last, at, sizeof last);
         }
         x += (float)view_letter_advance(*text)*unit;
@@ -98,18 +98,18 @@ static void draw_text(canvas *i, float x, float y, float unit, const char *text,
 
 static const vec ink = { 0.02f, 0.03f, 0.05f };
 
-static float letter_unit(const canvas *i)
+float view_letter_unit(const canvas *i)
 {
     return fmaxf(fminf((float)i->height, (float)i->width)/300, 1);
 }
 
 void view_draw_title(canvas *i, const char *text)
 {
-    float unit = 1.15f*letter_unit(i);
-    draw_text(i, 9*unit, 14*unit, unit, text, ink);
+    float unit = 1.15f*view_letter_unit(i);
+    view_draw_text(i, 9*unit, 14*unit, unit, text, ink);
 }
 
-static double tick_step(double range)
+double view_tick_step(double range)
 {
     double step = pow(10, floor(log10(range))), n = range/step;
     return n < 2 ? step/2 : n > 5 ? 2*step : step;
@@ -118,7 +118,7 @@ static double tick_step(double range)
 /* On the right: colours from low to high, ticks at round values. */
 void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double high)
 {
-    float unit = 0.9f*letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
+    float unit = 0.9f*view_letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
     float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
     for (int row = 0; row < (int)height; row++)
         for (int column = 0; column < (int)width; column++) {
@@ -127,15 +127,15 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
             vec color = edge ? ink : view_color_of(f, (float)row/(height - 1));
             i->color[(size_t)py*(size_t)i->width + (size_t)px] = color;
         }
-    double step = tick_step(high - low);
+    double step = view_tick_step(high - low);
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         char text[32];
         snprintf(text, sizeof text, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
         float y = bottom - (float)((v - low)/(high - low))*height;
-        draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
-        draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);
+        view_draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
+        view_draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);
     }
-    float right = (float)i->width - 6*unit, wide = text_width(f->label, unit);
+    float right = (float)i->width - 6*unit, wide = view_text_width(f->label, unit);
     float left = fminf(x - 2*unit, right - wide);
-    draw_text(i, left, bottom - height - 7*unit, unit, f->label, ink);
+    view_draw_text(i, left, bottom - height - 7*unit, unit, f->label, ink);
 }
