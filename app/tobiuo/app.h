@@ -174,6 +174,7 @@ typedef struct progress {
     double last;                     /* s of wall clock of the last line                       */
     double in_steps;                 /* s that the world had spent in steps then               */
     double particle_steps;           /* since the last line                                    */
+    const tobi_run *run;             /* whose pictures count, or NULL                          */
 } progress;
 void progress_begin(progress *p, const tobi_world *world, int quiet);
 void progress_step(progress *p, const tobi_world *world, const tobi_step_info *info, double end);

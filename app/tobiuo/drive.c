@@ -83,6 +83,7 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     tobi_world_set_stop(world, is_caught, NULL);
     watch_begin(&w, world);
     progress_begin(&p, world, o->quiet);
+    p.run = run;
     tobi_status status = step_to_end(world, run, o, &p, &w, &err);
     progress_end(&p);
     int code = status == TOBI_OK ? end_run(world, run, o, &w, p.begun)

@@ -68,7 +68,7 @@ static void rewrite_line(const progress *p, double share, const char *line)
 
 static void print_line(progress *p, const tobi_world *world, const tobi_step_info *info, double end)
 {
-    char line[512], left[96], solver[80] = "", writing[32] = "";
+    char line[512], left[96], solver[80] = "", writing[32] = "", pictures[48] = "";
     const double now = wall_clock(), steps = sum_stages(world), spent = steps - p->in_steps;
     const double done = info->time - p->start_time, span = end - p->start_time;
     const double outside = 1 - spent/(now - p->last);
@@ -77,10 +77,13 @@ static void print_line(progress *p, const tobi_world *world, const tobi_step_inf
     if (info->density_iterations + info->divergence_iterations > 0)    /* the method has a solver */
         snprintf(solver, sizeof solver, "  iterations %d+%d%s", info->density_iterations,
                  info->divergence_iterations, converged ? "" : " (not converged)");
+    double drawing = 0;
+    const int64_t drawn = p->run ? tobi_run_pictures(p->run, &drawing) : 0;
+    if (drawn > 0) snprintf(pictures, sizeof pictures, ", %.3g pictures/s beside", (double)drawn/drawing);
     if (outside > 0.1) snprintf(writing, sizeof writing, ", output %.0f %%", 100*outside);
-    snprintf(line, sizeof line, "t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s",
+    snprintf(line, sizeof line, "t %.5f/%g s  %s  step %lld  dt %.3g s%s  %.2f M particle-steps/s%s%s",
              info->time, end, left, (long long)info->step, info->dt, solver,
-             spent > 0 ? p->particle_steps/spent*1e-6 : 0, writing);
+             spent > 0 ? p->particle_steps/spent*1e-6 : 0, writing, pictures);
     if (p->columns) rewrite_line(p, span > 0 ? done/span : 1, line);
     else fprintf(stderr, "%s\n", line);
     fflush(stderr);

@@ -67,6 +67,8 @@ TOBI_API tobi_status tobi_run_resume(tobi_world *world, const tobi_output_def *o
 /* What tobi_run_resume found worth telling ("resumed at ..."), "" if nothing. Owned by the run. */
 TOBI_API const char *tobi_run_note(const tobi_run *run);
 
+/* Pictures written so far, by the thread that writes, and the wall-clock seconds that it spent on them. */
+TOBI_API int64_t tobi_run_pictures(const tobi_run *run, double *seconds);
 /* What somebody has deleted of the results, "" if nothing is known: after tobi_run_resume what was
    missing then, after tobi_run_finish what is missing at the end. A run goes on without it: folders,
    tables and resolved.json are made again, lists leave out what is not there. Owned by the run. */

@@ -369,6 +369,19 @@ static void check_names(const tobi_scene *scene, tobi_source *source, const tobi
     free(copy);
 }
 
+static void check_picture(const tobi_scene *scene, tobi_source *source, const tobi_place *output)
+{
+    tobi_place picture = { output, "picture", 0 }, follow = { &picture, "follow", 0 };
+    tobi_place field = { &picture, "field", 0 };
+    if (scene->output.picture_field) check_names(scene, source, &field, scene->output.picture_field);
+    if (!scene->output.picture_follow) return;
+    for (int b = 0; b < scene->body_count; b++) {
+        const char *name = scene->bodies[b].def.name;
+        if (name && strcmp(name, scene->output.picture_follow) == 0) return;
+    }
+    tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", scene->output.picture_follow);
+}
+
 static void check_output(const tobi_scene *scene, tobi_source *source)
 {
     enum { MOST_OUTPUTS = 1000000 };
@@ -392,6 +405,7 @@ static void check_output(const tobi_scene *scene, tobi_source *source)
     if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
         memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
+    check_picture(scene, source, &output);
     check_names(scene, source, &fields, scene->output.fields);
     check_names(scene, source, &of_surface, scene->output.surface_fields);
 }

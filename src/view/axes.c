@@ -23,15 +23,17 @@ static edge make_edge(const canvas *c, const tobi_picture *f, int axis, int whic
     return e;
 }
 
-/* The lowest edge of those along an axis; of upright ones the leftmost. */
+/* The lowest edge of those along an axis; of the axis against gravity the leftmost. */
 static edge choose_edge(const canvas *c, const tobi_picture *f, int axis)
 {
     edge best = { .seen = false };
     float most = -INFINITY;
+    int up = f->dimension - 1;
+    for (int k = 0; k < f->dimension; k++)
+        if (fabs(f->up[k]) > fabs(f->up[up])) up = k;
     for (int which = 0; which < (f->dimension == 2 ? 2 : 4); which++) {
         const edge e = make_edge(c, f, axis, which);
-        const bool upright = fabsf(e.b.y - e.a.y) > 1.5f*fabsf(e.b.x - e.a.x);
-        const float rank = upright ? -(e.a.x + e.b.x) : e.a.y + e.b.y;
+        const float rank = axis == up ? -(e.a.x + e.b.x) : e.a.y + e.b.y;
         if (e.seen && rank > most) best = e, most = rank;
     }
     return best;
@@ -57,7 +59,7 @@ static void draw_ticks(canvas *c, const tobi_picture *f, const edge *e, float wa
     }
     snprintf(text, sizeof text, "%c [m]", "xyz"[k]);
     const float wide = view_text_width(text, unit), x = 0.5f*(e->a.x + e->b.x), y = 0.5f*(e->a.y + e->b.y);
-    view_draw_text(c, clampf(x + 26*unit*way[0] - (way[0] < -0.5f ? wide : 0.5f*wide), 2,
+    view_draw_text(c, clampf(x + 34*unit*way[0] - (way[0] < -0.5f ? wide : 0.5f*wide), 2,
                              (float)c->width - wide),
                    clampf(y + 22*unit*way[1] + 3*unit, 8*unit, (float)c->height - 2*unit), unit, text, ink);
 }
@@ -81,14 +83,18 @@ void view_draw_axes(canvas *c, const tobi_picture *f)
 
 enum { ARROW_SIDE = 30 };      /* pixels of a picture of 720 lines: one arrow for each square of it */
 
+/* Dark with a pale rim, to be seen on any colour. */
 static void draw_arrow(canvas *c, float x, float y, float dx, float dy)
 {
-    const vec ink = { 0.01f, 0.01f, 0.02f };
-    const float pen = 0.55f*view_letter_unit(c), to[2] = { x + dx, y + dy };
-    view_draw_stroke(c, (float[2]){ x, y }, to, pen, ink);
-    for (int side = -1; side <= 1; side += 2) {
-        const float hx = -0.30f*dx - 0.18f*(float)side*dy, hy = -0.30f*dy + 0.18f*(float)side*dx;
-        view_draw_stroke(c, to, (float[2]){ to[0] + hx, to[1] + hy }, pen, ink);
+    const vec ink[2] = { { 0.9f, 0.9f, 0.9f }, { 0.01f, 0.01f, 0.02f } };
+    const float to[2] = { x + dx, y + dy };
+    for (int pass = 0; pass < 2; pass++) {
+        const float pen = (pass ? 0.6f : 1.4f)*view_letter_unit(c);
+        view_draw_stroke(c, (float[2]){ x, y }, to, pen, ink[pass]);
+        for (int side = -1; side <= 1; side += 2) {
+            const float hx = -0.30f*dx - 0.18f*(float)side*dy, hy = -0.30f*dy + 0.18f*(float)side*dx;
+            view_draw_stroke(c, to, (float[2]){ to[0] + hx, to[1] + hy }, pen, ink[pass]);
+        }
     }
 }
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* locked: a vertex where the free surface meets a wall. */
+enum { WATERLINE = 8 };
 enum { ROUNDS = 4, APRON = BLOCK_EDGE + 1, BLOCKS_AT_MOST = 1 << 22 };
 
 static const float reach_in_spacings = 2;
@@ -256,33 +258,45 @@ static void count_crossings(const void *view, int64_t begin, int64_t end)
     }
 }
 
-/* The vertex of a cell: the mean of where the surface cuts its edges; in a wall that runs through the
-   cell. */
+/* Where the surface cuts an edge of a cell, from the cell's first node; false: it does not. */
+static bool find_crossing(const grid *s, const apron *a, const int at[3], int e, float out[3])
+{
+    const int axis = e/4, u = e & 1, w = e >> 1 & 1;
+    const int from[3] = { axis == 0 ? 0 : u, axis == 1 ? 0 : axis == 0 ? u : w, axis == 2 ? 0 : w };
+    const float p = a->node[at[2] + from[2]][at[1] + from[1]][at[0] + from[0]];
+    const float q = a->node[at[2] + from[2] + (axis == 2)][at[1] + from[1] + (axis == 1)]
+        [at[0] + from[0] + (axis == 0)];
+    if ((p >= s->level) == (q >= s->level)) return false;
+    const float t = (s->level - p)/(q - p);
+    for (int k = 0; k < 3; k++) out[k] = (float)from[k] + (k == axis ? t : 0);
+    return true;
+}
+
+/* The vertex of a cell: the mean of where the surface cuts its edges. Where a wall runs through the cell
+   the vertex lies in it; where the free surface meets the wall, edges across the wall do not count. */
 static void place_vertex(const grid *s, const apron *a, const int at[3], const int32_t block[3], int64_t v)
 {
-    float sum[3] = { 0, 0, 0 };
-    int count = 0;
+    float sum[2][3] = { { 0, 0, 0 }, { 0, 0, 0 } }, crossing[3], wall[3] = { 0, 0, 0 };
+    int count[2] = { 0, 0 };
+    uint8_t locked = 0;
+    for (int k = 0; k < 3; k++)
+        for (int side = 0; side < 2; side++) {
+            const float cell = (float)(BLOCK_EDGE*block[k] + at[k]);
+            if (!(s->wall[k][side] > cell && s->wall[k][side] < cell + 1)) continue;
+            wall[k] = s->wall[k][side];
+            locked |= (uint8_t)(1 << k);
+        }
     for (int e = 0; e < 12; e++) {
-        const int axis = e/4, u = e & 1, w = e >> 1 & 1;
-        const int from[3] = { axis == 0 ? 0 : u, axis == 1 ? 0 : axis == 0 ? u : w, axis == 2 ? 0 : w };
-        const float p = a->node[at[2] + from[2]][at[1] + from[1]][at[0] + from[0]];
-        const float q = a->node[at[2] + from[2] + (axis == 2)][at[1] + from[1] + (axis == 1)]
-            [at[0] + from[0] + (axis == 0)];
-        if ((p >= s->level) == (q >= s->level)) continue;
-        const float t = (s->level - p)/(q - p);
-        for (int k = 0; k < 3; k++) sum[k] += (float)from[k] + (k == axis ? t : 0);
-        count++;
+        if (!find_crossing(s, a, at, e, crossing)) continue;
+        const int across = locked >> e/4 & 1;
+        for (int k = 0; k < 3; k++) sum[across][k] += crossing[k];
+        count[across]++;
     }
-    s->locked[v] = 0;
-    for (int k = 0; k < 3; k++) {
-        const float cell = (float)(BLOCK_EDGE*block[k] + at[k]);
-        s->point[v][k] = cell + sum[k]/(float)count;
-        for (int side = 0; side < 2; side++)
-            if (s->wall[k][side] > cell && s->wall[k][side] < cell + 1) {
-                s->point[v][k] = s->wall[k][side];
-                s->locked[v] |= (uint8_t)(1 << k);
-            }
-    }
+    const int used = count[0] > 0 ? 0 : 1;
+    for (int k = 0; k < 3; k++)
+        s->point[v][k] = locked >> k & 1 ? wall[k]
+            : (float)(BLOCK_EDGE*block[k] + at[k]) + sum[used][k]/(float)count[used];
+    s->locked[v] = locked && used == 0 ? locked | WATERLINE : locked;
 }
 
 static void place_vertices(const void *view, int64_t begin, int64_t end)
@@ -343,7 +357,7 @@ static void make_quads(const void *view, int64_t begin, int64_t end)
 }
 
 /* Moves each vertex by a share of the way to the mean of its neighbours; with shares of both signs the volume
-   stays. */
+   stays. Those in a wall have neighbours there, those of a waterline along it. */
 static void smooth(grid *s, float share)
 {
     const int64_t vertices = s->vertex[s->blocks], quads = s->quad[s->blocks];
@@ -353,11 +367,13 @@ static void smooth(grid *s, float share)
     for (int64_t q = 0; q < quads; q++)
         for (int k = 0; k < 4; k++) {
             const int32_t a = s->corner[q][k], b = s->corner[q][(k + 1) & 3];
+            const bool to_a = (s->locked[b] & s->locked[a]) == s->locked[a];
+            const bool to_b = (s->locked[a] & s->locked[b]) == s->locked[b];
             for (int m = 0; m < 3; m++) {
-                s->moved[a][m] += s->point[b][m];
-                s->moved[b][m] += s->point[a][m];
+                s->moved[a][m] += to_a ? s->point[b][m] : 0;
+                s->moved[b][m] += to_b ? s->point[a][m] : 0;
             }
-            weight[a]++, weight[b]++;
+            weight[a] += to_a, weight[b] += to_b;
         }
     for (int64_t v = 0; v < vertices; v++)
         for (int m = 0; m < 3 && weight[v] > 0; m++)

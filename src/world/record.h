@@ -72,6 +72,9 @@ struct tobi_run {
     bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
+    tobi_record_field picture_field;      /* that colours pictures; name NULL = none */
+    int follow;                           /* body of the camera, or -1               */
+    int64_t pictures, picture_ns;         /* written; wall clock: atomic             */
     tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
     int surface_fields;
     char (*body_file)[80];                /* names of the bodies' surface files      */
@@ -148,8 +151,10 @@ tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snaps
 void tobi_tractions_free(tobi_snapshot *snapshot);
 
 /* record_frame.c: the picture of an output, which has its particles and surfaces already. */
+/* Finds what output.picture names. */
+tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_drawing_free(struct tobi_drawing *drawing);
 
 /* record_surface.c: the surface of fluids and solids of an output, which has its particles already. */

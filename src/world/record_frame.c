@@ -17,7 +17,8 @@ enum { COLOR_COUNT = sizeof body_colors / sizeof *body_colors };
 
 typedef struct tobi_drawing {
     tobi_picture frame;                  /* of what follows                               */
-    char title[64];
+    char title[64], label[96];
+    double (*velocities)[3];           /* n, or NULL: no arrows                         */
     double *positions;                 /* n x 3                                         */
     float *values;                     /* n, speeds; with a palette the colour's number */
     int64_t count;                     /* particles that are shown                      */
@@ -35,6 +36,7 @@ void tobi_drawing_free(tobi_drawing *d)
 {
     if (!d) return;
     free(d->positions);
+    free(d->velocities);
     free(d->values);
     free(d->palette);
     free(d->tint);
@@ -44,22 +46,58 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d);
 }
 
+tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err)
+{
+    const tobi_output_def *o = &run->output;
+    const tobi_simulation *sim = &run->world->sim;
+    run->follow = -1;
+    run->picture_field.name = NULL;
+    if (o->picture_field)
+        TOBI_TRY(tobi_record_find_field(run, "output.picture.field", o->picture_field,
+                                        strlen(o->picture_field),
+                                        &run->picture_field, err));
+    if (!o->picture_follow) return TOBI_OK;
+    for (int b = 0; b < sim->body_count; b++)
+        if (strcmp(sim->bodies[b].name, o->picture_follow) == 0) run->follow = b;
+    return run->follow >= 0 ? TOBI_OK
+        : tobi_fail(err, TOBI_INVALID, "output.picture.follow: there is no body '%s'", o->picture_follow);
+}
+
+/* The value of each particle: the length of a vector. */
+static tobi_status read_values(tobi_run *run, const char *name, int components, tobi_drawing *d,
+                               int64_t count,
+                               tobi_error *err)
+{
+    const size_t n = (size_t)count*(size_t)components;
+    double *field = malloc(n*sizeof *field + 1);
+    tobi_status status = field ? tobi_world_read(run->world, TOBI_FLUID, name, field, count, err)
+        : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    for (int64_t i = 0; status == TOBI_OK && i < count; i++) {
+        double square = 0;
+        for (int k = 0; k < components; k++) square += field[i*components + k]*field[i*components + k];
+        d->values[i] = (float)(components > 1 ? sqrt(square) : field[i]);
+    }
+    free(field);
+    return status;
+}
+
 /* The positions are copied, because those of hidden materials are left out. */
 static tobi_status read_fluid(tobi_run *run, const tobi_point_set *fluid, tobi_drawing *d, tobi_error *err)
 {
     const size_t n = (size_t)fluid->count;
-    double (*v)[3] = malloc(n * sizeof *v + 1);
+    const tobi_record_field *field = &run->picture_field;
     d->positions = malloc(n * 3 * sizeof *d->positions + 1);
     d->values = malloc(n * sizeof *d->values + 1);
-    tobi_status status = v && d->positions && d->values
-        ? tobi_world_read(run->world, TOBI_FLUID, "velocity", &v[0][0], fluid->count, err)
-        : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
-    if (status == TOBI_OK) memcpy(d->positions, fluid->position, n * 3 * sizeof *d->positions);
-    for (size_t i = 0; status == TOBI_OK && i < n; i++)
-        d->values[i] = (float)sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    if (run->output.picture_arrows) d->velocities = malloc(n * sizeof *d->velocities + 1);
+    if (!d->positions || !d->values || (run->output.picture_arrows && !d->velocities))
+        return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     d->count = fluid->count;
-    free(v);
-    return status;
+    memcpy(d->positions, fluid->position, n * 3 * sizeof *d->positions);
+    if (d->velocities)
+        TOBI_TRY(tobi_world_read(run->world, TOBI_FLUID, "velocity", &d->velocities[0][0], fluid->count,
+                                 err));
+    return read_values(run, field->name ? field->name : "velocity", field->name ? field->components : 3, d,
+                       fluid->count, err);
 }
 
 /* A fluid or solid as pictures see it. */
@@ -191,6 +229,7 @@ static void color_system(const tobi_world *w, const tobi_system *s, int64_t *fro
         const material look = material_at(w, m);
         if (!look.visible) continue;
         memmove(d->positions + 3 * to, d->positions + 3 * i, 3 * sizeof *d->positions);
+        if (d->velocities) memmove(d->velocities[to], d->velocities[i], sizeof d->velocities[to]);
         if (d->opaque) d->opaque[to] = !look.liquid;
         if (d->group) d->group[to] = piece >= 0 ? 1 + piece : -m;
         /* In 3-D the pieces have surfaces of their own. */
@@ -208,6 +247,7 @@ static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *e
     const int materials = tobi_world_first_material(w, w->system + w->system_count);
     int hidden = 0, solids = 0;
     TOBI_TRY(make_palette(w, materials, d, err));
+    if (run->picture_field.name || run->output.picture_look) d->has_palette = 0;
     TOBI_TRY(choose_tints(run, d, err));
     for (int m = 0; m < materials; m++) {
         const material look = material_at(w, m);
@@ -252,7 +292,71 @@ static double color_speed(const tobi_world_def *def)
     return 0.5 * sqrt(2.0 * work);
 }
 
-static void set_frame(const tobi_run *run, tobi_drawing *d)
+/* Range and label of the colours of a field, or of the speed. */
+static void set_range(const tobi_run *run, tobi_drawing *d)
+{
+    const char *name = run->picture_field.name ? run->picture_field.name : "speed", *known, *unit = "m/s";
+    double low = run->output.picture_min, high = run->output.picture_max;
+    int components;
+    if (!(low < high)) {
+        low = INFINITY, high = -INFINITY;
+        for (int64_t i = 0; i < d->count; i++) {
+            if (!isfinite(d->values[i])) continue;
+            low = fmin(low, d->values[i]);
+            high = fmax(high, d->values[i]);
+        }
+        if (!(low <= high)) low = high = 0;
+        if (low == high) high = low + fmax(1e-6*fabs(low), 1e-6);
+    }
+    d->frame.value_min = low;
+    d->frame.value_max = high;
+    for (int k = 0; run->picture_field.name && (known = tobi_world_field_name(k, &components, &unit)); k++)
+        if (strcmp(known, name) == 0) break;
+    const int bare = !unit || strcmp(unit, "1") == 0;
+    snprintf(d->label, sizeof d->label, bare ? "%s" : "%s [%s]", name, unit);
+    d->frame.label = d->label;
+}
+
+/* The camera moves as the mean of the body's vertices has done since its rest pose. */
+static void follow_body(const tobi_run *run, const tobi_snapshot *snapshot, tobi_picture *frame)
+{
+    const tobi_mesh *mesh = &run->world->sim.bodies[run->follow].mesh;
+    const double (*now)[3] = (const double (*)[3])snapshot->surface[run->follow];
+    for (int k = 0; k < 3; k++) {
+        double way = 0;
+        for (int64_t i = 0; i < mesh->vertex_count; i++) way += now[i][k] - mesh->vertices[i][k];
+        way /= (double)(mesh->vertex_count > 0 ? mesh->vertex_count : 1);
+        frame->eye[k] += way;
+        frame->target[k] += way;
+    }
+}
+
+/* What output.picture says; colours of a field. */
+static void set_picture(const tobi_run *run, const tobi_snapshot *snapshot, tobi_drawing *d)
+{
+    const tobi_output_def *o = &run->output;
+    tobi_picture *frame = &d->frame;
+    frame->width = o->picture_width;
+    frame->height = o->picture_height;
+    frame->samples = o->picture_samples;
+    frame->look = o->picture_look;
+    frame->axes = o->picture_axes;
+    frame->transparent = o->picture_transparent;
+    frame->velocities = (const double (*)[3])d->velocities;
+    frame->slice = o->picture_slice;
+    memcpy(frame->clip_point, o->picture_clip_point, sizeof frame->clip_point);
+    memcpy(frame->clip_normal, o->picture_clip_normal, sizeof frame->clip_normal);
+    for (int k = 0; k < 3; k++) frame->clip |= o->picture_clip_normal[k] != 0;
+    if (run->follow >= 0 && frame->has_camera) follow_body(run, snapshot, frame);
+    if (run->picture_field.name || frame->look != TOBI_LOOK_NATURAL) {
+        frame->palette = tobi_color_map(tobi_color_map_name(o->picture_map), &frame->palette_count);
+        frame->values = d->values;
+        if (frame->look == TOBI_LOOK_NATURAL) frame->look = TOBI_LOOK_SURFACE;
+        set_range(run, d);
+    }
+}
+
+static void set_frame(const tobi_run *run, const tobi_snapshot *snapshot, tobi_drawing *d)
 {
     const tobi_world_def *def = &run->world->sim.def;
     tobi_picture *frame = &d->frame;
@@ -287,6 +391,7 @@ static void set_frame(const tobi_run *run, tobi_drawing *d)
     const int natural = def->dimension == 3 && !d->has_palette && !d->opaque;
     if (natural) frame->values = NULL;
     frame->label = d->has_palette || natural ? NULL : "speed [m/s]";
+    set_picture(run, snapshot, d);
 }
 
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
@@ -296,15 +401,26 @@ tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error
     TOBI_TRY(read_fluid(run, &snapshot->set[TOBI_SET_FLUID], d, err));
     TOBI_TRY(color_materials(run, d, err));
     TOBI_TRY(list_meshes(run, snapshot, d, err));
-    set_frame(run, d);
+    set_frame(run, snapshot, d);
     return TOBI_OK;
 }
 
-tobi_status tobi_drawing_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
 {
+    const double begun = tobi_record_clock();
     char *path = tobi_record_path(run->dir, "frames/frame_%06lld.png", (long long)snapshot->number);
     tobi_status status = path ? tobi_picture_write(path, &snapshot->drawing->frame, err)
                               : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     free(path);
+    if (status == TOBI_OK) {
+        __atomic_fetch_add(&run->picture_ns, (int64_t)(1e9*(tobi_record_clock() - begun)), __ATOMIC_RELAXED);
+        __atomic_fetch_add(&run->pictures, 1, __ATOMIC_RELAXED);
+    }
     return status;
+}
+
+int64_t tobi_run_pictures(const tobi_run *run, double *seconds)
+{
+    if (seconds) *seconds = 1e-9*(double)__atomic_load_n(&run->picture_ns, __ATOMIC_RELAXED);
+    return __atomic_load_n(&run->pictures, __ATOMIC_RELAXED);
 }

@@ -91,6 +91,7 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
         TOBI_TRY(usual ? add_usual(run, err) : add_field(run, p, length, err));
         p += length;
     }
+    TOBI_TRY(tobi_drawing_prepare(run, err));
     return tobi_record_surface_fields(run, err);
 }
 

@@ -50,6 +50,9 @@ static image take_picture(double length)
     png.format = PNG_FORMAT_RGB;
     image i = { (int)png.width, (int)png.height, malloc(PNG_IMAGE_SIZE(png)) };
     assert_true(i.pixel && png_image_finish_read(&png, NULL, i.pixel, 0, NULL));
+    double seconds;
+    assert_int_equal(tobi_run_pictures(run, &seconds), 1);
+    assert_true(seconds > 0 && seconds < 60 && tobi_run_pictures(run, NULL) == 1);
     tobi_run_free(run);
     tobi_world_destroy(world);
     snprintf(path, sizeof path, "rm -r %s", folder);
@@ -116,8 +119,32 @@ static void pieces_and_faces_have_colours(void **state)
     free(parted.pixel);
 }
 
+static void wrong_names_are_refused(void **state)
+{
+    (void)state;
+    solid_setup s = solid_default(2, 0.05, 3);
+    tobi_output_def output = tobi_default_output_def();
+    tobi_run *run;
+    tobi_error err = { 0 };
+    s.fill.box_min[0] = s.fill.box_min[1] = 1;
+    s.fill.box_max[0] = s.fill.box_max[1] = 2;
+    tobi_world *world = solid_world(&s);
+    output.picture_follow = "nobody";
+    tobi_status status = tobi_run_create(world, &output, "unmade", 1, NULL, &run, &err);
+    assert_int_equal(status, TOBI_INVALID);
+    assert_string_equal(err.text, "output.picture.follow: there is no body 'nobody'");
+    output.picture_follow = NULL;
+    output.picture_field = "colour";
+    status = tobi_run_create(world, &output, "unmade", 1, NULL, &run, &err);
+    assert_int_equal(status, TOBI_INVALID);
+    assert_string_equal(err.text, "output.picture.field: there is no field 'colour' of mlsmpm");
+    assert_int_not_equal(access("unmade", F_OK), 0);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(pieces_and_faces_have_colours) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(pieces_and_faces_have_colours),
+                                        cmocka_unit_test(wrong_names_are_refused) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

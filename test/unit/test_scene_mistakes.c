@@ -384,7 +384,8 @@ static void boxes_colours_and_the_camera(void **state)
                "{ \"name\": \"c\", \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] },\n"
                "\"mesh\": \"no.obj\" } ],\n"
                "\"output\": { \"camera\": { \"position\": [1, 1, 1],\n"
-               "\"look_at\": [1, 1, 1], \"angle\": 30 } }"),
+               "\"look_at\": [1, 1, 1], \"angle\": 30 },\n"
+               "\"picture\": { \"follow\": \"d\", \"field\": \"velocty\" } }"),
           { "s.json:4:14: fluids[0].color[1]: ", "is 300, allowed is 0 to 255 RGB, or \"speed\"" },
           { "s.json:4:19: fluids[0].color[2]: ", "is -1, allowed is 0 to 255" },
           { "s.json:4:35: fluids[0].visible: ", "must be true or false" },
@@ -393,7 +394,9 @@ static void boxes_colours_and_the_camera(void **state)
           { "s.json:10:23: bodies[1].box: ", "must have two corners, min and max" },
           { "s.json:11:1: bodies[2]: ", "it has several" },
           { "s.json:12:9: bodies[2].mesh: ", "cannot find" },
-          { "s.json:14:12: output.camera.look_at: ", "is the camera's own position" });
+          { "s.json:14:12: output.camera.look_at: ", "is the camera's own position" },
+          { "s.json:15:24: output.picture.follow: ", "\"d\" is no body of the scene" },
+          { "s.json:15:38: output.picture.field: ", "there is no field \"velocty\"" });
 }
 
 static void overrides_name_themselves(void **state)

@@ -194,6 +194,85 @@ static void bytes_are_those_of_the_file(void **state)
     REFUSED(tobi_picture_draw(&f, bytes, &err), TOBI_INVALID, "picture: a picture of 8 x 180 pixels");
 }
 
+static int count_colour(const unsigned char *p, int channel)
+{
+    int count = 0;
+    for (int i = 0; i < W*H; i++)
+        count += p[3*i + channel] > p[3*i + (channel + 1)%3] + 40
+            && p[3*i + channel] > p[3*i + (channel + 2)%3] + 40;
+    return count;
+}
+
+/* Values from blue to red along x: the surface and the particles have both; a clip plane leaves the blue
+   half, a slice a part of it. Arrows and axes change the picture. */
+static void fields_have_colours(void **state)
+{
+    (void)state;
+    static const float map[2][3] = { { 0.05f, 0.1f, 0.9f }, { 0.9f, 0.1f, 0.05f } };
+    static double velocity[N][3];
+    tobi_picture f = make_frame();
+    f.mesh_count = 0, f.palette = map, f.palette_count = 2, f.value_max = 0.3;
+    for (f.look = TOBI_LOOK_SURFACE; f.look <= TOBI_LOOK_PARTICLES; f.look++) {
+        f.clip = 0, f.slice = 0;
+        unsigned char *all = draw(&f);
+        f.clip = 1, f.clip_point[0] = 0.45, f.clip_normal[0] = 2;
+        unsigned char *half = draw(&f);
+        f.slice = 0.2;
+        unsigned char *slice = draw(&f);
+        assert_true(count_colour(all, 0) > 300 && count_colour(all, 2) > 300);
+        assert_true(count_colour(half, 0) < 30);
+        assert_in_range(count_colour(half, 2), 300, count_colour(all, 2) + 200);
+        assert_in_range(count_colour(slice, 2) + 10*count_colour(slice, 0), 1, count_colour(half, 2)/2);
+        free(all), free(half), free(slice);
+    }
+    for (int i = 0; i < N; i++) velocity[i][0] = 1;
+    f.look = TOBI_LOOK_PARTICLES, f.clip = 0;
+    unsigned char *plain = draw(&f);
+    f.velocities = (const double (*)[3])velocity;
+    unsigned char *arrows = draw(&f);
+    f.velocities = NULL, f.axes = 1;
+    unsigned char *axes = draw(&f);
+    assert_true(mean_difference(plain, arrows) > 0.5);
+    assert_true(mean_difference(plain, axes) > 0.1);
+    free(plain), free(arrows), free(axes);
+}
+
+static void maps_have_names(void **state)
+{
+    (void)state;
+    int count, maps = 0;
+    for (const char *name; (name = tobi_color_map_name(maps)); maps++) {
+        const float (*map)[3] = tobi_color_map(name, &count);
+        assert_non_null(map);
+        assert_true(count >= 2);
+    }
+    assert_int_equal(maps, 5);
+    assert_null(tobi_color_map("jet", &count));
+    assert_int_equal(count, 0);
+    assert_null(tobi_color_map(NULL, &count));
+    assert_null(tobi_color_map_name(-1));
+}
+
+/* Where nothing is drawn the file has alpha 0, in the middle of the cube 255. */
+static void background_is_transparent(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_picture f = make_frame();
+    f.transparent = 1;
+    assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_OK);
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    assert_true(png_image_begin_read_from_file(&image, path));
+    image.format = PNG_FORMAT_RGBA;
+    unsigned char *p = malloc(PNG_IMAGE_SIZE(image));
+    assert_true(png_image_finish_read(&image, NULL, p, 0, NULL));
+    assert_int_equal(p[4*(3*W + 3) + 3], 0);
+    assert_int_equal(p[4*((H/2 - 18)*W + W/2) + 3], 255);
+    free(p);
+    f.width = 8;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "8 x 180 pixels");
+}
+
 static void place_does_not_matter(void **state)
 {
     (void)state;
@@ -306,6 +385,11 @@ static void wrong_arguments_are_refused(void **state)
     REFUSED(tobi_picture_write(path, NULL, &err), TOBI_INVALID, "the picture is NULL");
     f = make_frame(), f.palette = &red_cube.color, f.palette_count = 0;
     REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "a palette of 0 colours, at least 1");
+    f = make_frame(), f.look = 3;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "there is no look 3");
+    f = make_frame(), f.clip = 1;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID,
+            "the normal of the clip plane has no direction");
     f = make_frame(), f.meshes = NULL;
     REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "1 bodies cannot be drawn");
     m.triangles = NULL, f = make_frame(), f.meshes = &m;
@@ -358,6 +442,8 @@ int main(void)
         cmocka_unit_test(things_are_where_they_belong),
             cmocka_unit_test(threads_and_instructions_do_not_matter),
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file),
+        cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
+        cmocka_unit_test(background_is_transparent),
             cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
