@@ -12,12 +12,13 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
-                         inspect_argp, surface_argp;
+                         inspect_argp, surface_argp, picture_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
 int tobiuo_movie(int argc, char **argv);
 int tobiuo_inspect(int argc, char **argv);
+int tobiuo_picture(int argc, char **argv);
 int tobiuo_surface(int argc, char **argv);
 int tobiuo_report(int argc, char **argv);
 int tobiuo_view(int argc, char **argv);

@@ -19,6 +19,7 @@ static const command commands[] = {
     { "plot", "DIR", "draw the tables of a run as pictures", tobiuo_plot, &plot_argp },
     { "movie", "DIR", "make a movie of the pictures of a run", tobiuo_movie, &movie_argp },
     { "view", "DIR", "look at the results of a run in a window", tobiuo_view, &view_argp },
+    { "picture", "DIR", "draw a picture of an output of a run", tobiuo_picture, &picture_argp },
     { "surface", "DIR", "make the surfaces of a run, for ParaView, Blender and others", tobiuo_surface,
       &surface_argp },
     { "report", "DIR", "write one page about a run: pictures, tables, what to trust", tobiuo_report,

@@ -307,17 +307,17 @@ typedef struct tobi_output_def {
     double      camera_look_at[3];    /* m, what it looks at                                          */
     double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */
     int         picture_look;         /* TOBI_LOOK_* of tobiuo/picture.h                              */
-    const char *picture_field;        /* that gives the colours; NULL = none                          */
     int         picture_map;          /* of colours, see tobi_color_map_name                          */
+    const char *picture_field;        /* that gives the colours; NULL = none                          */
     double      picture_min, picture_max;          /* values at its ends; equal = of each picture     */
     int         picture_width, picture_height;     /* pixels                                          */
     int         picture_samples;      /* per pixel and axis                                           */
-    const char *picture_follow;       /* name of the body that the camera moves with; NULL = none     */
-    double      picture_clip_point[3], picture_clip_normal[3];    /* m, 1; a normal of 0 = no plane   */
-    double      picture_slice;        /* m; 0 = all on one side of the plane                          */
     int         picture_arrows;       /* 1: velocities as arrows                                      */
     int         picture_axes;         /* 1: ticks along edges of the domain                           */
     int         picture_transparent;  /* 1: nothing behind                                            */
+    const char *picture_follow;       /* name of the body that the camera moves with; NULL = none     */
+    double      picture_clip_point[3], picture_clip_normal[3];    /* m, 1; a normal of 0 = no plane   */
+    double      picture_slice;        /* m; 0 = all on one side of the plane                          */
 } tobi_output_def;
 
 /* Measured or published values that a column of a run's tables is compared with. */

@@ -2,39 +2,13 @@
    blocks, surface nets (Gibson 1998) and smoothing that keeps volume (Taubin 1995). At plane walls the
    sum is divided by the share of the kernel inside, and the surface lies in the wall. Particles without
    company become balls. Drawback: sheets thinner than a spacing are torn. */
-#include "view/draw.h"
+#include "view/isosurface.h"
 #include <stdlib.h>
 #include <string.h>
-
-/* locked: a vertex where the free surface meets a wall. */
-enum { WATERLINE = 8 };
-enum { ROUNDS = 4, APRON = BLOCK_EDGE + 1, BLOCKS_AT_MOST = 1 << 22 };
 
 static const float reach_in_spacings = 2;
 static const int64_t many = 200000;      /* particles: from here on cells are larger, by a quarter */
 
-typedef struct grid {
-    const canvas *c;
-    double edge, low[3];                 /* m, of a cell; m, of the first node                   */
-    float  wall[3][2];                   /* cells from the first node, of the domain             */
-    float  reach;                        /* cells                                                */
-    float  level;                        /* of the sum, whose value inside is 1                  */
-    int    size[3];                      /* blocks                                               */
-    int32_t *at;                         /* of each place the block there, or -1                 */
-    int64_t blocks, entries;
-    float  (*place)[3];                  /* of particles, cells; [0] < 0: outside                */
-    int32_t (*block)[3];
-    int64_t *first;                      /* blocks + 1                                           */
-    int32_t *entry, *colored;
-    float  *node, *colors;
-    int64_t colored_count;
-    int64_t *vertex, *quad;              /* of each block the first; blocks + 1                  */
-    int32_t *cell;                       /* of each cell its vertex, or -1                       */
-    float  (*point)[3], (*moved)[3];     /* of vertices, cells                                   */
-    uint8_t *locked;                     /* axes along which a vertex stays                      */
-    int32_t (*corner)[4];                /* of quads                                             */
-    float  per_particle;                 /* the sum at a particle that is alone                  */
-} grid;
 
 static void free_grid(grid *s)
 {
@@ -103,11 +77,6 @@ static void find_blocks(const float place[3], float reach, int out[6])
         out[k] = (int)(place[k] - reach)/BLOCK_EDGE;
         out[k + 3] = (int)(place[k] + reach)/BLOCK_EDGE;
     }
-}
-
-static int32_t *block_at(const grid *s, int x, int y, int z)
-{
-    return &s->at[((int64_t)z*s->size[1] + y)*s->size[0] + x];
 }
 
 #define FOR_BLOCKS(b, x, y, z)                         \
@@ -423,101 +392,6 @@ static bool add_drops(const grid *s, const surface_request *r, geometry *g)
     return true;
 }
 
-/* The mean colour of the particles around a vertex, from the nodes of its cell. */
-static vec color_at(const grid *s, const float point[3], vec otherwise)
-{
-    float sum[4] = { 0, 0, 0, 0 }, t[3];
-    int low[3];
-    for (int k = 0; k < 3; k++) low[k] = (int)point[k], t[k] = point[k] - (float)low[k];
-    for (int n = 0; n < 8; n++) {
-        const int at[3] = { low[0] + (n & 1), low[1] + (n >> 1 & 1), low[2] + (n >> 2) };
-        const int32_t b = *block_at(s, at[0]/BLOCK_EDGE, at[1]/BLOCK_EDGE, at[2]/BLOCK_EDGE);
-        if (b < 0 || s->colored[b] < 0) continue;
-        const int in = (at[2]%BLOCK_EDGE*BLOCK_EDGE + at[1]%BLOCK_EDGE)*BLOCK_EDGE + at[0]%BLOCK_EDGE;
-        const float share = (n & 1 ? t[0] : 1 - t[0])*(n & 2 ? t[1] : 1 - t[1])*(n & 4 ? t[2] : 1 - t[2]);
-        const float *color = s->colors + 4*((int64_t)s->colored[b]*BLOCK_NODES + in);
-        for (int k = 0; k < 4; k++) sum[k] += share*color[k];
-    }
-    return sum[3] > 0 ? (vec){ sum[0]/sum[3], sum[1]/sum[3], sum[2]/sum[3] } : otherwise;
-}
-
-/* The wall that a quad lies in: its axis, or -1. */
-static int find_wall(const grid *s, const int32_t corner[4])
-{
-    for (int k = 0; k < 3; k++) {
-        int in = 0;
-        for (int n = 0; n < 4; n++)
-            in += (s->locked[corner[n]] >> k & 1) && s->point[corner[n]][k] == s->point[corner[0]][k];
-        if (in == 4) return k;
-    }
-    return -1;
-}
-
-/* A vertex again, for faces in a wall: the surface is sharp there. */
-static int32_t copy_to_wall(geometry *g, int32_t (*copy)[3], int64_t first, int32_t corner, int axis,
-                            vec normal)
-{
-    int32_t *to = &copy[corner][axis];
-    if (*to < 0) {
-        *to = (int32_t)g->vertices++;
-        g->place[*to] = g->place[first + corner];
-        g->color[*to] = g->color[first + corner];
-        g->normal[*to] = normal;
-    }
-    return *to;
-}
-
-static void add_vertices(const grid *s, const surface_request *r, geometry *g)
-{
-    const camera *c = &s->c->camera;
-    const vec base = view_point(c, s->low);
-    vec axis[3];
-    for (int k = 0; k < 3; k++)
-        axis[k] = vec_scale((float)s->edge, (vec){ (float)c->right[k], (float)c->up[k],
-                                                   (float)c->forward[k] });
-    for (int64_t v = 0; v < s->vertex[s->blocks]; v++) {
-        const float *p = s->point[v];
-        const int64_t i = g->vertices++;
-        g->place[i] = vec_add(vec_add(base, vec_scale(p[0], axis[0])),
-                              vec_add(vec_scale(p[1], axis[1]), vec_scale(p[2], axis[2])));
-        g->normal[i] = (vec){ 0, 0, 0 };
-        g->color[i] = r->color ? color_at(s, p, r->plain) : r->plain;
-    }
-}
-
-/* From cells to view space, with normals from the faces around. */
-static bool add_faces(const grid *s, const surface_request *r, geometry *g)
-{
-    const int64_t vertices = s->vertex[s->blocks], quads = s->quad[s->blocks], first = g->vertices;
-    int32_t (*copy)[3] = malloc(((size_t)vertices + 1)*sizeof *copy);
-    if (!copy || !view_reserve(g, 4*vertices, 2*quads, 0)) {
-        free(copy);
-        return false;
-    }
-    memset(copy, -1, (size_t)vertices*sizeof *copy);
-    add_vertices(s, r, g);
-    for (int64_t q = 0; q < quads; q++) {
-        const int32_t *corner = s->corner[q];
-        const int wall = find_wall(s, corner);
-        int32_t i[4];
-        for (int k = 0; k < 4; k++) i[k] = (int32_t)(first + corner[k]);
-        const vec *p = g->place, a = vec_sub(p[i[2]], p[i[0]]), b = vec_sub(p[i[3]], p[i[1]]);
-        const vec n = vec_cross(a, b);
-        const int from = vec_dot(a, a) <= vec_dot(b, b) ? 0 : 1;      /* the shorter diagonal parts it */
-        for (int k = 0; k < 4; k++) {
-            if (wall < 0) g->normal[i[k]] = vec_add(g->normal[i[k]], n);
-            else i[k] = copy_to_wall(g, copy, first, corner[k], wall, vec_unit(n));
-        }
-        for (int t = 0; t < 2; t++) {
-            int32_t *face = g->face[g->faces++];
-            face[0] = i[from], face[1] = i[(from + 1 + t) & 3], face[2] = i[(from + 2 + t) & 3];
-        }
-    }
-    free(copy);
-    for (int64_t v = first; v < first + vertices; v++) g->normal[v] = vec_unit(g->normal[v]);
-    return true;
-}
-
 static void add_up(int64_t *count, int64_t n)
 {
     count[0] = 0;
@@ -604,7 +478,7 @@ tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, cons
     *around = enough && any && is_around(&s, c->camera.eye);
     if (enough && r->drop > 0) enough = add_drops(&s, r, drops);
     for (int k = 0; k < 2*ROUNDS && enough && any; k++) smooth(&s, k & 1 ? -0.52f : 0.5f);
-    if (enough && any) enough = add_faces(&s, r, g);
+    if (enough && any) enough = view_add_faces(&s, r, g);
     free(colors);
     free_grid(&s);
     return enough ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture");
