@@ -1,0 +1,40 @@
+#!/bin/bash
+# tobiuo picture and output.picture: pictures of a run, of its fields, the messages.
+# usage: picture.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+. "$here/checks.sh" "$1"
+
+cat > dam.json <<'END'
+{ "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "gravity": [0, 0, -9.81], "spacing": 0.02, "end_time": 0.1,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0, 0], "max": [0.2, 0.2, 0.2]}}]}],
+  "bodies": [{"name": "post", "box": {"min": [0.3, 0.08, 0], "max": [0.34, 0.12, 0.2]}}],
+  "output": {"interval": 0.05, "frames": true, "picture": {"width": 320, "height": 180}} }
+END
+expect 0 "" run dam.json --out dam --quiet
+expect 0 "" picture dam
+check "a picture in its own size" test "$(head -c 24 dam/picture.png | tail -c 8 | od -An -tx1 | tr -d ' ')" = 00000140000000b4
+expect 0 "" picture dam --output 1 --out a.png --set output.picture.field=pressure --set output.picture.axes=true
+expect 0 "" picture dam --output 1 --out b.png --set output.picture.field=pressure --set output.picture.axes=true
+check "the same picture twice" cmp -s a.png b.png
+for change in look=particles map=magma arrows=true slice=0.05 transparent=true max=2000; do
+    expect 0 "" picture dam --output 1 --out b.png --set output.picture.field=pressure --set output.picture.axes=true \
+        --set "output.picture.clip_normal=[1, 0, 0]" --set "output.picture.clip_point=[0.1, 0, 0]" \
+        --set output.picture.$change
+    check "$change changes it" test -s b.png -a "$(cmp -s a.png b.png; echo $?)" = 1
+done
+expect 0 "" run dam.json --out follows --quiet --set output.picture.follow=post --set "output.picture.look=surface" \
+    --set "output.camera={\"position\": [0.2, -0.8, 0.3], \"look_at\": [0.2, 0.1, 0.1], \"angle\": 30}"
+check "a picture at each output" test -s follows/frames/frame_000002.png
+
+expect 1 "there are no results of a run" picture .
+expect 1 "there is no output 9" picture dam --output 9
+expect 1 "the output has no field 'vorticity'; output.fields of the scene writes it" \
+    picture dam --set output.picture.field=vorticity
+expect 1 "there is no field \"pressur\"" picture dam --set output.picture.field=pressur
+expect 1 "\"nobody\" is no body of the scene" run dam.json --out no --set output.picture.follow=nobody
+expect 2 "--output: 'x' is not a number from 0 on" picture dam --output x
+expect 1 "cannot write /no/such/p.png" picture dam --out /no/such/p.png
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
