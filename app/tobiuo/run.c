@@ -20,7 +20,7 @@ static const struct argp_option options[] = {
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR, and write however much", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
-    { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm or .gif", 0 },
+    { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm, .webp or .gif", 0 },
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },

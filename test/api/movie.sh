@@ -14,8 +14,8 @@ END
 # --- without ffmpeg ---------------------------------------------------------------------------------
 expect 2 "which DIR?" movie
 expect 2 "is not a positive number" movie nowhere --slow 0
-expect 2 "its name ends in .mp4, .webm or .gif" movie nowhere --out film.avi
-expect 2 "its name ends in .mp4, .webm or .gif" run drop.json --movie film
+expect 2 "its name ends in .mp4, .webm, .webp or .gif" movie nowhere --out film.avi
+expect 2 "its name ends in .mp4, .webm, .webp or .gif" run drop.json --movie film
 expect 1 "there is no run" movie nowhere
 expect 0 "" run drop.json --out plain --quiet
 expect 1 "plain has no pictures: run the scene with --frames, or with --movie" movie plain
@@ -63,6 +63,8 @@ for kind in webm gif; do
     expect 0 "" movie "100%d run" --out "film.$kind"
     check "film.$kind" is "film.$kind" 11 0.22
 done
+expect 0 "" movie "100%d run" --out film.webp
+check "film.webp has 11 pictures" test "$(grep -aoc WEBP film.webp) $(grep -ao ANMF film.webp | wc -l)" = "1 11"
 expect 0 "" run drop.json --out again --quiet --movie again.mp4
 check "run --movie" is again.mp4 11 0.22
 expect 1 "ffmpeg failed" movie again --out /proc/film.mp4
