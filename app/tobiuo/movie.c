@@ -30,7 +30,8 @@ static const struct argp_option options[] = {
 static const struct kind { const char *ending, *format, *option[11]; } kinds[] = {
     { ".mp4", "mp4", { "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
     { ".webm", "webm", { "-c:v", "libvpx-vp9", "-crf", "30", "-pix_fmt", "yuv420p", "-vf", EVEN, NULL } },
-    { ".webp", "webp", { "-c:v", "libwebp", "-loop", "0", "-q:v", "50", "-vf", "scale='min(560,iw)':-2", NULL } },
+    { ".webp", "webp", { "-c:v", "libwebp", "-loop", "0", "-q:v", "50", "-vf", "scale='min(560,iw)':-2",
+                         NULL } },
     { ".gif", "gif", { "-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse", NULL } },
 };
 enum { KINDS = sizeof kinds/sizeof *kinds };
@@ -48,7 +49,8 @@ static const struct kind *find_kind(const char *path)
 
 const char *movie_objection(const char *path)
 {
-    return find_kind(path) ? NULL : "is no movie that can be made: its name ends in .mp4, .webm, .webp or .gif";
+    return find_kind(path) ? NULL
+                           : "is no movie that can be made: its name ends in .mp4, .webm, .webp or .gif";
 }
 
 static int is_sheet(const char *path)
