@@ -57,6 +57,7 @@ vec *view_color_particles(const tobi_picture *f, double low, double high)
     if (f->palette) c.palette = malloc((size_t)f->palette_count*sizeof *c.palette);
     if (!c.out || (f->palette && !c.palette)) {
         free(c.out);
+        free(c.palette);
         return NULL;
     }
     for (int k = 0; f->palette && k < f->palette_count; k++) c.palette[k] = linear_color(f->palette[k]);

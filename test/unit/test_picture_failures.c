@@ -1,0 +1,87 @@
+/* Pictures when memory ends: the n-th allocation fails, for every n. It is told, nothing is left. */
+#define _GNU_SOURCE 1
+#include "calls.h"
+#include "failing_memory.h"
+#include "tobiuo/picture.h"
+#include <malloc.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { SIDE = 8, N = SIDE*SIDE*SIDE, W = 64, H = 48 };
+
+static double position[N][3], velocity[N][3];
+static float value[N];
+static uint8_t opaque[N];
+static int32_t group[N];
+static unsigned char rgb[3*W*H];
+
+/* Water on the left, two solids on the right, one lone drop. */
+static void fill(void)
+{
+    for (int i = 0; i < N; i++) {
+        position[i][0] = (i%SIDE + 0.5)/SIDE;
+        position[i][1] = (i/SIDE%SIDE + 0.5)/SIDE;
+        position[i][2] = (i/SIDE/SIDE + 0.5)/SIDE*0.5;
+        velocity[i][0] = value[i] = (float)(i%SIDE)/SIDE;
+        opaque[i] = i%SIDE >= SIDE/2;
+        group[i] = i/SIDE%SIDE >= SIDE/2;
+    }
+    position[0][2] = 0.9;
+}
+
+static tobi_status draw(const tobi_picture *p, tobi_error *err) { return tobi_picture_draw(p, rgb, err); }
+
+static void try_all(const tobi_picture *p)
+{
+    tobi_error err = { 0 };
+    assert_int_equal(draw(p, &err), TOBI_OK);
+    const long before = allocations;
+    assert_int_equal(draw(p, &err), TOBI_OK);
+    const long needed = allocations - before;
+    assert_true(needed > 5);
+    for (long n = 1; n <= needed; n++) {
+        size_t in_use = 0;
+        for (int turn = 0; turn < 4; turn++) {      /* the allocator keeps some of what is freed, once */
+            in_use = mallinfo2().uordblks;
+            allocations = 0, fail_at = n;
+            const tobi_status status = draw(p, &err);
+            fail_at = 0;
+            if (status != TOBI_NO_MEMORY) fail_msg("allocation %ld: status %d, %s", n, (int)status, err.text);
+        }
+        const size_t now = mallinfo2().uordblks;
+        if (now > in_use) fail_msg("allocation %ld: %zu bytes are left", n, now - in_use);
+    }
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    if (!ALLOCATIONS_FAIL) skip();
+    static const double corner[4][3] = { { 0.2, 0.2, 0.1 }, { 0.4, 0.2, 0.1 }, { 0.2, 0.4, 0.1 },
+                                         { 0.2, 0.2, 0.8 } };
+    static const int32_t side[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } };
+    const tobi_picture_mesh mesh = { 4, corner, 4, side, { 0.9f, 0.1f, 0.1f } };
+    tobi_picture p = tobi_default_picture();
+    fill();
+    p.width = W, p.height = H, p.threads = 1;
+    for (int k = 0; k < 3; k++) p.box_max[k] = 1;
+    p.particle_count = N, p.positions = position, p.values = value, p.radius = 0.5/SIDE;
+    p.velocities = velocity, p.opaque = opaque, p.group = group, p.axes = 1, p.label = "speed [m/s]";
+    p.palette = tobi_color_map("viridis", &p.palette_count);
+    p.meshes = &mesh, p.mesh_count = 1;
+    try_all(&p);
+    p.look = TOBI_LOOK_PARTICLES;
+    try_all(&p);
+    p.dimension = 2;
+    try_all(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(every_allocation_may_fail) };
+    return cmocka_run_group_tests_name("view/picture failures", tests, NULL, NULL);
+}
