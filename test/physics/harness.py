@@ -4,7 +4,8 @@ A case is a file test/physics/<case>/run.py with a Case. It prints each figure w
 MISS, and the exit code follows them and case.hold(): statements with a tolerance of their own, each
 justified where it stands. Figures for which the smoke size is too coarse are in coarse.csv (case, and
 text with * for numbers that are measured): they are judged at reference size only. There the rows and the
-plot go to docs/validation/<case>.{md,svg} (validation.py). Only the standard library is needed.
+plot go to docs/validation/<case>.{md,svg} (validation.py). A case with `methods` is run by each of these too,
+their rows stand below with the method's name before them. Only the standard library is needed.
 """
 import argparse
 import array
@@ -35,8 +36,8 @@ TYPES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B
 
 
 class Case:
-    def __init__(self, name, title, text):
-        self.name, self.title, self.text = name, title, text
+    def __init__(self, name, title, text, methods=()):
+        self.name, self.title, self.text, self.others = name, title, text, methods
         parser = argparse.ArgumentParser(description=title)
         parser.add_argument("--tobiuo", required=True, help="the program")
         parser.add_argument("--size", choices=["smoke", "reference"], default="smoke")
@@ -49,6 +50,8 @@ class Case:
                                  "one, the cases use the few values that stand in them)")
         parser.add_argument("--resume", action="store_true",
                             help="with --out: finished runs there are taken, interrupted ones go on; removed at the end")
+        parser.add_argument("--method", help="computes the fluids by this method; no page")
+        parser.add_argument("--rows", metavar="FILE", help="writes the figures as JSON")
         self.args = parser.parse_args()
         if self.args.reference and not os.path.isdir(self.args.reference):
             parser.error(f"--reference: there is no folder {self.args.reference}")
@@ -66,6 +69,7 @@ class Case:
         self.rows, self.broken, self.commands, self.plots = [], 0, [], []
         self.referred = self.writes_scenes = False
         self.methods, self.earlier = set(), 0      # that ran; s that reused runs took
+        self.costs = []                            # of each run: s, steps, iterations
         self.temporary = None
         if self.args.out:
             self.out = pathlib.Path(self.args.out)
@@ -96,6 +100,8 @@ class Case:
         target = self.out / label
         shown = [os.path.relpath(scene, ROOT) if pathlib.Path(scene).is_relative_to(ROOT) else f"{label}.json"]
         command = [str(o) for o in options]
+        if self.args.method:
+            command = self.by_method(scene, command)
         self.commands.append("tobiuo run " + shlex.join(shown + command))
         code, complaint = self.compute(scene, target, command)
         if code:
@@ -105,7 +111,46 @@ class Case:
             sys.exit(1)
         if not self.smoke:
             self.methods.add(json.loads((target / "resolved.json").read_text())["method"])
+            self.costs.append(read_cost(target))
         return target
+
+    def by_method(self, scene, command):
+        """The options for another method: the support that the case gives dfsph, none of its other keys."""
+        method, kept, support = self.args.method, [], None
+        found = re.search(r'"dfsph": *\{[^}]*"support": *([\d.]+)', pathlib.Path(scene).read_text())
+        for option in command:
+            key, _, value = option.partition("=")
+            if key == "dfsph.support":
+                support = value
+            if key.startswith("dfsph."):
+                kept.pop()                         # its --set
+            else:
+                kept.append(option)
+        support = support or (found[1] if found else None)
+        kept += ["--set", f"{method}.support={support}"] if support else []
+        return kept + ["--set", f"method={method}"]
+
+    def run_others(self):
+        """The same case by the other methods, at reference size; their rows, beside costs, follow."""
+        for method in self.others:
+            rows = self.out / f"{method}.rows.json"
+            words = [sys.executable, *sys.argv, "--out", str(self.out / method), "--method", method, "--rows", str(rows)]
+            code = subprocess.run(words).returncode
+            if code == INTERRUPTED:
+                sys.exit(INTERRUPTED)
+            if not rows.exists():
+                self.rows.append((f"{method}: runs to its end", "0", "1", "**missed**"))
+                continue
+            found = json.loads(rows.read_text())
+            self.rows += [(f"{method}: {row[0]}", *row[1:]) for row in found["rows"]]
+            self.commands += found["commands"]
+            self.methods.update(found["methods"])
+            self.earlier += found["earlier"]
+
+    def state_costs(self):
+        seconds, steps, iterations = (sum(cost[k] for cost in self.costs) for k in range(3))
+        self.state("seconds of all runs", seconds)
+        self.state("iterations per step", iterations/max(steps, 1))
 
     def compute(self, scene, target, command):
         """Exit code and complaint of a run; with --resume only of what an earlier start left undone."""
@@ -213,15 +258,22 @@ class Case:
     def finish(self):
         for pattern in [p for p, count in self.coarse.items() if self.smoke and count == 0]:
             self.hold(f"coarse.csv: there is a figure '{pattern}'", False)
+        if not self.smoke and (self.others or self.args.method):
+            self.state_costs()
+        if self.others and not self.smoke and not self.args.method:
+            self.run_others()
         met, missed = (sum(row[3] == result for row in self.rows) for result in ("met", "**missed**"))
         print(f"{self.name}: {met} of {met + missed} goals met, {self.broken} broken, "
               f"{time.monotonic() - self.begin:.1f} s")
-        if not self.smoke:
+        if self.args.rows:
+            told = {"rows": self.rows, "commands": self.commands, "methods": sorted(self.methods), "earlier": self.earlier}
+            pathlib.Path(self.args.rows).write_text(json.dumps(told))
+        if not self.smoke and not self.args.method:
             self.write_page()
             validation.mark(validation.Tree())
         if self.temporary:
             self.temporary.cleanup()
-        elif self.args.resume:
+        elif self.args.resume and not self.args.rows:
             shutil.rmtree(self.out, ignore_errors=True)
         sys.exit(1 if self.broken or missed else 0)
 
@@ -271,6 +323,12 @@ def read_table(path):
         except ValueError:
             return text
     return {key: [value(row[key]) for row in rows] for key in rows[0]}
+
+
+def read_cost(folder):
+    """Seconds, steps and iterations of a run."""
+    told = json.loads((pathlib.Path(folder) / "summary.json").read_text())
+    return told["step_wall_s"], told["steps"], told["steps"]*(told["density_iterations_mean"] + told["divergence_iterations_mean"])
 
 
 def read_series(folder, name="fluid"):
