@@ -9,8 +9,8 @@
 /* What is missing towards a body is no free surface while the gap is narrow: distance of the particle from
    the body, in spacings, up to which the gate is shut, and from which it is free; the same of what is
    missing elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
-#define ISPH_GAP_SHUT 1.0
-#define ISPH_GAP_FREE 1.5
+#define ISPH_GAP_SHUT 1.75
+#define ISPH_GAP_FREE 2.25
 #define ISPH_GAP_GRADIENT_SHUT 0.15
 #define ISPH_GAP_GRADIENT_FREE 0.25
 #define ISPH_GAP_LOSS_SHUT 0.3
@@ -22,12 +22,16 @@
 #define ISPH_SCALE_MAX 1.3
 /* Determinant below which M has no use. */
 #define ISPH_DETERMINANT_MIN 0.1
-/* Lack of volume that the source takes out at most. */
+/* Lack of volume that the source takes out at most, and in full vessels, where it fills cavities. */
 #define ISPH_STRETCH_MAX 0.05
+#define ISPH_CAVITY_MAX 0.5
 /* Shift: pairs nearer than CORE spacings go apart by PUSH of the overlap each; SHIFT_MAX in spacings. */
 #define ISPH_CORE 0.8f
 #define ISPH_PUSH 0.25f
 #define ISPH_SHIFT_MAX 0.1
+/* The same in full vessels, where only particles that are next to alone in a cavity are a surface. */
+#define ISPH_CAVITY_BEGIN 0.6
+#define ISPH_CAVITY_OPEN 0.8
 /* Of tr M/dim: less are drops, which do not shift; less know no gradient of the velocity; more are the
    bulk. */
 #define ISPH_DROP 0.6
@@ -119,7 +123,7 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
             s2 += m->offset[a]*m->offset[a];
         }
         const double narrow = isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE);
-        gap = isph_larger(gap, m->share*narrow*isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
+        gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
                                                          ISPH_GAP_GRADIENT_FREE));
     }
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
@@ -138,7 +142,8 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     const double loss = 1 - trace/v->dimension;
     tobi_float4 gradient = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
     const double gate = v->open ? (1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN))*
-                                      (1 - isph_gap(v, i, &gradient, loss)) : 0;
+                                      (1 - isph_gap(v, i, &gradient, loss))
+                                : 1 - isph_fade(loss, ISPH_CAVITY_BEGIN, ISPH_CAVITY_OPEN);
     (void)totals;
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
@@ -160,13 +165,13 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 /* Pa/m2: what presses too dense liquid apart, and, in the bulk, pulls too thin liquid together, eq. (8). */
 TOBI_FN double isph_volume_source(const isph_view *v, int64_t i)
 {
-    const int bulk = v->trace[i] > ISPH_BULK*v->dimension || !v->open;
-    const double e = isph_larger(v->concentration[i] - 1.0, bulk ? -ISPH_STRETCH_MAX : 0);
+    const int bulk = !(v->gate[i] > 0);
+    const double e = isph_larger(v->concentration[i] - 1.0, bulk ? v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX : 0);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 
 /* A row of the pressure equation, eq. (6), and its source, eq. (8). The start of the solve is the last
-   pressure. totals[0]: excess. */
+   pressure. totals: excess, source. */
 typedef struct isph_rows_acc {
     lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, difference, divergence;
     float bodies;                    /* of self, by bodies */
@@ -226,6 +231,14 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
     v->solution[i] = v->keep*v->pressure[i];
     totals[0] += excess;
+    totals[1] += v->source[i];
+}
+
+/* A full vessel keeps its volume: its sources add up to nothing, or the rows of a cavity drain the rest. */
+TOBI_FN void isph_balance(const isph_view *v, int64_t i, double *totals)
+{
+    (void)totals;
+    v->source[i] -= v->source_mean;
 }
 
 /* out = A in. Eight sums, one tree. */
@@ -373,8 +386,8 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
         n[a] = lane_sum(s->normal[a]);
     }
     isph_add_divergence(v, i, g, totals);
-    if (v->open && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
-    else if (v->open && full < ISPH_BULK) isph_remove_normal(x, n);
+    if (v->gate[i] > 0 && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
+    else if (v->gate[i] > 0) isph_remove_normal(x, n);
     for (int a = 0; a < 3; a++) {
         x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;
         size += x[a]*x[a];

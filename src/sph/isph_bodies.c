@@ -34,18 +34,27 @@ static void turn(const tobi_body *b, const tobi_boundary_entry *e, const double 
     for (int a = 0; a < 3; a++) out[a] += u[a];
 }
 
+/* The normal of the surface that the kernel sees: it turns steadily where the closest facet changes at once,
+   else forces on round bodies jump with every facet that a particle passes. */
+static void find_normal(const tobi_boundary_link *link, const tobi_boundary_entry *e,
+                        const tobi_smoothing_constants *c, double normal[3])
+{
+    const double size = sqrt(vec3_dot(link->gradient, link->gradient));
+    const int seen = size*c->h > 1e-3, apart = e->distance > 0.05*c->spacing;
+    for (int a = 0; a < 3; a++)
+        normal[a] = seen ? -link->gradient[a]/size : apart ? e->offset[a]/e->distance : e->foot_normal[a];
+}
+
 static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *link,
                                const tobi_boundary_entry *e)
 {
     isph_mirror m = { .body = link->body, .previous = link->previous };
     const tobi_smoothing_constants *c = &s->smoothing;
     const double lambda = behind_plane(c, e->distance);
-    /* beside an edge the plane faces the particle */
-    const int faces = e->distance > 0.05*c->spacing;
     if (e->triangle < 0) return m;
     m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
     memcpy(m.offset, e->offset, sizeof m.offset);
-    for (int a = 0; a < 3; a++) m.normal[a] = faces ? e->offset[a]/e->distance : e->foot_normal[a];
+    find_normal(link, e, c, m.normal);
     const tobi_body *b = &s->sim->bodies[link->body];
     double before[3];
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);

@@ -191,6 +191,8 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     m->system = s;
     m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
+    m->view.source_mean = t[1]/(double)n;
+    if (!m->view.open && t[0] > 0) tobi_launch(m->exec, m->kernel->isph_balance, &m->view, 0, n, NULL);
     const int grid = m->def->preconditioner == TOBI_MULTIGRID && m->sweeps.count == 0;
     if (grid) set_grid(m, s);
     const tobi_linear_system system = { .rows = n, .singular = !(t[0] > 0), .user = m, .apply = apply,

@@ -41,6 +41,7 @@ typedef struct isph_view {
     double volume_gain, shifting;    /* parameters                                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
     double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
+    double source_mean;              /* Pa/m2                                                       */
     /* particle arrays */
     const tobi_double3 *position;
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */

@@ -230,8 +230,8 @@ static double gate_of(int64_t i, const sums *s)
     const double *c = s->gradient_c, d = view.spacing, away = c[0] > 0 ? 0 : c[0],
                  rest = sqrt(away*away + c[1]*c[1] + c[2]*c[2]);
     double gap = clip((0.25 - rest*d)/0.1)*clip((0.4 - loss_of(s))/0.1);
-    gap *= near_body[i] >= 0 ? clip((1.5 - mirror[near_body[i]].offset[0]/d)/0.5) : 0;
-    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap) : 0;
+    gap *= near_body[i] >= 0 ? clip((2.25 - mirror[near_body[i]].offset[0]/d)/0.5) : 0;
+    return view.open ? clip((loss_of(s) - 0.05)/0.1)*(1 - gap) : clip((loss_of(s) - 0.6)/0.2);
 }
 
 static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
@@ -277,18 +277,27 @@ static double excess_of(int64_t i, const sums *s)
     return 2*gate_of(i, s)*1.2*fmax(view.full - s->row, 0.5*loss_of(s)*view.full);
 }
 
+static double source_of(int64_t i, const sums *s)
+{
+    const double e = fmax(s->concentration - 1, gate_of(i, s) > 0 ? 0 : view.open ? -0.05 : -0.5);
+    return s->difference - view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
+}
+
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)
 {
-    const double e = fmax(s->concentration - 1, loss_of(s) < 0.05 || !view.open ? -0.05 : 0);
-    const double source = s->difference - view.density/view.dt*s->divergence +
-                          view.density*0.1*e/(view.dt*view.motion_dt);
-    compare(c, view.source[i], source, view.density/view.dt/view.dt);
+    compare(c, view.source[i], source_of(i, s), view.density/view.dt/view.dt);
     compare(c, view.excess[i], excess_of(i, s), 10*view.full);
     compare(c, view.solution[i], 0.9*view.pressure[i], 1000);
     assert_true(view.inverse_diagonal[i] > 0);
 }
 
 #include "kernel/eisph_oracle.h"
+static const double MEAN = 3e5;      /* Pa/m2, what isph_balance takes out */
+
+static void oracle_isph_balance(check *c, int64_t i, const sums *s)
+{
+    compare(c, view.source[i] + MEAN, source_of(i, s), view.density/view.dt/view.dt);
+}
 
 static void oracle_isph_multiply(check *c, int64_t i, const sums *s)
 {
@@ -317,10 +326,10 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    for (int a = 0; a < 3; a++) x[a] = view.open && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
+    for (int a = 0; a < 3; a++) x[a] = gate_of(i, s) > 0 && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
-        if (view.open && full < 0.95 && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
+        if (gate_of(i, s) > 0 && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
         x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
         size += x[a]*x[a];
     }
@@ -397,7 +406,9 @@ static tobi_kernel kernel_at(const sph_kernels *table, int k)
 /* Before a kernel: what the solver does between them. */
 static void prepare(int k)
 {
-    view.gravity_dt = !strcmp(kernels[k].name, "isph_rows") ? (float)view.dt : 0;
+    view.gravity_dt = !strcmp(kernels[k].name, "isph_rows") || !strcmp(kernels[k].name, "isph_balance")
+                          ? (float)view.dt : 0;
+    view.source_mean = MEAN;
     view.last_link = bodies || !strcmp(kernels[k].name, "isph_add_answer") ? near_body : NULL;
     if (!strcmp(kernels[k].name, "isph_store_pressure"))
         for (int64_t i = 0; i < view.count; i++) view.solution[i] *= 0.9;

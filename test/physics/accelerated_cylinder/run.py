@@ -12,7 +12,8 @@ A cylinder D = 0.2 m in water is brought from rest to 1 m/s in 0.5 s; 2-D, 3 m w
 its depth. Vessel: full, 1.2 m high, support 2.5 d. The force of single steps is read 250 times. Its scatter is what
 it differs from its mean over 0.04 s, root mean square from 0.04 to 0.46 s. Both are given over the largest force
 of the added mass, rho pi R^2 a = 98.7 N per metre. The impulse is compared with rho pi R^2 U = 31.4 N s per metre, that of an
-unbounded liquid (Lamb, Hydrodynamics, 1932, section 68); sides and surface change it by some per cent.""")
+unbounded liquid (Lamb, Hydrodynamics, 1932, section 68); sides and surface change it by some per cent.""",
+            methods=("isph",))
 
 R, U, END, RHO = 0.1, 1.0, 0.5, 1000
 PEAK = RHO*math.pi*R*R*math.pi*U/(2*END)
@@ -47,7 +48,11 @@ for across in case.pick((11,), (10, 20, 40)):
     largest = report(f"pool_{across}", f"pool, {across} across", across)
     # 0.7 to 2.2 seen at 9 to 20 across. While the level of still water fell into the void behind the cylinder: 3.3 to 5.5.
     case.hold(f"pool, {across} across: no step more than 2.7 off ({largest:.2f})", largest <= 2.7)
-if not case.smoke:
+if case.smoke:
+    # 0.070 seen at 10 across. With the normals of facets: 1.10.
+    scatter = speed_up("isph_pool_10", 10, 'method="isph"')[0]
+    case.hold(f"isph, pool, 10 across: scatter at most 0.15 ({scatter:.3f})", scatter <= 0.15)
+else:
     full = ("fluids[0].fill[0].box.max=[3, 1.2]", "bodies[0].translation=[1, 0.6, 0]", "dfsph.support=2.5")
     report("pool_20_cfl_0.1", "pool, 20 across, cfl 0.1", 20, "cfl=0.1")
     for cfl in 0.4, 0.2, 0.1:
