@@ -123,8 +123,9 @@ TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, dou
             s2 += m->offset[a]*m->offset[a];
         }
         const double narrow = isph_fade(sqrt(s2)/v->spacing, ISPH_GAP_SHUT, ISPH_GAP_FREE);
-        gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
-                                                         ISPH_GAP_GRADIENT_FREE));
+        const double towards = isph_fade(sqrt(rest2)*v->spacing, ISPH_GAP_GRADIENT_SHUT,
+                                         ISPH_GAP_GRADIENT_FREE);
+        gap = isph_larger(gap, isph_clamp(4*m->share - 2, 0, 1)*narrow*towards);
     }
     return gap*isph_fade(loss, ISPH_GAP_LOSS_SHUT, ISPH_GAP_LOSS_FREE);
 }
@@ -166,7 +167,8 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 TOBI_FN double isph_volume_source(const isph_view *v, int64_t i)
 {
     const int bulk = !(v->gate[i] > 0);
-    const double e = isph_larger(v->concentration[i] - 1.0, bulk ? v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX : 0);
+    const double least = !bulk ? 0 : v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX;
+    const double e = isph_larger(v->concentration[i] - 1.0, least);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 

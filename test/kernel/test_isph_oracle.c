@@ -326,10 +326,11 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    for (int a = 0; a < 3; a++) x[a] = gate_of(i, s) > 0 && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
+    const int surface = gate_of(i, s) > 0;
+    for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
-        if (gate_of(i, s) > 0 && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
+        if (surface && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
         x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
         size += x[a]*x[a];
     }
@@ -417,7 +418,9 @@ static void prepare(int k)
 static void follow_the_equations(int scalar)
 {
     for (int k = 0; k < 8*TOBI_SHAPES; k++) {
-        open_pool(2 + k%2, k/2%2, k/4%TOBI_SHAPES, k/4/TOBI_SHAPES);
+        const int smoothing = k/4%TOBI_SHAPES, body = k/4/TOBI_SHAPES;
+        if (smoothing > 1 && (k/2%2 || body)) continue;      /* shapes differ in their falloff only */
+        open_pool(2 + k%2, k/2%2, smoothing, body);
         if (scalar) kernel = &sph_kernels_scalar[sph_table_of(shape)];
         for (int n = 0; n < KERNELS; n++) {
             double t[TOBI_TOTALS], force[3] = {0}, div = 0;
