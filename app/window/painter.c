@@ -135,6 +135,7 @@ static void add_particles(const stage *s, const tobi_moment *m, const look *l, p
         if (material) memcpy(p->palette[k], s->material[k < s->materials ? k : 0], sizeof p->palette[k]);
         else map_color((double)k/(COLOURS - 1), p->palette[k]);
     }
+    if (plain && s->dimension == 3 && !material && !s->opaque) f->values = NULL;     /* looks like water */
     if (!plain || material) {
         f->palette = (const float (*)[3])p->palette;
         f->palette_count = COLOURS;
