@@ -120,7 +120,7 @@ typedef struct body_watch { double last[3], before[3], noise, force; int64_t ste
 typedef struct watch {
     int64_t steps, unconverged;
     double surface_start;
-    tobi_step_info last;
+    tobi_step_info last, worst;      /* worst: the step with the largest residual that did not converge */
     body_watch *body;
     int body_count;
 } watch;

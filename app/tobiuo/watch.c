@@ -47,7 +47,9 @@ void watch_step(watch *w, const tobi_world *world, const tobi_step_info *info)
 {
     tobi_body_info body;
     if (w->steps++ == 0) w->surface_start = info->surface_share;
-    w->unconverged += !info->density_converged || !info->divergence_converged;
+    const int unconverged = !info->density_converged || !info->divergence_converged;
+    w->unconverged += unconverged;
+    if (unconverged && !(info->pressure_residual < w->worst.pressure_residual)) w->worst = *info;
     w->last = *info;
     for (int k = 0; k < w->body_count; k++)
         if (tobi_world_body(world, k, &body) == TOBI_OK) watch_force(&w->body[k], &body);
@@ -70,8 +72,11 @@ static void say_liquid(const watch *w)
 void watch_say(const watch *w, const tobi_world *world)
 {
     if (w->unconverged)
-        complain("the solver did not converge in %lld of %lld steps", (long long)w->unconverged,
-                 (long long)w->steps);
+        complain("the solver did not converge in %lld of %lld steps; the worst was at t = %g s, with a "
+                 "residual of %.3g after %d iterations (unconverged_steps and pressure_residual_max in "
+                 "history.csv)",
+                 (long long)w->unconverged, (long long)w->steps, w->worst.time, w->worst.pressure_residual,
+                 w->worst.density_iterations + w->worst.divergence_iterations);
     say_liquid(w);
     if (w->last.particles_lost)
         complain("%lld particles left the domain", (long long)w->last.particles_lost);

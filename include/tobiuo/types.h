@@ -90,6 +90,23 @@ typedef struct tobi_wcsph_def {
     double filter;                    /* 1, share of the particle-scale motion taken out per step     */
 } tobi_wcsph_def;
 
+/* Choices of isph; docs/isph_choices.md says what each is. */
+typedef enum tobi_pressure_gradient {
+    TOBI_DIFFERENCE, TOBI_PLAIN_SUM, TOBI_SYMMETRIC_SUM
+} tobi_pressure_gradient;
+typedef enum tobi_laplacian {
+    TOBI_LAPLACIAN_PAIR, TOBI_LAPLACIAN_OWN, TOBI_LAPLACIAN_UNIFORM
+} tobi_laplacian;
+typedef enum tobi_viscosity_form {
+    TOBI_VISCOSITY_PLAIN, TOBI_VISCOSITY_GRADIENT, TOBI_VISCOSITY_FULL
+} tobi_viscosity_form;
+typedef enum tobi_volume_error {
+    TOBI_VOLUME_SUM, TOBI_VOLUME_PREDICTED, TOBI_VOLUME_CONTINUITY
+} tobi_volume_error;
+typedef enum tobi_surface_rule {
+    TOBI_SURFACE_LOSS, TOBI_SURFACE_EIGENVALUE, TOBI_SURFACE_CONE, TOBI_SURFACE_COUNT
+} tobi_surface_rule;
+
 /* Parameters of the ISPH method. */
 typedef struct tobi_isph_def {
     int    kernel;                    /* tobi_smoothing                                               */
@@ -101,6 +118,14 @@ typedef struct tobi_isph_def {
     double tolerance;                 /* 1, true relative residual of the pressure equation           */
     double volume_gain;               /* 1, share of the error of volume in the source of pressure    */
     double shifting;                  /* 1, strength of particle shifting                             */
+    int    pressure_gradient;         /* tobi_pressure_gradient                                       */
+    int    renormalised;              /* 1: gradients of linear pressures are exact                   */
+    int    laplacian;                 /* tobi_laplacian, of the pressure                              */
+    int    viscosity_form;            /* tobi_viscosity_form                                          */
+    int    volume_error;              /* tobi_volume_error: what volume_gain corrects                 */
+    int    surface_rule;              /* tobi_surface_rule                                            */
+    double surface_height;            /* spacings from the outermost particles up to where p = 0      */
+    double xsph;                      /* 1, share of the mean velocity in that of positions           */
 } tobi_isph_def;
 
 typedef enum tobi_iteration { TOBI_ITERATION_JACOBI, TOBI_ITERATION_PSEUDO_TIME } tobi_iteration;
@@ -341,7 +366,8 @@ typedef struct tobi_step_info {
     double  density_error_mean, density_error_max;   /* 1, |rho/rho0 - 1| compression over all fluid   */
     double  surface_share;        /* 1, share of the fluid's particles that are at a free surface      */
     double  divergence_mean, divergence_max;         /* 1/s over all fluid                             */
-    double  pressure_residual;    /* 1, relative pressure residual of the density solve               */
+    double  pressure_residual;    /* 1, relative residual of the pressure; of dfsph in the density solve */
+    double  volume_drift;         /* 1, mean error of volume away from a free surface; isph alone     */
     double  wall_force[3];        /* N, force of the fluid on the domain's walls                      */
     double  weight;               /* N, |m g| of all fluid                                            */
     double  kinetic_energy, potential_energy;        /* J; potential against domain_min               */

@@ -59,6 +59,7 @@ typedef struct tobi_output {
     const char *name;
     int components;                      /* of 6: xx, yy, zz, xy, yz, zx, as in ParaView; of 9: by rows */
     const char *unit;
+    int derived;                         /* 1: the method's `derive` prepares it                        */
 } tobi_output;
 
 /* A particle method: one const struct in one file, listed in world/methods.c. The verbs of a step in their
@@ -116,7 +117,7 @@ typedef struct tobi_method {
     tobi_status (*nodes)(const tobi_system *s, tobi_grid *grid, tobi_error *err);
     /* Adds elastic_energy and energy_lost to s->info; NULL: there are none. */
     void (*measure)(tobi_system *s);
-    /* Prepares the outputs "acceleration" and "vorticity" after a refresh. NULL: the method has neither. */
+    /* Prepares an output that is derived, after a refresh; NULL where none is. */
     void (*derive)(tobi_system *s, const char *field);
     /* Doubles that must survive a restart besides the particles, TOBI_MEMORY_LIMIT at most; the first is the
        largest speed, m/s. */

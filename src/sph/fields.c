@@ -9,7 +9,8 @@ static const tobi_field fields[] = { SPH_FIELDS(ROW) };
 const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, sizeof(sph_fields) };
 
 const tobi_output sph_outputs[] = {
-    { "acceleration", 3, "m/s2" }, { "vorticity", 3, "1/s" }, { "surface", 1, "1" }, { NULL, 0, NULL } };
+    { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
+    { NULL, 0, NULL, 0 } };
 
 unsigned sph_needs(const tobi_system *s, int full)
 {

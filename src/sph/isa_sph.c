@@ -3,6 +3,7 @@
 #include "sph/couple.k.h"
 #include "sph/filter.k.h"
 #include "sph/eisph.k.h"
+#include "sph/isph_choices.k.h"
 #include "sph/isph_loop.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
@@ -32,12 +33,14 @@
     ISPH_LOOP(K, TOBI_SHAPE_WENDLAND, run_##K##_wendland)                                           \
     ISPH_LOOP(K, TOBI_SHAPE_CUBIC, run_##K##_cubic)                                                 \
     ISPH_LOOP(K, v->shape, run_##K##_other)
+#define RARE(K, SUMS, MAXIMA, DOC) ISPH_LOOP(K, v->shape, run_##K)
 #define ISPH(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, isph_view, run_##K)
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
 #undef IMAGE
+#undef RARE
 #undef ISPH
 
 const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
@@ -46,6 +49,7 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #define FOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
 #define COUPLE FOR
 #define IMAGE PAIR
+#define RARE FOR
 #define ISPH FOR
 #include "sph/kernels.def"
 #undef PAIR
@@ -62,6 +66,7 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #undef FOR
 #undef COUPLE
 #undef IMAGE
+#undef RARE
 #undef ISPH
     },
 };

@@ -5,6 +5,7 @@
    Laplacian do not share stays in the velocity, some 5e-4 of a volume per step. */
 #include "sph/boundary.h"
 #include "sph/isph.h"
+#include "sph/isph_fields.h"
 #include "sph/isph_forces.h"
 #include "sph/isph_verbs.h"
 #include "sph/kernels.h"
@@ -39,7 +40,7 @@ tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_err
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     isph_solver_begin(&m->solver, s, &m->def);
     m->solver.coupled = tobi_couple_any(s);
-    m->solver.view.volume_gain = m->def.volume_gain;
+    m->solver.view.kinematic = m->view.kinematic;
     return TOBI_OK;
 }
 
@@ -99,17 +100,26 @@ void isph_take_back(tobi_system *s)
     sph_undo_restore(&m->undo, s, &m->memory.speed, ISPH_MEMORY);
 }
 
+/* Cones need the normal first. */
+static void find_geometry(tobi_system *s, isph *m, double *totals)
+{
+    if (m->def.surface_rule == TOBI_SURFACE_CONE) launch(s, m, m->kernel->isph_geometry, NULL);
+    if (m->solver.view.by_mark) launch(s, m, m->kernel->isph_mark, NULL);
+    launch(s, m, m->kernel->isph_geometry, totals);
+}
+
 tobi_status isph_begin(tobi_system *s, tobi_error *err)
 {
     isph *m = s->state;
-    double clock = tobi_clock();
+    double t[TOBI_TOTALS], clock = tobi_clock();
     sph_use_dt(s, &m->view);
     for (int k = 0; k < s->sim->body_count; k++)
         if (s->sim->bodies[k].motion) tobi_body_set_previous_velocities(&s->sim->bodies[k]);
     sph_set_body_velocities(s, &clock);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
-    launch(s, m, m->kernel->isph_geometry, NULL);
+    find_geometry(s, m, t);
+    s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
     return TOBI_OK;
 }
@@ -121,8 +131,11 @@ void isph_forces(tobi_system *s)
     isph *m = s->state;
     double clock = tobi_clock();
     sph_view without = m->view;
+    const int corrected = m->def.viscosity_form != TOBI_VISCOSITY_PLAIN;
+    if (corrected) launch(s, m, m->kernel->isph_viscosity, NULL);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     sph_apply_forces(s, &without, m->kernel, &clock);
+    if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
     launch(s, m, m->kernel->isph_gravity, NULL);
 }
@@ -185,6 +198,7 @@ void isph_move(tobi_system *s)
     launch(s, m, m->kernel->isph_shift, t);
     s->info.divergence_mean = t[0]/(double)s->particles.count;
     s->info.divergence_max = t[6];
+    if (m->def.xsph > 0) launch(s, m, m->kernel->isph_xsph, NULL);
     launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     tobi_stage_end(&s->sim->stages, "shifting", &clock);
     m->memory.speed = sph_move_particles(s, &m->view, m->kernel, &clock);
@@ -199,9 +213,24 @@ tobi_status isph_refresh(tobi_system *s, tobi_error *err)
 void isph_derive(tobi_system *s, const char *field)
 {
     isph *m = s->state;
-    sph_derive(s, &m->view, m->kernel, field);
+    isph_view *v = &m->solver.view;
+    if (!isph_fields_know(field)) {
+        sph_derive(s, &m->view, m->kernel, field);
+        return;
+    }
+    v->dt = s->dt > 0 ? s->dt : isph_choose_dt(s);
+    v->motion_dt = fmax(m->motion_dt, v->dt);
+    find_geometry(s, m, NULL);
+    sph_stage(s, &m->view, SPH_DERIVE);
+    isph_fields_derive(&m->solver, s, &m->view, field);
+    v->dt = s->dt;
 }
 
+void isph_read(const tobi_system *s, const char *field, int64_t i, double *out)
+{
+    if (isph_fields_know(field)) isph_fields_read(s, field, i, out);
+    else sph_read(s, field, i, out);
+}
 
 int64_t isph_count_bytes(const tobi_system *s)
 {

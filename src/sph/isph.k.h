@@ -6,6 +6,9 @@
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
 #define ISPH_GATE_BEGIN 0.05
 #define ISPH_GATE_OPEN 0.15
+/* The same of 1 less the least eigenvalue of M: 0.75 is the middle, as of Marrone et al. (2010). */
+#define ISPH_EIGEN_BEGIN 0.20
+#define ISPH_EIGEN_OPEN 0.30
 /* What is missing towards a body is no free surface while the gap is narrow: distance of the particle from
    the body, in spacings, up to which the gate is shut, and from which it is free; the same of what is
    missing elsewhere, sum of V grad W times the spacing, and of the loss of neighbours, which drops have. */
@@ -61,7 +64,8 @@ TOBI_FN isph_tensor isph_invert(const double m[6], double gate)
     return t;
 }
 
-/* M, the sums of V W and V grad W, and what bodies have of tr M; eq. (2) to (5). */
+/* M, the sums of V W and V grad W, and what bodies have of tr M; eq. (2) to (5). totals: excess of the kernel
+   sum away from a free surface, and the number of particles there. */
 typedef struct isph_geometry_acc { lane xx, yy, zz, xy, yz, zx, w, gx, gy, gz, bodies; } isph_geometry_acc;
 
 TOBI_FN void isph_geometry_start(const isph_view *v, int64_t i, isph_geometry_acc *a)
@@ -80,6 +84,26 @@ TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_neighb
     a->gx += x; a->gy += y; a->gz += z;
     a->w += isph_weight(v, n, m, shape, kind);
     if (kind == ISPH_BODY) a->bodies += f*n->r2;
+}
+
+/* Least eigenvalue of M, in 2-D of its upper left part. */
+TOBI_FN double isph_least(const double m[6], int dimension)
+{
+    const double mean = (m[0] + m[1] + (dimension == 3 ? m[2] : 0))/dimension;
+    const double a = m[0] - mean, b = m[1] - mean, c = dimension == 3 ? m[2] - mean : 0;
+    const double off = m[3]*m[3] + (dimension == 3 ? m[4]*m[4] + m[5]*m[5] : 0);
+    const double p = sqrt((a*a + b*b + c*c + 2*off)/(dimension == 3 ? 6 : 2));
+    if (dimension == 2 || !(p > 1e-12)) return mean - p;
+    /* bisection of the characteristic polynomial: below every eigenvalue it is positive */
+    double low = mean - 2*p, high = mean;
+    for (int k = 0; k < 30; k++) {
+        const double x = 0.5*(low + high), u = m[0] - x, w = m[1] - x, z = m[2] - x;
+        const double minor = u*w - m[3]*m[3],
+                     whole = z*minor - m[4]*(u*m[4] - m[3]*m[5]) + m[5]*(m[3]*m[4] - w*m[5]);
+        if (u > 0 && minor > 0 && whole > 0) low = x;
+        else high = x;
+    }
+    return 0.5*(low + high);
 }
 
 /* kappa, eq. (5). */
@@ -142,14 +166,20 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
                  trace = isph_larger(sum, sum - k*off.w + v->dimension*v->body_share[i]);
     const double loss = 1 - trace/v->dimension;
     tobi_float4 gradient = {(float)(-k*g.x), (float)(-k*g.y), (float)(-k*g.z), 0};
-    const double gate = v->open ? (1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN))*
-                                      (1 - isph_gap(v, i, &gradient, loss))
+    const double rule = v->by_mark ? v->gate[i]
+                      : v->by_eigenvalue ? 1 - isph_fade(1 - isph_least(m, v->dimension), ISPH_EIGEN_BEGIN,
+                                                         ISPH_EIGEN_OPEN)
+                                         : 1 - isph_fade(loss, ISPH_GATE_BEGIN, ISPH_GATE_OPEN);
+    const double gate = v->open ? rule*(1 - isph_gap(v, i, &gradient, loss))
                                 : 1 - isph_fade(loss, ISPH_CAVITY_BEGIN, ISPH_CAVITY_OPEN);
-    (void)totals;
+    if (!(gate > 0)) {
+        totals[0] += v->weight*(1 + (double)main.w) - 1;
+        totals[1] += 1;
+    }
     if (v->dimension == 2) m[2] = 1;
     v->trace[i] = (float)trace;
     v->gate[i] = (float)gate;
-    v->scale[i] = (float)isph_scale(v->dimension, trace);
+    v->scale[i] = v->uniform_scale ? 1 : (float)isph_scale(v->dimension, trace);
     v->concentration[i] = (float)(v->weight*(1 + (double)main.w));
     v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
     v->inverse[i] = isph_invert(m, gate);
@@ -160,15 +190,16 @@ TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
     for (int a = 0; a < v->dimension; a++) (&v->velocity[i].x)[a] += (float)v->dt*v->gravity[a];
-    v->record[i].w = v->scale[i];
+    v->record[i].w = v->own_scale ? 0 : v->scale[i];
 }
 
 /* Pa/m2: what presses too dense liquid apart, and, in the bulk, pulls too thin liquid together, eq. (8). */
-TOBI_FN double isph_volume_source(const isph_view *v, int64_t i)
+TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergence)
 {
     const int bulk = !(v->gate[i] > 0);
     const double least = !bulk ? 0 : v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX;
-    const double e = isph_larger(v->concentration[i] - 1.0, least);
+    const double error = v->volume_sum*(v->concentration[i] - 1.0) - v->volume_change*v->dt*divergence,
+                 e = isph_larger(error, least);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 
@@ -186,7 +217,7 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
     a->bxx = lane_set(b.xx); a->byy = lane_set(b.yy); a->bzz = lane_set(b.zz);
     a->bxy = lane_set(b.xy); a->byz = lane_set(b.yz); a->bzx = lane_set(b.zx);
-    a->scale = lane_set(v->scale[i]);
+    a->scale = lane_set(v->own_scale ? 2*v->scale[i] : v->scale[i]);
     a->sum = a->self = a->difference = a->divergence = lane_set(0);
     a->bodies = 0;
 }
@@ -228,7 +259,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const double loss = 1 - v->trace[i]/v->dimension;
     const double excess = isph_excess(v, loss, t.x, v->gate[i]);
     const double diagonal = t.x - t.y - a->bodies + excess;
-    v->source[i] = isph_volume_source(v, i) + t.z + v->density/v->dt*v->slope*t.w;
+    v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
     v->solution[i] = v->keep*v->pressure[i];
@@ -316,10 +347,15 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                       w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
-    const double mean = 2*v->gate[i]*v->surface_force*v->pressure[i], k = -v->slope,
-                 x[3] = {k*s.x, k*s.y, k*s.z};
+    const double mean = 2*v->gate[i]*v->surface_force*v->pressure[i], k = -v->slope;
+    double x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3];
+    if (v->own_pressure > 0)
+        for (int c = 0; c < 3; c++)
+            x[c] += v->own_pressure*(1 - v->gate[i])*v->pressure[i]*(&v->concentration_gradient[i].x)[c];
     isph_apply(&v->inverse[i], x, g);
+    if (v->as_summed)
+        for (int c = 0; c < 3; c++) g[c] = x[c];
     for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     totals[1] += v->volume*k*w.x; totals[2] += v->volume*k*w.y; totals[3] += v->volume*k*w.z;

@@ -46,6 +46,23 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
     return TOBI_OK;
 }
 
+static void take_choices(isph_view *v, const tobi_isph_def *def)
+{
+    v->volume_gain = def->volume_gain;
+    v->own_pressure = def->pressure_gradient == TOBI_PLAIN_SUM ? 1
+                    : def->pressure_gradient == TOBI_SYMMETRIC_SUM ? 2 : 0;
+    v->as_summed = !def->renormalised;
+    v->own_scale = def->laplacian == TOBI_LAPLACIAN_OWN;
+    v->uniform_scale = def->laplacian == TOBI_LAPLACIAN_UNIFORM;
+    v->volume_sum = def->volume_error != TOBI_VOLUME_CONTINUITY;
+    v->volume_change = def->volume_error != TOBI_VOLUME_SUM;
+    v->by_eigenvalue = def->surface_rule == TOBI_SURFACE_EIGENVALUE;
+    v->by_mark = def->surface_rule == TOBI_SURFACE_CONE || def->surface_rule == TOBI_SURFACE_COUNT;
+    v->by_count = def->surface_rule == TOBI_SURFACE_COUNT;
+    v->xsph = (float)def->xsph;
+    v->full_viscosity = def->viscosity_form == TOBI_VISCOSITY_FULL;
+}
+
 void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
 {
     const tobi_smoothing_constants *c = &s->smoothing;
@@ -64,7 +81,8 @@ void isph_solver_begin(isph_solver *m, tobi_system *s, const tobi_isph_def *def)
     v->full = 2*c->rate;
     v->keep = 1;
     v->density = s->fluid[0].density;
-    isph_surface_measure(v, c);
+    take_choices(v, def);
+    isph_surface_measure(v, c, def->surface_height);
     memcpy(v->size, s->box.size, sizeof v->size);
     memcpy(v->periodic, s->box.periodic, sizeof v->periodic);
     memcpy(v->from_fixed, s->box.from_fixed, sizeof v->from_fixed);
@@ -120,6 +138,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->record = s->cells.record;
     v->velocity = p->velocity;
     v->accel = f->accel;
+    v->fluid = p->fluid;
     v->pressure = f->pressure;
     v->list = s->cells.list;
     v->list_start = s->cells.list_start;

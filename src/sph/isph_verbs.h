@@ -1,5 +1,6 @@
 /* The state and the step of isph, which eisph shares. */
 #pragma once
+#include "sph/isph_fields.h"
 #include "sph/isph_solve.h"
 #include "sph/stages.h"
 #include "sph/state.h"
@@ -34,12 +35,13 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err);
 void isph_move(tobi_system *s);
 tobi_status isph_refresh(tobi_system *s, tobi_error *err);
 void isph_derive(tobi_system *s, const char *field);
+void isph_read(const tobi_system *s, const char *field, int64_t i, double *out);
 int64_t isph_count_bytes(const tobi_system *s);
 void isph_free_state(void *state);
 
 /* Of a tobi_method. */
 #define ISPH_VERBS                                                                                  \
-    .fields = &sph_field_list, .outputs = sph_outputs, .needs = sph_needs, .remember = isph_remember,   \
+    .fields = &sph_field_list, .outputs = isph_outputs, .needs = sph_needs, .remember = isph_remember,   \
     .take_back = isph_take_back, .forces = isph_forces, .solve = isph_solve, .move = isph_move,     \
-    .finish = sph_finish, .refresh = isph_refresh, .read = sph_read, .derive = isph_derive,         \
+    .finish = sph_finish, .refresh = isph_refresh, .read = isph_read, .derive = isph_derive,         \
     .memory = isph_list_memory, .bytes = isph_count_bytes, .free = isph_free_state,

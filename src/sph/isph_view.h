@@ -42,6 +42,18 @@ typedef struct isph_view {
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
     double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
     double source_mean;              /* Pa/m2                                                       */
+    /* choices, docs/isph_choices.md; zero is the usual one but where 1 is told */
+    double own_pressure;             /* p_i in sums of p_j - p_i: 0, of p_j: 1, of p_j + p_i: 2     */
+    int as_summed;                   /* 1: the gradient of the pressure goes without B              */
+    int own_scale, uniform_scale;    /* 1: kappa of the row alone; kappa = 1                        */
+    double volume_sum, volume_change;      /* 1, 0: shares of the kernel sum, of its change, in the error */
+    int by_eigenvalue, by_mark;      /* 1: the gate is that of the least eigenvalue; is made beforehand */
+    int by_count;                    /* 1: marks by counts, 0: by cones                             */
+    double lattice_count;            /* neighbours on the lattice                                   */
+    float xsph;                      /* share of the mean velocity in that of positions             */
+    int full_viscosity;              /* 1: by the tensor of Fatehi and Manzari                      */
+    const float *kinematic;          /* m2/s, by fluid                                              */
+    const uint8_t *fluid;
     /* particle arrays */
     const tobi_double3 *position;
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */

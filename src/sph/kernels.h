@@ -8,12 +8,14 @@ typedef struct sph_kernels {
 #define FOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #define COUPLE FOR
 #define IMAGE PAIR
+#define RARE FOR
 #define ISPH FOR
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
 #undef IMAGE
+#undef RARE
 #undef ISPH
 } sph_kernels;
 

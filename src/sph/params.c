@@ -109,6 +109,33 @@ static const tobi_param isph_rows[] = {
       .text = "off",
       .doc = "Strength of particle shifting, which keeps particles evenly spaced; at a free surface they "
              "shift along it only." },
+    { .key = "pressure_gradient", CHOICE("difference|plain|symmetric", 3),
+      AT(tobi_isph_def, pressure_gradient),
+      .doc = "Gradient of the pressure, sums over p_j - p_i, p_j, or p_i/rho^2 + p_j/rho^2. The last keeps "
+             "momentum, with renormalised off, and asks for shorter steps." },
+    { .key = "renormalised", BOOL, AT(tobi_isph_def, renormalised), .def = { 1 },
+      .doc = "Correct that gradient by the inverse of the moments (grad_corr_M): that of a linear pressure "
+             "is then exact." },
+    { .key = "laplacian", CHOICE("pair|own|uniform", 3), AT(tobi_isph_def, laplacian),
+      .doc = "Scale of the Laplacian of the pressure by lost neighbours: mean of both particles (rho_i + "
+             "rho_j), that of the row (rho_i), or none. With own the matrix is not symmetric: use bicgstab "
+             "or gmres." },
+    { .key = "viscosity_form", CHOICE("plain|gradient-corrected|full", 3), AT(tobi_isph_def, viscosity_form),
+      .doc = "Laplacian of the velocity: plain, less the gradient of the velocity, or, besides, by the "
+             "tensor of Fatehi and Manzari (laplacian_corr_M), which is exact for quadratic velocities." },
+    { .key = "volume_error", CHOICE("kernel-sum|predicted|continuity", 3), AT(tobi_isph_def, volume_error),
+      .doc = "Error of volume that volume_gain takes out (rho*): of the kernel sum, of that and its change "
+             "in this step by the divergence, or of the change alone." },
+    { .key = "surface_rule", CHOICE("loss|eigenvalue|cone|count", 4), AT(tobi_isph_def, surface_rule),
+      .doc = "What makes a particle one of the free surface: the trace of its moments, their least "
+             "eigenvalue, no neighbour within 45 degrees of the outward normal, or few neighbours. cone and "
+             "count are 0 or nearly 0 or 1, the others fade." },
+    { .key = "surface_height", REAL, AT(tobi_isph_def, surface_height), .def = { 0.5 }, RANGE(0, 2),
+      .unit = "spacings",
+      .doc = "Height above the outermost particles at which the pressure is 0; 0: at these particles, which "
+             "is rough." },
+    { .key = "xsph", REAL, AT(tobi_isph_def, xsph), RANGE(0, 1), .unit = "1", .text = "off",
+      .doc = "XSPH: share of the neighbours' mean velocity in the velocity that moves a particle." },
     { 0 }
 };
 

@@ -8,8 +8,8 @@
 
 /* Fields for results that every method has; those of one method are in its `outputs`. */
 static const tobi_output common[] = {
-    { "position", 3, "m" },     { "velocity", 3, "m/s" }, { "pressure", 1, "Pa" },
-    { "density", 1, "kg/m3" },  { "object_id", 1, "1" },  { "particle_id", 1, "1" },
+    { "position", 3, "m", 0 },    { "velocity", 3, "m/s", 0 }, { "pressure", 1, "Pa", 0 },
+    { "density", 1, "kg/m3", 0 }, { "object_id", 1, "1", 0 },  { "particle_id", 1, "1", 0 },
 };
 enum { COMMON = sizeof common/sizeof *common };
 
@@ -214,8 +214,8 @@ static void read_rows(const void *view, int64_t begin, int64_t end)
 
 static void read_system(const tobi_world *w, tobi_system *s, const tobi_output *f, double *buffer)
 {
-    const int derived = !strcmp(f->name, "acceleration") || !strcmp(f->name, "vorticity");
-    if (w->failure.status != TOBI_DIVERGED && derived && s->method->derive) s->method->derive(s, f->name);
+    const tobi_output *own = find_name(s->method, f->name);
+    if (w->failure.status != TOBI_DIVERGED && own && own->derived) s->method->derive(s, f->name);
     const reading view = { w, s, f, buffer };
     tobi_loop(w->sim.exec.threads, s->particles.count, 0, read_rows, &view);
 }

@@ -22,6 +22,7 @@ typedef struct tobi_tally {
     double density_iterations, divergence_iterations;   /* sums                      */
     double density_error_mean;            /* sum of the steps' means                 */
     double density_error_max;             /* largest                                 */
+    double residual_max;                  /* largest pressure_residual               */
 } tobi_tally;
 
 /* Impulses of the fluid on one body since the last output: pressure force, viscous force, pressure torque,

@@ -26,8 +26,14 @@
     H("divergence_mean", "1/s", real, i->divergence_mean, \
       "Mean over all fluid of abs(div v) after the velocity solve.") \
     H("divergence_max", "1/s", real, i->divergence_max, "Its largest value at a particle.") \
+    H("divergence_step", "1", real, i->divergence_max*i->dt, \
+      "divergence_max times dt: the largest change of volume that the last step leaves.") \
     H("pressure_residual", "1", real, i->pressure_residual, \
-      "Relative residual of the pressure in the density solve.") \
+      "Relative residual of the pressure in the last step; of dfsph in the density solve.") \
+    H("pressure_residual_max", "1", real, s->residual_max, \
+      "Its largest value since the last output; of isph, computed afresh from the answer.") \
+    H("volume_drift", "1", real, i->volume_drift, \
+      "Mean error of volume away from a free surface, positive: swollen; of isph, 0 of the others.") \
     H("wall_force_x", "N", real, i->wall_force[0], \
       "Force of the fluid on the sides of the domain along x; positive pushes towards +x.") \
     H("wall_force_y", "N", real, i->wall_force[1], "The same along y.") \

@@ -27,20 +27,22 @@ static char *checkpoint_path(const tobi_run *run, int64_t step, const char *exte
 
 static json_t *tally_to_json(const tobi_tally *t)
 {
-    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "steps", (json_int_t)t->steps, "unconverged",
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f, s:f}", "steps", (json_int_t)t->steps, "unconverged",
                      (json_int_t)t->unconverged, "density_iterations", t->density_iterations,
                      "divergence_iterations", t->divergence_iterations, "density_error_mean",
-                     t->density_error_mean, "density_error_max", t->density_error_max);
+                     t->density_error_mean, "density_error_max", t->density_error_max, "residual_max",
+                     t->residual_max);
 }
 
 static bool tally_from_json(json_t *json, tobi_tally *t)
 {
     json_int_t steps = 0, unconverged = 0;
     int answer =
-        json_unpack(json, "{s:I, s:I, s:F, s:F, s:F, s:F}", "steps", &steps, "unconverged",
+        json_unpack(json, "{s:I, s:I, s:F, s:F, s:F, s:F, s?F}", "steps", &steps, "unconverged",
                     &unconverged, "density_iterations", &t->density_iterations,
                     "divergence_iterations", &t->divergence_iterations, "density_error_mean",
-                    &t->density_error_mean, "density_error_max", &t->density_error_max);
+                    &t->density_error_mean, "density_error_max", &t->density_error_max, "residual_max",
+                    &t->residual_max);
     t->steps = steps;
     t->unconverged = unconverged;
     return answer == 0;

@@ -27,6 +27,7 @@ void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info)
     tally->unconverged += !info->density_converged || !info->divergence_converged;
     tally->density_iterations += info->density_iterations;
     tally->divergence_iterations += info->divergence_iterations;
+    tally->residual_max = fmax(tally->residual_max, info->pressure_residual);
     tally->density_error_mean += info->density_error_mean;
     tally->density_error_max = fmax(tally->density_error_max, info->density_error_max);
 }

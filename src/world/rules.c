@@ -91,6 +91,26 @@ static void check_iterations(const tobi_rules *r, const char *solve, int least, 
     tell(r, &why, "dfsph.%s_iterations_min", solve);
 }
 
+static void check_isph(const tobi_rules *r, const tobi_isph_def *m)
+{
+    tobi_error why = { 0 };
+    if (m->laplacian == TOBI_LAPLACIAN_OWN && m->solver == TOBI_CG) {
+        tobi_fail(&why, TOBI_INVALID, "is own, which makes the matrix unsymmetric, and isph.solver is cg, "
+                  "which needs a symmetric one; allowed are bicgstab and gmres");
+        tell(r, &why, "isph.laplacian");
+    }
+    if (m->volume_error != TOBI_VOLUME_SUM && m->volume_gain == 0) {
+        tobi_fail(&why, TOBI_INVALID, "says which error of volume is corrected, and isph.volume_gain is 0, "
+                  "which corrects none");
+        tell(r, &why, "isph.volume_error");
+    }
+    if (m->pressure_gradient == TOBI_SYMMETRIC_SUM && m->renormalised) {
+        tobi_fail(&why, TOBI_INVALID, "is symmetric, so that pairs keep momentum, and isph.renormalised "
+                  "undoes that; allowed with it are difference and plain");
+        tell(r, &why, "isph.pressure_gradient");
+    }
+}
+
 void tobi_rules_solid(const tobi_rules *r, const tobi_world_def *d, const void *method_def,
                       const tobi_solid_def *solid)
 {
@@ -112,6 +132,7 @@ void tobi_rules_world(const tobi_rules *r, const tobi_world_def *d, const void *
         check_iterations(r, "density", m->density_iterations_min, m->density_iterations_max);
         check_iterations(r, "divergence", m->divergence_iterations_min, m->divergence_iterations_max);
     }
+    if (method && method_def && strcmp(method->name, "isph") == 0) check_isph(r, method_def);
     for (int a = 0; a < d->dimension; a++) {
         check_walls(r, d, method, a);
         check_corners(r, d, a);

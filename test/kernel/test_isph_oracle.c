@@ -33,6 +33,8 @@ static int32_t *near_body;
 static isph_mirror *mirror;
 static tobi_boundary_link *links;
 static isph_coupling *couplings;
+static const float viscosities[1] = {1e-3f};      /* m2/s */
+static const uint8_t fluids[4000];
 static const double answers[1][6] = {{0.3, -0.2, 0.1, 0.7, -0.4, 0.2}};
 
 static void put_body(void)
@@ -74,7 +76,10 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
                        .dt = 1e-3,
                        .motion_dt = 2e-3,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
-                       .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7};
+                       .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
+                       .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
+                       .xsph = 0.3f,
+                       .kinematic = viscosities, .fluid = fluids};
     memcpy(view.size, pool.box.size, sizeof view.size);
     memcpy(view.from_fixed, pool.box.from_fixed, sizeof view.from_fixed);
     for (int a = 0; a < dimension; a++)
@@ -130,8 +135,9 @@ static void run(tobi_kernel k, double *totals)
 typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
     double moment[6], concentration, gradient_c[3], product, divergence, difference, row,
-           gradient[3], force[3], core[3], normal[3], slope[9];
+           gradient[3], force[3], core[3], normal[3], slope[9], count, cone, mean[3], all[3], plain[3];
 } sums;
+static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
 
 /* As scaled on the lattice. */
 static double falloff(double r)
@@ -169,6 +175,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
     if (face) lift -= view.density/view.dt*CHANGE*m->displacement[0];
     image_velocity(m, u);
     s->concentration += weight(m->r);
+    add_choices(i, m, u, f, !image, s);
     s->product += a*(view.in[i] - view.in[m->j]);
     s->difference += a*lift;
     s->row += a;
@@ -382,6 +389,8 @@ static void oracle_isph_add_answer(check *c, int64_t i, const sums *s)
             view.full + view.density/view.volume);
 }
 
+#include "kernel/isph_choices_oracle.h"
+
 typedef struct entry {
     const char *name;
     size_t offset;
@@ -394,6 +403,7 @@ static const entry kernels[] = {
 #define FOR PAIR
 #define COUPLE PAIR
 #define IMAGE(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_##K},
+#define RARE IMAGE
 #define ISPH IMAGE
 #include "sph/kernels.def"
 };
@@ -446,6 +456,7 @@ static void follow_the_equations(int scalar)
             if (!strcmp(kernels[n].name, "isph_shift")) compare(&c, t[0], div, div + 1);
             if (!strcmp(kernels[n].name, "isph_body_force")) check_body_force(&c, t);
             if (!strcmp(kernels[n].name, "eisph_extent")) check_extent(&c, t);
+            if (!strcmp(kernels[n].name, "isph_geometry")) check_geometry_sums(&c, t);
             if (!strcmp(kernels[n].name, "isph_rows")) assert_true((t[0] > 0) == view.open);
             if (!(c.worst < 2e-5)) fail_msg("case %d, %s: off by %g", k, c.name, c.worst);
             free(old);
@@ -599,6 +610,7 @@ int main(void)
         cmocka_unit_test(kernels_follow_the_equations), cmocka_unit_test(scalar_lanes_follow_them_too),
         cmocka_unit_test(instruction_sets_give_the_same_bits), cmocka_unit_test(the_matrix_is_symmetric),
         cmocka_unit_test(linear_pressures_are_exact), cmocka_unit_test(linear_flows_are_exact),
+        cmocka_unit_test(full_viscosity_is_exact), cmocka_unit_test(surfaces_are_marked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

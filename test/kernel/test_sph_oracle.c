@@ -55,12 +55,14 @@ static const entry kernels[] = {
 #define FOR PAIR
 #define COUPLE(K, SUMS, MAXIMA, DOC)      /* see test_couple.c */
 #define IMAGE(K, SUMS, MAXIMA, DOC)       /* see test_isph_oracle.c */
+#define RARE IMAGE
 #define ISPH IMAGE
 #include "sph/kernels.def"
 #undef PAIR
 #undef FOR
 #undef COUPLE
 #undef IMAGE
+#undef RARE
 #undef ISPH
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };
