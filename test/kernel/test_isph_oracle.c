@@ -73,13 +73,11 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .spacing = pool.d,
                        .h = pool.h, .volume = c->volume, .weight = c->weight, .slope = c->slope,
                        .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
-                       .dt = 1e-3,
-                       .motion_dt = 2e-3,
+                       .dt = 1e-3, .motion_dt = 2e-3,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
-                       .xsph = 0.3f,
-                       .kinematic = viscosities, .fluid = fluids};
+                       .xsph = 0.3f, .kinematic = viscosities, .fluid = fluids};
     memcpy(view.size, pool.box.size, sizeof view.size);
     memcpy(view.from_fixed, pool.box.from_fixed, sizeof view.from_fixed);
     for (int a = 0; a < dimension; a++)
