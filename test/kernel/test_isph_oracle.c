@@ -578,30 +578,6 @@ static void linear_pressures_are_exact(void **state)
     }
 }
 
-/* Divergence of a linear flow that no wall feels, away from walls. */
-static void linear_flows_are_exact(void **state)
-{
-    (void)state;
-    open_pool(2, 1, TOBI_SHAPE_WENDLAND, 0);
-    run(kernel->isph_geometry, NULL);
-    double worst = 0;
-    int64_t inside = 0;
-    for (int64_t i = 0; i < view.count; i++)
-        view.velocity[i] = (tobi_float4){ (float)(2*view.position[i].x + 5*view.position[i].y),
-                                          (float)(view.position[i].y - 3*view.position[i].x), 0, 0 };
-    for (int64_t i = 0; i < view.count; i++) {
-        double t[TOBI_TOTALS] = { 0 };
-        const double x = view.position[i].x, y = view.position[i].y;
-        if (fmin(fmin(x, y), fmin(view.size[0] - x, view.size[1] - y)) < view.h) continue;
-        kernel->isph_shift.run(&view, i, i + 1, t);
-        worst = fmax(worst, fabs(t[0] - 3));
-        inside++;
-    }
-    assert_true(inside > 20);
-    assert_true(worst < 1e-4);
-    close_pool();
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
