@@ -20,7 +20,7 @@ typedef struct fields { FIELDS(TOBI_FIELD_POINTER) } fields;
 #define ROW(...) TOBI_FIELD_ROW(fields, __VA_ARGS__)
 static const tobi_field field[] = { FIELDS(ROW) };
 static const tobi_field_list list = { field, 1, sizeof(fields) };
-static const tobi_output outputs[] = { { "path", 1, "m" }, { NULL, 0, NULL } };
+static const tobi_output outputs[] = { { "path", 1, "m", 0 }, { NULL, 0, NULL, 0 } };
 
 typedef struct free_flight { double speed; } free_flight;      /* m/s, of the fastest */
 

@@ -111,7 +111,8 @@ class Case:
             sys.exit(1)
         if not self.smoke:
             self.methods.add(json.loads((target / "resolved.json").read_text())["method"])
-            self.costs.append(read_cost(target))
+            if self.others or self.args.method:
+                self.costs.append(read_cost(target))
         return target
 
     def by_method(self, scene, command):
