@@ -75,17 +75,20 @@ tobi_status tobi_cells_grow(tobi_cells *c, const tobi_particles *p, tobi_error *
         tobi_array_free(c->record);
         tobi_array_free(c->list_start);
         tobi_array_free(c->list_groups);
+        tobi_array_free(c->region);
         c->rows = n;
+        c->regions = 0;
         c->record = tobi_particles_rows(n, sizeof *c->record);
         c->list_start = tobi_particles_rows(n, sizeof *c->list_start);
         c->list_groups = tobi_particles_rows(n, sizeof *c->list_groups);
+        c->region = tobi_array_zero(n/TOBI_BLOCK + 1, sizeof *c->region);
     }
     if (!c->list || c->list_capacity < entries) {
         tobi_array_free(c->list);
         c->list_capacity = entries;
         c->list = tobi_array_make(entries, sizeof *c->list);
     }
-    return c->record && c->list_start && c->list_groups && c->list ? TOBI_OK : give_up(c, err);
+    return c->record && c->list_start && c->list_groups && c->region && c->list ? TOBI_OK : give_up(c, err);
 }
 
 tobi_status tobi_cells_create(tobi_cells *c, const tobi_box *box, double h, const tobi_particles *p,
@@ -113,6 +116,7 @@ void tobi_cells_free(tobi_cells *c)
     tobi_array_free(c->record);
     tobi_array_free(c->list_start);
     tobi_array_free(c->list_groups);
+    tobi_array_free(c->region);
     memset(c, 0, sizeof *c);
 }
 
@@ -161,9 +165,10 @@ tobi_cell_points tobi_cells_points(const tobi_cells *c, const tobi_box *box, con
     return q;
 }
 
-static tobi_status grow_list(tobi_cells *c, tobi_error *err)
+static tobi_status grow_list(tobi_cells *c, int64_t entries, tobi_error *err)
 {
-    int64_t more = c->list_capacity + c->list_capacity/8;
+    int64_t more = c->list_capacity;
+    while (more < entries) more += more/8;
     int32_t *list = tobi_array_make(more, sizeof *list);
     if (!list) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld neighbours", (long long)more);
     tobi_array_free(c->list);
@@ -172,24 +177,67 @@ static tobi_status grow_list(tobi_cells *c, tobi_error *err)
     return TOBI_OK;
 }
 
+/* What blocks need that no search knows of: as much as the others, or an equal part of the list. */
+static void guess_needs(tobi_cells *c, int64_t blocks)
+{
+    int64_t sum = 0;
+    for (int64_t b = 0; b < c->regions; b++) sum += c->region[b].groups;
+    const int64_t guess = c->regions ? sum/c->regions : c->list_capacity/8/(blocks + blocks/32 + 1);
+    for (int64_t b = c->regions; b < blocks; b++) c->region[b].groups = (uint32_t)guess;
+    c->regions = blocks;
+}
+
+/* Regions one after the other, a little longer than the blocks needed last; returns where they end. */
+static int64_t place_regions(tobi_cells *c, int64_t blocks)
+{
+    int64_t at = 0;
+    for (int64_t b = 0; b < blocks; b++) {
+        tobi_list_region *r = &c->region[b];
+        *r = (tobi_list_region){ .begin = at, .room = r->groups + r->groups/64 + 1, .groups = r->groups };
+        at += r->room;
+    }
+    return at;
+}
+
+/* Regions from `at` on for the blocks that have outgrown theirs; returns where they end. */
+static int64_t move_regions(tobi_cells *c, int64_t blocks, int64_t at)
+{
+    for (int64_t b = 0; b < blocks; b++) {
+        tobi_list_region *r = &c->region[b];
+        if (r->filled) continue;
+        r->begin = at;
+        r->room = r->groups;
+        at += r->room;
+    }
+    return at;
+}
+
+/* Blocks keep the room that they needed last, so that one search counts and fills; few outgrow it and are
+   searched again. Where the lists lie depends on the steps before, what is in them does not. */
 tobi_status tobi_cells_list(tobi_cells *c, const tobi_box *box, double h, tobi_particles *p, tobi_exec *x,
                             tobi_error *err)
 {
+    const int64_t blocks = (p->count + TOBI_BLOCK - 1)/TOBI_BLOCK;
+    const tobi_kernel search = tobi_core_kernels_for(x->isa)->cells_search;
     tobi_cells_view v = see_cells(c, box, p);
-    int overflow;
+    int overflow = 0;
     v.h2 = (float)(h*h);
-    v.used = &c->list_used;
     v.overflow = &overflow;
+    v.region = c->region;
+    guess_needs(c, blocks);
     for (;;) {
-        overflow = 0;
-        c->list_used = 0;
+        int64_t end = place_regions(c, blocks), last = end;
+        if (8*end > c->list_capacity) TOBI_TRY(grow_list(c, 8*end, err));
         v.list = c->list;
-        v.capacity = c->list_capacity;
-        tobi_launch(x, tobi_core_kernels_for(x->isa)->cells_search, &v, 0, p->count, NULL);
-        if (overflow == 2)
-            return tobi_fail(err, TOBI_DIVERGED,
-                             "more than 1000 particles crowd into one support radius");
-        if (overflow == 0) return TOBI_OK;
-        TOBI_TRY(grow_list(c, err));
+        do {
+            end = last;
+            tobi_launch(x, search, &v, 0, p->count, NULL);
+            if (overflow)
+                return tobi_fail(err, TOBI_DIVERGED,
+                                 "more than 1000 particles crowd into one support radius");
+            last = move_regions(c, blocks, end);
+        } while (last > end && 8*last <= c->list_capacity);
+        c->list_used = 8*end;
+        if (last == end) return TOBI_OK;
     }
 }

@@ -32,7 +32,9 @@ typedef struct tobi_cells {
     int64_t *histogram;
     int32_t *list;          /* neighbour indices, groups of 8 padded with the own index */
     int64_t  list_capacity; /* in int32                                               */
-    int64_t  list_used;
+    int64_t  list_used;     /* up to the last entry, gaps between regions included    */
+    struct tobi_list_region *region;    /* of each block of particles, see core/cells.k.h */
+    int64_t  regions;       /* of which the last search says how much they need       */
     /* by particle */
     tobi_record *record;    /* fixed-point position; w: a number that neighbours read  */
     uint32_t *list_start;   /* first neighbour, in groups of 8                        */

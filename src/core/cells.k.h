@@ -3,6 +3,13 @@
 #include "exec/pairs.h"
 #include "exec/strips.h"
 
+/* Where the lists of a block of particles go, in groups of 8 entries. */
+typedef struct tobi_list_region {
+    int64_t  begin;
+    uint32_t room, groups;                    /* how many there may be, how many the last search found */
+    int      filled;                          /* 1: the lists are there                             */
+} tobi_list_region;
+
 typedef struct tobi_cells_view {
     int64_t count;                            /* particles                                          */
     /* box and cells, see core/cells.h */
@@ -10,20 +17,19 @@ typedef struct tobi_cells_view {
     int64_t  total;
     double   size[3], inverse[3], to_fixed[3], centre[3];
     float    from_fixed[3];
-    int32_t *start;
-    uint32_t *keys;                           /* cell of each particle                              */
+    TOBI_GLOBAL int32_t *start;
+    TOBI_GLOBAL uint32_t *keys;                         /* cell of each particle */
     /* by particle */
-    tobi_double3 *position;
-    tobi_record *record;
-    const float *payload;                     /* of the records, NULL = 0                           */
-    uint32_t *list_start;
-    uint16_t *list_groups;
+    TOBI_GLOBAL tobi_double3 *position;
+    TOBI_GLOBAL tobi_record *record;
+    TOBI_GLOBAL const float *payload;                   /* of the records, NULL = 0 */
+    TOBI_GLOBAL uint32_t *list_start;
+    TOBI_GLOBAL uint16_t *list_groups;
     /* the list */
-    int32_t *list;
+    TOBI_GLOBAL int32_t *list;
     float    h2;                              /* m2, square of the support radius                   */
-    int64_t  capacity;
-    int64_t *used;                            /* atomic counter, int32 entries                      */
-    int     *overflow;    /* set to 1 if capacity was too small, 2 if a particle has too many neighbours */
+    TOBI_GLOBAL tobi_list_region *region;               /* of each block of TOBI_BLOCK particles */
+    TOBI_GLOBAL int *overflow;                          /* set to 1 if a particle has too many neighbours */
 } tobi_cells_view;
 
 TOBI_FN int cells_along(const tobi_cells_view *v, int axis, double x)

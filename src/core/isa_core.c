@@ -21,7 +21,7 @@ enum {
     BATCH = 16,               /* particles of one cell that are searched for together     */
     CHUNK = 512,              /* candidates unpacked at once                              */
     MAX_NEIGHBORS = 1024, ROOM = MAX_NEIGHBORS + 32, MAX_RUNS = 27,
-    FOUND = 2*BATCH*ROOM      /* entries kept before room is claimed in the shared list   */
+    FOUND = 2*BATCH*ROOM      /* entries kept before they go to the region of their block  */
 };
 
 /* Bit k: candidate k is nearer than sqrt(h2) and is not i itself. */
@@ -166,8 +166,9 @@ static int search_cell(const tobi_cells_view *v, const run *runs, int run_count,
     return 1;
 }
 
-/* Lists of particles [begin, end) on their way into the shared list; starts count from their first. */
-typedef struct lists { int32_t begin, end; int64_t used; int32_t found[FOUND]; } lists;
+/* Lists of particles [begin, end) on their way into the region; starts count from their first. groups: those
+   before them. */
+typedef struct lists { int32_t begin, end; int64_t used, groups; int32_t found[FOUND]; } lists;
 
 /* Whole groups of 8, padded with the particle itself. */
 static void append(const tobi_cells_view *v, const batch *b, lists *l)
@@ -184,28 +185,31 @@ static void append(const tobi_cells_view *v, const batch *b, lists *l)
     l->end = b->end;
 }
 
-static void claim(const tobi_cells_view *v, lists *l)
+/* What does not fit is counted only. */
+static void move_lists(const tobi_cells_view *v, const tobi_list_region *to, lists *l)
 {
-    int64_t start = __atomic_fetch_add(v->used, l->used, __ATOMIC_RELAXED);
-    if (start + l->used > v->capacity) {
-        if (*v->overflow == 0) *v->overflow = 1;
-    } else {
-        __builtin_memcpy(v->list + start, l->found, (size_t)l->used*sizeof *l->found);
-        for (int32_t i = l->begin; i < l->end; i++) v->list_start[i] += (uint32_t)(start/8);
+    const int64_t start = to->begin + l->groups;
+    l->groups += l->used/8;
+    if (l->groups <= to->room) {
+        __builtin_memcpy(v->list + 8*start, l->found, (size_t)l->used*sizeof *l->found);
+        for (int32_t i = l->begin; i < l->end; i++) v->list_start[i] += (uint32_t)start;
     }
     l->begin = l->end;
     l->used = 0;
 }
 
+/* [begin, end): one block. */
 static void cells_search(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const tobi_cells_view *v = view;
+    tobi_list_region *to = &v->region[begin/TOBI_BLOCK];
     run runs[MAX_RUNS];
     lists l;
     batch b;
     (void)totals;
-    l.begin = (int32_t)begin;
-    l.used = 0;
+    if (to->filled) return;
+    l.begin = l.end = (int32_t)begin;
+    l.used = l.groups = 0;
     for (int32_t i = (int32_t)begin; i < end; i = b.end) {
         tobi_double3 q = v->position[i];
         int x = cells_along(v, 0, q.x), y = cells_along(v, 1, q.y), z = cells_along(v, 2, q.z);
@@ -214,13 +218,15 @@ static void cells_search(const void *view, int64_t begin, int64_t end, double *t
         b.end = next < end ? next : (int32_t)end;
         if (b.end > i + BATCH) b.end = i + BATCH;
         if (!search_cell(v, runs, find_runs(v, x, y, z, runs), &b)) {
-            *v->overflow = 2;
+            *v->overflow = 1;
             return;
         }
-        if (l.used > FOUND/2) claim(v, &l);
+        if (l.used > FOUND/2) move_lists(v, to, &l);
         append(v, &b, &l);
     }
-    claim(v, &l);
+    move_lists(v, to, &l);
+    to->groups = (uint32_t)l.groups;
+    to->filled = to->groups <= to->room;
 }
 
 #define CELLS(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_cells_view, run_##K)
