@@ -17,19 +17,19 @@ typedef struct tobi_cells_view {
     int64_t  total;
     double   size[3], inverse[3], to_fixed[3], centre[3];
     float    from_fixed[3];
-    TOBI_GLOBAL int32_t *start;
-    TOBI_GLOBAL uint32_t *keys;                         /* cell of each particle */
+    int32_t *start;
+    uint32_t *keys;                           /* cell of each particle                              */
     /* by particle */
-    TOBI_GLOBAL tobi_double3 *position;
-    TOBI_GLOBAL tobi_record *record;
-    TOBI_GLOBAL const float *payload;                   /* of the records, NULL = 0 */
-    TOBI_GLOBAL uint32_t *list_start;
-    TOBI_GLOBAL uint16_t *list_groups;
+    tobi_double3 *position;
+    tobi_record *record;
+    const float *payload;                     /* of the records, NULL = 0                           */
+    uint32_t *list_start;
+    uint16_t *list_groups;
     /* the list */
-    TOBI_GLOBAL int32_t *list;
+    int32_t *list;
     float    h2;                              /* m2, square of the support radius                   */
-    TOBI_GLOBAL tobi_list_region *region;               /* of each block of TOBI_BLOCK particles */
-    TOBI_GLOBAL int *overflow;                          /* set to 1 if a particle has too many neighbours */
+    tobi_list_region *region;                 /* of each block of TOBI_BLOCK particles              */
+    int *overflow;                            /* set to 1 if a particle has too many neighbours     */
 } tobi_cells_view;
 
 TOBI_FN int cells_along(const tobi_cells_view *v, int axis, double x)
