@@ -13,7 +13,7 @@ set -uo pipefail
 from=$PWD      # where a relative folder starts
 cd "$(dirname "$0")"
 begin=$SECONDS
-limit=590      # s, for the whole of an ordinary run
+limit=${TOBIUO_TEST_LIMIT:-590}      # s, for the whole of an ordinary run
 reference=${TOBIUO_REFERENCE:-}
 python=/usr/bin/python3
 [ -x $python ] || python=python3

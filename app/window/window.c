@@ -98,7 +98,9 @@ static void follow_run(viewer *v)
         if (present) v->shown = v->outputs;
         if (v->outputs != before) graph_read(v);
     }
-    if (v->shown == v->outputs && painter_is_idle(v->painter)) live_ask(v->def.live, 0);
+    /* a fast run would bring moments for ever, and none would be drawn whole */
+    const int waits = (v->wants_shot || (v->keys && *v->keys)) && v->moment && !is_whole(v);
+    if (v->shown == v->outputs && painter_is_idle(v->painter) && !waits) live_ask(v->def.live, 0);
 }
 
 static void play(viewer *v)
