@@ -64,6 +64,29 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     return m;
 }
 
+typedef struct mirrors { isph_solver *m; const tobi_system *s; double dt; } mirrors;
+
+static void make_mirrors(const void *view, int64_t begin, int64_t end)
+{
+    const mirrors *all = view;
+    const tobi_boundary_links *n = &sph_of(all->s)->links;
+    for (int64_t k = begin; k < end; k++)
+        all->m->mirror[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
+}
+
+/* The links of a particle are handled together, where the last of them stands. */
+static void add_shares(const void *view, int64_t begin, int64_t end)
+{
+    const mirrors *all = view;
+    const tobi_boundary_links *n = &sph_of(all->s)->links;
+    const isph_view *v = &all->m->view;
+    for (int64_t k = begin; k < end; k++) {
+        const int64_t i = n->link[k].particle;
+        for (int64_t q = v->last_link[i] == k ? k : -1; q >= 0; q = n->link[q].previous)
+            v->body_share[i] = 1 - (1 - v->body_share[i])*(1 - (float)n->entry[q].share);
+    }
+}
+
 tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error *err)
 {
     const tobi_boundary_links *n = &sph_of(s)->links;
@@ -79,37 +102,49 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
         m->mirrors = room;
     }
     v->mirror = m->mirror;
-    for (int64_t k = 0; k < n->count; k++) {
-        m->mirror[k] = make_mirror(s, &n->link[k], &n->entry[k]);
-        float *body_share = &v->body_share[n->link[k].particle];
-        *body_share = 1 - (1 - *body_share)*(1 - (float)n->entry[k].share);
-    }
+    const mirrors all = { m, s, 0 };
+    tobi_loop(s->sim->exec.threads, n->count, 0, make_mirrors, &all);
+    tobi_loop(s->sim->exec.threads, n->count, 0, add_shares, &all);
     return TOBI_OK;
 }
 
-/* Particles may have several entries: not shared among threads. */
+static void remove_hydrostatic(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const tobi_boundary_links *n = &sph_of(s)->links;
+    const int32_t *last = sph_fields_of(&s->particles)->last_link;
+    for (int64_t k = begin; k < end; k++) {
+        const int64_t i = n->link[k].particle;
+        for (int64_t q = last[i] == k ? k : -1; q >= 0; q = n->link[q].previous)
+            for (int a = 0; a < 3; a++)
+                (&s->particles.velocity[i].x)[a] -= (float)(s->dt*n->entry[q].hydrostatic[a]);
+    }
+}
+
 void isph_bodies_remove_hydrostatic(tobi_system *s)
 {
-    const tobi_boundary_links *n = &sph_of(s)->links;
-    for (int64_t k = 0; k < n->count; k++) {
+    tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, remove_hydrostatic, s);
+}
+
+static void accelerate(const void *view, int64_t begin, int64_t end)
+{
+    const mirrors *all = view;
+    const tobi_boundary_links *n = &sph_of(all->s)->links;
+    for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_entry *e = &n->entry[k];
-        for (int a = 0; a < 3; a++)
-            (&s->particles.velocity[n->link[k].particle].x)[a] -= (float)(s->dt*e->hydrostatic[a]);
+        const tobi_body *b = &all->s->sim->bodies[n->link[k].body];
+        double u[3];
+        if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
+        turn(b, e, n->answer[n->link[k].body], u);
+        for (int a = 0; a < 3; a++) {
+            all->m->mirror[k].velocity[a] += all->dt*u[a];
+            all->m->mirror[k].velocity_change[a] += all->dt*u[a];
+        }
     }
 }
 
 void isph_bodies_accelerate(isph_solver *m, tobi_system *s, double dt)
 {
-    const tobi_boundary_links *n = &sph_of(s)->links;
-    for (int64_t k = 0; k < n->count; k++) {
-        const tobi_boundary_entry *e = &n->entry[k];
-        const tobi_body *b = &s->sim->bodies[n->link[k].body];
-        double u[3];
-        if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
-        turn(b, e, n->answer[n->link[k].body], u);
-        for (int a = 0; a < 3; a++) {
-            m->mirror[k].velocity[a] += dt*u[a];
-            m->mirror[k].velocity_change[a] += dt*u[a];
-        }
-    }
+    const mirrors all = { m, s, dt };
+    tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, accelerate, &all);
 }
