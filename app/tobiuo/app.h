@@ -157,16 +157,20 @@ char *clear_place(const char *folder, const char *file);
 const char *movie_objection(const char *path);
 /* 0 if a movie can be made there and no file is in the way, or else EXIT_ERROR after a complaint. */
 int prepare_movie(const char *out, int force);
-/* Makes a movie of a run's pictures, `slow` times slower than the scene. Returns the exit code. */
-int make_movie(const char *dir, const char *out, double slow, int force);
+/* Makes a movie of a run's pictures, `slow` times slower than the scene. Returns the exit code.
+   view: an entry of output.views, NULL for the output's own pictures, here and below. */
+int make_movie(const char *dir, const char *view, const char *out, double slow, int force);
+/* "out_side.mp4" from "out.mp4"; NULL: no memory. The caller frees. */
+char *movie_of_view(const char *out, const char *view);
 /* The same, 640 pixels wide and at least 4 s long: *slow is how much slower it is than the scene. */
 int make_small_movie(const char *dir, const char *out, double *slow);
 /* A movie of DIR/frames with so many pictures per second; whatever is there is replaced. */
 int encode_pictures(const char *dir, const char *out, double rate);
-/* Number of pictures in DIR/frames. */
-int64_t count_pictures(const char *dir);
+/* Number of pictures in DIR/frames; one of them, NULL: no memory. */
+int64_t count_pictures(const char *dir, const char *view);
+char *frame_path(const char *dir, const char *view, int64_t number);
 /* sheet.c: a dozen of them in one PNG. Returns the exit code. */
-int make_sheet(const char *dir, const char *out);
+int make_sheet(const char *dir, const char *view, const char *out);
 
 /* progress.c */
 typedef struct progress {

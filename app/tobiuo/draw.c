@@ -11,16 +11,17 @@
 #include <unistd.h>
 
 typedef struct draw_options {
-    const char *dir, *out;
+    const char *dir, *out, *view;
     int64_t output;                    /* -1: the last */
     overrides set;
 } draw_options;
 
-enum { KEY_OUTPUT = KEY_OWN, KEY_VALUE };
+enum { KEY_OUTPUT = KEY_OWN, KEY_VALUE, KEY_VIEW };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the picture (DIR/picture.png)", 0 },
     { "output", KEY_OUTPUT, "N", 0, "number of the output, from 0 (the last)", 0 },
+    { "view", KEY_VIEW, "NAME", 0, "as this entry of output.views of the scene", 0 },
     { "set", KEY_VALUE, "PATH=VALUE", 0, "change a value of the scene, e.g. output.picture.field=pressure",
       0 },
     { 0 }
@@ -37,6 +38,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
         if (end == value || *end || o->output < 0)
             argp_error(state, "--output: '%s' is not a number from 0 on", value);
         break;
+    case KEY_VIEW: o->view = value; break;
     case KEY_VALUE: overrides_add(&o->set, "%s", value); break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
@@ -46,6 +48,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 /* All that the picture points to. */
 typedef struct drawing {
     tobi_scene *scene;
+    const tobi_view_def *view;         /* of the scene */
     tobi_moment moment;
     tobi_picture p;
     float *values;
@@ -97,9 +100,9 @@ static int load(const draw_options *o, drawing *d)
 }
 
 /* The colours of a field, over the range that the scene gives or that of the values. */
-static int set_values(drawing *d, const tobi_output_def *o)
+static int set_values(drawing *d)
 {
-    const char *name = o->picture_field ? o->picture_field : "velocity", *unit = NULL, *known;
+    const char *name = d->view->field ? d->view->field : "velocity", *unit = NULL, *known;
     const tobi_moment_field *f = find_field(&d->moment, name);
     const int64_t n = d->moment.count;
     int components;
@@ -115,14 +118,14 @@ static int set_values(drawing *d, const tobi_output_def *o)
         d->p.value_min = fmin(d->p.value_min, d->values[i]);
         d->p.value_max = fmax(d->p.value_max, d->values[i]);
     }
-    if (o->picture_min < o->picture_max) d->p.value_min = o->picture_min, d->p.value_max = o->picture_max;
+    if (d->view->min < d->view->max) d->p.value_min = d->view->min, d->p.value_max = d->view->max;
     if (!(d->p.value_min < d->p.value_max)) d->p.value_max = d->p.value_min + 1e-6;
     for (int k = 0; (known = tobi_world_field_name(k, &components, &unit)) && strcmp(known,
                                                                                      name) != 0; k++) { }
     snprintf(d->label, sizeof d->label, unit && strcmp(unit, "1") != 0 ? "%s [%s]" : "%s", name, unit);
     d->p.label = d->label;
     d->p.values = d->values;
-    d->p.palette = tobi_color_map(tobi_color_map_name(o->picture_map), &d->p.palette_count);
+    d->p.palette = tobi_color_map(tobi_color_map_name(d->view->map), &d->p.palette_count);
     if (d->p.look == TOBI_LOOK_NATURAL) d->p.look = TOBI_LOOK_SURFACE;
     return 0;
 }
@@ -167,28 +170,28 @@ static int set_meshes(drawing *d)
 static void set_view(drawing *d)
 {
     const tobi_world_def *w = tobi_scene_world_def(d->scene);
-    const tobi_output_def *o = tobi_scene_output_def(d->scene);
     tobi_picture *p = &d->p;
     *p = tobi_default_picture();
-    p->width = o->picture_width, p->height = o->picture_height, p->samples = o->picture_samples;
     p->dimension = w->dimension;
     p->radius = 0.5*w->spacing;
-    p->look = o->picture_look;
-    p->axes = o->picture_axes, p->transparent = o->picture_transparent;
-    p->slice = o->picture_slice;
     for (int a = 0; a < 3; a++) {
         p->box_min[a] = w->domain_min[a], p->box_max[a] = w->domain_max[a];
         p->up[a] = -w->gravity[a];
-        p->eye[a] = o->camera_position[a], p->target[a] = o->camera_look_at[a];
-        p->clip_point[a] = o->picture_clip_point[a], p->clip_normal[a] = o->picture_clip_normal[a];
-        p->clip |= o->picture_clip_normal[a] != 0;
     }
-    p->has_camera = o->camera_angle > 0 && w->dimension == 3;
-    if (p->has_camera) p->field_of_view = o->camera_angle;
+    tobi_picture_set_view(p, d->view);
     p->particle_count = d->moment.count;
     p->positions = (const double (*)[3])d->moment.positions;
     snprintf(d->title, sizeof d->title, "t = %.4f s", d->moment.time);
     p->title = d->title;
+}
+
+static int find_view(const draw_options *o, drawing *d)
+{
+    const tobi_output_def *output = tobi_scene_output_def(d->scene);
+    d->view = o->view ? NULL : &output->view;
+    for (int k = 0; !d->view && k < output->view_count; k++)
+        if (strcmp(output->views[k].name, o->view) == 0) d->view = &output->views[k];
+    return d->view ? 0 : complain("the scene of %s has no view '%s'", o->dir, o->view);
 }
 
 static int draw(const draw_options *o, drawing *d)
@@ -198,14 +201,15 @@ static int draw(const draw_options *o, drawing *d)
     int code = load(o, d);
     if (code != 0) return code;
     const tobi_world_def *w = tobi_scene_world_def(d->scene);
-    const tobi_output_def *output = tobi_scene_output_def(d->scene);
     const tobi_moment_field *velocity = find_field(&d->moment, "velocity");
+    code = find_view(o, d);
+    if (code != 0) return code;
     set_view(d);
     code = set_meshes(d);
     if (code == 0 && strcmp(w->method, "mlsmpm") == 0) code = set_groups(d);
-    if (code == 0 && (output->picture_field || output->picture_look || w->dimension == 2))
-        code = set_values(d, output);
-    if (code == 0 && output->picture_arrows && velocity)
+    if (code == 0 && (d->view->field || d->view->look || w->dimension == 2))
+        code = set_values(d);
+    if (code == 0 && d->view->arrows && velocity)
         d->p.velocities = (const double (*)[3])(const void *)velocity->values;
     if (code != 0) return code;
     if (asprintf(&path, "%s/picture.png", o->dir) < 0) return complain("out of memory");

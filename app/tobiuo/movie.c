@@ -13,13 +13,14 @@
 /* Pictures per second at most: more are left out. */
 static const double FASTEST = 60;
 
-typedef struct movie_options { const char *dir, *out; double slow; int force; } movie_options;
+typedef struct movie_options { const char *dir, *out, *view; double slow; int force; } movie_options;
 
-enum { KEY_SLOW = KEY_OWN, KEY_FORCE };
+enum { KEY_SLOW = KEY_OWN, KEY_FORCE, KEY_VIEW };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the movie: .mp4, .webm, .webp or .gif; or a sheet of a dozen pictures: .png "
         "(DIR/movie.mp4)", 0 },
+    { "view", KEY_VIEW, "NAME", 0, "the pictures of this entry of output.views", 0 },
     { "slow", KEY_SLOW, "N", 0, "N times slower than the scene was (1)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace FILE", 0 },
     { 0 }
@@ -69,18 +70,25 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->out = value;
         break;
     case KEY_SLOW: o->slow = parse_positive(state, "--slow", value); break;
+    case KEY_VIEW: o->view = value; break;
     case KEY_FORCE: o->force = 1; break;
     default: return parse_argument(state, key, value, "DIR", &o->dir);
     }
     return 0;
 }
 
-int64_t count_pictures(const char *dir)
+char *frame_path(const char *dir, const char *view, int64_t number)
+{
+    char *path = NULL;
+    return asprintf(&path, "%s/frames/%s_%06lld.png", dir, view ? view : "frame", (long long)number) < 0
+        ? NULL : path;
+}
+
+int64_t count_pictures(const char *dir, const char *view)
 {
     for (int64_t k = 0;; k++) {
-        char *path = NULL;
-        if (asprintf(&path, "%s/frames/frame_%06lld.png", dir, (long long)k) < 0) return k;
-        const int there = access(path, R_OK) == 0;
+        char *path = frame_path(dir, view, k);
+        const int there = path && access(path, R_OK) == 0;
         free(path);
         if (!there) return k;
     }
@@ -104,23 +112,32 @@ static double find_interval(const char *dir)
     return isfinite(interval) && interval > 0 ? interval : 0;
 }
 
-/* DIR/frames/frame_%06d.png; ffmpeg reads a % of the folder's name as two. */
-static char *name_pictures(const char *dir)
+static char *append(char *to, const char *text)
 {
-    char *path = malloc(2*strlen(dir) + 32), *to = path;
-    if (!path) return NULL;
-    for (; *dir; dir++) {
-        if (*dir == '%') *to++ = '%';
-        *to++ = *dir;
+    for (; *text; text++) {
+        if (*text == '%') *to++ = '%';
+        *to++ = *text;
     }
-    strcpy(to, "/frames/frame_%06d.png");
+    *to = '\0';
+    return to;
+}
+
+/* DIR/frames/frame_%06d.png; ffmpeg reads a % of a name as two. */
+static char *name_pictures(const char *dir, const char *view)
+{
+    if (!view) view = "frame";
+    char *path = malloc(2*(strlen(dir) + strlen(view)) + 32), *to = path;
+    if (!path) return NULL;
+    to = append(to, dir);
+    to = append(stpcpy(to, "/frames/"), view);
+    strcpy(to, "_%06d.png");
     return path;
 }
 
-static int encode(const char *dir, const char *part, const struct kind *kind, double rate)
+static int encode(const char *dir, const char *view, const char *part, const struct kind *kind, double rate)
 {
     enum { ARGUMENTS = 32 };
-    char *argument[ARGUMENTS], speed[32], most[32], *pictures = name_pictures(dir), *file = NULL;
+    char *argument[ARGUMENTS], speed[32], most[32], *pictures = name_pictures(dir, view), *file = NULL;
     int n = 0;
     if (!pictures || asprintf(&file, "file:%s", part) < 0) {
         free(pictures);
@@ -143,11 +160,12 @@ static int encode(const char *dir, const char *part, const struct kind *kind, do
 }
 
 /* A movie is there whole or not at all. */
-static int write_movie(const char *dir, const char *out, const struct kind *kind, double rate)
+static int write_movie(const char *dir, const char *view, const char *out, const struct kind *kind,
+                       double rate)
 {
     char *part = NULL;
     if (asprintf(&part, "%s.part", out) < 0) return complain("out of memory");
-    int code = encode(dir, part, kind, rate);
+    int code = encode(dir, view, part, kind, rate);
     if (code == 0 && rename(part, out) != 0) code = complain("cannot write %s: %s", out, strerror(errno));
     if (code != 0) unlink(part);
     free(part);
@@ -164,27 +182,28 @@ int prepare_movie(const char *out, int force)
 
 int encode_pictures(const char *dir, const char *out, double rate)
 {
-    return write_movie(dir, out, find_kind(out), rate);
+    return write_movie(dir, NULL, out, find_kind(out), rate);
 }
 
 /* s between the pictures of a run; 0 after a complaint. */
-static double check_pictures(const char *dir, int64_t count)
+static double check_pictures(const char *dir, const char *view, int64_t count)
 {
     const double interval = count > 0 ? find_interval(dir) : 0;
     if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
+    else if (count == 0 && view) complain("%s has no pictures of a view '%s'", dir, view);
     else if (count == 0) complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
     else if (count < 2 || !(interval > 0)) complain("%s has one output only, which is no movie", dir);
     else return interval;
     return 0;
 }
 
-int make_movie(const char *dir, const char *out, double slow, int force)
+int make_movie(const char *dir, const char *view, const char *out, double slow, int force)
 {
-    const int64_t count = count_pictures(dir);
-    const double interval = check_pictures(dir, count);
+    const int64_t count = count_pictures(dir, view);
+    const double interval = check_pictures(dir, view, count);
     if (!(interval > 0)) return EXIT_ERROR;
     if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
-    const int code = write_movie(dir, out, find_kind(out), 1/(interval*slow));
+    const int code = write_movie(dir, view, out, find_kind(out), 1/(interval*slow));
     if (code == 0)
         printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
     return code;
@@ -193,22 +212,22 @@ int make_movie(const char *dir, const char *out, double slow, int force)
 int make_small_movie(const char *dir, const char *out, double *slow)
 {
     static const double SHORTEST = 4, STEPS[] = { 1, 2, 5, 10 };       /* s of a movie */
-    const int64_t count = count_pictures(dir);
-    const double interval = check_pictures(dir, count);
+    const int64_t count = count_pictures(dir, NULL);
+    const double interval = check_pictures(dir, NULL, count);
     if (!(interval > 0)) return EXIT_ERROR;
     const double wanted = fmax(1, SHORTEST/((double)count*interval)), ten = pow(10, floor(log10(wanted)));
     for (int k = 0; k < 4; k++) {
         *slow = STEPS[k]*ten;
         if (*slow >= 0.999*wanted) break;
     }
-    return write_movie(dir, out, &small, 1/(interval**slow));
+    return write_movie(dir, NULL, out, &small, 1/(interval**slow));
 }
 
-static int write_sheet(const char *dir, const char *out, int force)
+static int write_sheet(const char *dir, const char *view, const char *out, int force)
 {
     if (access(dir, F_OK) != 0) return complain_run(dir, "there is no run");
     if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
-    const int code = make_sheet(dir, out);
+    const int code = make_sheet(dir, view, out);
     if (code == 0) printf("sheet: %s\n", out);
     return code;
 }
@@ -219,11 +238,20 @@ const struct argp movie_argp = { .options = options, .parser = parse, .args_doc 
 int tobiuo_movie(int argc, char **argv)
 {
     movie_options o = { .slow = 1 };
-    char *out = NULL;
+    char *own = NULL;
     parse_arguments(&movie_argp, argc, argv, &o);
-    if (asprintf(&out, "%s/movie.mp4", o.dir) < 0) return complain("out of memory");
-    const int code = o.out && is_sheet(o.out) ? write_sheet(o.dir, o.out, o.force)
-                                              : make_movie(o.dir, o.out ? o.out : out, o.slow, o.force);
-    free(out);
+    if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
+        return complain("out of memory");
+    const char *out = o.out ? o.out : own;
+    const int code = is_sheet(out) ? write_sheet(o.dir, o.view, out, o.force)
+                                   : make_movie(o.dir, o.view, out, o.slow, o.force);
+    free(own);
     return code;
+}
+
+char *movie_of_view(const char *out, const char *view)
+{
+    char *path = NULL;
+    const char *dot = strrchr(out, '.');
+    return asprintf(&path, "%.*s_%s%s", (int)(dot - out), out, view, dot) < 0 ? NULL : path;
 }

@@ -218,12 +218,12 @@ static void write_pictures(const report *r)
     char *sheet = join(r->dir, "report_sheet.png"), *movie = join(r->dir, "report_movie.mp4");
     double slow = 1;
     fputs("<h2>Pictures</h2>\n", r->file);
-    if (count_pictures(r->dir) == 0) {
+    if (count_pictures(r->dir, NULL) == 0) {
         fputs("<p>There are none: the scene was run without <code>--frames</code>.</p>\n", r->file);
     } else {
-        if (make_sheet(r->dir, sheet) == 0)
+        if (make_sheet(r->dir, NULL, sheet) == 0)
             embed(r, "<img alt=\"moments of the run\" src=\"", "image/png", sheet, "\">\n");
-        if (count_pictures(r->dir) > 1) {
+        if (count_pictures(r->dir, NULL) > 1) {
             if (make_small_movie(r->dir, movie, &slow) == 0) {
                 fprintf(r->file, "<h3>Movie</h3><p>%s%g%s</p>\n", slow > 1 ? "" : "As fast as the scene, x",
                         slow, slow > 1 ? " times slower than the scene." : ".");

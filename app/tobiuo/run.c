@@ -20,7 +20,8 @@ static const struct argp_option options[] = {
     { "threads", 't', "N", 0, "threads (0 = all cores)", 0 },
     { "force", KEY_FORCE, NULL, 0, "replace the results that are in DIR, and write however much", 0 },
     { "frames", KEY_FRAMES, NULL, 0, "write a picture at each output", 0 },
-    { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm, .webp or .gif", 0 },
+    { "movie", KEY_MOVIE, "FILE", 0, "and a movie of them at the end: .mp4, .webm, .webp or .gif; one "
+        "of each view", 0 },
     { "window", KEY_WINDOW, NULL, 0, "watch the run in a window; the key h lists its keys", 0 },
     { "keys", KEY_KEYS, "LETTERS", 0, "keys typed into the window at the start", 0 },
     { "quiet", 'q', NULL, 0, "no progress line", 0 },
@@ -93,6 +94,24 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     return code;
 }
 
+enum { PREPARE, MAKE };
+
+/* The movies of the output's own pictures and of its views: asked for, or made. */
+static int handle_movies(const tobi_scene *scene, const run_options *o, const char *dir, int stage)
+{
+    const tobi_output_def *output = tobi_scene_output_def(scene);
+    int code = stage == MAKE ? make_movie(dir, NULL, o->movie, 1, o->force)
+                             : prepare_movie(o->movie, o->force);
+    for (int k = 0; code == 0 && k < output->view_count; k++) {
+        char *path = movie_of_view(o->movie, output->views[k].name);
+        code = !path ? complain("out of memory")
+             : stage == MAKE ? make_movie(dir, output->views[k].name, path, 1, o->force)
+                             : prepare_movie(path, o->force);
+        free(path);
+    }
+    return code;
+}
+
 static int run_scene(tobi_scene *scene, const run_options *o)
 {
     tobi_error err = { 0 };
@@ -102,9 +121,9 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
     int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
-    if (code == 0 && o->movie) code = prepare_movie(o->movie, o->force);
+    if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     if (code == 0) code = record(scene, world, o, dir);
-    if (code == 0 && o->movie) code = make_movie(dir, o->movie, 1, o->force);
+    if (code == 0 && o->movie) code = handle_movies(scene, o, dir, MAKE);
     free(dir);
     tobi_world_destroy(world);
     return code;

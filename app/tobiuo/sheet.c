@@ -71,14 +71,13 @@ static int lay_out(sheet *s, const png_image *first)
     return 0;
 }
 
-static int draw_cell(sheet *s, const char *dir, int cell)
+static int draw_cell(sheet *s, const char *dir, const char *view, int cell)
 {
     const int64_t number = s->cells > 1 ? (s->count - 1)*cell/(s->cells - 1) : 0;
     png_image image;
     png_bytep pixels;
-    char *path = NULL;
-    if (asprintf(&path, "%s/frames/frame_%06lld.png", dir, (long long)number) < 0)
-        return complain("out of memory");
+    char *path = frame_path(dir, view, number);
+    if (!path) return complain("out of memory");
     int code = read_picture(path, &image, &pixels);
     if (code == 0 && cell == 0) code = lay_out(s, &image);
     if (code == 0)
@@ -89,14 +88,14 @@ static int draw_cell(sheet *s, const char *dir, int cell)
     return code;
 }
 
-int make_sheet(const char *dir, const char *out)
+int make_sheet(const char *dir, const char *view, const char *out)
 {
-    sheet s = { .count = count_pictures(dir), .cells = 1, .columns = 1 };
+    sheet s = { .count = count_pictures(dir, view), .cells = 1, .columns = 1 };
     char *part = NULL;
     int code = 0;
     if (s.count == 0) return complain("%s has no pictures: run the scene with --frames, or with "
         "--movie", dir);
-    for (int k = 0; code == 0 && k < s.cells; k++) code = draw_cell(&s, dir, k);
+    for (int k = 0; code == 0 && k < s.cells; k++) code = draw_cell(&s, dir, view, k);
     if (code == 0 && asprintf(&part, "%s.part", out) < 0) code = complain("out of memory");
     if (code == 0 && !png_image_write_to_file(&s.image, part, 0, s.pixels, 0, NULL))
         code = complain("cannot write %s: %s", out, s.image.message);

@@ -61,10 +61,10 @@ static window_def make_window(const tobi_scene *scene, const char *dir, const ch
         d.stage.low[k] = w->domain_min[k];
         d.stage.high[k] = w->domain_max[k];
         d.stage.up[k] = -w->gravity[k];
-        d.eye[k] = out->camera_position[k];
-        d.target[k] = out->camera_look_at[k];
+        d.eye[k] = out->view.position[k];
+        d.target[k] = out->view.look_at[k];
     }
-    d.angle = w->dimension == 3 ? out->camera_angle : 0;
+    d.angle = w->dimension == 3 ? out->view.angle : 0;
     char *text = tobi_scene_resolved(scene);
     json_t *json = text ? json_loads(text, 0, NULL) : NULL;
     const json_t *solids = json_object_get(json, "solids");

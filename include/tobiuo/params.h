@@ -61,6 +61,7 @@ TOBI_API extern const tobi_param_table tobi_body_table;
 TOBI_API extern const tobi_param_table tobi_plane_table;
 TOBI_API extern const tobi_param_table tobi_probe_table;
 TOBI_API extern const tobi_param_table tobi_output_table;
+TOBI_API extern const tobi_param_table tobi_view_table;
 TOBI_API extern const tobi_param_table tobi_reference_table;
 
 /* Every table by index, those of methods among them; NULL past the end. */

@@ -9,6 +9,7 @@
 #ifndef TOBIUO_PICTURE_H
 #define TOBIUO_PICTURE_H
 #include "tobiuo/base.h"
+#include "tobiuo/types.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -71,6 +72,8 @@ enum { TOBI_PICTURE_STAGES = 6 };
 TOBI_API const char *tobi_picture_stage_name(int stage);      /* NULL beyond the last */
 
 TOBI_API tobi_picture tobi_default_picture(void);
+/* Size, camera, look and plane of a view; its colours, arrows and body to follow need values and are left. */
+TOBI_API void tobi_picture_set_view(tobi_picture *picture, const tobi_view_def *view);
 
 /* A palette that is even to the eye, by name, and its number of colours; NULL for an unknown name. */
 TOBI_API const float (*tobi_color_map(const char *name, int *count))[3];

@@ -311,6 +311,27 @@ typedef struct tobi_probe_def {
     double position[3];         /* m */
 } tobi_probe_def;
 
+/* What pictures show, and from where. */
+enum { TOBI_VIEW_LIMIT = 8 };        /* views besides the output's own */
+typedef struct tobi_view_def {
+    const char *name;                 /* of the files of a further view; NULL: the output's own       */
+    double      position[3];          /* m, of the camera, if there is an angle                       */
+    double      look_at[3];           /* m, what it looks at                                          */
+    double      angle;                /* degrees, vertical field of view; 0 = a view that fits        */
+    int         look;                 /* TOBI_LOOK_* of tobiuo/picture.h                              */
+    int         map;                  /* of colours, see tobi_color_map_name                          */
+    const char *field;                /* that gives the colours; NULL = none                          */
+    double      min, max;             /* values at the ends of the colours; equal = of each picture   */
+    int         width, height;        /* pixels                                                       */
+    int         samples;              /* per pixel and axis                                           */
+    int         arrows;               /* 1: velocities as arrows                                      */
+    int         axes;                 /* 1: ticks along edges of the domain                           */
+    int         transparent;          /* 1: nothing behind                                            */
+    const char *follow;               /* name of the body that the camera moves with; NULL = none     */
+    double      clip_point[3], clip_normal[3];       /* m, 1; a normal of 0 = no plane                */
+    double      slice;                /* m; 0 = all on one side of the plane                          */
+} tobi_view_def;
+
 /* Files of a run. */
 typedef struct tobi_output_def {
     double      interval;             /* s of simulated time between outputs, hit exactly            */
@@ -328,21 +349,9 @@ typedef struct tobi_output_def {
     double      surface_cell;         /* spacings, cell of its grid                                   */
     int         surface_smoothing;    /* rounds                                                       */
     const char *surface_fields;       /* names separated by commas, of its vertices                   */
-    double      camera_position[3];   /* m, the eye of the pictures                                   */
-    double      camera_look_at[3];    /* m, what it looks at                                          */
-    double      camera_angle;         /* degrees, vertical field of view; 0 = a view that fits        */
-    int         picture_look;         /* TOBI_LOOK_* of tobiuo/picture.h                              */
-    int         picture_map;          /* of colours, see tobi_color_map_name                          */
-    const char *picture_field;        /* that gives the colours; NULL = none                          */
-    double      picture_min, picture_max;          /* values at its ends; equal = of each picture     */
-    int         picture_width, picture_height;     /* pixels                                          */
-    int         picture_samples;      /* per pixel and axis                                           */
-    int         picture_arrows;       /* 1: velocities as arrows                                      */
-    int         picture_axes;         /* 1: ticks along edges of the domain                           */
-    int         picture_transparent;  /* 1: nothing behind                                            */
-    const char *picture_follow;       /* name of the body that the camera moves with; NULL = none     */
-    double      picture_clip_point[3], picture_clip_normal[3];    /* m, 1; a normal of 0 = no plane   */
-    double      picture_slice;        /* m; 0 = all on one side of the plane                          */
+    tobi_view_def view;               /* the pictures frames/frame_000000.png                         */
+    const tobi_view_def *views;       /* further ones, frames/NAME_000000.png; read at the start      */
+    int         view_count;
 } tobi_output_def;
 
 /* Measured or published values that a column of a run's tables is compared with. */

@@ -337,79 +337,6 @@ static void check_probes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-static void check_field(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
-                        const char *field)
-{
-    enum { FIELDS = 32 };
-    const char *names[FIELDS];
-    int count = 0;
-    while (count < FIELDS && (names[count] = tobi_method_field(scene->world.method, count))) count++;
-    char all[512] = "";
-    if (strcmp(field, "usual") == 0) return;
-    for (int k = 0; k < count; k++)
-        if (strcmp(names[k], field) == 0) return;
-    if (tobi_report_pass(source->report)) return;
-    for (int k = 0; k < count; k++) {
-        size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
-    }
-    const char *near = tobi_suggest(field, names, (size_t)count);
-    if (near)
-        tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field,
-                            near);
-    else tobi_source_mistake(source, place, "there is no field \"%s\"; allowed are %s", field, all);
-}
-
-static void check_names(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
-                        const char *names)
-{
-    char *copy = strdup(names ? names : ""), *next = copy;
-    for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
-        if (*field) check_field(scene, source, place, field);
-    free(copy);
-}
-
-static void check_picture(const tobi_scene *scene, tobi_source *source, const tobi_place *output)
-{
-    tobi_place picture = { output, "picture", 0 }, follow = { &picture, "follow", 0 };
-    tobi_place field = { &picture, "field", 0 };
-    if (scene->output.picture_field) check_names(scene, source, &field, scene->output.picture_field);
-    if (!scene->output.picture_follow) return;
-    for (int b = 0; b < scene->body_count; b++) {
-        const char *name = scene->bodies[b].def.name;
-        if (name && strcmp(name, scene->output.picture_follow) == 0) return;
-    }
-    tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", scene->output.picture_follow);
-}
-
-static void check_output(const tobi_scene *scene, tobi_source *source)
-{
-    enum { MOST_OUTPUTS = 1000000 };
-    tobi_place output = { &root, "output", 0 }, interval = { &output, "interval", 0 };
-    tobi_place fields = { &output, "fields", 0 };
-    if (scene->world.end_time/scene->output.interval > MOST_OUTPUTS)
-        tobi_source_mistake(source, &interval,
-                            "is %.10g s and makes more than %d outputs until end_time, %.10g s",
-                            scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
-    tobi_method_info method;
-    tobi_place grid = { &output, "grid", 0 };
-    if (scene->output.grid && tobi_method_describe(scene->world.method, &method) && !method.grid)
-        tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method.name);
-    tobi_place surface = { &output, "surface", 0 }, of_surface = { &surface, "fields", 0 };
-    if (scene->output.surface && scene->world.dimension == 2)
-        tobi_source_mistake(source, &surface, "is of 3-D scenes only");
-    tobi_place tractions = { &output, "tractions", 0 };
-    if (scene->output.tractions && tobi_method_describe(scene->world.method, &method) && method.solids)
-        tobi_source_mistake(source, &tractions, "%s has no fluid that presses on bodies", method.name);
-    tobi_place camera = { &output, "camera", 0 }, target = { &camera, "look_at", 0 };
-    if (scene->output.camera_angle > 0 && scene->world.dimension == 3 &&
-        memcmp(scene->output.camera_position, scene->output.camera_look_at, 3*sizeof(double)) == 0)
-        tobi_source_mistake(source, &target, "is the camera's own position");
-    check_picture(scene, source, &output);
-    check_names(scene, source, &fields, scene->output.fields);
-    check_names(scene, source, &of_surface, scene->output.surface_fields);
-}
-
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
 {
     check_method(scene, source);
@@ -422,6 +349,6 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_planes(scene, source);
     tobi_unused_check(scene, source);
     check_probes(scene, source);
-    check_output(scene, source);
+    tobi_output_check(scene, source);
     tobi_references_check(scene, source);
 }

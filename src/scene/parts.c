@@ -20,6 +20,8 @@ static const tobi_part parts[] = {
     { "world", "references", TOBI_PART_LIST, &tobi_reference_table, 0, 64,
       "Data that `tobiuo plot` draws beside the run's, if any." },
     { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },
+    { "output", "views", TOBI_PART_LIST, &tobi_view_table, 0, TOBI_VIEW_LIMIT,
+      "Further pictures of each output, frames/NAME_000000.png." },
     { "world", "$schema", TOBI_PART_EDITOR, NULL, 0, 0,
       "Where an editor finds the JSON Schema of scenes; Tobiuo passes over it." },
     { "fluid", "fill", TOBI_PART_LIST, &tobi_fill_table, 1, TOBI_REGION_LIMIT/TOBI_FLUID_LIMIT,

@@ -12,10 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The list of objects at the key of `place`, a part of `owner`. NULL if there is none; mistakes are
-   reported. */
-static json_t *open_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
-                         const char *owner)
+json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place, const char *owner)
 {
     int limit = tobi_part_find(owner, place->key).most;
     json_t *list = json_object_get(object, place->key);
@@ -36,7 +33,7 @@ static tobi_status read_fills(const tobi_binder *binder, json_t *value, const to
                               const char *owner, tobi_scene_fill **fills, int *count)
 {
     tobi_place fill = { place, "fill", 0 };
-    json_t *list = open_list(binder, value, &fill, owner);
+    json_t *list = tobi_scene_list(binder, value, &fill, owner);
     if (json_array_size(list) == 0) {
         if (json_is_object(value) && (list || !json_object_get(value, "fill")))
             tobi_source_mistake(binder->source, &fill,
@@ -75,7 +72,7 @@ static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const to
 static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "fluids", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->fluids = calloc(json_array_size(list) + 1, sizeof *scene->fluids);
     if (!scene->fluids) return TOBI_NO_MEMORY;
@@ -92,7 +89,7 @@ static tobi_status read_solids(tobi_scene *scene, const tobi_binder *binder, con
     const char *also[TOBI_PARTS];
     tobi_part_keys("solid", also);
     tobi_place place = { root, "solids", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->solids = calloc(json_array_size(list) + 1, sizeof *scene->solids);
     if (!scene->solids) return TOBI_NO_MEMORY;
@@ -112,7 +109,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
     const char *also[TOBI_PARTS];
     tobi_part_keys("body", also);
     tobi_place place = { root, "bodies", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->bodies = calloc(json_array_size(list) + 1, sizeof *scene->bodies);
     if (!scene->bodies) return TOBI_NO_MEMORY;
@@ -143,7 +140,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
 static tobi_status read_planes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "planes", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->planes = calloc(json_array_size(list) + 1, sizeof *scene->planes);
     scene->planes_bound = calloc(json_array_size(list) + 1, sizeof *scene->planes_bound);
@@ -161,7 +158,7 @@ static tobi_status read_planes(tobi_scene *scene, const tobi_binder *binder, con
 static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
 {
     tobi_place place = { root, "probes", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->probes = calloc(json_array_size(list) + 1, sizeof *scene->probes);
     if (!scene->probes) return TOBI_NO_MEMORY;
@@ -178,7 +175,7 @@ static tobi_status read_references(tobi_scene *scene, const tobi_binder *binder,
                                    const tobi_place *root)
 {
     tobi_place place = { root, "references", 0 };
-    json_t *list = open_list(binder, scene->root, &place, "world");
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->references = calloc(json_array_size(list) + 1, sizeof *scene->references);
     if (!scene->references) return TOBI_NO_MEMORY;
@@ -240,7 +237,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
 {
     const char *also[TOBI_PARTS];
     tobi_part_keys("world", also);
-    tobi_place root = { 0 }, output = { &root, "output", 0 };
+    tobi_place root = { 0 };
 
     tobi_binder binder = { source, &scene->texts, scene->directory, 3 };
     binder.dimension = find_dimension(scene->root);
@@ -255,9 +252,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_bodies(scene, &binder, &root));
     TOBI_TRY(read_planes(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
-    scene->output = tobi_default_output_def();
-    json_t *value = json_object_get(scene->root, "output");
-    if (value) tobi_bind(&binder, &tobi_output_table, value, &output, NULL, &scene->output);
+    TOBI_TRY(tobi_output_bind(scene, &binder, &root));
     TOBI_TRY(read_references(scene, &binder, &root));
     if (scene->texts.failed) return TOBI_NO_MEMORY;
     tobi_scene_check(scene, source);
@@ -377,6 +372,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->planes_bound);
     free(scene->probes);
     free(scene->references);
+    free(scene->views);
     free(scene->method_def);
     tobi_texts_free(&scene->texts);
     json_decref(scene->stand_ins);
@@ -558,7 +554,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     failed |= json_object_set_new(root, "bodies", bodies);
     if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
-    failed |= json_object_set_new(root, "output", tobi_write_def(&tobi_output_table, &scene->output));
+    failed |= json_object_set_new(root, "output", tobi_output_write(scene));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);
     json_decref(fluids);
     json_decref(solids);

@@ -56,6 +56,7 @@ struct tobi_scene {
     tobi_probe_def *probes;
     int probe_count;
     tobi_output_def output;
+    tobi_view_def *views;          /* of output, which points to them             */
     char *import_table;            /* what old keys became; NULL: it was native   */
     json_t *stand_ins;             /* of a translated scene, see import.h         */
     tobi_reference_def *references;
@@ -64,6 +65,16 @@ struct tobi_scene {
 
 /* The absolute directory of a file that may not exist; owned by the caller. */
 char *tobi_scene_find_directory(const char *path);
+
+/* scene.c: the list of objects at the key of `place`, a part of `owner`. NULL if there is none; mistakes are
+   reported. */
+json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
+                        const char *owner);
+
+/* output.c: the key output of the scene, which is `of`. */
+tobi_status tobi_output_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
+void tobi_output_check(const tobi_scene *scene, tobi_source *source);
+json_t *tobi_output_write(const tobi_scene *scene);      /* NULL: no memory */
 
 /* references.c: reports columns, bodies, probes and files that are not there. */
 void tobi_references_check(const tobi_scene *scene, tobi_source *source);

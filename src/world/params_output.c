@@ -15,6 +15,50 @@ static const tobi_param probe_rows[] = {
 const tobi_param_table tobi_probe_table = {
     "probe", "An entry of probes: a sensor in the domain.", sizeof(tobi_probe_def), probe_rows };
 
+/* Rows of one picture, in a struct of this type at this member. */
+#define VIEW_ROWS(type, in) \
+    { .key = "camera.position", VEC3, AT(type, in position), PLACE, .unit = "m", \
+      .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." }, \
+    { .key = "camera.look_at", VEC3, AT(type, in look_at), PLACE, .unit = "m", \
+      .doc = "The point in the middle of the pictures." }, \
+    { .key = "camera.angle", REAL, AT(type, in angle), RANGE(0.01, 150), \
+      .unit = "degrees", .text = "fit", \
+      .doc = "Vertical field of view; fit shows the whole domain from where it looks best." }, \
+    { .key = "picture.look", CHOICE("natural|surface|particles", 3), AT(type, in look), \
+      .doc = "What pictures of a 3-D scene show: water and solids as they look, or, in the colours of " \
+             "picture.field, their surface or each particle. With a field, natural is surface." }, \
+    { .key = "picture.field", TEXT, AT(type, in field), .unit = "name", \
+      .doc = "The field that colours the pictures, as in fields; of a vector its length. 2-D scenes " \
+             "without it show the speed." }, \
+    { .key = "picture.map", CHOICE("viridis|magma|cividis|coolwarm|gray", 5), AT(type, in map), \
+      .doc = "The colours of picture.field, from its least value to its largest." }, \
+    { .key = "picture.min", REAL, AT(type, in min), RANGE(-1e30, 1e30), \
+      .unit = "that of the field", .doc = "Value at the lower end of the colours." }, \
+    { .key = "picture.max", REAL, AT(type, in max), RANGE(-1e30, 1e30), \
+      .unit = "that of the field", \
+      .doc = "Value at the upper end; not above min: each picture has the range of its own values." }, \
+    { .key = "picture.width", INT, AT(type, in width), .def = { 1280 }, RANGE(16, 8192), \
+      .unit = "pixels", .doc = "Width of the pictures." }, \
+    { .key = "picture.height", INT, AT(type, in height), .def = { 720 }, RANGE(16, 8192), \
+      .unit = "pixels", .doc = "Height of the pictures." }, \
+    { .key = "picture.samples", INT, AT(type, in samples), .def = { 2 }, RANGE(1, 4), \
+      .unit = "1", .doc = "Samples per pixel and axis: more make finer edges and take longer." }, \
+    { .key = "picture.follow", TEXT, AT(type, in follow), .unit = "name", \
+      .doc = "Name of the body that the camera moves with; camera.position and look_at are those at the " \
+             "start." }, \
+    { .key = "picture.clip_point", VEC3, AT(type, in clip_point), PLACE, .unit = "m", \
+      .doc = "A point of the plane that cuts particles off, if picture.clip_normal is given." }, \
+    { .key = "picture.clip_normal", VEC3, AT(type, in clip_normal), DIRECTION, .unit = "1", \
+      .doc = "Direction from the plane to what is not shown; 0 is no plane." }, \
+    { .key = "picture.slice", REAL, AT(type, in slice), RANGE(0, 1e7), .unit = "m", \
+      .doc = "Above 0 only what is within half of this from the plane is shown." }, \
+    { .key = "picture.arrows", BOOL, AT(type, in arrows), \
+      .doc = "Draw velocities as arrows, the longest for the fastest." }, \
+    { .key = "picture.axes", BOOL, AT(type, in axes), \
+      .doc = "Draw ticks with numbers along edges of the domain." }, \
+    { .key = "picture.transparent", BOOL, AT(type, in transparent), \
+      .doc = "Leave the background of the pictures transparent." },
+
 static const tobi_param output_rows[] = {
     { .key = "interval", REAL, AT(tobi_output_def, interval), .def = { 0.01 }, DURATION,
       .unit = "s", .doc = "Simulated time between outputs, hit exactly." },
@@ -53,53 +97,22 @@ static const tobi_param output_rows[] = {
       .text = "usual",
       .doc = "Fields of the surface's vertices, means of the particles around. usual, alone or among others, "
              "stands for velocity and pressure." },
-    { .key = "camera.position", VEC3, AT(tobi_output_def, camera_position), PLACE, .unit = "m",
-      .doc = "Where the pictures of a 3-D scene are taken from, if camera.angle is given." },
-    { .key = "camera.look_at", VEC3, AT(tobi_output_def, camera_look_at), PLACE, .unit = "m",
-      .doc = "The point in the middle of the pictures." },
-    { .key = "camera.angle", REAL, AT(tobi_output_def, camera_angle), RANGE(0.01, 150),
-      .unit = "degrees", .text = "fit",
-      .doc = "Vertical field of view; fit shows the whole domain from where it looks best." },
-    { .key = "picture.look", CHOICE("natural|surface|particles", 3), AT(tobi_output_def, picture_look),
-      .doc = "What pictures of a 3-D scene show: water and solids as they look, or, in the colours of "
-             "picture.field, their surface or each particle. With a field, natural is surface." },
-    { .key = "picture.field", TEXT, AT(tobi_output_def, picture_field), .unit = "name",
-      .doc = "The field that colours the pictures, as in fields; of a vector its length. 2-D scenes without "
-             "it show the speed." },
-    { .key = "picture.map", CHOICE("viridis|magma|cividis|coolwarm|gray", 5), AT(tobi_output_def,
-                                                                                 picture_map),
-      .doc = "The colours of picture.field, from its least value to its largest." },
-    { .key = "picture.min", REAL, AT(tobi_output_def, picture_min), RANGE(-1e30, 1e30),
-      .unit = "that of the field", .doc = "Value at the lower end of the colours." },
-    { .key = "picture.max", REAL, AT(tobi_output_def, picture_max), RANGE(-1e30, 1e30),
-      .unit = "that of the field",
-      .doc = "Value at the upper end; not above min: each picture has the range of its own values." },
-    { .key = "picture.width", INT, AT(tobi_output_def, picture_width), .def = { 1280 }, RANGE(16, 8192),
-      .unit = "pixels", .doc = "Width of the pictures." },
-    { .key = "picture.height", INT, AT(tobi_output_def, picture_height), .def = { 720 }, RANGE(16, 8192),
-      .unit = "pixels", .doc = "Height of the pictures." },
-    { .key = "picture.samples", INT, AT(tobi_output_def, picture_samples), .def = { 2 }, RANGE(1, 4),
-      .unit = "1", .doc = "Samples per pixel and axis: more make finer edges and take longer." },
-    { .key = "picture.follow", TEXT, AT(tobi_output_def, picture_follow), .unit = "name",
-      .doc = "Name of the body that the camera moves with; camera.position and look_at are those at the "
-             "start." },
-    { .key = "picture.clip_point", VEC3, AT(tobi_output_def, picture_clip_point), PLACE, .unit = "m",
-      .doc = "A point of the plane that cuts particles off, if picture.clip_normal is given." },
-    { .key = "picture.clip_normal", VEC3, AT(tobi_output_def, picture_clip_normal), DIRECTION, .unit = "1",
-      .doc = "Direction from the plane to what is not shown; 0 is no plane." },
-    { .key = "picture.slice", REAL, AT(tobi_output_def, picture_slice), RANGE(0, 1e7), .unit = "m",
-      .doc = "Above 0 only what is within half of this from the plane is shown." },
-    { .key = "picture.arrows", BOOL, AT(tobi_output_def, picture_arrows),
-      .doc = "Draw velocities as arrows, the longest for the fastest." },
-    { .key = "picture.axes", BOOL, AT(tobi_output_def, picture_axes),
-      .doc = "Draw ticks with numbers along edges of the domain." },
-    { .key = "picture.transparent", BOOL, AT(tobi_output_def, picture_transparent),
-      .doc = "Leave the background of the pictures transparent." },
+    VIEW_ROWS(tobi_output_def, view.)
     { 0 }
 };
 
 const tobi_param_table tobi_output_table = {
     "output", "The files of a run.", sizeof(tobi_output_def), output_rows };
+
+static const tobi_param view_rows[] = {
+    { .key = "name", TEXT, AT(tobi_view_def, name), .unit = "name", .text = "view", .required = true,
+      .doc = "Name of the view, used once in a scene and in the names of its pictures." },
+    VIEW_ROWS(tobi_view_def, )
+    { 0 }
+};
+
+const tobi_param_table tobi_view_table = {
+    "view", "An entry of output.views: one more picture of each output.", sizeof(tobi_view_def), view_rows };
 
 static const tobi_param reference_rows[] = {
     { .key = "file", TEXT, AT(tobi_reference_def, file), .unit = "path", .required = true,

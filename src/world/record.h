@@ -40,6 +40,14 @@ typedef struct tobi_record_field {
 
 enum { TOBI_RECORD_FIELD_LIMIT = 32 };
 
+/* A picture of each output; the texts of def are not used after creation. */
+typedef struct tobi_record_view {
+    tobi_view_def def;
+    char name[104];                       /* frames/NAME_000000.png                  */
+    tobi_record_field field;              /* that colours it; name NULL = none       */
+    int follow;                           /* body of the camera, or -1               */
+} tobi_record_view;
+
 /* What has particles or nodes in a file of its own: folder NAME, files NAME_000000.vtu. */
 enum { TOBI_SET_FLUID, TOBI_SET_BODIES, TOBI_SET_GRID, TOBI_SETS };
 typedef struct tobi_point_set {
@@ -56,7 +64,7 @@ typedef struct tobi_snapshot {
     double (**surface)[3];                /* vertices of each body; NULL: it is absent */
     int surfaces;
     struct tobi_tractions *tractions;     /* of each body; NULL: not asked           */
-    struct tobi_drawing *drawing;         /* NULL: no picture                        */
+    struct tobi_drawing *drawing[1 + TOBI_VIEW_LIMIT];      /* of each view; NULL: no picture */
     struct tobi_record_surface *skin;     /* NULL: no surface                        */
     tobi_csv_rows bodies, history;
     bool bodies_written;                  /* so that a second try adds no row twice  */
@@ -73,8 +81,8 @@ struct tobi_run {
     bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
-    tobi_record_field picture_field;      /* that colours pictures; name NULL = none */
-    int follow;                           /* body of the camera, or -1               */
+    tobi_record_view view[1 + TOBI_VIEW_LIMIT];
+    int view_count;
     int64_t pictures, picture_ns;         /* written; wall clock: atomic             */
     tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
     int surface_fields;
@@ -152,7 +160,7 @@ tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snaps
 void tobi_tractions_free(tobi_snapshot *snapshot);
 
 /* record_frame.c: the picture of an output, which has its particles and surfaces already. */
-/* Finds what output.picture names. */
+/* The views of run->output, with what they name. */
 tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);

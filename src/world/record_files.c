@@ -28,7 +28,7 @@ static const struct { const char *folder, *pattern; } ours[] = {
     { "grid", "grid_" SIX "*.vtu" }, { "surface", "surface_" SIX "*.vtp" },
     { "tractions", "*_" SIX "*.vtp" },
     { "surfaces", "*_" SIX "*.vtp" }, { "surfaces", "*_" SIX "*.stl" },
-    { "frames", "frame_" SIX "*.png" }, { "ply", "fluid_" SIX "*.ply" }, { "obj", "*_" SIX "*.obj" },
+    { "frames", "*_" SIX "*.png" }, { "ply", "fluid_" SIX "*.ply" }, { "obj", "*_" SIX "*.obj" },
     { "checkpoints", "checkpoint_*.h5" }, { "checkpoints", "checkpoint_*.json" },
 };
 static const char *const folders[] = { "", "fluid", "bodies", "grid", "surface", "surfaces", "tractions",

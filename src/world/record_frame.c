@@ -30,6 +30,7 @@ typedef struct tobi_drawing {
     int32_t *group;                    /* n, with opaque: material or piece             */
     int mesh_count;
     tobi_picture_mesh *meshes;
+    const tobi_record_view *view;      /* of the run                                    */
 } tobi_drawing;
 
 void tobi_drawing_free(tobi_drawing *d)
@@ -46,21 +47,45 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d);
 }
 
+/* A view and what it names; key: of the scene, for messages. */
+static tobi_status add_view(tobi_run *run, const tobi_view_def *def, const char *key, tobi_error *err)
+{
+    const tobi_simulation *sim = &run->world->sim;
+    tobi_record_view *view = &run->view[run->view_count++];
+    char name[64];
+    *view = (tobi_record_view){ .def = *def, .follow = -1 };
+    snprintf(view->name, sizeof view->name, "%s", def->name ? def->name : "frame");
+    snprintf(name, sizeof name, "%s.picture.field", key);
+    if (def->field)
+        TOBI_TRY(tobi_record_find_field(run, name, def->field, strlen(def->field), &view->field, err));
+    if (!def->follow) return TOBI_OK;
+    for (int b = 0; b < sim->body_count; b++)
+        if (strcmp(sim->bodies[b].name, def->follow) == 0) view->follow = b;
+    return view->follow >= 0 ? TOBI_OK
+        : tobi_fail(err, TOBI_INVALID, "%s.picture.follow: there is no body '%s'", key, def->follow);
+}
+
 tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err)
 {
     const tobi_output_def *o = &run->output;
-    const tobi_simulation *sim = &run->world->sim;
-    run->follow = -1;
-    run->picture_field.name = NULL;
-    if (o->picture_field)
-        TOBI_TRY(tobi_record_find_field(run, "output.picture.field", o->picture_field,
-                                        strlen(o->picture_field),
-                                        &run->picture_field, err));
-    if (!o->picture_follow) return TOBI_OK;
-    for (int b = 0; b < sim->body_count; b++)
-        if (strcmp(sim->bodies[b].name, o->picture_follow) == 0) run->follow = b;
-    return run->follow >= 0 ? TOBI_OK
-        : tobi_fail(err, TOBI_INVALID, "output.picture.follow: there is no body '%s'", o->picture_follow);
+    if (o->view_count < 0 || o->view_count > TOBI_VIEW_LIMIT || (o->view_count > 0 && !o->views))
+        return tobi_fail(err, TOBI_INVALID, "output.views: has %d entries, allowed are 0 to %d",
+                         o->view_count, TOBI_VIEW_LIMIT);
+    run->view_count = 0;
+    TOBI_TRY(add_view(run, &o->view, "output", err));
+    for (int k = 0; k < o->view_count; k++) {
+        const tobi_view_def *def = &o->views[k];
+        char key[32];
+        snprintf(key, sizeof key, "output.views[%d]", k);
+        TOBI_TRY(tobi_param_check(&tobi_view_table, def, err));
+        if (strlen(def->name) >= sizeof run->view->name || strchr(def->name, '/'))
+            return tobi_fail(err, TOBI_INVALID, "%s.name: is no name of files", key);
+        for (int n = 0; n < run->view_count; n++)
+            if (strcmp(run->view[n].name, def->name) == 0)
+                return tobi_fail(err, TOBI_INVALID, "%s.name: '%s' is taken", key, def->name);
+        TOBI_TRY(add_view(run, def, key, err));
+    }
+    return TOBI_OK;
 }
 
 /* The value of each particle: the length of a vector. */
@@ -85,11 +110,11 @@ static tobi_status read_values(tobi_run *run, const char *name, int components, 
 static tobi_status read_fluid(tobi_run *run, const tobi_point_set *fluid, tobi_drawing *d, tobi_error *err)
 {
     const size_t n = (size_t)fluid->count;
-    const tobi_record_field *field = &run->picture_field;
+    const tobi_record_field *field = &d->view->field;
     d->positions = malloc(n * 3 * sizeof *d->positions + 1);
     d->values = malloc(n * sizeof *d->values + 1);
-    if (run->output.picture_arrows) d->velocities = malloc(n * sizeof *d->velocities + 1);
-    if (!d->positions || !d->values || (run->output.picture_arrows && !d->velocities))
+    if (d->view->def.arrows) d->velocities = malloc(n * sizeof *d->velocities + 1);
+    if (!d->positions || !d->values || (d->view->def.arrows && !d->velocities))
         return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     d->count = fluid->count;
     memcpy(d->positions, fluid->position, n * 3 * sizeof *d->positions);
@@ -247,7 +272,7 @@ static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *e
     const int materials = tobi_world_first_material(w, w->system + w->system_count);
     int hidden = 0, solids = 0;
     TOBI_TRY(make_palette(w, materials, d, err));
-    if (run->picture_field.name || run->output.picture_look) d->has_palette = 0;
+    if (d->view->field.name || d->view->def.look) d->has_palette = 0;
     TOBI_TRY(choose_tints(run, d, err));
     for (int m = 0; m < materials; m++) {
         const material look = material_at(w, m);
@@ -293,10 +318,10 @@ static double color_speed(const tobi_world_def *def)
 }
 
 /* Range and label of the colours of a field, or of the speed. */
-static void set_range(const tobi_run *run, tobi_drawing *d)
+static void set_range(tobi_drawing *d)
 {
-    const char *name = run->picture_field.name ? run->picture_field.name : "speed", *known, *unit = "m/s";
-    double low = run->output.picture_min, high = run->output.picture_max;
+    const char *name = d->view->field.name ? d->view->field.name : "speed", *known, *unit = "m/s";
+    double low = d->view->def.min, high = d->view->def.max;
     int components;
     if (!(low < high)) {
         low = INFINITY, high = -INFINITY;
@@ -310,7 +335,7 @@ static void set_range(const tobi_run *run, tobi_drawing *d)
     }
     d->frame.value_min = low;
     d->frame.value_max = high;
-    for (int k = 0; run->picture_field.name && (known = tobi_world_field_name(k, &components, &unit)); k++)
+    for (int k = 0; d->view->field.name && (known = tobi_world_field_name(k, &components, &unit)); k++)
         if (strcmp(known, name) == 0) break;
     const int bare = !unit || strcmp(unit, "1") == 0;
     snprintf(d->label, sizeof d->label, bare ? "%s" : "%s [%s]", name, unit);
@@ -318,10 +343,11 @@ static void set_range(const tobi_run *run, tobi_drawing *d)
 }
 
 /* The camera moves as the mean of the body's vertices has done since its rest pose. */
-static void follow_body(const tobi_run *run, const tobi_snapshot *snapshot, tobi_picture *frame)
+static void follow_body(const tobi_run *run, const tobi_snapshot *snapshot, int body, tobi_picture *frame)
 {
-    const tobi_mesh *mesh = &run->world->sim.bodies[run->follow].mesh;
-    const double (*now)[3] = (const double (*)[3])snapshot->surface[run->follow];
+    const tobi_mesh *mesh = &run->world->sim.bodies[body].mesh;
+    const double (*now)[3] = (const double (*)[3])snapshot->surface[body];
+    if (!now) return;                    /* it is absent */
     for (int k = 0; k < 3; k++) {
         double way = 0;
         for (int64_t i = 0; i < mesh->vertex_count; i++) way += now[i][k] - mesh->vertices[i][k];
@@ -331,28 +357,19 @@ static void follow_body(const tobi_run *run, const tobi_snapshot *snapshot, tobi
     }
 }
 
-/* What output.picture says; colours of a field. */
+/* What the view says; colours of a field. */
 static void set_picture(const tobi_run *run, const tobi_snapshot *snapshot, tobi_drawing *d)
 {
-    const tobi_output_def *o = &run->output;
+    const tobi_view_def *v = &d->view->def;
     tobi_picture *frame = &d->frame;
-    frame->width = o->picture_width;
-    frame->height = o->picture_height;
-    frame->samples = o->picture_samples;
-    frame->look = o->picture_look;
-    frame->axes = o->picture_axes;
-    frame->transparent = o->picture_transparent;
+    tobi_picture_set_view(frame, v);
     frame->velocities = (const double (*)[3])d->velocities;
-    frame->slice = o->picture_slice;
-    memcpy(frame->clip_point, o->picture_clip_point, sizeof frame->clip_point);
-    memcpy(frame->clip_normal, o->picture_clip_normal, sizeof frame->clip_normal);
-    for (int k = 0; k < 3; k++) frame->clip |= o->picture_clip_normal[k] != 0;
-    if (run->follow >= 0 && frame->has_camera) follow_body(run, snapshot, frame);
-    if (run->picture_field.name || frame->look != TOBI_LOOK_NATURAL) {
-        frame->palette = tobi_color_map(tobi_color_map_name(o->picture_map), &frame->palette_count);
+    if (d->view->follow >= 0 && frame->has_camera) follow_body(run, snapshot, d->view->follow, frame);
+    if (d->view->field.name || frame->look != TOBI_LOOK_NATURAL) {
+        frame->palette = tobi_color_map(tobi_color_map_name(v->map), &frame->palette_count);
         frame->values = d->values;
         if (frame->look == TOBI_LOOK_NATURAL) frame->look = TOBI_LOOK_SURFACE;
-        set_range(run, d);
+        set_range(d);
     }
 }
 
@@ -379,10 +396,6 @@ static void set_frame(const tobi_run *run, const tobi_snapshot *snapshot, tobi_d
         frame->palette = (const float (*)[3])d->palette;
         frame->palette_count = d->colors;
     }
-    frame->has_camera = run->output.camera_angle > 0 && def->dimension == 3;
-    memcpy(frame->eye, run->output.camera_position, sizeof frame->eye);
-    memcpy(frame->target, run->output.camera_look_at, sizeof frame->target);
-    if (frame->has_camera) frame->field_of_view = run->output.camera_angle;
     frame->meshes = d->meshes;
     snprintf(d->title, sizeof d->title, "t = %.4f s", tobi_world_time(run->world));
     frame->title = d->title;
@@ -394,10 +407,11 @@ static void set_frame(const tobi_run *run, const tobi_snapshot *snapshot, tobi_d
     set_picture(run, snapshot, d);
 }
 
-tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
+static tobi_status take_view(tobi_run *run, tobi_snapshot *snapshot, int k, tobi_error *err)
 {
-    tobi_drawing *d = snapshot->drawing = calloc(1, sizeof *d);
+    tobi_drawing *d = snapshot->drawing[k] = calloc(1, sizeof *d);
     if (!d) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    d->view = &run->view[k];
     TOBI_TRY(read_fluid(run, &snapshot->set[TOBI_SET_FLUID], d, err));
     TOBI_TRY(color_materials(run, d, err));
     TOBI_TRY(list_meshes(run, snapshot, d, err));
@@ -405,11 +419,18 @@ tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error
     return TOBI_OK;
 }
 
-tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
+{
+    for (int k = 0; k < run->view_count; k++) TOBI_TRY(take_view(run, snapshot, k, err));
+    return TOBI_OK;
+}
+
+static tobi_status write_view(tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
 {
     const double begun = tobi_record_clock();
-    char *path = tobi_record_path(run->dir, "frames/frame_%06lld.png", (long long)snapshot->number);
-    tobi_status status = path ? tobi_picture_write(path, &snapshot->drawing->frame, err)
+    char *path = tobi_record_path(run->dir, "frames/%s_%06lld.png", run->view[k].name,
+                                  (long long)snapshot->number);
+    tobi_status status = path ? tobi_picture_write(path, &snapshot->drawing[k]->frame, err)
                               : tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     free(path);
     if (status == TOBI_OK) {
@@ -417,6 +438,12 @@ tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tob
         __atomic_fetch_add(&run->pictures, 1, __ATOMIC_RELAXED);
     }
     return status;
+}
+
+tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+{
+    for (int k = 0; k < run->view_count; k++) TOBI_TRY(write_view(run, snapshot, k, err));
+    return TOBI_OK;
 }
 
 int64_t tobi_run_pictures(const tobi_run *run, double *seconds)

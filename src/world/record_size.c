@@ -66,7 +66,7 @@ static tobi_run_size size_output(const tobi_run *run, double particles, double b
     add_files(&size, o->grid, HEAD + pack*NODE*0.5*particles);
     if (o->surface) add_files(&size, 1, 0.5*HEAD + pack*surface_bytes(run, particles));
     add_files(&size, o->ply, 12*particles);
-    add_files(&size, o->frames, PICTURE);
+    add_files(&size, o->frames*run->view_count, PICTURE);
     return size;
 }
 

@@ -145,7 +145,7 @@ void tobi_snapshot_free(tobi_snapshot *s)
     free(s->surface);
     tobi_record_free_surface(s->skin);
     tobi_tractions_free(s);
-    tobi_drawing_free(s->drawing);
+    for (int k = 0; k < 1 + TOBI_VIEW_LIMIT; k++) tobi_drawing_free(s->drawing[k]);
     free(s->bodies.text);
     free(s->history.text);
     free(s);

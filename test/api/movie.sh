@@ -67,6 +67,15 @@ expect 0 "" movie "100%d run" --out film.webp
 check "film.webp has 11 pictures" test "$(grep -aoc WEBP film.webp) $(grep -ao ANMF film.webp | wc -l)" = "1 11"
 expect 0 "" run drop.json --out again --quiet --movie again.mp4
 check "run --movie" is again.mp4 11 0.22
+views='output.views=[{"name": "p", "picture": {"field": "pressure"}}]'
+expect 0 "" run drop.json --out views --quiet --movie views.mp4 --set "$views"
+check "run --movie makes one of each view" is views_p.mp4 11 0.22
+expect 0 "" movie views --view p
+check "movie --view" cmp -s views/movie_p.mp4 views_p.mp4
+check "a view differs from the output's own pictures" test "$(cmp -s views_p.mp4 views.mp4; echo $?)" = 1
+expect 1 "views has no pictures of a view 'q'" movie views --view q
+rm views.mp4
+expect 1 "views_p.mp4 exists; --force replaces it" run drop.json --out no --movie views.mp4 --set "$views"
 expect 1 "ffmpeg failed" movie again --out /proc/film.mp4
 check "nothing is left of a movie that failed" test ! -e /proc/film.mp4.part
 echo "$passed passed, $failed failed"

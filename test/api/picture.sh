@@ -27,6 +27,18 @@ expect 0 "" run dam.json --out follows --quiet --set output.picture.follow=post 
     --set "output.camera={\"position\": [0.2, -0.8, 0.3], \"look_at\": [0.2, 0.1, 0.1], \"angle\": 30}"
 check "a picture at each output" test -s follows/frames/frame_000002.png
 
+views='output.views=[{"name": "top", "camera": {"position": [0.2, 0.1, 2], "look_at": [0.2, 0.1, 0], "angle": 20},
+    "picture": {"field": "pressure", "width": 320, "height": 180}}, {"name": "all", "picture": {"width": 160}}]'
+expect 0 "" run dam.json --out views --quiet --set "$views"
+check "a picture of each view at each output" test -s views/frames/top_000002.png -a -s views/frames/all_000002.png
+check "the output's own are the same" cmp -s views/frames/frame_000001.png dam/frames/frame_000001.png
+expect 0 "" picture views --view top
+expect 0 "" picture views --view all --output 1
+expect 0 "" run dam.json --out views --quiet --force
+check "pictures of an earlier run are gone" test ! -e views/frames/top_000000.png
+expect 1 "the scene of dam has no view 'top'" picture dam --view top
+expect 1 "\"frame\", the name of the output's own pictures" run dam.json --out no --set 'output.views=[{"name": "frame"}]'
+expect 1 "\"a\" is the name of views[0] too" run dam.json --out no --set 'output.views=[{"name": "a"}, {"name": "a"}]'
 expect 1 "there are no results of a run" picture .
 expect 1 "there is no output 9" picture dam --output 9
 expect 1 "the output has no field 'vorticity'; output.fields of the scene writes it" \

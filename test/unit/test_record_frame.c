@@ -129,12 +129,12 @@ static void wrong_names_are_refused(void **state)
     s.fill.box_min[0] = s.fill.box_min[1] = 1;
     s.fill.box_max[0] = s.fill.box_max[1] = 2;
     tobi_world *world = solid_world(&s);
-    output.picture_follow = "nobody";
+    output.view.follow = "nobody";
     tobi_status status = tobi_run_create(world, &output, "unmade", 1, NULL, &run, &err);
     assert_int_equal(status, TOBI_INVALID);
     assert_string_equal(err.text, "output.picture.follow: there is no body 'nobody'");
-    output.picture_follow = NULL;
-    output.picture_field = "colour";
+    output.view.follow = NULL;
+    output.view.field = "colour";
     status = tobi_run_create(world, &output, "unmade", 1, NULL, &run, &err);
     assert_int_equal(status, TOBI_INVALID);
     assert_string_equal(err.text, "output.picture.field: there is no field 'colour' of mlsmpm");
@@ -142,9 +142,46 @@ static void wrong_names_are_refused(void **state)
     tobi_world_destroy(world);
 }
 
+static void refuse(tobi_world *world, const tobi_output_def *output, const char *words)
+{
+    tobi_run *run;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_run_create(world, output, "unmade", 1, NULL, &run, &err), TOBI_INVALID);
+    assert_string_equal(err.text, words);
+}
+
+static void views_have_names_of_their_own(void **state)
+{
+    (void)state;
+    solid_setup s = solid_default(2, 0.05, 3);
+    tobi_view_def views[2];
+    tobi_output_def output = tobi_default_output_def();
+    s.fill.box_min[0] = s.fill.box_min[1] = 1;
+    s.fill.box_max[0] = s.fill.box_max[1] = 2;
+    tobi_world *world = solid_world(&s);
+    for (int k = 0; k < 2; k++) {
+        tobi_param_defaults(&tobi_view_table, &views[k]);
+        views[k].name = "side";
+    }
+    output.view_count = 9;
+    refuse(world, &output, "output.views: has 9 entries, allowed are 0 to 8");
+    output.views = views;
+    output.view_count = 2;
+    refuse(world, &output, "output.views[1].name: 'side' is taken");
+    views[1].name = "a/b";
+    refuse(world, &output, "output.views[1].name: is no name of files");
+    views[1].name = "frame";
+    refuse(world, &output, "output.views[1].name: 'frame' is taken");
+    views[1].name = "top";
+    views[1].follow = "nobody";
+    refuse(world, &output, "output.views[1].picture.follow: there is no body 'nobody'");
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(pieces_and_faces_have_colours),
-                                        cmocka_unit_test(wrong_names_are_refused) };
+                                        cmocka_unit_test(wrong_names_are_refused),
+                                        cmocka_unit_test(views_have_names_of_their_own) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

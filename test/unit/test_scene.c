@@ -279,13 +279,13 @@ static void colours_boxes_and_a_camera(void **state)
                                 "output.camera={\"position\": [3, 3, 3], \"angle\": 30}",
                                 NULL };
     tobi_scene *scene = parse(small, NULL);
-    assert_true(scene->fluids[0].def.color[0] == -1 && scene->output.camera_angle == 0);
+    assert_true(scene->fluids[0].def.color[0] == -1 && scene->output.view.angle == 0);
     tobi_scene_free(scene);
     scene = parse(small, overrides);
     const tobi_fluid_def *fluid = &scene->fluids[0].def;
     assert_true(fluid->color[0] == 1 && fluid->color[2] == 255 && fluid->visible == 0);
     assert_true(scene->bodies[0].def.color[0] == -1 && scene->bodies[0].def.box_max[2] == 0.5);
-    assert_true(scene->output.camera_position[1] == 3 && scene->output.camera_angle == 30);
+    assert_true(scene->output.view.position[1] == 3 && scene->output.view.angle == 30);
     char *text = tobi_scene_resolved(scene);
     assert_non_null(strstr(text, "\"color\": \"automatic\""));
     assert_non_null(strstr(text, "\"color\": [1.0, 2.0, 255.0]"));

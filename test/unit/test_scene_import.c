@@ -293,8 +293,8 @@ static void the_clock(void **state)
     scene = parse(make(", \"timeStepSize\": 0.004, \"numberOfStepsPerRenderUpdate\": 3, \"simEndFrame\": 100,"
                        "\"cameraPosition\": [9, 9, 9], \"cameraFov\": 20", "\"rotationAngle\": 0"));
     assert_true(fabs(scene->world.end_time - 1.2) < 1e-12 && scene->world.time_step == 0.004);
-    assert_true(fabs(scene->output.interval - 0.012) < 1e-15 && scene->output.camera_angle == 20);
-    assert_vector(scene->output.camera_look_at, 4.5, 4.5, 4.5);
+    assert_true(fabs(scene->output.interval - 0.012) < 1e-15 && scene->output.view.angle == 20);
+    assert_vector(scene->output.view.look_at, 4.5, 4.5, 4.5);
     tobi_scene_free(scene);
 }
 

@@ -1,0 +1,140 @@
+/* The output of a scene: its table, and the list of further views. Drawback: a view takes nothing over from
+   the output's own. */
+#define _GNU_SOURCE 1
+#include "scene/scene.h"
+#include "scene/parts.h"
+#include "scene/write.h"
+#include "base/param.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const tobi_place root = { 0 };
+
+tobi_status tobi_output_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of)
+{
+    const char *also[TOBI_PARTS];
+    tobi_part_keys("output", also);
+    tobi_place place = { of, "output", 0 }, views = { &place, "views", 0 };
+    json_t *value = json_object_get(scene->root, "output");
+    scene->output = tobi_default_output_def();
+    if (!value) return TOBI_OK;
+    tobi_bind(binder, &tobi_output_table, value, &place, also, &scene->output);
+    json_t *list = tobi_scene_list(binder, value, &views, "output");
+    if (!list) return TOBI_OK;
+    scene->views = calloc(json_array_size(list) + 1, sizeof *scene->views);
+    if (!scene->views) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &views, NULL, i };
+        tobi_view_def *view = &scene->views[scene->output.view_count++];
+        tobi_param_defaults(&tobi_view_table, view);
+        tobi_bind(binder, &tobi_view_table, json_array_get(list, i), &entry, NULL, view);
+    }
+    scene->output.views = scene->views;
+    return TOBI_OK;
+}
+
+json_t *tobi_output_write(const tobi_scene *scene)
+{
+    json_t *output = tobi_write_def(&tobi_output_table, &scene->output), *views = json_array();
+    int failed = 0;
+    for (int k = 0; k < scene->output.view_count; k++)
+        failed |= json_array_append_new(views, tobi_write_def(&tobi_view_table, &scene->views[k]));
+    if (scene->output.view_count) failed |= json_object_set(output, "views", views);
+    json_decref(views);
+    if (!failed) return output;
+    json_decref(output);
+    return NULL;
+}
+
+static void check_field(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                        const char *field)
+{
+    enum { FIELDS = 32 };
+    const char *names[FIELDS];
+    int count = 0;
+    while (count < FIELDS && (names[count] = tobi_method_field(scene->world.method, count))) count++;
+    char all[512] = "";
+    if (strcmp(field, "usual") == 0) return;
+    for (int k = 0; k < count; k++)
+        if (strcmp(names[k], field) == 0) return;
+    if (tobi_report_pass(source->report)) return;
+    for (int k = 0; k < count; k++) {
+        size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", used ? ", " : "", names[k]);
+    }
+    const char *near = tobi_suggest(field, names, (size_t)count);
+    if (near)
+        tobi_source_mistake(source, place, "there is no field \"%s\"; did you mean \"%s\"?", field,
+                            near);
+    else tobi_source_mistake(source, place, "there is no field \"%s\"; allowed are %s", field, all);
+}
+
+static void check_names(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                        const char *names)
+{
+    char *copy = strdup(names ? names : ""), *next = copy;
+    for (char *field; copy && (field = strsep(&next, ",")) != NULL;)
+        if (*field) check_field(scene, source, place, field);
+    free(copy);
+}
+
+/* place: of the object that has camera and picture. */
+static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_view_def *view,
+                       const tobi_place *place)
+{
+    tobi_place picture = { place, "picture", 0 }, follow = { &picture, "follow", 0 };
+    tobi_place field = { &picture, "field", 0 };
+    tobi_place camera = { place, "camera", 0 }, target = { &camera, "look_at", 0 };
+    if (view->angle > 0 && scene->world.dimension == 3 &&
+        memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
+        tobi_source_mistake(source, &target, "is the camera's own position");
+    if (view->field) check_names(scene, source, &field, view->field);
+    if (!view->follow) return;
+    for (int b = 0; b < scene->body_count; b++) {
+        const char *name = scene->bodies[b].def.name;
+        if (name && strcmp(name, view->follow) == 0) return;
+    }
+    tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);
+}
+
+static void check_views(const tobi_scene *scene, tobi_source *source, const tobi_place *output)
+{
+    check_view(scene, source, &scene->output.view, output);
+    for (int k = 0; k < scene->output.view_count; k++) {
+        tobi_place views = { output, "views", 0 }, entry = { &views, NULL, (size_t)k };
+        tobi_place name = { &entry, "name", 0 };
+        const tobi_view_def *view = &scene->views[k];
+        check_view(scene, source, view, &entry);
+        if (!view->name) continue;
+        if (strcmp(view->name, "frame") == 0)
+            tobi_source_mistake(source, &name, "is \"frame\", the name of the output's own pictures");
+        for (int j = 0; j < k; j++)
+            if (scene->views[j].name && strcmp(scene->views[j].name, view->name) == 0)
+                tobi_source_mistake(source, &name, "\"%s\" is the name of views[%d] too", view->name, j);
+    }
+}
+
+void tobi_output_check(const tobi_scene *scene, tobi_source *source)
+{
+    enum { MOST_OUTPUTS = 1000000 };
+    tobi_place output = { &root, "output", 0 }, interval = { &output, "interval", 0 };
+    tobi_place fields = { &output, "fields", 0 };
+    if (scene->world.end_time/scene->output.interval > MOST_OUTPUTS)
+        tobi_source_mistake(source, &interval,
+                            "is %.10g s and makes more than %d outputs until end_time, %.10g s",
+                            scene->output.interval, MOST_OUTPUTS, scene->world.end_time);
+    tobi_method_info method;
+    tobi_place grid = { &output, "grid", 0 };
+    if (scene->output.grid && tobi_method_describe(scene->world.method, &method) && !method.grid)
+        tobi_source_mistake(source, &grid, "%s has no grid; mlsmpm has one", method.name);
+    tobi_place surface = { &output, "surface", 0 }, of_surface = { &surface, "fields", 0 };
+    if (scene->output.surface && scene->world.dimension == 2)
+        tobi_source_mistake(source, &surface, "is of 3-D scenes only");
+    tobi_place tractions = { &output, "tractions", 0 };
+    if (scene->output.tractions && tobi_method_describe(scene->world.method, &method) && method.solids)
+        tobi_source_mistake(source, &tractions, "%s has no fluid that presses on bodies", method.name);
+    check_views(scene, source, &output);
+    check_names(scene, source, &fields, scene->output.fields);
+    check_names(scene, source, &of_surface, scene->output.surface_fields);
+}
