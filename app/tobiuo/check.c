@@ -72,7 +72,7 @@ static double print_scene(const tobi_scene *scene, const tobi_world *world)
     print_solids(world, d->dimension);
     print_notes(world, stdout, "note             ");
     if (tobi_scene_import_table(scene))
-        printf("\nA scene of the Taichi program. What became of its keys:\n\n%s\n",
+        printf("\nA scene of %s. What became of its keys:\n\n%s\n", tobi_scene_import_program(scene),
                tobi_scene_import_table(scene));
     return step;
 }

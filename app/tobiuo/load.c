@@ -3,15 +3,32 @@
 #include "app.h"
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+static char *join(const char *path, const char *file)
+{
+    char *joined = NULL;
+    if (asprintf(&joined, "%s%s", path, file) < 0) exit(complain("out of memory"));
+    return joined;
+}
 
 char *scene_path(const char *path)
 {
     struct stat st;
-    char *file = NULL;
-    int directory = stat(path, &st) == 0 && S_ISDIR(st.st_mode);
-    if (asprintf(&file, "%s%s", path, directory ? "/scene.json" : "") < 0)
-        exit(complain("out of memory"));
-    return file;
+    if (stat(path, &st) != 0 || !S_ISDIR(st.st_mode)) return join(path, "");
+    char *file = join(path, "/scene.json"), *setting = join(path, "/setting.json");
+    const int old = access(file, F_OK) != 0 && access(setting, F_OK) == 0;
+    free(old ? file : setting);
+    return old ? setting : file;
+}
+
+char *import_path(const char *path)
+{
+    struct stat st;
+    char *setting = join(path, "/setting.json");
+    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode) && access(setting, F_OK) == 0) return setting;
+    free(setting);
+    return scene_path(path);
 }
 
 /* A path that leads nowhere, with the scene that it may mean. Returns 0 if it leads somewhere. */

@@ -119,7 +119,8 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
-        printf("a scene of the Taichi program; \"tobiuo check\" lists what became of each of its keys\n");
+        printf("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n",
+               tobi_scene_import_program(scene));
     int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     if (code == 0) code = record(scene, world, o, dir);

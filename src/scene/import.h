@@ -80,6 +80,11 @@ tobi_status tobi_import_translate(tobi_source *source, tobi_texts *texts, const 
 tobi_status tobi_import_translate_cut(tobi_source *source, tobi_texts *texts, const char *directory,
                                       char **table);
 
+/* import_tank.c: the same for a setting.json of the tank program and the object files that it names. */
+int tobi_import_tank_applies(const json_t *root);
+tobi_status tobi_import_translate_tank(tobi_source *source, tobi_texts *texts, const char *directory,
+                                       char **table);
+
 /* Puts value, which it takes over, into an object of the native scene and returns it; NULL without memory,
    which is remembered. A NULL object is fine. */
 json_t *tobi_import_set(tobi_import *im, json_t *object, const char *key, json_t *value);
@@ -95,6 +100,9 @@ int tobi_import_has(const tobi_old_section *section, uint64_t given, const char 
    paths that ".a" and "^a" start from. */
 void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *object,
                       const tobi_place *place, const char *entry, const char *fluid);
+/* Adds one row: what became of `value` at the key; native: its path in the scene, NULL = nothing. */
+void tobi_import_note_key(tobi_import *im, const tobi_old_key *key, json_t *value, const tobi_place *place,
+                          const char *native);
 /* Replaces what the newest row about `key` became: "bodies[0].visible = false, ..."; takes `paths` over. */
 void tobi_import_tell(tobi_import *im, const char *key, char *paths);
 /* Replaces the remark of the newest row about `key`. */
@@ -112,5 +120,8 @@ void tobi_import_bodies(tobi_import *im);
 /* The absolute path of a mesh that an old scene names; NULL if it is nowhere (or memory was short, which
    is remembered). Owned by the caller. */
 char *tobi_import_find_mesh(tobi_import *im, const char *path);
+/* Names an entry by the stem, or stem_2, stem_3 where another of the list has it; odd characters become
+   '_'. */
+void tobi_import_name(tobi_import *im, json_t *list, json_t *entry, const char *stem, size_t length);
 /* Whether an object is in the list invisibleObjects. */
 int tobi_import_hides(const tobi_import *im, int object);

@@ -142,8 +142,7 @@ static int is_taken(json_t *bodies, const char *name)
     return 0;
 }
 
-/* The stem, or stem_2, stem_3; odd characters become '_'. */
-static void name_body(tobi_import *im, json_t *bodies, json_t *body, const char *stem, size_t length)
+void tobi_import_name(tobi_import *im, json_t *bodies, json_t *body, const char *stem, size_t length)
 {
     char clean[64], name[80];
     if (length > sizeof clean - 1) length = sizeof clean - 1;
@@ -178,7 +177,7 @@ static void add_rigid_block(tobi_import *im, json_t *bodies, json_t *object, con
     int has_density = tobi_import_has(section, given, "density");
     if (b.dynamic) set_free(im, body, has_velocity ? b.velocity : NULL, 0, place);
     snprintf(name, sizeof name, "block_%d", b.object);
-    name_body(im, bodies, body, name, strlen(name));
+    tobi_import_name(im, bodies, body, name, strlen(name));
     set_box(im, body, &b);
     set_looks(im, body, has_density ? &b.density : NULL,
               tobi_import_has(section, given, "color") ? b.color : NULL, b.object);
@@ -335,7 +334,7 @@ static void add_rigid_body(tobi_import *im, json_t *bodies, json_t *object, cons
 
     const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
     json_t *body = json_object();
-    name_body(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
+    tobi_import_name(im, bodies, body, stem, dot ? (size_t)(dot - stem) : strlen(stem));
     fill_rigid_body(im, body, &b, given, mesh ? mesh : b.file ? b.file : path);
     tobi_import_set(im, body, "translation", tobi_import_vector(translation));
     const char *name = json_string_value(json_object_get(body, "name"));

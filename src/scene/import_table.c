@@ -28,14 +28,16 @@ static char *value_text(const json_t *value, const char *unit)
 {
     char *text = NULL;
     char *json = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(10));
-    const char *behind = unit && strcmp(unit, "1") != 0 && strcmp(unit, "path") != 0 ? unit : "";
+    const int plain = !unit || strcmp(unit, "1") == 0 || strcmp(unit, "path") == 0 ||
+                      strcmp(unit, "text") == 0;
+    const char *behind = plain ? "" : unit;
     int length = json ? asprintf(&text, "%s%s%s", json, behind[0] ? " " : "", behind) : -1;
     free(json);
     return length < 0 ? NULL : text;
 }
 
-static void note_key(tobi_import *im, const tobi_old_key *key, json_t *value, const tobi_place *place,
-                     const char *native)
+void tobi_import_note_key(tobi_import *im, const tobi_old_key *key, json_t *value,
+                          const tobi_place *place, const char *native)
 {
     char path[TOBI_PATH_TEXT];
     tobi_place at = { place, key->param.key, 0 };
@@ -65,7 +67,7 @@ void tobi_import_note(tobi_import *im, const tobi_old_section *section, json_t *
         if (to)
             snprintf(native, sizeof native, "%s%s%s", to[0] == '.' ? entry : to[0] == '^' ? fluid : "",
                      to[0] == '^' ? "." : "", to + (to[0] == '^'));
-        note_key(im, key, value, place, to ? native : NULL);
+        tobi_import_note_key(im, key, value, place, to ? native : NULL);
     }
 }
 
@@ -74,7 +76,7 @@ static tobi_old_row *find_row(tobi_import *im, const char *key)
 {
     for (int i = im->row_count - 1; i >= 0; i--) {
         const char *from = im->rows[i].from, *dot = from ? strrchr(from, '.') : NULL;   /* NULL: no memory */
-        if (dot && strcmp(dot + 1, key) == 0) return &im->rows[i];
+        if (from && strcmp(dot ? dot + 1 : from, key) == 0) return &im->rows[i];
     }
     return NULL;
 }

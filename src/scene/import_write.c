@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+static const char *const matter[] = { "fluids", "solids" };
+
 /* "directory/a/b" becomes "a/b"; other paths stay. 0 without memory. */
 static int shorten(json_t *object, const char *key, const char *directory)
 {
@@ -28,10 +30,9 @@ static int shorten_paths(json_t *root, const char *directory)
         whole &= shorten(json_object_get(body, "motion"), "script", directory);
         whole &= shorten(json_object_get(body, "control"), "script", directory);
     }
-    json_array_foreach(json_object_get(root, "solids"), i, body) {
-        json_t *fill = json_array_get(json_object_get(body, "fill"), 0);
-        whole &= shorten(fill, "mesh", directory);
-    }
+    for (int k = 0; k < 2; k++)
+        json_array_foreach(json_object_get(root, matter[k]), i, body)
+            whole &= shorten(json_array_get(json_object_get(body, "fill"), 0), "mesh", directory);
     return whole;
 }
 
@@ -76,8 +77,9 @@ static int tell_absolutes(char **table, json_t *root)
         whole &= tell_absolute(table, json_object_get(body, "motion"), "script");
         whole &= tell_absolute(table, json_object_get(body, "control"), "script");
     }
-    json_array_foreach(json_object_get(root, "solids"), i, body)
-        whole &= tell_absolute(table, json_array_get(json_object_get(body, "fill"), 0), "mesh");
+    for (int k = 0; k < 2; k++)
+        json_array_foreach(json_object_get(root, matter[k]), i, body)
+            whole &= tell_absolute(table, json_array_get(json_object_get(body, "fill"), 0), "mesh");
     return whole;
 }
 
@@ -98,9 +100,9 @@ static tobi_status write_scene(const tobi_scene *scene, const char *from, const 
     if (status == TOBI_OK) status = tobi_file_open(&file, path, err);
     if (status == TOBI_OK) {
         const char *slash = strrchr(from, '/');
-        tobi_file_print(&file, "# Translated from %s, a scene of the Taichi program. What became of\n"
+        tobi_file_print(&file, "# Translated from %s, a scene of %s. What became of\n"
                         "# its keys:\n",
-                        slash ? slash + 1 : from);
+                        slash ? slash + 1 : from, scene->import_program);
         for (const char *line = *table; *line;) {
             size_t length = strcspn(line, "\n");
             tobi_file_print(&file, "#   %.*s\n", (int)length, line);
@@ -129,8 +131,8 @@ tobi_status tobi_scene_import(const char *old_path, const char *new_path, int fo
     TOBI_TRY(tobi_scene_load(old_path, NULL, &scene, report, err));
     tobi_status status = TOBI_OK;
     if (!scene->import_table)
-        status = tobi_fail(err, TOBI_INVALID, "%s is a native scene already: it has no Configuration",
-                           old_path);
+        status = tobi_fail(err, TOBI_INVALID, "%s is a native scene already: it has neither Configuration "
+                           "nor input_files", old_path);
     if (status == TOBI_OK) status = write_scene(scene, old_path, new_path, table, err);
     if (status != TOBI_OK) {
         free(*table);

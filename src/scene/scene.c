@@ -259,11 +259,11 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     return tobi_report_total(source->report) ? TOBI_INVALID : TOBI_OK;
 }
 
-/* The directory's own name for a scene.json, or else the file's without its extension. */
+/* The directory's own name for a scene.json or setting.json, or else the file's without its extension. */
 static char *name_scene(const char *directory, const char *path)
 {
     const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
-    if (strcmp(file, "scene.json") == 0) {
+    if (strcmp(file, "scene.json") == 0 || strcmp(file, "setting.json") == 0) {
         slash = strrchr(directory, '/');
         if (slash && slash[1]) return strdup(slash + 1);
     }
@@ -286,11 +286,15 @@ static tobi_status parse_source(tobi_scene *scene, tobi_source *source,
                                 const char *const *overrides, tobi_error *err)
 {
     tobi_status status = TOBI_OK;
+    const int tank = tobi_import_tank_applies(source->root);
     if (source->python)
         status = tobi_import_translate_cut(source, &scene->texts, scene->directory, &scene->import_table);
     else if (tobi_import_applies(source->root))
         status = tobi_import_translate(source, &scene->texts, scene->directory, &scene->import_table,
                                        &scene->stand_ins);
+    else if (tank)
+        status = tobi_import_translate_tank(source, &scene->texts, scene->directory, &scene->import_table);
+    scene->import_program = tank ? "the tank program" : "the Taichi program";
     scene->root = json_incref(source->root);
     if (status == TOBI_OK) TOBI_TRY(tobi_override_apply(source, overrides, err));
     if (status == TOBI_OK) status = read_scene(scene, source);
@@ -452,6 +456,10 @@ const tobi_output_def *tobi_scene_output_def(const tobi_scene *scene)
     return scene ? &scene->output : NULL;
 }
 const char *tobi_scene_import_table(const tobi_scene *scene) { return scene ? scene->import_table : NULL; }
+const char *tobi_scene_import_program(const tobi_scene *scene)
+{
+    return scene && scene->import_table ? scene->import_program : NULL;
+}
 
 /* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
 static json_t *whole(json_t *value, int failed)

@@ -58,6 +58,7 @@ struct tobi_scene {
     tobi_output_def output;
     tobi_view_def *views;          /* of output, which points to them             */
     char *import_table;            /* what old keys became; NULL: it was native   */
+    const char *import_program;    /* whose scene it was                          */
     json_t *stand_ins;             /* of a translated scene, see import.h         */
     tobi_reference_def *references;
     int reference_count;
