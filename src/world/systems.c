@@ -226,6 +226,8 @@ tobi_status tobi_world_start_system(tobi_world *w, tobi_system *s, tobi_error *e
     double *memory;
     const int64_t n = s->particles.count;
     TOBI_TRY(tobi_exec_reserve(&w->sim.exec, n > 4096 ? n : 4096, err));
+    for (int b = 0; b < w->sim.body_count; b++)       /* loops over the points of a body have sums too */
+        TOBI_TRY(tobi_exec_reserve(&w->sim.exec, w->sim.bodies[b].point_count, err));
     tobi_cells_free(&s->cells);
     if (!s->method->solids)
         TOBI_TRY(tobi_cells_create(&s->cells, &s->box, s->smoothing.h, &s->particles, &w->sim.exec, err));
