@@ -12,7 +12,7 @@ enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
                          report_argp, describe_argp, bench_argp, info_argp, scenes_argp, new_argp,
-                         inspect_argp, surface_argp, picture_argp;
+                         inspect_argp, surface_argp, picture_argp, sweep_argp;
 int tobiuo_run(int argc, char **argv);
 int tobiuo_resume(int argc, char **argv);
 int tobiuo_plot(int argc, char **argv);
@@ -29,6 +29,7 @@ int tobiuo_bench(int argc, char **argv);
 int tobiuo_info(int argc, char **argv);
 int tobiuo_scenes(int argc, char **argv);
 int tobiuo_new(int argc, char **argv);
+int tobiuo_sweep(int argc, char **argv);
 
 typedef struct command {
     const char *name, *arguments, *doc;
@@ -65,6 +66,13 @@ char *near_run(const char *path);
 /* Says that there is no run in dir, and which one may be meant. Returns EXIT_ERROR. */
 int complain_run(const char *dir, const char *what);
 
+/* new.c: whether the arguments of `tobiuo new` name a family of scenes; its list; the scene. */
+int wants_family(int argc, char **argv);
+int list_families(void);
+int write_family(int argc, char **argv);
+/* The family that a misspelt name may mean, or NULL. */
+const char *near_family(const char *name);
+
 /* complain.c: "tobiuo: ..." on stderr, one line; returns EXIT_ERROR. */
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */
@@ -79,8 +87,11 @@ typedef struct overrides { char **text; int count; } overrides;
 void overrides_add(overrides *o, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void overrides_free(overrides *o);
 
-/* load.c. The scene file meant by a path: a directory stands for its scene.json. Owned by the caller. */
+/* load.c. The scene file meant by a path: a directory stands for its scene.json, or else its setting.json of
+   the tank program. Owned by the caller. */
 char *scene_path(const char *path);
+/* The same, but setting.json goes first. */
+char *import_path(const char *path);
 /* The scene at such a path with the overrides, which are freed; NULL after a complaint. */
 tobi_scene *load_scene(const char *path, overrides *set);
 

@@ -1,5 +1,6 @@
-/* tobiuo scenes, tobiuo new NAME [DIR]: the shipped scenes, listed and copied. A copy stands alone: files
-   that the scene takes from other folders ("../") are copied too, and the scene names the copies. Drawback:
+/* tobiuo scenes, tobiuo new NAME [DIR]: the shipped scenes, listed and copied (families: new.c). A copy
+   stands alone: files that the scene takes from other folders ("../") are copied too, and the scene names
+   the copies. Drawback:
    that is done on the text, so a comment that quotes such a path is changed as well. */
 #define _GNU_SOURCE
 #include "app.h"
@@ -161,7 +162,6 @@ typedef struct new_options { const char *name, *dir; } new_options;
 static error_t parse(int key, char *value, struct argp_state *state)
 {
     new_options *o = state->input;
-    if (key == ARGP_KEY_END && !o->name) argp_error(state, "which NAME? \"tobiuo scenes\" lists them");
     if (key != ARGP_KEY_ARG) return key == ARGP_KEY_END ? 0 : ARGP_ERR_UNKNOWN;
     if (o->dir) argp_error(state, "one NAME and one DIR only");
     if (o->name) o->dir = value;
@@ -169,21 +169,24 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 const struct argp new_argp = { .parser = parse, .args_doc = "NAME [DIR]",
-    .doc = "Copy a shipped scene to DIR (NAME in the current folder), with all files that it needs." };
+    .doc = "Write a scene of a family, with --option VALUE for its dimensions, or copy a shipped scene to "
+           "DIR (NAME in the current folder), with all files that it needs. Without NAME: list the families." };
 
 int tobiuo_new(int argc, char **argv)
 {
     new_options o = { 0 };
+    if (wants_family(argc, argv)) return write_family(argc, argv);
     parse_arguments(&new_argp, argc, argv, &o);
+    if (!o.name) return list_families();
     const char *slash = strrchr(o.name, '/'), *name = slash ? slash + 1 : o.name;
     const char *dir = o.dir ? o.dir : name;
     char *file = join(name, "scene.json"), *path = *name && *name != '.' ? tobi_scene_shipped(file) : NULL;
     free(file);
     if (!path) {
         char *near = near_scene(name);
-        complain("there is no shipped scene '%s'%s%s%s; \"tobiuo scenes\" lists them", o.name,
-                 near ? "; did you mean " : "", near && strrchr(near, '/') ? strrchr(near, '/') + 1 : "",
-                 near ? "?" : "");
+        const char *word = near && strrchr(near, '/') ? strrchr(near, '/') + 1 : near_family(name);
+        complain("there is no shipped scene or family '%s'%s%s%s; \"tobiuo scenes\" and \"tobiuo new\" "
+                 "list them", o.name, word ? "; did you mean " : "", word ? word : "", word ? "?" : "");
         free(near);
         return EXIT_ERROR;
     }

@@ -102,9 +102,10 @@ check "scenes have a sentence" grep -q "^  dam_break  *A column of water collaps
 expect 1 "dam_brake: there is no such scene; did you mean" run dam_brake
 expect 1 "dam_break: there is no such scene; did you mean" check dam_break
 expect 1 "tnak.json: there is no such scene; did you mean tank.json?" run tnak.json
-expect 2 "which NAME?" new
-expect 1 "no shipped scene 'dam_brake'; did you mean dam_break?" new dam_brake
-expect 1 "no shipped scene 'elephant'; \"tobiuo scenes\" lists them" new elephant
+expect 0 "" new
+check "new lists the families" grep -q -- "--gate-speed" out.txt
+expect 1 "no shipped scene or family 'dam_brake'; did you mean dam_break?" new dam_brake
+expect 1 "no shipped scene or family 'elephant'; \"tobiuo scenes\"" new elephant
 expect 0 "" new dam_break
 check "new makes a scene" test -s dam_break/scene.json -a ! -e dam_break/README.md
 expect 1 "dam_break is there already" new dam_break

@@ -1,0 +1,295 @@
+/* The families of scenes: a table of options and a writer each. Lengths are measured from the lower corner of
+   the tank, x along it, y across, z up; a 2-D scene has x and z as its x and y. Drawback: dimensions of
+   experiments stand here and in the physics cases alike. */
+#include "family.h"
+#include <math.h>
+#include <string.h>
+
+#define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing" }
+#define UNTIL(t) { "until", "s", t, 1e-6, 1e9, "simulated time at which the run ends" }
+#define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_ }
+#define TANK(l, w, h) \
+    LENGTH("length", l, "of the tank, along x"), LENGTH("width", w, "of the tank, along y"), \
+    LENGTH("height", h, "of the tank, along z")
+
+double chosen(const family_choice *c, const char *option)
+{
+    const family_option *o;
+    for (int k = 0; (o = family_option_at(c->family, k)); k++)
+        if (strcmp(o->name, option) == 0) return c->value[k];
+    return 0;
+}
+
+/* --- parts of a scene ---------------------------------------------------------------------- */
+
+static void put_place(const family_choice *c, FILE *out, double x, double y, double z)
+{
+    if (c->dimension == 2) fprintf(out, "[%.10g, %.10g]", x, z);
+    else fprintf(out, "[%.10g, %.10g, %.10g]", x, y, z);
+}
+
+static void put_corners(const family_choice *c, FILE *out, const double low[3], const double high[3])
+{
+    fputs("\"min\": ", out);
+    put_place(c, out, low[0], low[1], low[2]);
+    fputs(", \"max\": ", out);
+    put_place(c, out, high[0], high[1], high[2]);
+}
+
+/* All up to the fluids: the box from 0 to size, gravity g along -z turned by `tilt` degrees about y. */
+static void put_world(const family_choice *c, FILE *out, const double size[3], const char *title, double tilt)
+{
+    static const double origin[3];
+    const double g = 9.81, turn = tilt*acos(-1)/180;
+    fprintf(out, "// %s: %s.\n", c->family->name, title);
+    fprintf(out, "// Written by \"tobiuo new %s\". SI units; \"tobiuo describe\" tells any key.\n{\n",
+            c->family->name);
+    fprintf(out, "  \"method\": \"%s\",\n", c->method);
+    if (c->dimension == 2) fputs("  \"dimension\": 2,                    // x along the tank, y up\n", out);
+    if (chosen(c, "support") > 0)
+        fprintf(out, "  \"%s\": { \"support\": %.10g },           // CSML, spacings\n", c->method,
+                chosen(c, "support"));
+    fputs("  \"domain\": { ", out);
+    put_corners(c, out, origin, size);
+    fputs(" },     // its sides are walls without friction\n  \"gravity\": ", out);
+    put_place(c, out, g*sin(turn), 0, -g*cos(turn));
+    fprintf(out, ",\n  \"spacing\": %.10g,\n  \"end_time\": %.10g,\n", chosen(c, "spacing"),
+            chosen(c, "until"));
+}
+
+static void put_water(const family_choice *c, FILE *out, const double low[3], const double high[3])
+{
+    fputs("  \"fluids\": [\n    { \"name\": \"water\", \"density\": 1000, \"viscosity\": 1.0e-3,\n"
+          "      \"fill\": [ { \"box\": { ", out);
+    put_corners(c, out, low, high);
+    fputs(" } } ] }\n  ],\n", out);
+}
+
+/* A sensor; kind "point" or "level". Text before the first: "", before others ",". */
+static void put_probe(const family_choice *c, FILE *out, int first, const char *name, const char *kind,
+                      double x, double y, double z)
+{
+    fprintf(out, "%s\n    { \"name\": \"%s\", ", first ? "" : ",", name);
+    if (strcmp(kind, "point") != 0) fprintf(out, "\"kind\": \"%s\", ", kind);
+    fputs("\"position\": ", out);
+    put_place(c, out, x, y, z);
+    fputs(" }", out);
+}
+
+static void put_output(const family_choice *c, FILE *out)
+{
+    fprintf(out, "  \"output\": { \"interval\": %.10g }\n}\n", chosen(c, "until")/100);
+}
+
+static const char above[] = "the water is higher than the tank";
+static const char beyond[] = "the water is longer than the tank";
+
+/* --- static pressure ----------------------------------------------------------------------- */
+
+static const family_option static_options[] = {
+    SPACING(0.0125), UNTIL(2), TANK(0.2, 0.1, 0.15), LENGTH("depth", 0.1, "of the water"), { 0 } };
+
+static const char *object_static(const family_choice *c)
+{
+    return chosen(c, "depth") > chosen(c, "height") ? above : NULL;
+}
+
+static void write_static(const family_choice *c, FILE *out)
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
+    const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
+    put_world(c, out, size, "water at rest; sensors on the floor, at half depth on a wall, and the level", 0);
+    put_water(c, out, zero, water);
+    fputs("  \"probes\": [", out);
+    put_probe(c, out, 1, "floor", "point", size[0]/2, size[1]/2, 0);
+    put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, water[2]/2);
+    put_probe(c, out, 0, "gauge", "level", size[0]/2, size[1]/2, 0);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+/* --- dam breaks ---------------------------------------------------------------------------- */
+
+#define COLUMN(l, h) \
+    LENGTH("water-length", l, "of the column of water, along x"), \
+    LENGTH("water-height", h, "of the column of water")
+
+static const family_option dam_options[] = {
+    SPACING(0.01), UNTIL(1), TANK(1, 0.15, 0.5), COLUMN(0.3, 0.25), { 0 } };
+static const family_option lobovsky_options[] = {
+    SPACING(0.015), UNTIL(1.1), LENGTH("water-height", 0.3, "0.3 or 0.6 in the experiment"),
+    LENGTH("height", 0.6, "of the computed air and water"),
+    { "gate-speed", "m/s", 0, 0, 100, "of a gate drawn up at time 0; 0: the water is let go at once" },
+    { 0 } };
+static const family_option kamra_options[] = {
+    SPACING(0.015), UNTIL(1), COLUMN(0.2, 0.2), LENGTH("height", 0.6, "of the tank"),
+    { "post", "1", 1, 0, 2, "1: square, 0.05 m wide; 2: round, 0.05 m across; 0: none" }, { 0 } };
+static const family_option impact_options[] = {
+    SPACING(0.04), UNTIL(1.5), COLUMN(1.228, 0.55), TANK(3.22, 1, 1),
+    LENGTH("box-length", 0.16, "of the box that is hit, along x"),
+    LENGTH("box-width", 0.4, "of the box, along y"),
+    LENGTH("box-height", 0.16, "of the box"), LENGTH("box-at", 2.4, "where the box begins, along x"), { 0 } };
+
+static const char *object_dam(const family_choice *c)
+{
+    if (chosen(c, "water-height") > chosen(c, "height")) return above;
+    return chosen(c, "water-length") >= chosen(c, "length") ? beyond : NULL;
+}
+
+static void write_dam(const family_choice *c, FILE *out)
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") }, zero[3] = { 0 };
+    const double water[3] = { chosen(c, "water-length"), size[1], chosen(c, "water-height") };
+    put_world(c, out, size, "a column of water collapses and hits the far wall", 0);
+    put_water(c, out, zero, water);
+    fputs("  \"probes\": [", out);
+    put_probe(c, out, 1, "floor", "point", 0, size[1]/2, 0);
+    put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, 0.1*water[2]);
+    put_probe(c, out, 0, "gauge", "level", (size[0] + water[0])/2, size[1]/2, 0);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+static const char *object_lobovsky(const family_choice *c)
+{
+    return chosen(c, "water-height") > chosen(c, "height") ? above : NULL;
+}
+
+static void put_gate(const family_choice *c, FILE *out, double at, double width)
+{
+    const double speed = chosen(c, "gate-speed"), d = chosen(c, "spacing"), thick = fmax(2*d, 0.01);
+    const double low[3] = { at, 0, 0 }, high[3] = { at + thick, width, chosen(c, "water-height") };
+    if (!(speed > 0)) return;
+    fputs("  \"bodies\": [\n    { \"name\": \"gate\", \"box\": { ", out);
+    put_corners(c, out, low, high);
+    fputs(" },\n      \"motion\": { \"translation\": { \"velocity\": ", out);
+    put_place(c, out, 0, 0, speed);
+    fputs(" } } }\n  ],\n", out);
+}
+
+static void write_lobovsky(const family_choice *c, FILE *out)
+{
+    static const double gauges[] = { 0.3, 0.865, 1.114, 1.3625 };
+    static const double heights[] = { 0.003, 0.015, 0.03, 0.08 };
+    const double size[3] = { 1.61, 0.15, chosen(c, "height") }, zero[3] = { 0 };
+    const double water[3] = { 0.6, size[1], chosen(c, "water-height") };
+    char name[8];
+    put_world(c, out, size, "the dam break of Lobovsky et al., Ocean Eng. 82 (2014) 150", 0);
+    put_water(c, out, zero, water);
+    put_gate(c, out, water[0], size[1]);
+    fputs("  \"probes\": [", out);
+    for (int k = 0; k < 4; k++) {
+        snprintf(name, sizeof name, "P%d", k + 1);
+        put_probe(c, out, k == 0, name, "point", size[0], size[1]/2, heights[k]);
+    }
+    put_probe(c, out, 0, "P2L", "point", size[0], 0.05625, heights[1]);
+    for (int k = 0; k < 4; k++) {
+        snprintf(name, sizeof name, "H%d", k + 1);
+        put_probe(c, out, 0, name, "level", gauges[k], size[1]/2, 0);
+    }
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+static const char *object_kamra(const family_choice *c)
+{
+    if (chosen(c, "water-height") > chosen(c, "height")) return above;
+    if (chosen(c, "water-length") >= 0.6) return "the water reaches the post, 0.6 m from the wall";
+    return floor(chosen(c, "post")) == chosen(c, "post") ? NULL : "the post is 0, 1 or 2";
+}
+
+static void write_kamra(const family_choice *c, FILE *out)
+{
+    const double size[3] = { 0.8, 0.2, chosen(c, "height") }, zero[3] = { 0 };
+    const double water[3] = { chosen(c, "water-length"), size[1], chosen(c, "water-height") };
+    const double low[3] = { 0.6, 0.075, 0 }, high[3] = { 0.65, 0.125, size[2] };
+    put_world(c, out, size, "a dam breaks on a post that stands in the tank (Kamra et al. 2019)", 0);
+    put_water(c, out, zero, water);
+    if (chosen(c, "post") == 1) {
+        fputs("  \"bodies\": [ { \"name\": \"post\", \"box\": { ", out);
+        put_corners(c, out, low, high);
+        fputs(" } } ],\n", out);
+    } else if (chosen(c, "post") == 2) {
+        fputs("  \"bodies\": [ { \"name\": \"post\", \"cylinder\": { \"radius\": 0.025, \"start\": ", out);
+        put_place(c, out, 0.625, 0.1, low[2]);
+        fputs(", \"end\": ", out);
+        put_place(c, out, 0.625, 0.1, high[2]);
+        fputs(" } } ],\n", out);
+    }
+    fputs("  \"probes\": [", out);
+    put_probe(c, out, 1, "post", "point", 0.6, 0.1, 0.011);
+    put_probe(c, out, 0, "wall", "point", 0.8, 0.1, 0.004);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+static const char *object_impact(const family_choice *c)
+{
+    if (chosen(c, "box-at") + chosen(c, "box-length") >= chosen(c, "length"))
+        return "the box does not fit into the tank";
+    if (chosen(c, "box-width") > chosen(c, "width")) return "the box is wider than the tank";
+    if (chosen(c, "water-length") >= chosen(c, "box-at")) return "the water reaches the box";
+    return object_dam(c);
+}
+
+static void write_impact(const family_choice *c, FILE *out)
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") }, zero[3] = { 0 };
+    const double water[3] = { chosen(c, "water-length"), size[1], chosen(c, "water-height") };
+    const double at = chosen(c, "box-at"), half = chosen(c, "box-width")/2, up = chosen(c, "box-height");
+    const double low[3] = { at, size[1]/2 - half, 0 };
+    const double high[3] = { at + chosen(c, "box-length"), size[1]/2 + half, up };
+    put_world(c, out, size, "a dam breaks onto a box, as in SPHERIC test 2 (Kleefsman et al. 2005)", 0);
+    put_water(c, out, zero, water);
+    fputs("  \"bodies\": [ { \"name\": \"box\", \"box\": { ", out);
+    put_corners(c, out, low, high);
+    fputs(" } } ],\n  \"probes\": [", out);
+    for (int k = 0; k < 4; k++) {
+        char name[8];
+        snprintf(name, sizeof name, "P%d", k + 1);
+        put_probe(c, out, k == 0, name, "point", at, size[1]/2 - 0.07*half, up*(0.13 + 0.25*k));
+    }
+    put_probe(c, out, 0, "gauge", "level", (water[0] + at)/2, size[1]/2, 0);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+/* --- sloshing ------------------------------------------------------------------------------ */
+
+static const family_option slosh_options[] = {
+    SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
+    { "tilt", "degrees", 4, -45, 45, "about y, at once at time 0; the water swings about its new level" },
+    { 0 } };
+
+static void write_slosh(const family_choice *c, FILE *out)
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
+    const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
+    put_world(c, out, size, "a tank is tilted at once; seen from the tank, gravity turns",
+              chosen(c, "tilt"));
+    put_water(c, out, zero, water);
+    fputs("  \"probes\": [", out);
+    put_probe(c, out, 1, "left", "level", 0, size[1]/2, 0);
+    put_probe(c, out, 0, "right", "level", size[0], size[1]/2, 0);
+    put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, water[2]/2);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+static const family families[] = {
+    { "static_pressure", "water at rest in a tank", static_options, 1, object_static, write_static },
+    { "dam_break", "a column of water collapses in a tank", dam_options, 1, object_dam, write_dam },
+    { "lobovsky", "the dam break of Lobovsky et al. (2014), with its sensors", lobovsky_options, 1,
+      object_lobovsky, write_lobovsky },
+    { "kamra", "a dam breaks on a square or round post (Kamra et al. 2019)", kamra_options, 0,
+      object_kamra, write_kamra },
+    { "sloshing", "water swings in a tank that is tilted at once", slosh_options, 1, object_static,
+      write_slosh },
+    { "wave_impact", "a dam breaks onto a box (SPHERIC test 2)", impact_options, 1, object_impact,
+      write_impact },
+};
+
+const family *family_at(int index)
+{
+    return index >= 0 && index < (int)(sizeof families/sizeof *families) ? &families[index] : NULL;
+}

@@ -1,0 +1,44 @@
+/* The product of some values of some keys of a scene: one run each, in a process of its own. */
+#pragma once
+#include "app.h"
+#include "table.h"
+#include <jansson.h>
+
+enum { SWEEP_RUNS = 10000 };
+
+/* One --set with its values. */
+typedef struct sweep_axis {
+    char *path;                     /* "isph.support"                                          */
+    char *label;                    /* of names and columns: its last key, if no other has it  */
+    char **value;
+    int count;
+} sweep_axis;
+
+typedef enum sweep_state { SWEEP_NEW, SWEEP_BEGUN, SWEEP_DONE, SWEEP_FAILED } sweep_state;
+
+typedef struct sweep {
+    const char *scene, *dir;        /* as given; where the runs go                             */
+    char *own_dir;                  /* owned: dir without --out                                */
+    sweep_axis *axes;
+    int axis_count, runs;
+    const char *until, *plot;       /* NULL: not given                                         */
+    int jobs, slurm, only, table;   /* only: one run by its number, -1 = all                   */
+} sweep;
+
+/* sweep.c: the value of an axis in a run; the name of its folder, owned by the caller. */
+const char *sweep_value(const sweep *s, int run, int axis);
+char *sweep_name(const sweep *s, int run);
+/* A path in the sweep's folder, "%s/" before the rest; owned by the caller. */
+char *sweep_path(const sweep *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The summary of a run, NULL if it has none. */
+json_t *sweep_summary(const sweep *s, int run);
+
+/* sweep_run.c: what became of a run so far; a folder with results of another scene is told, and code set. */
+sweep_state sweep_look(const sweep *s, int run, int *code);
+/* Runs all that is not complete, `jobs` at a time. Returns the exit code. */
+int sweep_run(const sweep *s);
+int sweep_write_slurm(const sweep *s);
+
+/* sweep_table.c: sweep.csv, sweep.txt and the plot of what there is. */
+int sweep_write_table(const sweep *s);
+int sweep_draw(const sweep *s);

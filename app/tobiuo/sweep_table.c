@@ -1,0 +1,270 @@
+/* The table and the plot of a sweep: a row per run, in sweep.csv and, aligned, in sweep.txt and on the
+   screen; one picture with a curve per run. Drawback: of many runs the plot shows the first CURVE_LIMIT. */
+#define _GNU_SOURCE
+#include "sweep.h"
+#include "plot.h"
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Numbers of summary.json. */
+static const struct { const char *key, *unit; } numbers[] = {
+    { "time", "s" }, { "steps", "" }, { "fluid_particles", "" }, { "step_wall_s", "s" },
+    { "density_iterations_mean", "" }, { "divergence_iterations_mean", "" }, { "density_error_mean", "" },
+    { "unconverged_steps", "" }, { "particles_lost", "" },
+};
+enum { NUMBERS = sizeof numbers/sizeof *numbers };
+
+/* A table of texts, row 0 its names, filled cell by cell. */
+typedef struct grid { char **cell; int columns, rows, used; } grid;
+
+static void add_cell(grid *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add_cell(grid *g, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *text = NULL;
+    if (vasprintf(&text, format, args) < 0) exit(complain("out of memory"));
+    va_end(args);
+    g->cell[g->used++] = text;
+}
+
+/* The tables probes.csv of all runs; empty where there is none. */
+static table *read_probes(const sweep *s)
+{
+    table *list = calloc((size_t)s->runs, sizeof *list);
+    if (!list) exit(complain("out of memory"));
+    for (int run = 0; run < s->runs; run++) {
+        char *name = sweep_name(s, run), *path = sweep_path(s, "%s/probes.csv", name);
+        if (access(path, F_OK) == 0) table_read(&list[run], path);
+        free(path);
+        free(name);
+    }
+    return list;
+}
+
+static void free_tables(table *list, int count)
+{
+    for (int k = 0; k < count; k++) table_free(&list[k]);
+    free(list);
+}
+
+static double largest(const table *t, const char *column)
+{
+    const int k = t->columns ? table_column(t, column) : -1;
+    double most = NAN;
+    for (size_t i = 0; k >= 0 && i < t->rows; i++) {
+        const double value = table_number(t, i, k);
+        if (!isnan(value) && !(value < most)) most = value;
+    }
+    return most;
+}
+
+/* The first table with columns: all runs of a sweep have the same sensors unless they are swept. */
+static const table *first_table(const table *list, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (list[k].columns) return &list[k];
+    return NULL;
+}
+
+static void add_head(const sweep *s, grid *g, const table *probes)
+{
+    add_cell(g, "run");
+    for (int k = 0; k < s->axis_count; k++) add_cell(g, "%s", s->axes[k].label);
+    add_cell(g, "outcome");
+    for (int k = 0; k < NUMBERS; k++) {
+        const char *unit = numbers[k].unit;
+        add_cell(g, "%s%s%s%s", numbers[k].key, *unit ? " [" : "", unit, *unit ? "]" : "");
+    }
+    for (int k = 1; probes && k < probes->columns; k++) {
+        const char *unit = strchr(probes->names[k], '[') ? "" : plot_unit(probes->names[k], 3);
+        add_cell(g, "max %s%s%s%s", probes->names[k], *unit ? " [" : "", unit, *unit ? "]" : "");
+    }
+}
+
+static void add_row(const sweep *s, grid *g, int run, const table *list, const table *probes)
+{
+    json_t *summary = sweep_summary(s, run);
+    const char *outcome = json_string_value(json_object_get(summary, "outcome"));
+    add_cell(g, "%d", run);
+    for (int k = 0; k < s->axis_count; k++) add_cell(g, "%s", sweep_value(s, run, k));
+    add_cell(g, "%s", outcome ? outcome : summary ? "" : "not run");
+    for (int k = 0; k < NUMBERS; k++) {
+        const json_t *value = json_object_get(summary, numbers[k].key);
+        if (json_is_number(value)) add_cell(g, "%.6g", json_number_value(value));
+        else add_cell(g, "%s", "");
+    }
+    for (int k = 1; probes && k < probes->columns; k++) {
+        const double most = largest(&list[run], probes->names[k]);
+        if (isnan(most)) add_cell(g, "%s", "");
+        else add_cell(g, "%.6g", most);
+    }
+    json_decref(summary);
+}
+
+static void put_csv_cell(FILE *out, const char *text)
+{
+    if (!strpbrk(text, ",\"\n")) {
+        fputs(text, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *text; text++) fputs(*text == '"' ? "\"\"" : (char[]){ *text, '\0' }, out);
+    fputc('"', out);
+}
+
+static int width_of(const grid *g, int column)
+{
+    int width = 0;
+    for (int row = 0; row < g->rows; row++) {
+        const int length = (int)strlen(g->cell[row*g->columns + column]);
+        if (length > width) width = length;
+    }
+    return width;
+}
+
+static int write_grid(const sweep *s, const grid *g, const char *file, int aligned)
+{
+    char *path = sweep_path(s, "%s", file);
+    FILE *out = fopen(path, "w");
+    int code = out ? 0 : complain("cannot write %s: %s", path, strerror(errno));
+    for (int row = 0; out && row < g->rows; row++) {
+        for (int k = 0; k < g->columns; k++) {
+            const char *text = g->cell[row*g->columns + k];
+            if (aligned) fprintf(out, "%s%*s", k ? "  " : "", width_of(g, k), text);
+            else if (k) fputc(',', out);
+            if (!aligned) put_csv_cell(out, text);
+        }
+        fputc('\n', out);
+    }
+    if (out && (ferror(out) || fclose(out) != 0))
+        code = complain("cannot write %s: %s", path, strerror(errno));
+    free(path);
+    return code;
+}
+
+/* Most columns of a wide table stay off the screen: what was set, what came out, and the maxima. */
+static void print_short(const sweep *s, const grid *g)
+{
+    const int first = s->axis_count + 2, time = first + 3;
+    for (int row = 0; row < g->rows; row++) {
+        for (int k = 0; k < g->columns; k++) {
+            if (k >= first && k != time && k != first + 1) continue;
+            printf("%s%*s", k ? "  " : "", width_of(g, k), g->cell[row*g->columns + k]);
+        }
+        putchar('\n');
+    }
+}
+
+int sweep_write_table(const sweep *s)
+{
+    table *list = read_probes(s);
+    const table *probes = first_table(list, s->runs);
+    const int sensors = probes ? probes->columns - 1 : 0;
+    grid g = { .columns = s->axis_count + 2 + NUMBERS + sensors, .rows = s->runs + 1 };
+    g.cell = calloc((size_t)g.columns*(size_t)g.rows + 1, sizeof *g.cell);
+    if (!g.cell) exit(complain("out of memory"));
+    add_head(s, &g, probes);
+    for (int run = 0; run < s->runs; run++) add_row(s, &g, run, list, probes);
+    int code = write_grid(s, &g, "sweep.csv", 0);
+    if (!code) code = write_grid(s, &g, "sweep.txt", 1);
+    if (!code) print_short(s, &g);
+    if (!code) printf("%s/sweep.csv and sweep.txt have all columns\n", s->dir);
+    for (int k = 0; k < g.columns*g.rows; k++) free(g.cell[k]);
+    free(g.cell);
+    free_tables(list, s->runs);
+    return code;
+}
+
+/* --- the plot ------------------------------------------------------------------------------ */
+
+/* The column of a run, from probes.csv or else history.csv, as a curve; 0 if it has none. */
+static int add_run(const sweep *s, int run, const char *column, panel *a, picture *p, char **name)
+{
+    static const char *const files[] = { "probes.csv", "history.csv" };
+    table t = { 0 };
+    int k = -1;
+    for (int f = 0; f < 2 && k < 0; f++) {
+        char *path = sweep_path(s, "%s/%s", *name, files[f]);
+        table_free(&t);
+        if (access(path, F_OK) == 0 && table_read(&t, path) == 0) k = table_column(&t, column);
+        free(path);
+    }
+    const int time = k < 0 ? -1 : table_column(&t, "time");
+    if (time >= 0 && a->curves < CURVE_LIMIT) {
+        curve *c = &a->curve[a->curves++];
+        *c = (curve){ .label = *name, .colour = run, .style = run < 8 ? CURVE_LINE : CURVE_DASHED,
+                      .x = calloc(t.rows + 1, sizeof(double)), .y = calloc(t.rows + 1, sizeof(double)) };
+        if (!c->x || !c->y) exit(complain("out of memory"));
+        for (size_t i = 0; i < t.rows; i++) {
+            c->x[c->count] = table_number(&t, i, time);
+            c->y[c->count++] = table_number(&t, i, k);
+            p->begin = fmin(p->begin, c->x[i]);
+            p->end = fmax(p->end, c->x[i]);
+        }
+    }
+    table_free(&t);
+    return time >= 0;
+}
+
+/* What is drawn without --plot: the first sensors; kinetic energy and speed where there are none. */
+static int choose_columns(const sweep *s, const char *column[PANEL_LIMIT], table **keep)
+{
+    int count = 0;
+    *keep = read_probes(s);
+    if (s->plot) return column[0] = s->plot, 1;
+    const table *probes = first_table(*keep, s->runs);
+    for (int k = 1; probes && k < probes->columns && count < PANEL_LIMIT; k++)
+        if (!strstr(probes->names[k], "_velocity_")) column[count++] = probes->names[k];
+    if (count) return count;
+    column[0] = "kinetic_energy";
+    column[1] = "speed_max";
+    return 2;
+}
+
+static int complain_column(const sweep *s)
+{
+    complain("no run has a column \"%s\" in probes.csv or history.csv; nothing is drawn", s->plot);
+    return EXIT_ERROR;
+}
+
+int sweep_draw(const sweep *s)
+{
+    picture p = { .begin = INFINITY, .end = -INFINITY };
+    const char *column[PANEL_LIMIT];
+    table *keep;
+    const int columns = choose_columns(s, column, &keep);
+    char **names = calloc((size_t)s->runs, sizeof *names), *script = NULL;
+    if (!names) exit(complain("out of memory"));
+    int drawn = 0, code = 0;
+    snprintf(p.title, sizeof p.title, "%s", s->dir);
+    for (int run = 0; run < s->runs; run++) names[run] = sweep_name(s, run);
+    for (int k = 0; k < columns; k++) {
+        panel *a = &p.panel[p.panels];
+        const char *unit = strchr(column[k], '[') ? "" : plot_unit(column[k], 3);
+        snprintf(a->y_label, sizeof a->y_label, "%s%s%s", column[k], *unit ? ", " : "", unit);
+        for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, column[k], a, &p, &names[run]);
+        p.panels += a->curves > 0;
+    }
+    if (!drawn && s->plot) code = complain_column(s);
+    script = drawn ? clear_place(s->dir, "plots.gnuplot") : NULL;
+    FILE *out = script ? fopen(script, "wx") : NULL;
+    if (drawn && !out) code = complain("cannot write %s: %s", script ? script : s->dir, strerror(errno));
+    if (out) {
+        picture_begin_script(out, "svg");
+        picture_write(out, &p, "sweep.svg");
+        fclose(out);
+        code = run_gnuplot(s->dir);
+        if (!code) printf("%s/sweep.svg shows %s of all runs\n", s->dir, column[0]);
+    }
+    for (int run = 0; run < s->runs; run++) free(names[run]);
+    picture_free(&p);
+    free_tables(keep, s->runs);
+    free(names);
+    free(script);
+    return code;
+}

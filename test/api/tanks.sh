@@ -1,0 +1,118 @@
+#!/bin/bash
+# tobiuo new, sweep and import of folders: every family is checked and stepped, a sweep goes on and compares.
+# usage: tanks.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+# rows FILE: its lines
+rows() { wc -l < "$1"; }
+
+# --- families ---------------------------------------------------------------------------------------
+expect 0 "" new
+families=$(sed -n 's/^  \([a-z_]*\)  .*/\1/p' out.txt | grep -v '^of$')
+check "eight families or six" test "$(echo "$families" | wc -w)" -ge 6
+coarse() { case $1 in wave_impact) echo 0.08 ;; sloshing) echo 0.05 ;; *) echo 0.025 ;; esac; }
+for family in $families; do
+    for method in isph eisph dfsph wcsph; do
+        expect 0 "" new $family --spacing "$(coarse $family)" --method $method "$family.$method"
+        expect 0 "" run "$family.$method" --quiet --until 0.02 --out "out_$family.$method"
+        check "$family by $method ran" grep -q '"outcome": "complete"' "out_$family.$method/summary.json"
+        check "$family by $method lost nothing" grep -q '"particles_lost": 0' "out_$family.$method/summary.json"
+    done
+    expect 0 "" check "$family.isph"
+done
+expect 0 "" new static_pressure --spacing 0.0125 --support=2.4
+check "as users name it" test -s static_pressure_PS0d0125_CSML2d4_RK1/scene.json
+expect 0 "" check static_pressure_PS0d0125_CSML2d4_RK1
+expect 1 "is there already" new static_pressure --spacing 0.0125 --support=2.4
+expect 0 "" new --dimension 2 --method dfsph dam_break --spacing 0.02
+check "2-D and another method" test -s dam_break_2d_PS0d02_dfsph/scene.json
+expect 0 "" new lobovsky --gate-speed 3 --spacing 0.03 gated
+expect 0 "" run gated --quiet --until 0.01 --out out_gated
+expect 2 "there is no family 'slosing'; did you mean sloshing?" new slosing --spacing 1
+expect 2 "sloshing has no option --spcing; did you mean --spacing?" new sloshing --spcing 0.1
+expect 2 "--spacing wants a value" new sloshing --spacing
+expect 2 "--tilt: '50' is not a number from -45 to 45 degrees" new sloshing --tilt 50
+expect 2 "'isp' is no method of liquids; did you mean isph?" new sloshing --method isp
+expect 2 "one FAMILY and one DIR only" new sloshing --tilt 5 a b
+expect 1 "kamra is 3-D only" new kamra --dimension 2
+expect 1 "the water is higher than the tank" new static_pressure --depth 9
+expect 1 "the water is longer than the tank" new dam_break --water-length 1
+expect 1 "the water reaches the post" new kamra --water-length 0.7
+expect 1 "the post is 0, 1 or 2" new kamra --post 0.5
+expect 1 "the box does not fit" new wave_impact --box-at 3.2
+expect 1 "the box is wider" new wave_impact --box-width 2
+expect 1 "the water reaches the box" new wave_impact --water-length 2.5
+
+# --- sweeps -----------------------------------------------------------------------------------------
+expect 2 "which SCENE?" sweep
+expect 2 "--set wants PATH=A,B" sweep x --set spacing
+expect 2 "a value is empty" sweep x --set spacing=1,,2
+expect 2 "--set spacing is given twice" sweep x --set spacing=1 --set spacing=2
+expect 2 "--jobs: '0' is not a number from 1 to 256" sweep x --jobs 0
+flat=dam_break_2d_PS0d02_dfsph
+expect 1 'did you mean "spacing"?' sweep $flat --set spacng=1,2
+check "a wrong sweep runs nothing" test ! -e out/${flat}_sweep
+expect 1 "allowed are 10000" sweep $flat --set spacing=0.02,0.03 $(for k in a b c d e f g h i j k l m n; do
+    echo --set "x.$k=1,2"; done)
+expect 1 "--only 9: the runs have numbers from 0 to 3" sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --only 9
+sweep=(sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.02 --out s)
+expect 0 "" "${sweep[@]}" --slurm
+check "an array job" grep -q "^#SBATCH --array=0-3" s/sweep.slurm
+check "that is a shell script" sh -n s/sweep.slurm
+check "and runs one of them" env SLURM_ARRAY_TASK_ID=1 sh s/sweep.slurm
+check "only that one" test -s s/spacing=0.02_method=wcsph/summary.json -a ! -e s/spacing=0.02_method=dfsph
+kept=$(stat -c %Y.%i s/spacing=0.02_method=wcsph/summary.json)
+"$program" "${sweep[@]}" --table > out.txt 2> err.txt
+check "the table of what there is" test "$(grep -c 'not run' s/sweep.csv)" = 3
+if command -v gnuplot > /dev/null; then
+    expect 0 "" "${sweep[@]}" --jobs 2 --plot wall_pressure
+    check "a plot of all" grep -q "spacing=0.025_method=wcsph" s/sweep.svg
+    expect 1 'no run has a column "nothing"' "${sweep[@]}" --plot nothing
+else
+    "$program" "${sweep[@]}" --jobs 2 > out.txt 2> err.txt
+fi
+check "a row for each" test "$(rows s/sweep.csv)" = 5
+check "all complete" test "$(grep -c ',complete,' s/sweep.csv)" = 4
+check "the same as text" test "$(rows s/sweep.txt)" = 5
+check "what was complete was not run again" test "$kept" = "$(stat -c %Y.%i s/spacing=0.02_method=wcsph/summary.json)"
+# A run that was killed is resumed, one of another scene refused, one that failed told.
+one=s/spacing=0.025_method=dfsph
+rm $one/summary.json
+"$program" "${sweep[@]}" > out.txt 2> err.txt
+check "a killed run goes on" grep -q "resumed\|complete" $one/summary.json
+expect 1 "holds results of another scene" sweep $flat --set spacing=0.02,0.025 --set method=dfsph,wcsph --until 0.03 --out s
+sed -i 's/"outcome": "complete"/"outcome": "diverged"/' $one/summary.json
+"$program" "${sweep[@]}" > out.txt 2> err.txt
+check "a failed run is told" grep -q "has failed before; remove s/spacing=0.025_method=dfsph" err.txt
+
+# --- folders of the tank program ----------------------------------------------------------------------
+# box FILE X Y Z: a box from 0 to X Y Z, as CAD writes it
+box() {
+    { for z in 0 $4; do for y in 0 $3; do for x in 0 $2; do echo "v $x $y $z"; done; done; done
+      echo "f 1 3 4 2"; echo "f 5 6 8 7"; echo "f 1 2 6 5"; echo "f 3 7 8 4"; echo "f 1 5 7 3"; echo "f 2 4 8 6"
+    } > "$1"
+}
+mkdir -p case obj
+box obj/water.obj 0.2 0.1 0.1
+box obj/plug.obj 0.4 0.1 0.02
+cat > case/setting.json << 'END'
+{ "RK_order": 1, "max_dt": 0.002, "end_time_step": 10, "end_time": 2, "CSML": 2.4, "particle_spacing": 0.02,
+  "initial_surface_z_position": 0.1, "output_directory": "/Users/x/SPH/case", "input_files": ["tank.json", "water.json"] }
+END
+echo '{ "name": "tank", "type": "RigidBody", "objfile": "/Users/x/code/../obj/plug.obj" }' > case/tank.json
+echo '{ "name": "water", "type": "Fluid", "objfile": "/Users/x/code/../obj/water.obj" }' > case/water.json
+expect 0 "" check case
+check "check tells whose scene it is" grep -q "A scene of the tank program" out.txt
+check "and what became of its keys" grep -q "isph.support = 2.4" out.txt
+expect 0 "" run case --quiet
+expect 0 "" import case
+check "a scene beside the setting" grep -q "# Translated from setting.json, a scene of the tank program" case/scene.json
+expect 1 "case/scene.json exists" import case
+expect 0 "" import case/setting.json --out case/other.json --quiet
+expect 0 "" check case/other.json
+rm obj/water.obj
+expect 1 'cannot find "/Users/x/code/../obj/water.obj"' import case --force
+
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
