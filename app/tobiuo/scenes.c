@@ -170,7 +170,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
 }
 const struct argp new_argp = { .parser = parse, .args_doc = "NAME [DIR]",
     .doc = "Write a scene of a family, with --option VALUE for its dimensions, or copy a shipped scene to "
-           "DIR (NAME in the current folder), with all files that it needs. Without NAME: list the families." };
+           "DIR (NAME in the current folder), with all files that it needs. Without NAME: list families." };
 
 int tobiuo_new(int argc, char **argv)
 {

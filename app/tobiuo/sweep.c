@@ -80,8 +80,8 @@ static int finish_axes(sweep *s)
     }
     if (runs > SWEEP_RUNS) return complain("%g combinations, allowed are %d", runs, SWEEP_RUNS);
     s->runs = (int)runs;
-    return s->only < s->runs ? 0
-                             : complain("--only %d: the runs have numbers from 0 to %d", s->only, s->runs - 1);
+    if (s->only < s->runs) return 0;
+    return complain("--only %d: the runs have numbers from 0 to %d", s->only, s->runs - 1);
 }
 
 /* The last axis changes fastest. */

@@ -59,8 +59,8 @@ TOBI_API const tobi_reference_def *tobi_scene_reference(const tobi_scene *scene,
    like any other: translated first, so overrides are those of the native scene. This is what became of each
    of their keys, as a table for people with units and remarks; NULL for a native scene. Owned by it. */
 TOBI_API const char *tobi_scene_import_table(const tobi_scene *scene);
-/* The program whose scene it was, "the Taichi program" or "the tank program" (setting.json and the object files
-   that it names, read in the same way); NULL for a native scene. */
+/* The program whose scene it was, "the Taichi program" or "the tank program" (setting.json and the object
+   files that it names, read in the same way); NULL for a native scene. */
 TOBI_API const char *tobi_scene_import_program(const tobi_scene *scene);
 /* Translates such a scene into the file new_path, which appears whole or not at all: the native scene, with
    the table in front as comments. Loading it gives the same scene bit for bit. Paths of files are relative

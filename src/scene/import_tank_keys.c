@@ -41,7 +41,7 @@ static const tobi_old_key setting_keys[] = {
 #define O(m) IN(tobi_tank_object, m)
 static const tobi_old_key object_keys[] = {
     { K("name"), O(name), TEXT("text"), BECOMES(".name"), NEEDED, SAY("odd characters become _") },
-    { K("type"), O(type), TEXT("text"), NEEDED, SAY("now by the list: Fluid in fluids, RigidBody in bodies, probe in probes") },
+    { K("type"), O(type), TEXT("text"), NEEDED, SAY("now by the list: fluids, bodies or probes") },
     { K("objfile"), O(file), TEXT("text"), BECOMES(".mesh"),
       SAY("looked for by its last folders and its name beside the setting, in the working directory, in the "
           "folders above") },
