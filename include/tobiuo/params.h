@@ -59,6 +59,8 @@ TOBI_API extern const tobi_param_table tobi_solid_table;
 TOBI_API extern const tobi_param_table tobi_fill_table;
 TOBI_API extern const tobi_param_table tobi_body_table;
 TOBI_API extern const tobi_param_table tobi_plane_table;
+TOBI_API extern const tobi_param_table tobi_inlet_table;
+TOBI_API extern const tobi_param_table tobi_outlet_table;
 TOBI_API extern const tobi_param_table tobi_probe_table;
 TOBI_API extern const tobi_param_table tobi_output_table;
 TOBI_API extern const tobi_param_table tobi_view_table;

@@ -46,6 +46,8 @@ TOBI_API tobi_solid_def  tobi_default_solid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
 TOBI_API tobi_plane_def  tobi_default_plane_def(void);
+TOBI_API tobi_inlet_def  tobi_default_inlet_def(void);
+TOBI_API tobi_outlet_def tobi_default_outlet_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
@@ -73,6 +75,12 @@ TOBI_API tobi_status tobi_world_add_body(tobi_world *world, const tobi_body_def 
 /* Adds a plane, for methods that know them (mlsmpm); others are TOBI_UNSUPPORTED. TOBI_INVALID if its point
    lies outside the domain or its normal has no direction. */
 TOBI_API tobi_status tobi_world_add_plane(tobi_world *world, const tobi_plane_def *def, tobi_error *err);
+
+/* Adds an opening, after the fluids, for the SPH methods; others are TOBI_UNSUPPORTED. TOBI_INVALID for one
+   that is no patch, leaves the domain with its buffer, or would need speeds beyond the limit. The start
+   refuses one in a body, and an outlet that faces inwards. */
+TOBI_API tobi_status tobi_world_add_inlet(tobi_world *world, const tobi_inlet_def *def, tobi_error *err);
+TOBI_API tobi_status tobi_world_add_outlet(tobi_world *world, const tobi_outlet_def *def, tobi_error *err);
 
 /* Adds a probe, at any time. TOBI_INVALID if it sits outside the domain. */
 TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_def *def, tobi_error *err);

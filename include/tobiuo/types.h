@@ -19,7 +19,8 @@ extern "C" {
 /* At most so many in a world; regions are those of all fluids and solids. */
 enum {
     TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_REGION_LIMIT = 2048,
-    TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024
+    TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024,
+    TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32
 };
 
 typedef enum tobi_smoothing {
@@ -197,12 +198,15 @@ typedef struct tobi_fluid_def {
 typedef tobi_status (*tobi_flow_fn)(void *user, int64_t n, const double (*place)[3], double (*velocity)[3],
                                     tobi_error *err);
 
-/* One region filled with a fluid or solid at the start: a box, a sphere (in 2-D a disc), or the inside
-   of a mesh. */
+/* One region filled with a fluid or solid at the start: a box, a sphere (in 2-D a disc), the inside of a
+   mesh, or what a vessel holds. */
 typedef struct tobi_fill_def {
     double      box_min[3], box_max[3];  /* m; used when mesh is NULL and radius is 0 */
     double      centre[3], radius;       /* m; the sphere, when radius > 0            */
     const char *mesh;                    /* path of a closed mesh, or NULL */
+    const char *vessel;                  /* name of a body that is one, or NULL    */
+    double      level;                   /* m, how high: coordinate along gravity, upwards */
+    double      seed[3];                 /* m, a place in the compartment to be filled; at the default all */
     double      scale[3], translation[3];
     double      rotation_axis[3], rotation_angle;  /* degrees; after the scale, before the translation */
     double      velocity[3];             /* m/s */
@@ -259,6 +263,9 @@ typedef struct tobi_body_def {
     double rotation_axis[3];    /* direction; second                                                 */
     double rotation_angle;      /* degrees                                                           */
     double translation[3];      /* m; last                                                           */
+    int    vessel;              /* 1: a vessel; a mesh without walls of its own is its inner surface */
+    double wall_thickness;      /* m, of the walls outside of that surface; 0 = its own walls, or 2
+                                   spacings where it has none                                        */
     double density;             /* kg/m3                                                             */
     double spacing;             /* m, spacing of the body's own particles; 0 = the fluid's           */
     int    friction;            /* tobi_friction felt by the fluid                                   */
@@ -301,6 +308,32 @@ typedef struct tobi_plane_def {
     int    kind;                /* tobi_plane_kind                                                   */
     double friction;            /* 1, Coulomb, where solids and bodies may separate from it          */
 } tobi_plane_def;
+
+/* Where liquid comes in: a rectangle, or a disc when radius > 0; in 2-D a line of that width. Behind its
+   plane lies a buffer of particles, a support radius deep, that must be in the domain and free of bodies. */
+typedef struct tobi_inlet_def {
+    const char *name;
+    const char *fluid;          /* name of what comes in; NULL = the first                            */
+    double centre[3];           /* m, middle of the patch                                            */
+    double normal[3];           /* the way that the liquid goes, of any length                       */
+    double along[3];            /* direction of the width, across normal; 0 = any                    */
+    double width, height;       /* m; in 2-D width alone                                             */
+    double radius;              /* m                                                                 */
+    double speed;               /* m/s, mean over the patch, or                                      */
+    double flow_rate;           /* m3/s (2-D: m2/s)                                                  */
+    int    profile;             /* tobi_profile                                                      */
+    double start, stop;         /* s; stop 0 = to the end                                            */
+    double ramp;                /* s, in which the speed rises from 0 to its own                     */
+} tobi_inlet_def;
+typedef enum tobi_profile { TOBI_PROFILE_UNIFORM, TOBI_PROFILE_PARABOLIC } tobi_profile;
+
+/* Where liquid goes out: what has passed it by a support radius is taken away. */
+typedef struct tobi_outlet_def {
+    const char *name;
+    double centre[3], normal[3], along[3];     /* as of inlets: normal is the way that the liquid goes */
+    double width, height, radius;
+    double level;               /* m, of the liquid beyond; 0 = there is no pressure                 */
+} tobi_outlet_def;
 
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the
    fluid stands on the plumb line through the position (its coordinate along gravity does not matter). */
@@ -394,6 +427,9 @@ typedef struct tobi_step_info {
     double  force_sum;            /* N, sum of |F| over particles, the scale of momentum errors       */
     double  speed_max;            /* m/s                                                              */
     int64_t fluid_particles;
+    double  mass_in, mass_out;    /* kg (2-D: kg/m), through inlets and outlets so far                */
+    double  mass_held;            /* kg, of fluid in the domain, that in buffers of openings included */
+    int64_t particles_in, particles_out;             /* the same as particles                         */
     int64_t particles_lost;       /* left the domain so far                                           */
     int64_t put_back;             /* times that a particle of mlsmpm was put back into it so far      */
     int64_t capped;               /* particles slowed to the speed cap in this step                   */

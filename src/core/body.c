@@ -4,11 +4,15 @@
 #include "core/body.h"
 #include "base/error.h"
 #include "geom/vec3.h"
+#include "geom/vessel.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* Spacings: walls of vessels that have none, if nothing else is asked for. */
+static const double VESSEL_WALLS = 2;
 
 static tobi_status allocate(tobi_body *b, tobi_error *err)
 {
@@ -332,13 +336,18 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
 {
     int dimension = box->dimension;
     char hint[200];
+    b->vessel = def->vessel;
     TOBI_TRY(tobi_body_make_mesh(b, def, dimension, err));
     TOBI_TRY(tobi_mesh_transform(&b->mesh, def->scale, def->rotation_axis, def->rotation_angle,
                                  def->translation, err));
     if (tobi_mesh_hint_units(&b->mesh, dimension, box->size, hint, sizeof hint) > 0)
         return tobi_fail(err, TOBI_INVALID, "body '%s' does not fit: %s", b->name, hint);
     if (hint[0]) tobi_mesh_note(&b->mesh, "%s", hint);
-    TOBI_TRY(tobi_mesh_orient(&b->mesh, def->mesh ? def->mesh : b->name, err));
+    const char *name = def->mesh ? def->mesh : b->name;
+    if (def->vessel)
+        TOBI_TRY(tobi_mesh_make_vessel(&b->mesh, def->wall_thickness, VESSEL_WALLS*b->spacing, dimension,
+                                       name, err));
+    else TOBI_TRY(tobi_mesh_orient(&b->mesh, name, err));
     if (dimension == 3) TOBI_TRY(tobi_massprops_volume(&b->mesh, &b->rest, err));
     else TOBI_TRY(tobi_massprops_section(&b->mesh, &b->rest, err));
     TOBI_TRY(check_pieces(b, point_spacing, dimension, err));

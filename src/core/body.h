@@ -37,6 +37,7 @@ typedef struct tobi_body {
     tobi_mesh mesh;                  /* rest pose, world coordinates                           */
     tobi_massprops rest;             /* exact integrals of the mesh, unit density              */
     double density;                  /* kg/m3                                                  */
+    int vessel;                      /* 1: liquid is filled into it                            */
     int blade;                       /* 1: its edge cuts solids                                */
     double edge_resistance;          /* J/m2 of new surface                                    */
     tobi_edge *edge;                 /* of a blade: about the centre of mass, in rest axes     */

@@ -212,6 +212,17 @@ void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to)
     }
 }
 
+void tobi_particles_remove(tobi_particles *p, const int32_t *rows, int64_t count)
+{
+    const int64_t left = p->count - count;
+    int64_t last = p->count - 1, gone = count - 1;
+    for (int64_t k = 0; k < count && rows[k] < left; k++) {
+        for (; gone >= 0 && rows[gone] == last; gone--) last--;
+        tobi_particles_copy(p, last--, rows[k]);
+    }
+    p->count = left;
+}
+
 int64_t tobi_particles_row_bytes(const tobi_field_list *list, unsigned needs)
 {
     size_t bytes = 0, at[FIELD_LIMIT];

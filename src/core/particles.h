@@ -49,6 +49,8 @@ tobi_status tobi_particles_room(tobi_particles *p, int64_t rows, tobi_error *err
 tobi_status tobi_particles_insert(tobi_particles *p, int64_t count, int64_t *first, tobi_error *err);
 /* Copies the state fields of row `from` over row `to`: rows are removed by keeping the others. */
 void tobi_particles_copy(tobi_particles *p, int64_t from, int64_t to);
+/* Removes rows, ascending: the last ones that stay take their places. */
+void tobi_particles_remove(tobi_particles *p, const int32_t *rows, int64_t count);
 /* Begins stages: fields that live in none of them lose their memory (NULL; NaN in dev builds), those that
    live in one have it. What lives on from the stages before keeps its values; the rest is undefined. */
 void tobi_particles_stage(tobi_particles *p, int stages);

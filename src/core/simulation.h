@@ -2,6 +2,7 @@
 #pragma once
 #include "core/body.h"
 #include "core/cells.h"
+#include "core/opening.h"
 #include "core/plane.h"
 #include "tobiuo/tobiuo.h"
 
@@ -21,6 +22,8 @@ typedef struct tobi_simulation {
     int body_count;
     tobi_fixed_plane plane[TOBI_PLANE_LIMIT];
     int plane_count;
+    tobi_opening *openings;         /* owned by the world                                    */
+    int opening_count;
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
     int64_t body_first_id;          /* of the particles of bodies                            */

@@ -27,6 +27,7 @@ void tobi_system_measure(tobi_system *s)
     s->info.kinetic_energy = t[0];
     s->info.potential_energy = t[1];
     for (int a = 0; a < 3; a++) s->info.momentum[a] = t[2 + a];
+    s->info.mass_held = t[5];
     s->info.weight = t[5]*sqrt(g2);
 }
 

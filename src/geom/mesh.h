@@ -55,6 +55,9 @@ void tobi_mesh_box(const tobi_mesh *mesh, double min[3], double max[3]);
    error texts. Errors: TOBI_INVALID when the file does not say what is inside (holes with their number
    and place), TOBI_NO_MEMORY. The mesh may be partly repaired after a failure. */
 tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err);
+/* The same, but holes stay open: flat patches over them only tell where outside is. Overlaps are not looked
+   for. */
+tobi_status tobi_mesh_orient_open(tobi_mesh *mesh, const char *name, tobi_error *err);
 
 /* Adds a line to mesh->notes, as far as there is room. */
 void tobi_mesh_note(tobi_mesh *mesh, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -34,6 +34,7 @@ typedef struct orient_work {
     shell_set shells;
     tobi_holes holes;
     const char *name;
+    int keep_open;               /* 1: patches only tell the outside                   */
 } orient_work;
 
 static void free_work(orient_work *w)
@@ -50,7 +51,8 @@ static void free_work(orient_work *w)
 
 static tobi_status allocate_work(orient_work *w, int64_t n)
 {
-    orient_work fresh = {.holes = w->holes, .turned = w->turned, .name = w->name};
+    orient_work fresh = {.holes = w->holes, .turned = w->turned, .name = w->name,
+                         .keep_open = w->keep_open};
     free_work(w);
     *w = fresh;
     w->opposite = malloc((size_t)n*sizeof *w->opposite);
@@ -346,15 +348,19 @@ static tobi_status orient_mesh(tobi_mesh *mesh, orient_work *w, tobi_error *err)
     if (report.open || report.crowded) return fail_crowded(mesh, w->name, &report, err);
     TOBI_TRY(measure_shells(mesh, &w->shells));
     TOBI_TRY(turn_shells(mesh, w, err));
+    if (w->keep_open) {
+        if (patched) mesh->triangle_count = w->holes.first;
+        return TOBI_OK;
+    }
     if (patched) TOBI_TRY(judge_holes(mesh, w, err));
     return find_overlaps(mesh, err);
 }
 
-tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
+static tobi_status orient(tobi_mesh *mesh, const char *name, int keep_open, tobi_error *err)
 {
     if (!mesh->triangle_count)
         return tobi_fail(err, TOBI_INVALID, "mesh '%s': no triangles; a closed surface is needed", name);
-    orient_work w = {.name = name};
+    orient_work w = {.name = name, .keep_open = keep_open};
     tobi_status status = allocate_work(&w, mesh->triangle_count);
     if (status == TOBI_OK) status = orient_mesh(mesh, &w, err);
     if (status == TOBI_NO_MEMORY)
@@ -362,4 +368,14 @@ tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
                   (long long)mesh->triangle_count);
     free_work(&w);
     return status;
+}
+
+tobi_status tobi_mesh_orient(tobi_mesh *mesh, const char *name, tobi_error *err)
+{
+    return orient(mesh, name, 0, err);
+}
+
+tobi_status tobi_mesh_orient_open(tobi_mesh *mesh, const char *name, tobi_error *err)
+{
+    return orient(mesh, name, 1, err);
 }

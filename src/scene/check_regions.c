@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char axis_name[3] = "xyz";
 
@@ -79,6 +80,24 @@ static void check_motion(const tobi_scene *scene, tobi_source *source, const tob
         tobi_source_mistake(source, &spin, "must be about z in a 2-D scene: [0, 0, spin]");
 }
 
+static void check_vessel(const tobi_scene *scene, tobi_source *source, const tobi_scene_fill *fill,
+                         const tobi_place *place)
+{
+    tobi_place vessel = { place, "vessel", 0 }, level = { place, "level", 0 };
+    const char *name = fill->def.vessel;
+    if (!tobi_bind_has(&tobi_fill_table, fill->bound.given, "level"))
+        tobi_source_mistake(source, &level, "is missing: a vessel is filled up to a level");
+    for (int k = 0; name && k < scene->body_count; k++) {
+        const tobi_body_def *body = &scene->bodies[k].def;
+        if (!body->name || strcmp(body->name, name) != 0) continue;
+        if (!body->vessel)
+            tobi_source_mistake(source, &vessel, "\"%s\" is no vessel: bodies[%d] needs \"vessel\": true",
+                                name, k);
+        return;
+    }
+    if (name) tobi_source_mistake(source, &vessel, "\"%s\" is no body of the scene", name);
+}
+
 static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_scene_fill *fill,
                        const tobi_place *place)
 {
@@ -89,10 +108,12 @@ static void check_fill(const tobi_scene *scene, tobi_source *source, const tobi_
     tobi_place rotation = { place, "rotation", 0 }, axis = { &rotation, "axis", 0 };
     int has_box = tobi_bind_has(t, given, "box.min") || tobi_bind_has(t, given, "box.max");
     int has_sphere = tobi_bind_has(t, given, "sphere.centre") || tobi_bind_has(t, given, "sphere.radius");
-    int has_mesh = tobi_bind_has(t, given, "mesh");
-    if (has_box + has_sphere + has_mesh != 1)
-        tobi_source_mistake(source, place, "must have one of box, sphere and mesh, it has %s",
-                            has_box + has_sphere + has_mesh ? "several" : "none");
+    int has_mesh = tobi_bind_has(t, given, "mesh"), has_vessel = tobi_bind_has(t, given, "vessel");
+    int shapes = has_box + has_sphere + has_mesh + has_vessel;
+    if (shapes != 1)
+        tobi_source_mistake(source, place, "must have one of box, sphere, mesh and vessel, it has %s",
+                            shapes ? "several" : "none");
+    else if (has_vessel) check_vessel(scene, source, fill, place);
     else if (has_mesh) tobi_check_file(source, &mesh, fill->def.mesh);
     else if (has_box && check_pair(source, place, &fill->bound, "box", "min", "max"))
         check_box(scene, source, &fill->def, place);
@@ -174,7 +195,7 @@ static size_t list_regions(region *list, size_t count, const char *name, int own
     for (int j = 0; j < fill_count; j++) {
         const tobi_fill_def *f = &fills[j].def;
         region *r = &list[count];
-        if (f->mesh) continue;
+        if (f->mesh || f->vessel) continue;
         count++;
         *r = (region){ .list = name, .owner = owner, .index = j, .radius = f->radius };
         for (int a = 0; a < 3; a++) {

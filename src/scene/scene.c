@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 #include "base/plain.h"
 #include "scene/import.h"
+#include "scene/openings.h"
 #include "scene/override.h"
 #include "scene/parts.h"
 #include "scene/write.h"
@@ -251,6 +252,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_solids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
     TOBI_TRY(read_planes(scene, &binder, &root));
+    TOBI_TRY(tobi_openings_read(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
     TOBI_TRY(tobi_output_bind(scene, &binder, &root));
     TOBI_TRY(read_references(scene, &binder, &root));
@@ -375,6 +377,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->planes);
     free(scene->planes_bound);
     free(scene->probes);
+    tobi_openings_clear(scene);
     free(scene->references);
     free(scene->views);
     free(scene->method_def);
@@ -442,6 +445,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = add_solid(world, &scene->solids[i], err);
     for (int i = 0; i < scene->plane_count && status == TOBI_OK; i++)
         status = tobi_world_add_plane(world, &scene->planes[i], err);
+    if (status == TOBI_OK) status = tobi_openings_build(scene, world, err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) *out = world;
@@ -561,6 +565,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     if (scene->solid_count) failed |= json_object_set(root, "solids", solids);
     failed |= json_object_set_new(root, "bodies", bodies);
     if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
+    failed |= tobi_openings_write(scene, root);
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
     failed |= json_object_set_new(root, "output", tobi_output_write(scene));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);

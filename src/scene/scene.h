@@ -53,6 +53,10 @@ struct tobi_scene {
     tobi_plane_def *planes;
     tobi_bound *planes_bound;      /* which of their keys were good               */
     int plane_count;
+    tobi_inlet_def *inlets;
+    int inlet_count;
+    tobi_outlet_def *outlets;
+    int outlet_count;
     tobi_probe_def *probes;
     int probe_count;
     tobi_output_def output;

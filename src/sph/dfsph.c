@@ -13,6 +13,7 @@
 #include "linear/multigrid.h"
 #include "linear/solve.h"
 #include "sph/kernels.h"
+#include "sph/openings.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include "sph/undo.h"
@@ -101,6 +102,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
     m->def = *(const tobi_dfsph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
+    if (sph_has_openings(s)) m->def.still_water = 0;       /* the level of the start is none for long */
     return TOBI_OK;
 }
 
@@ -449,6 +451,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
     TOBI_TRY(classify_vessel(s, m, &clock, err));
     TOBI_TRY(relax_lattice(s, m, &clock, err));
+    sph_openings_mark(s, &m->view);
     TOBI_TRY(find_first_pressure(s, m, &clock, err));
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, PRESSURE_SMOOTHING, &clock);

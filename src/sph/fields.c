@@ -17,6 +17,7 @@ unsigned sph_needs(const tobi_system *s, int full)
     unsigned needs = s->sim->body_count > 0 || full ? SPH_NEED_WETTED : 0;
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].tension > 0) needs |= SPH_NEED_TENSION;
+    if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
     return needs;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 #include "core/particles.h"
 
-/* Scenes with surface tension; liquids with bodies in them. */
-enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2 };
+/* Scenes with surface tension; liquids with bodies in them; inlets and outlets. */
+enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4 };
 
 /* Stages of a step: boundaries and density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -42,6 +42,8 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
     X(float,       TOBI_F32, 1, capillary,    TOBI_SCRATCH, SPH_NEED_TENSION, "Pa", \
       "surface tension times curvature") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "1 at a free surface") \
+    X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
+      "velocity in a buffer; w: 1 + number of the opening, 0: none") \
     X(int32_t,     TOBI_I32, 1, last_link,    TOBI_SCRATCH, 0, "1",    "last near-body entry, -1 = none")
 
 typedef struct sph_fields { SPH_FIELDS(TOBI_FIELD_POINTER) } sph_fields;

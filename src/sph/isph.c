@@ -9,6 +9,7 @@
 #include "sph/isph_forces.h"
 #include "sph/isph_verbs.h"
 #include "sph/kernels.h"
+#include "sph/openings.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,6 +78,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     sph_bind_view(s, &m->view, m->memory.vessel);
     TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
+    m->solver.view.held = NULL;
     m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
     m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
@@ -118,6 +120,8 @@ tobi_status isph_begin(tobi_system *s, tobi_error *err)
     sph_set_body_velocities(s, &clock);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_undo_keep(&m->undo, s, err));
+    sph_openings_mark(s, &m->view);
+    m->solver.view.held = m->view.held;
     find_geometry(s, m, t);
     s->info.volume_drift = t[1] > 0 ? -t[0]/t[1] : 0;
     tobi_stage_end(&s->sim->stages, "geometry", &clock);
@@ -138,6 +142,7 @@ void isph_forces(tobi_system *s)
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
     launch(s, m, m->kernel->isph_gravity, NULL);
+    sph_openings_hold(s);
 }
 
 /* One failure is an event, and the best answer so far is used; many in a row are the end of the run. */
@@ -168,6 +173,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
     isph_forces_correct(&m->solver, s);
     launch(s, m, m->kernel->isph_projection, t);
+    sph_openings_hold(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
     memcpy(m->side_force, t + 1, sizeof m->side_force);
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);

@@ -21,6 +21,8 @@
 /* Least share of a row that is missing where the gate is open, per relative loss of neighbours: clusters
    whose rows are fuller than the lattice would float otherwise. */
 #define ISPH_EXCESS_FLOOR 0.5
+/* Of rows whose pressure is given, over the sum of a row on the lattice. */
+#define ISPH_HELD_ROW 10.0
 /* Most of kappa. */
 #define ISPH_SCALE_MAX 1.3
 /* Determinant below which M has no use. */
@@ -40,6 +42,9 @@
 #define ISPH_DROP 0.6
 #define ISPH_SPARSE 0.75
 #define ISPH_BULK 0.95
+
+/* Whether velocity and pressure of a particle are given: it lies in the buffer of an opening. */
+TOBI_FN int isph_held(const isph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
 
 TOBI_FN double isph_larger(double a, double b) { return a > b ? a : b; }
 TOBI_FN double isph_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
@@ -253,8 +258,24 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors 
     isph_rows_enter(v, m, a, kind);
 }
 
+/* The row of a particle whose pressure is given: the unknown is 0 there, what neighbours make of the pressure
+   stands in their sources (isph_solve.c). */
+TOBI_FN void isph_rows_hold(const isph_view *v, int64_t i, double *totals)
+{
+    const int64_t first = 8*(int64_t)v->list_start[i];
+    for (int k = 0; k < 8*v->list_groups[i]; k++) v->entry[first + k] = 0;
+    v->excess[i] = ISPH_HELD_ROW*v->full;
+    v->inverse_diagonal[i] = 1/v->excess[i];
+    v->solution[i] = v->source[i] = 0;
+    totals[0] += v->excess[i];
+}
+
 TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, double *totals)
 {
+    if (isph_held(v, i)) {
+        isph_rows_hold(v, i, totals);
+        return;
+    }
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
     const double excess = isph_excess(v, loss, t.x, v->gate[i]);
@@ -316,7 +337,7 @@ TOBI_FN void isph_add_answer(const isph_view *v, int64_t i, double *totals)
 TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
 {
     (void)totals;
-    v->pressure[i] = (float)v->solution[i];
+    if (!isph_held(v, i)) v->pressure[i] = (float)v->solution[i];
     v->record[i].w = v->pressure[i];
 }
 

@@ -203,6 +203,22 @@ static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
     return tobi_cg(m->exec, a, &how, b, x, m->work);
 }
 
+/* Adds what neighbours in buffers of openings, whose pressures are given, make of a row. */
+static void take_held(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const isph_view *v = view;
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) {
+        const int64_t first = 8*(int64_t)v->list_start[i];
+        double sum = 0;
+        for (int k = 0; k < 8*v->list_groups[i]; k++) {
+            const int32_t j = v->list[first + k];
+            if (v->held[j].w > 0) sum += v->entry[first + k]*(double)v->pressure[j];
+        }
+        v->source[i] += sum;
+    }
+}
+
 tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
 {
     double t[TOBI_TOTALS];
@@ -210,6 +226,7 @@ tobi_linear_report isph_solver_run(isph_solver *m, tobi_system *s)
     m->system = s;
     m->view.gravity_dt = (float)m->view.dt;
     tobi_launch(m->exec, m->kernel->isph_rows, &m->view, 0, n, t);
+    if (m->view.held) tobi_launch(m->exec, TOBI_HOST(take_held, 0, 0), &m->view, 0, n, NULL);
     m->view.source_mean = t[1]/(double)n;
     if (!m->view.open && t[0] > 0) tobi_launch(m->exec, m->kernel->isph_balance, &m->view, 0, n, NULL);
     const int grid = m->def->preconditioner == TOBI_MULTIGRID && m->sweeps.count == 0;

@@ -51,8 +51,9 @@ TOBI_FN tobi_float4 sph_pressure_accel_value(const sph_view *v, int64_t i, sph_p
 TOBI_FN void sph_pressure_accel_finish(const sph_view *v, int64_t i, sph_pressure_accel_acc *a,
                                        double *totals)
 {
+    const tobi_float4 none = {0, 0, 0, 0};
     (void)totals;
-    v->accel[i] = sph_pressure_accel_value(v, i, a);
+    v->accel[i] = sph_held(v, i) ? none : sph_pressure_accel_value(v, i, a);
 }
 
 /* v += dt a(p). totals[0]: sum of rho |a|. */
@@ -172,7 +173,7 @@ TOBI_FN void sph_source_finish(const sph_view *v, int64_t i, sph_source_acc *a, 
     float rate = sph_compression_value(v, i, &a->free, v->velocity, 1);
     if (v->exact) rate += v->target_divergence[i];
     float r = v->inverse_dt*rate;
-    int active = v->diagonal[i] > v->isolated &&
+    int active = v->diagonal[i] > v->isolated && !sph_held(v, i) &&
                  (!v->surface[i] || r > 0 || v->pressure[i] > sph_floor(v, i));
     v->precondition[i] = active ? 1/v->diagonal[i] : 0;
     v->residual[i] = active ? r : 0;
@@ -197,7 +198,7 @@ TOBI_FN void sph_density_residual(const sph_view *v, int64_t i, double *totals)
     e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : pace*(e < -0.02f ? -0.02f : e);
     v->pressure[i] = 0;
     sph_start_search(v, i, e * v->inverse_dt * v->inverse_dt,
-                     v->diagonal[i] > v->isolated && (!v->surface[i] || e > 0), totals);
+                     v->diagonal[i] > v->isolated && !sph_held(v, i) && (!v->surface[i] || e > 0), totals);
 }
 
 /* product = A q for the search direction q, from accel = a(q). totals: q . A q, sum of A q. */

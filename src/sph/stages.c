@@ -3,6 +3,7 @@
 #include "sph/state.h"
 #include "sph/stages.h"
 #include "sph/boundary.h"
+#include "sph/openings.h"
 #include <math.h>
 #include <string.h>
 
@@ -76,6 +77,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
     v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
     bind_stage(v, f);
+    v->held = sph_of(s)->marked ? f->held : NULL;
     v->last_link = s->sim->body_count > 0 ? f->last_link : NULL;
     v->fluid = p->fluid; v->list_start = s->cells.list_start; v->list_groups = s->cells.list_groups;
     v->list = s->cells.list;
@@ -141,6 +143,7 @@ void sph_use_dt(const tobi_system *s, sph_view *v)
 tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 {
     const sph_fields *f = sph_fields_of(&s->particles);
+    sph_of(s)->marked = 0;
     tobi_cells_sort(&s->cells, &s->box, &s->particles, f->pressure, &s->sim->exec);
     tobi_stage_end(&s->sim->stages, "sort", clock);
     TOBI_TRY(tobi_cells_list(&s->cells, &s->box, s->smoothing.h, &s->particles, &s->sim->exec, err));
@@ -171,13 +174,14 @@ tobi_status sph_classify_vessel(tobi_system *s, sph_view *v, const sph_kernels *
 {
     double t[TOBI_TOTALS], count = (double)s->particles.count;
     if (*vessel != SPH_VESSEL_UNKNOWN) return TOBI_OK;
+    if (sph_has_openings(s)) *vessel = SPH_VESSEL_OPEN;        /* the levels may change */
     TOBI_TRY(sph_find_boundaries(s, v, k, clock, err));
     v->pressure = sph_fields_of(&s->particles)->pressure;
     v->smooth = 0;
     launch(s, v, k->sph_density, t);
     sph_of(s)->lowest = t[7];
     int full = t[3] < 0.1*(s->box.dimension == 3 ? cbrt(count*count) : sqrt(count));
-    *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
+    if (!sph_has_openings(s)) *vessel = full ? SPH_VESSEL_FULL : SPH_VESSEL_OPEN;
     return TOBI_OK;
 }
 
@@ -241,6 +245,7 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
     launch(s, v, k->sph_kick, NULL);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
     apply_tension(s, v, k);
+    sph_openings_hold(s);
     tobi_stage_end(&s->sim->stages, "forces", clock);
 }
 
@@ -258,6 +263,7 @@ double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, dou
 {
     double t[TOBI_TOTALS];
     v->speed_cap = (float)(1.5*tobi_system_speed_scale(s));
+    sph_openings_hold(s);
     launch(s, v, k->sph_advance, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];

@@ -48,6 +48,7 @@ TOBI_FN void sph_tait_finish(const sph_view *v, int64_t i, sph_compression_acc *
     float p = v->pressure[i] + v->dt*v->exponent*(v->pressure[i] + v->stiffness)*rate;
     float push = p + v->damping*rate;
     if (v->diagonal[i] <= v->isolated) p = push = 0;
+    if (sph_held(v, i)) p = push = v->pressure[i];
     float least = sph_floor(v, i);
     if (v->surface[i] && p < least) p = least;
     if (v->surface[i] && push < least) push = least;
@@ -65,6 +66,6 @@ TOBI_FN void sph_relax(const sph_view *v, int64_t i, double *totals)
     float e = v->density[i] - 1;
     (void)totals;
     e = e > 0 ? (e > 0.1f ? 0.1f : e) : v->surface[i] ? 0 : (e < -0.1f ? -0.1f : e);
-    v->record[i].w = v->diagonal[i] > v->isolated
+    v->record[i].w = v->diagonal[i] > v->isolated && !sph_held(v, i)
                          ? v->relaxation*v->inverse_dt*v->inverse_dt*e/v->diagonal[i] : 0;
 }

@@ -8,6 +8,7 @@
 #include "sph/wcsph.h"
 #include "sph/boundary.h"
 #include "sph/kernels.h"
+#include "sph/openings.h"
 #include "sph/stages.h"
 #include "sph/reference.h"
 #include <math.h>
@@ -61,6 +62,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     m->sound = find_sound(s, &m->def);
     m->compliance = tobi_couple_compliance(s);
+    if (sph_has_openings(s)) m->def.still_water = 0;       /* the level of the start is none for long */
     return TOBI_OK;
 }
 
@@ -190,6 +192,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     sph_reference_move(s, &m->view.reference_before, m->def.still_water ? m->memory.low : 0,
                    fmax(m->memory.speed, s->sim->body_speed), &m->memory.level);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
+    sph_openings_mark(s, &m->view);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, share_of_step(s, m, PRESSURE_SMOOTHING), &clock);
     m->memory.low = find_surface(s);

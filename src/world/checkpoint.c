@@ -5,6 +5,7 @@
 #include "world/bodies.h"
 #include "world/change.h"
 #include "world/load_system.h"
+#include "world/openings.h"
 #include "world/step.h"
 #include "world/world.h"
 #include <math.h>
@@ -12,7 +13,7 @@
 #include <string.h>
 
 /* To be raised whenever what a checkpoint holds changes; 0: from before there was a number. */
-enum { FORMAT = 10 };
+enum { FORMAT = 11 };
 
 static tobi_status check_format(tobi_store *f, const char *path, tobi_error *err)
 {
@@ -34,6 +35,11 @@ static tobi_status put_clock(tobi_world *w, tobi_store *f, tobi_error *err)
     TOBI_TRY(tobi_store_put_int(f, "bodies", s->body_count, err));
     TOBI_TRY(tobi_store_put(f, "clock", TOBI_F64, 4, 1, clock, err));
     TOBI_TRY(tobi_store_put(f, "gravity", TOBI_F64, 3, 1, s->def.gravity, err));
+    if (s->opening_count > 0) {
+        double way[TOBI_OPENING_LIMIT];
+        tobi_openings_get(w, way);
+        TOBI_TRY(tobi_store_put(f, "openings", TOBI_F64, s->opening_count, 1, way, err));
+    }
     return tobi_world_put_bodies(w, f, err);
 }
 
@@ -56,7 +62,7 @@ tobi_status tobi_world_save(tobi_world *w, const char *path, tobi_error *err)
 /* A checkpoint as read, before the world takes it over. */
 typedef struct loaded {
     int64_t step;
-    double clock[4], gravity[3];
+    double clock[4], gravity[3], way[TOBI_OPENING_LIMIT];
     tobi_loaded_system system[TOBI_SYSTEM_LIMIT];
     tobi_loaded_bodies bodies;
 } loaded;
@@ -88,11 +94,22 @@ static tobi_status read_clock(tobi_store *f, const char *path, loaded *l, tobi_e
     return tobi_fail(err, TOBI_DAMAGED, "%s: its clock or gravity is no number", path);
 }
 
+static tobi_status read_openings(const tobi_world *w, tobi_store *f, const char *path, loaded *l,
+                                 tobi_error *err)
+{
+    const int n = w->sim.opening_count;
+    int good = 1;
+    if (n > 0) TOBI_TRY(tobi_store_get(f, "openings", TOBI_F64, n, 1, l->way, err));
+    for (int k = 0; k < n; k++) good &= isfinite(l->way[k]) && l->way[k] >= 0;
+    return good ? TOBI_OK : tobi_fail(err, TOBI_DAMAGED, "%s: the flow of an inlet is no length", path);
+}
+
 static tobi_status read_all(tobi_world *w, tobi_store *f, const char *path, loaded *l, tobi_error *err)
 {
     TOBI_TRY(check_format(f, path, err));
     TOBI_TRY(check_bodies(w, f, err));
     TOBI_TRY(read_clock(f, path, l, err));
+    TOBI_TRY(read_openings(w, f, path, l, err));
     for (int k = 0; k < w->system_count; k++)
         TOBI_TRY(tobi_system_get(&w->system[k], k, f, path, &l->system[k], err));
     return tobi_world_read_bodies(w, f, &l->bodies, err);
@@ -105,6 +122,7 @@ static void take_over(tobi_world *w, loaded *l)
     s->time = l->clock[0];
     s->dt = l->clock[1];
     s->body_speed = l->clock[2];
+    tobi_openings_set(w, l->way);
     for (int k = 0; k < w->system_count; k++) tobi_system_take(&w->system[k], &l->system[k]);
     w->system[0].step = l->step;
     w->system[0].dt = l->clock[1];

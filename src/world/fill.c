@@ -2,6 +2,7 @@
    Drawback: a lattice does not follow round walls; the first step relaxes it. */
 #include "world/fill.h"
 #include "base/error.h"
+#include "world/openings.h"
 #include "geom/seed.h"
 #include <math.h>
 #include <stdlib.h>
@@ -32,6 +33,7 @@ int64_t tobi_region_count(const tobi_system *s, const tobi_region *r)
 {
     int64_t n[3];
     double step[3];
+    if (r->points) return r->point_count;
     lattice(s, r, n, step);
     double count = (double)n[0]*(double)n[1]*(double)n[2];
     return count < COUNT_LIMIT ? (int64_t)count : (int64_t)COUNT_LIMIT;
@@ -182,6 +184,10 @@ static int64_t place_lattice(const tobi_system *s, const tobi_region *r, const t
 {
     int64_t n[3], count = 0;
     double step[3];
+    if (r->points) {
+        memcpy(points, r->points, (size_t)r->point_count*sizeof *points);
+        return r->point_count;
+    }
     lattice(s, r, n, step);
     for (int64_t k = 0; k < n[2]; k++)
         for (int64_t j = 0; j < n[1]; j++)
@@ -224,7 +230,7 @@ static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, do
             if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
         }
         r->outside += out;
-        if (out) continue;
+        if (out || tobi_openings_cover(s->sim, x)) continue;
         if (inside_body(s, r, x)) r->covered++;
         else if (behind_plane(s, x)) r->behind++;
         else add_particle(s, r, x);

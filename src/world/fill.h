@@ -11,6 +11,11 @@ typedef struct tobi_region {
     double lower[3], upper[3];     /* m, world; the box, or the mesh's box */
     tobi_mesh shape;               /* placed and oriented; without triangles: the box */
     double radius;                 /* m, of the sphere in the middle of that box; 0 = none */
+    char vessel[64];               /* body whose compartments are still to be found; "" = none */
+    double level, seed[3];         /* m, see tobi_fill_def */
+    int in_vessel;                 /* 1: it is a compartment of one */
+    double (*points)[3];           /* owned, m, world: the lattice in a compartment; NULL = that of the box */
+    int64_t point_count;
     double volume;                 /* m3, exact; 2-D: m2 */
     double velocity[3], spin[3];   /* m/s, rad/s about the middle of the box */
     tobi_flow_fn flow;             /* what is added to them, NULL = nothing */

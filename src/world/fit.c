@@ -18,7 +18,7 @@ enum { TRIALS = 100,                /* spacings above and below the wish */
 /* A box of liquid, which the first system has. */
 static int is_box(const tobi_region *r)
 {
-    return r->system == 0 && !r->shape.triangle_count && !(r->radius > 0);
+    return r->system == 0 && !r->shape.triangle_count && !(r->radius > 0) && !r->points && !r->vessel[0];
 }
 
 /* The spacing at which the layers that are counted at `trial` hold the boxes' volume, and how they are

@@ -50,6 +50,12 @@ static const tobi_param body_rows[] = {
       .doc = "Angle of that turn, by the right-hand rule." },
     { .key = "translation", VEC3, AT(tobi_body_def, translation), PLACE, .unit = "m",
       .doc = "Where the origin of the mesh is put, applied last." },
+    { .key = "vessel", BOOL, AT(tobi_body_def, vessel),
+      .doc = "Whether the body is a vessel: its mesh has walls, or is the inner surface, open or closed." },
+    { .key = "wall_thickness", REAL, AT(tobi_body_def, wall_thickness), LENGTHS, .unit = "m",
+      .text = "automatic",
+      .doc = "Thickness of a vessel's walls outside of the mesh; automatic takes the mesh's own walls, or 2 "
+             "spacings where it has none." },
     { .key = "density", REAL, AT(tobi_body_def, density), .def = { 1000 }, DENSITY,
       .unit = "kg/m3", .doc = "Density of the body, for its mass and inertia." },
     { .key = "spacing", REAL, AT(tobi_body_def, spacing), LENGTHS, .unit = "m", .text = "fluid",

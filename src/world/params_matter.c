@@ -36,6 +36,13 @@ static const tobi_param fill_rows[] = {
       .doc = "Its radius." },
     { .key = "mesh", TEXT, AT(tobi_fill_def, mesh), .unit = "path",
       .doc = "A closed mesh (OBJ, STL or PLY) whose inside is filled, instead of a box." },
+    { .key = "vessel", TEXT, AT(tobi_fill_def, vessel), .unit = "name",
+      .doc = "A body with \"vessel\": true that is filled up to level, instead of a box." },
+    { .key = "level", REAL, AT(tobi_fill_def, level), PLACE, .unit = "m",
+      .doc = "Where the surface of what fills the vessel lies: its coordinate upwards, against gravity." },
+    { .key = "seed", VEC3, AT(tobi_fill_def, seed), .def = { -1e9, -1e9, -1e9 }, PLACE, .unit = "m",
+      .text = "all",
+      .doc = "A place in the one compartment of the vessel that is filled; all fills every one." },
     { .key = "scale", VEC3, AT(tobi_fill_def, scale), .def = { 1, 1, 1 }, FACTOR,
       .positive = true, .unit = "1",
       .doc = "Size factor of the mesh, one number or one per axis, applied first." },
@@ -53,7 +60,8 @@ static const tobi_param fill_rows[] = {
 };
 
 const tobi_param_table tobi_fill_table = {
-    "fill", "An entry of fill: one region that a fluid or solid fills at the start: box, sphere or mesh.",
+    "fill", "An entry of fill: one region that a fluid or solid fills at the start: box, sphere, mesh "
+    "or vessel.",
     sizeof(tobi_fill_def), fill_rows };
 
 static const tobi_param solid_rows[] = {

@@ -69,6 +69,11 @@
       "Sum over particles of the size of their force: the scale of errors in momentum.") \
     H("speed_max", "m/s", real, i->speed_max, "Speed of the fastest particle.") \
     H("fluid_particles", "1", int, i->fluid_particles, "Particles of fluid and solids.") \
+    H("mass_in", "kg", real, i->mass_in, \
+      "Mass that inlets have let into the domain, buffers included, since the start; in 2-D kg/m.") \
+    H("mass_out", "kg", real, i->mass_out, "Mass that outlets have taken away since the start.") \
+    H("mass_held", "kg", real, i->mass_held, \
+      "Mass of all fluid and solids: what it was at the start, plus mass_in, less mass_out.") \
     H("particles_lost", "1", int, i->particles_lost, "Particles that left the domain since the start.") \
     H("put_back", "1", int, i->put_back, \
       "Times since the start that a particle of mlsmpm was put back into the domain.") \

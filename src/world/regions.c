@@ -45,6 +45,12 @@ static tobi_status measure_region(const tobi_system *s, const char *name, const 
     r->flow = f->flow;
     r->flow_user = f->flow_user;
     r->radius = f->radius;
+    if (f->vessel) {                       /* the rest when all bodies are known: vessel.c */
+        snprintf(r->vessel, sizeof r->vessel, "%s", f->vessel);
+        memcpy(r->seed, f->seed, sizeof r->seed);
+        r->level = f->level;
+        return TOBI_OK;
+    }
     if (f->mesh) TOBI_TRY(load_shape(f, s->box.dimension, r, err));
     for (int a = 0; a < 3; a++) {
         if (f->mesh || !(f->radius > 0)) continue;

@@ -4,6 +4,7 @@
 #include "world/step.h"
 #include "world/bodies.h"
 #include "world/limits.h"
+#include "world/openings.h"
 #include "base/error.h"
 #include <math.h>
 #include <string.h>
@@ -99,6 +100,7 @@ static void add_info(tobi_step_info *sum, const tobi_step_info *one)
     sum->elastic_energy += one->elastic_energy;
     sum->fluid_particles += one->fluid_particles;
     sum->particles_lost += one->particles_lost;
+    sum->mass_held += one->mass_held;
     sum->put_back += one->put_back;
     sum->capped += one->capped;
     sum->contacts += one->contacts;
@@ -189,6 +191,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     s->time += s->dt;
     s->step++;
     TOBI_TRY(tobi_world_kick_bodies(w, err));
+    TOBI_TRY(tobi_openings_pass(w, err));
     tobi_step_sum_up(w);
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(check_runaway(&w->system[k], err));
     return TOBI_OK;

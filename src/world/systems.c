@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "world/fit.h"
 #include "base/param.h"
+#include "world/openings.h"
+#include "world/vessel.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
@@ -142,6 +144,7 @@ tobi_status tobi_world_estimate(tobi_world *w, int64_t *fluid_particles, int64_t
     TOBI_NEED_WORLD(w);
     TOBI_NEED(fluid_particles && body_particles && bytes, "where a number goes");
     *fluid_particles = *body_particles = *bytes = 0;
+    if (!w->started) TOBI_TRY(tobi_vessel_resolve(w, err));
     for (int k = 0; k < w->system_count; k++) {
         tobi_system *s = &w->system[k];
         int64_t count = 0;
@@ -168,9 +171,11 @@ double tobi_world_start_head(const tobi_world *w, const tobi_system *s)
             lower = fmin(lower, w->regions[k].lower[a]);
             upper = fmax(upper, w->regions[k].upper[a]);
         }
-        if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
+        if (w->sim.opening_count > 0) head += fabs(w->sim.def.gravity[a])*s->box.size[a];
+        else if (upper > lower) head += fabs(w->sim.def.gravity[a])*(upper - lower);
     }
-    return head;
+    const double peak = tobi_openings_peak(&w->sim);
+    return head + peak*peak;
 }
 
 /* Of a region: its velocity, its spin at the farthest corner, and, once it is filled, its flow. */
@@ -185,20 +190,20 @@ double tobi_world_start_speed(const tobi_world *w, const tobi_system *s)
         if (&w->system[r->system] != s) continue;
         fastest = fmax(fastest, length(r->velocity) + length(r->spin)*reach + r->flow_speed);
     }
-    return fastest;
+    return s == &w->system[0] ? fmax(fastest, tobi_openings_peak(&w->sim)) : fastest;
 }
 
 /* Room for the particles of a system, and the particles. */
 tobi_status tobi_world_fill_system(tobi_world *w, tobi_system *s, tobi_error *err)
 {
-    int64_t room = 0;
+    int64_t room = s == &w->system[0] ? tobi_openings_count(w) : 0;
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) room += tobi_region_count(s, &w->regions[k]);
     tobi_particles_free(&s->particles);
     TOBI_TRY(tobi_particles_reserve(&s->particles, s->method->fields, needed_fields(w, s), room, err));
     for (int k = 0; k < w->region_count; k++)
         if (&w->system[w->regions[k].system] == s) TOBI_TRY(tobi_region_fill(s, &w->regions[k], err));
-    return TOBI_OK;
+    return s == &w->system[0] ? tobi_openings_fill(w, err) : TOBI_OK;
 }
 
 /* Ids count on through the systems, then through the particles of bodies. */

@@ -7,6 +7,7 @@
 #include "world/fit.h"
 #include "world/limits.h"
 #include "world/note_pieces.h"
+#include "world/openings.h"
 #include "base/param.h"
 #include "world/step.h"
 #include <math.h>
@@ -71,10 +72,14 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->system_count; k++) tobi_world_free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
-    for (int k = 0; k < w->region_count; k++) tobi_mesh_free(&w->regions[k].shape);
+    for (int k = 0; k < w->region_count; k++) {
+        tobi_mesh_free(&w->regions[k].shape);
+        free(w->regions[k].points);
+    }
     free(w->sim.bodies);
     free(w->regions);
     free(w->probes);
+    tobi_openings_free(w);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
     free(w->texture);
@@ -221,7 +226,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_estimate(w, &fluid, &body, &bytes, err));
     for (int k = 0; k < w->region_count; k++)
         room += tobi_region_count(&w->system[w->regions[k].system], &w->regions[k]);
-    if (room + body == 0)
+    if (room + body + tobi_openings_count(w) == 0)
         return tobi_fail(err, TOBI_INVALID,
                          "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));

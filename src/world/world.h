@@ -21,6 +21,9 @@ struct tobi_world {
     int region_count;
     tobi_probe *probes;
     int probe_count;
+    int32_t *leaving;              /* owned: rows that outlets take, of the step at hand           */
+    int64_t *leaving_block;        /* owned: their number in each block of rows                    */
+    int64_t leaving_room, leaving_blocks;
     char **notes;                  /* owned texts                                            */
     int note_count;
     int step_noted;                /* 1: a note tells of a fixed time step that will be cut       */

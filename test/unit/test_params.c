@@ -55,13 +55,15 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_eisph_table), hole);
     assert_int_equal(count_uncovered(&tobi_fluid_table), hole);
     assert_int_equal(count_uncovered(&tobi_fill_table), sizeof(tobi_flow_fn) + sizeof(void *));
-    assert_int_equal(count_uncovered(&tobi_body_table), motion + control + 3*hole);
+    assert_int_equal(count_uncovered(&tobi_body_table), motion + control + 4*hole);
     const size_t further = sizeof(tobi_view_def *) + sizeof(int), name = sizeof(const char *);
     assert_int_equal(count_uncovered(&tobi_output_table), name + further + 4*hole);
     assert_int_equal(count_uncovered(&tobi_view_table), 0);
     assert_int_equal(count_uncovered(&tobi_mlsmpm_table), hole);
     assert_int_equal(count_uncovered(&tobi_solid_table), 2*hole);
     assert_int_equal(count_uncovered(&tobi_plane_table), hole);
+    assert_int_equal(count_uncovered(&tobi_inlet_table), hole);
+    assert_int_equal(count_uncovered(&tobi_outlet_table), 0);
     assert_int_equal(count_uncovered(&tobi_reference_table), 0);
 }
 
@@ -96,7 +98,7 @@ static void rows_agree_with_themselves(void **state)
         for (; row->key; row++, rows++) check_row(table, row);
         assert_true(row - table->rows <= 64);        /* the binder keeps one bit per row */
     }
-    assert_int_equal(tables, 15);
+    assert_int_equal(tables, 17);
     assert_true(rows > 45);
     assert_null(tobi_param_table_at(-1));
 }

@@ -1,0 +1,51 @@
+/* Places and speeds of openings. Profiles are products of a shape over the patch and a rate in time, so that
+   one number says how far every column has gone. Drawback: a profile cannot change its shape in time. */
+#include "core/opening.h"
+#include "geom/vec3.h"
+#include <math.h>
+
+/* m, over the sides of the patch: rounding does not let go of particles. */
+static const double SLACK = 1e-9;
+
+void tobi_opening_locate(const tobi_opening *o, const double x[3], double at[3])
+{
+    double arm[3];
+    vec3_sub(arm, x, o->centre);
+    at[0] = vec3_dot(arm, o->normal);
+    at[1] = vec3_dot(arm, o->along);
+    at[2] = vec3_dot(arm, o->across);
+}
+
+int tobi_opening_faces(const tobi_opening *o, const double at[3])
+{
+    if (o->radius > 0) return at[1]*at[1] + at[2]*at[2] <= o->radius*o->radius + SLACK;
+    return fabs(at[1]) <= o->half[0] + SLACK && fabs(at[2]) <= o->half[1] + SLACK;
+}
+
+int tobi_opening_find(const tobi_opening *o, int count, const double x[3])
+{
+    for (int k = 0; k < count; k++) {
+        double at[3];
+        tobi_opening_locate(&o[k], x, at);
+        if (o[k].outlet ? at[0] < 0 : at[0] >= 0 || at[0] < -o[k].depth - o[k].step) continue;
+        if (tobi_opening_faces(&o[k], at)) return k;
+    }
+    return -1;
+}
+
+double tobi_opening_speed(const tobi_opening *o, double t)
+{
+    if (t < o->start || (o->stop > 0 && t >= o->stop)) return 0;
+    return o->speed*(o->ramp > 0 ? fmin((t - o->start)/o->ramp, 1) : 1);
+}
+
+/* Of a laminar flow between plates, or in a pipe; the product of two of the first in a rectangle. */
+double tobi_opening_factor(const tobi_opening *o, double along, double across)
+{
+    const double r2 = o->radius*o->radius;
+    if (!o->parabolic) return o->scale;
+    if (r2 > 0) return 2*o->scale*fmax(1 - (along*along + across*across)/r2, 0);
+    double f = 1.5*fmax(1 - along*along/(o->half[0]*o->half[0]), 0);
+    if (o->half[1] > 0) f *= 1.5*fmax(1 - across*across/(o->half[1]*o->half[1]), 0);
+    return o->scale*f;
+}

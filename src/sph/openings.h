@@ -1,0 +1,15 @@
+/* Particles in the buffers of inlets and outlets, as the SPH methods treat them: velocities and pressures
+   there are given, not found. */
+#pragma once
+#include "core/system.h"
+#include "sph/view.h"
+
+/* Whether the world has openings. */
+int sph_has_openings(const tobi_system *s);
+/* After a search: marks what lies in buffers, at the end of the step at hand, and gives it its velocity and
+   pressure. Inlets: the profile; the pressure of the free liquid beside, as it continues at rest. Outlets:
+   the mean velocity of the liquid around, not inwards; the pressure of their level. The view sees the marks
+   until the next sort. */
+void sph_openings_mark(tobi_system *s, sph_view *v);
+/* Gives them their velocities again, and takes their accelerations. */
+void sph_openings_hold(tobi_system *s);

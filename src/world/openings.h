@@ -1,0 +1,20 @@
+/* Inlets and outlets of a world: rows come and go between steps. */
+#pragma once
+#include "world/world.h"
+
+/* Rows that the buffers of inlets have at the start. */
+int64_t tobi_openings_count(const tobi_world *w);
+/* Adds them behind the regions' particles, for which there must be room. TOBI_INVALID for an inlet in a body,
+   an outlet that faces inwards. */
+tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
+/* Whether a place belongs to an opening at the start: regions leave it out. */
+int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
+/* After a step: what has gone out is removed, what follows in the buffers is added. */
+tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
+/* The fastest inlet at its fastest place, m/s. */
+double tobi_openings_peak(const tobi_simulation *s);
+void tobi_openings_free(tobi_world *w);
+
+/* What survives a restart: a number per opening. */
+void tobi_openings_get(const tobi_world *w, double way[TOBI_OPENING_LIMIT]);
+void tobi_openings_set(tobi_world *w, const double way[TOBI_OPENING_LIMIT]);

@@ -1,0 +1,210 @@
+/* Inlets and outlets: mass to the last particle, restarts, threads, and what is refused in words. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "scene/scene.h"
+#include "world/world.h"
+
+#define IN "{ \"name\": \"in\", \"centre\": [0.2, 0.1], \"normal\": [1, 0], \"width\": 0.2, "
+#define PATCH "{ \"name\": \"in\", "
+#define OUT "{ \"name\": \"out\", \"centre\": [0.8, 0.1], \"normal\": [1, 0], \"width\": 0.2 }"
+
+static tobi_status make(const char *method, int threads, const char *in, const char *out, const char *more,
+                        tobi_world **w, tobi_error *err)
+{
+    char text[3000];
+    tobi_scene *scene;
+    *w = NULL;
+    snprintf(text, sizeof text, "{ \"dimension\": 2, \"method\": \"%s\", \"domain\": { \"min\": [0, 0],\n"
+             "\"max\": [1, 0.2] }, \"spacing\": 0.02, \"end_time\": 1, \"threads\": %d, %s \"fluids\": [ {\n"
+             "\"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.1] } } ] } ],\n"
+             "\"inlets\": [ %s ], \"outlets\": [ %s ] }", method, threads, more, in, out);
+    TOBI_TRY(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err));
+    tobi_status status = tobi_scene_build(scene, w, err);
+    if (status == TOBI_OK) status = tobi_world_start(*w, err);
+    tobi_scene_free(scene);
+    return status;
+}
+
+static void must(tobi_status status, const tobi_error *err)
+{
+    if (status != TOBI_OK) fail_msg("%s", err->text);
+}
+
+/* Runs, halfway by a checkpoint; returns the hash. */
+static uint64_t run(const char *method, int threads, int halfway)
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    tobi_step_info first, last;
+    char file[] = "/tmp/tobiuo_openings_XXXXXX";
+    must(make(method, threads, IN "\"speed\": 0.5 }", OUT, "", &w, &err), &err);
+    first = *tobi_world_info(w);
+    must(tobi_world_advance(w, 0.1, NULL, &err), &err);
+    if (halfway) {
+        close(mkstemp(file));
+        must(tobi_world_save(w, file, &err), &err);
+        tobi_world_destroy(w);
+        must(make(method, threads, IN "\"speed\": 0.5 }", OUT, "", &w, &err), &err);
+        must(tobi_world_load(w, file, &err), &err);
+        unlink(file);
+    }
+    must(tobi_world_advance(w, 0.25, &last, &err), &err);
+    assert_true(last.particles_in > 50);
+    assert_true(last.particles_out > 20);
+    assert_int_equal(last.fluid_particles, first.fluid_particles + last.particles_in - last.particles_out);
+    const double off = last.mass_held - first.mass_held - last.mass_in + last.mass_out;
+    if (!(fabs(off) < 1e-11*last.mass_held)) fail_msg("the masses are off by %g kg", off);
+    /* 10 columns of golden phases: not a particle of each off the flow */
+    assert_float_equal(last.mass_in, 0.25*0.5*0.2*1000, 10*0.4);
+    const uint64_t hash = tobi_world_hash(w);
+    tobi_world_destroy(w);
+    return hash;
+}
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    static const char *const method[] = { "dfsph", "isph", "eisph", "wcsph" };
+    for (int k = 0; k < 4; k++) {
+        const uint64_t hash = run(method[k], 1, 0);
+        if (run(method[k], 3, 0) != hash) fail_msg("%s: other bits with 3 threads", method[k]);
+        if (run(method[k], 1, 1) != hash) fail_msg("%s: other bits after a restart", method[k]);
+    }
+}
+
+/* A disc in 3-D, a ramp, and an end of the flow. */
+static void test_disc(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_world_def def = tobi_default_world_def();
+    tobi_world *w;
+    tobi_step_info info;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 1;
+    def.spacing = 0.05;
+    def.end_time = 1;
+    must(tobi_world_create(&def, NULL, &w, &err), &err);
+    tobi_fluid_def water = tobi_default_fluid_def();
+    must(tobi_world_add_fluid(w, &water, NULL, 0, &err), &err);
+    tobi_inlet_def in = tobi_default_inlet_def();
+    in.name = "hose";
+    in.centre[0] = in.centre[1] = 0.5;
+    in.centre[2] = 0.7;
+    in.normal[2] = -1;
+    in.radius = 0.15;
+    in.flow_rate = 0.05;
+    in.ramp = 0.1;
+    in.stop = 0.2;
+    in.profile = TOBI_PROFILE_PARABOLIC;
+    must(tobi_world_add_inlet(w, &in, &err), &err);
+    must(tobi_world_advance(w, 0.3, &info, &err), &err);
+    /* 0.05 m3/s for 0.15 s, of 32 columns */
+    assert_float_equal(info.mass_in, 1000*0.05*0.15, 2);
+    tobi_world_destroy(w);
+}
+
+static void refuse(const char *in, const char *out, const char *more, const char *words)
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    if (make("dfsph", 1, in, out, more, &w, &err) == TOBI_OK) fail_msg("not refused: %s", words);
+    if (!strstr(err.text, words)) fail_msg("%s\nexpected: %s", err.text, words);
+    tobi_world_destroy(w);
+}
+
+static void test_mistakes(void **state)
+{
+    (void)state;
+    const char *block = "\"bodies\": [ { \"name\": \"block\", \"box\": { \"min\": [0.1, 0.05, 0], "
+                        "\"max\": [0.25, 0.1, 1] } } ],";
+    refuse(IN "\"speed\": 1, \"flow_rate\": 1 }", "", "", "inlet 'in' needs a speed or a flow_rate, one of them");
+    refuse(IN "\"flow_rate\": 1e6 }", "", "", "inlet 'in' needs 5e+06 m/s at its fastest place");
+    refuse(IN "\"speed\": 1, \"start\": 0.5, \"stop\": 0.2 }", "", "", "inlet 'in' stops before it starts");
+    refuse(IN "\"speed\": 1, \"fluid\": \"oil\" }", "", "", "inlet 'in' lets 'oil' in, which is no fluid");
+    refuse(IN "\"speed\": 1 }", "", block, "inlet 'in' lies inside body 'block' with its buffer, at (");
+    refuse(PATCH "\"centre\": [0.01, 0.1], \"normal\": [1, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
+           "inlet 'in' reaches out of the domain at x = ");
+    refuse(PATCH "\"centre\": [0.2, 0.1], \"normal\": [0, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
+           "inlet 'in' has a normal of zero");
+    refuse(PATCH "\"centre\": [0.2, 0.1], \"normal\": [1, 0], \"speed\": 1 }", "", "",
+           "inlet 'in' has no width");
+    refuse("", "{ \"name\": \"out\", \"centre\": [0.4, 0.1], \"normal\": [1, 0], \"width\": 0.2 }",
+           "\"bodies\": [ { \"name\": \"block\", \"box\": { \"min\": [0.2, 0, 0], "
+           "\"max\": [0.4, 0.2, 1] } } ],",
+           "outlet 'out' faces inwards: liquid lies on the side that its normal points to");
+}
+
+static void refuse_inlet(tobi_world *w, const tobi_inlet_def *in, tobi_status status, const char *words)
+{
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_world_add_inlet(w, in, &err), status);
+    if (!strstr(err.text, words)) fail_msg("%s\nexpected: %s", err.text, words);
+}
+
+static void test_wrong_calls(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_world_def def = tobi_default_world_def();
+    tobi_world *w;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 1;
+    def.spacing = 0.05;
+    def.end_time = 1;
+    must(tobi_world_create(&def, NULL, &w, &err), &err);
+    tobi_fluid_def water = tobi_default_fluid_def();
+    must(tobi_world_add_fluid(w, &water, NULL, 0, &err), &err);
+    tobi_inlet_def in = tobi_default_inlet_def(), bad;
+    in.name = "in";
+    in.centre[0] = in.centre[1] = in.centre[2] = in.normal[0] = 0.5;
+    in.speed = 1;
+    in.width = 0.2;
+    refuse_inlet(w, &in, TOBI_INVALID, "needs a height beside its width");
+    bad = in;
+    bad.radius = 0.1;
+    refuse_inlet(w, &bad, TOBI_INVALID, "needs a width and a height, or a radius");
+    in.height = 0.1;
+    bad = in;
+    bad.along[0] = 1;
+    refuse_inlet(w, &bad, TOBI_INVALID, "has its width along its normal; allowed is across");
+    for (int k = 0; k < TOBI_INLET_LIMIT; k++) must(tobi_world_add_inlet(w, &in, &err), &err);
+    refuse_inlet(w, &in, TOBI_UNSUPPORTED, "more than 32 inlets");
+    must(tobi_world_start(w, &err), &err);
+    refuse_inlet(w, &in, TOBI_INVALID, "a started world takes no more inlets and outlets");
+    tobi_world_destroy(w);
+    def.method = "mlsmpm";
+    must(tobi_world_create(&def, NULL, &w, &err), &err);
+    tobi_outlet_def out = tobi_default_outlet_def();
+    out.name = "out";
+    memcpy(out.centre, in.centre, sizeof out.centre);
+    out.normal[0] = 1;
+    out.radius = 0.1;
+    assert_int_equal(tobi_world_add_outlet(w, &out, &err), TOBI_UNSUPPORTED);
+    assert_non_null(strstr(err.text, "mlsmpm has no inlets and outlets; the SPH methods have"));
+    tobi_world_destroy(w);
+}
+
+static void test_lists(void **state)
+{
+    (void)state;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    char many[3000] = "";
+    assert_int_equal(make("dfsph", 1, "", "", "\"inlets\": 3,", &w, &err), TOBI_INVALID);
+    for (int k = 0; k < TOBI_INLET_LIMIT + 1; k++) strcat(strcat(many, k ? ", " : ""), "{}");
+    refuse(many, "", "", "inlets: has 33 entries, allowed are 32");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_bits), cmocka_unit_test(test_disc),  cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,195 @@
+/* Vessels: walls for surfaces, what they hold up to a level, and what is refused in words. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "geom/massprops.h"
+#include "geom/vessel.h"
+#include "scene/scene.h"
+#include "world/world.h"
+
+static const double corner[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 },
+                                     { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 } };
+/* A unit cube; the last two triangles are its lid. */
+static const int32_t side[12][3] = { { 0, 2, 1 }, { 1, 2, 3 }, { 0, 1, 4 }, { 1, 5, 4 },
+                                     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 },
+                                     { 1, 3, 5 }, { 3, 7, 5 }, { 4, 5, 6 }, { 5, 7, 6 } };
+
+static tobi_mesh make_box(int triangles)
+{
+    tobi_mesh m;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_mesh_build("box", 8, corner, triangles, side, &m, &err), TOBI_OK);
+    return m;
+}
+
+static double make_vessel(tobi_mesh *m, double thickness, int dimension)
+{
+    tobi_error err = { 0 };
+    tobi_massprops props;
+    if (tobi_mesh_make_vessel(m, thickness, 0.1, dimension, "box", &err) != TOBI_OK) fail_msg("%s", err.text);
+    assert_int_equal(tobi_massprops_volume(m, &props, &err), TOBI_OK);
+    return props.volume;
+}
+
+static void test_walls(void **state)
+{
+    (void)state;
+    tobi_mesh closed = make_box(12), open = make_box(10);
+    assert_float_equal(make_vessel(&closed, 0, 3), 1.2*1.2*1.2 - 1, 1e-9);
+    assert_non_null(strstr(closed.notes, "it has no walls of its own: they lie outside of it, 0.1 m thick"));
+    /* a mesh with walls of its own stays as it is, unless they are asked for */
+    assert_float_equal(make_vessel(&closed, 0, 3), 1.2*1.2*1.2 - 1, 1e-9);
+    assert_int_equal(closed.triangle_count, 24);
+    assert_float_equal(make_vessel(&open, 0.05, 3), 1.1*1.1*1.05 - 1, 1e-9);
+    assert_float_equal(make_vessel(&open, 0, 3), 1.1*1.1*1.05 - 1, 1e-9);
+    tobi_mesh_free(&closed);
+    tobi_mesh_free(&open);
+}
+
+static const char *path;
+#define HALF "{ \"vessel\": \"cup\", \"level\": 0.5 }"
+
+/* The cube without a lid; holed: the wall at x = 1 is a frame around a hole from 0.4 to 0.6. */
+static void write_mesh(const char *name, int holed)
+{
+    FILE *f = fopen(name, "w");
+    assert_non_null(f);
+    for (int k = 0; k < 8; k++) fprintf(f, "v %g %g %g\n", corner[k][0], corner[k][1], corner[k][2]);
+    fprintf(f, "v 1 0.4 0.4\nv 1 0.6 0.4\nv 1 0.6 0.6\nv 1 0.4 0.6\n");
+    for (int t = 0; t < (holed ? 8 : 10); t++)
+        fprintf(f, "f %d %d %d\n", side[t][0] + 1, side[t][1] + 1, side[t][2] + 1);
+    const int outer[4] = { 2, 4, 8, 6 };
+    for (int k = 0; holed && k < 4; k++) {
+        const int a = outer[k], b = outer[(k + 1)%4], c = 9 + k, d = 9 + (k + 1)%4;
+        fprintf(f, "f %d %d %d\nf %d %d %d\n", a, b, d, a, d, c);
+    }
+    fclose(f);
+}
+
+static tobi_status start(const char *bodies, const char *fill, const char *more, tobi_world **w,
+                         tobi_error *err)
+{
+    char text[3000];
+    tobi_scene *scene;
+    *w = NULL;
+    snprintf(text, sizeof text, "{ \"domain\": { \"min\": [-1, -1, -1], \"max\": [2.5, 2, 2] }, %s\n"
+             "\"spacing\": 0.1, \"end_time\": 1, \"fluids\": [ { \"name\": \"water\", \"fill\": [ %s ] } ], "
+             "\"bodies\": [ %s ] }",
+             more, fill, bodies);
+    TOBI_TRY(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err));
+    tobi_status status = tobi_scene_build(scene, w, err);
+    if (status == TOBI_OK) status = tobi_world_start(*w, err);
+    tobi_scene_free(scene);
+    return status;
+}
+
+static int64_t fill(const char *bodies, const char *fill)
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    if (start(bodies, fill, "", &w, &err) != TOBI_OK) fail_msg("%s", err.text);
+    const int64_t count = tobi_world_count(w, TOBI_FLUID);
+    tobi_world_destroy(w);
+    return count;
+}
+
+static void refuse(const char *bodies, const char *fill, const char *more, const char *words)
+{
+    tobi_world *w;
+    tobi_error err = { 0 };
+    assert_int_equal(start(bodies, fill, more, &w, &err), TOBI_INVALID);
+    if (!strstr(err.text, words)) fail_msg("%s\nexpected: %s", err.text, words);
+    tobi_world_destroy(w);
+}
+
+static char cup[300], holed[300], box[300];
+
+static void test_levels(void **state)
+{
+    (void)state;
+    assert_int_equal(fill(cup, HALF), 500);
+    assert_int_equal(fill(box, "{ \"vessel\": \"box\", \"level\": 0.5 }"), 500);
+    assert_int_equal(fill(box, "{ \"vessel\": \"box\", \"level\": 3 }"), 1000);
+    assert_int_equal(fill(holed, "{ \"vessel\": \"cup\", \"level\": 0.3 }"), 300);
+    const int64_t ball = fill("{ \"name\": \"ball\", \"vessel\": true, \"sphere\": { \"centre\": [0, 0, 0], "
+                              "\"radius\": 0.75 } }", "{ \"vessel\": \"ball\", \"level\": 0 }");
+    assert_in_range(ball, 840, 928);          /* 2/3 pi 0.75^3/0.001 = 884 */
+}
+
+/* Two rooms: a wall in the middle of the cube. */
+static void test_compartments(void **state)
+{
+    (void)state;
+    char two[700];
+    snprintf(two, sizeof two, "%s, { \"name\": \"other\", \"vessel\": true, \"mesh\": \"%s/cup.obj\", "
+             "\"translation\": [1.3, 0, 0] }", cup, path);
+    assert_int_equal(fill(two, "{ \"vessel\": \"cup\", \"level\": 0.5 }, { \"vessel\": \"other\", "
+                          "\"level\": 0.3 }"), 800);
+    assert_int_equal(fill(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"seed\": [0.5, 0.5, 0.1] }"), 500);
+    refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"seed\": [1.7, 0.5, 0.1] }", "",
+           "fill[0] finds nothing to fill in vessel 'cup' below a level of 0.5 m at the seed");
+}
+
+static void test_mistakes(void **state)
+{
+    (void)state;
+    refuse(cup, "{ \"vessel\": \"cup\", \"level\": 1.4 }", "",
+           "the level of fill[0] is 1.4 m, and vessel 'cup' holds liquid up to");
+    refuse(holed, "{ \"vessel\": \"cup\", \"level\": 0.7 }", "",
+           "runs out over a rim or through a hole near (");
+    refuse(cup, "{ \"vessel\": \"cup\", \"level\": -1 }", "", "finds nothing to fill in vessel 'cup'");
+    refuse(cup, "{ \"vessel\": \"cup\" }", "", "level: is missing: a vessel is filled up to a level");
+    refuse(cup, "{ \"vessel\": \"mug\", \"level\": 0.5 }", "", "\"mug\" is no body of the scene");
+    refuse("{ \"name\": \"cup\", \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] } }",
+           HALF, "", "\"cup\" is no vessel: bodies[0] needs");
+    refuse(cup, HALF, "\"gravity\": [0, 0, 0],", "without gravity nothing is up");
+    refuse(cup, HALF ", { \"box\": { \"min\": [0.2, 0.2, 0.2], \"max\": [0.4, 0.4, 0.4] } }", "",
+           "overlaps another region");
+    refuse(cup, "{ \"vessel\": \"cup\", \"level\": 0.5, \"mesh\": \"cup.obj\" }", "",
+           "must have one of box, sphere, mesh and vessel, it has several");
+}
+
+static void test_wrong_calls(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_world_def def = tobi_default_world_def();
+    tobi_world *w;
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 1;
+    def.spacing = 0.1;
+    def.end_time = 1;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, &err), TOBI_OK);
+    tobi_fluid_def water = tobi_default_fluid_def();
+    tobi_fill_def in = tobi_default_fill_def();
+    in.vessel = "none";
+    assert_int_equal(tobi_world_add_fluid(w, &water, &in, 1, &err), TOBI_OK);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "fill[0] fills 'none', which is no body"));
+    tobi_world_destroy(w);
+}
+
+int main(void)
+{
+    static char name[] = "/tmp/tobiuo_vessel_XXXXXX";
+    char file[100];
+    path = mkdtemp(name);
+    snprintf(file, sizeof file, "%s/cup.obj", path);
+    write_mesh(file, 0);
+    snprintf(cup, sizeof cup, "{ \"name\": \"cup\", \"vessel\": true, \"mesh\": \"%s\" }", file);
+    snprintf(file, sizeof file, "%s/holed.obj", path);
+    write_mesh(file, 1);
+    snprintf(holed, sizeof holed, "{ \"name\": \"cup\", \"vessel\": true, \"mesh\": \"%s\" }", file);
+    snprintf(box, sizeof box, "{ \"name\": \"box\", \"vessel\": true, \"box\": { \"min\": [0, 0, 0], "
+             "\"max\": [1, 1, 1] } }");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_compartments), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_wrong_calls),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
