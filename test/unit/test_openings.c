@@ -123,7 +123,8 @@ static void test_mistakes(void **state)
     (void)state;
     const char *block = "\"bodies\": [ { \"name\": \"block\", \"box\": { \"min\": [0.1, 0.05, 0], "
                         "\"max\": [0.25, 0.1, 1] } } ],";
-    refuse(IN "\"speed\": 1, \"flow_rate\": 1 }", "", "", "inlet 'in' needs a speed or a flow_rate, one of them");
+    refuse(IN "\"speed\": 1, \"flow_rate\": 1 }", "", "",
+           "inlet 'in' needs a speed or a flow_rate, one of them");
     refuse(IN "\"flow_rate\": 1e6 }", "", "", "inlet 'in' needs 5e+06 m/s at its fastest place");
     refuse(IN "\"speed\": 1, \"start\": 0.5, \"stop\": 0.2 }", "", "", "inlet 'in' stops before it starts");
     refuse(IN "\"speed\": 1, \"fluid\": \"oil\" }", "", "", "inlet 'in' lets 'oil' in, which is no fluid");
