@@ -78,6 +78,22 @@ static void test_same_bits(void **state)
     }
 }
 
+static void test_damaged(void **state)
+{
+    (void)state;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    char file[] = "/tmp/tobiuo_openings_XXXXXX";
+    must(make("dfsph", 1, IN "\"speed\": 0.5 }", OUT, "", &w, &err), &err);
+    w->sim.openings[0].way = -1;
+    close(mkstemp(file));
+    must(tobi_world_save(w, file, &err), &err);
+    assert_int_equal(tobi_world_load(w, file, &err), TOBI_DAMAGED);
+    assert_non_null(strstr(err.text, "the flow of an inlet is no length"));
+    unlink(file);
+    tobi_world_destroy(w);
+}
+
 /* A disc in 3-D, a ramp, and an end of the flow. */
 static void test_disc(void **state)
 {
@@ -206,6 +222,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bits), cmocka_unit_test(test_disc),  cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_damaged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
