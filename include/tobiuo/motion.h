@@ -62,6 +62,36 @@ TOBI_API tobi_status tobi_motion_set_times(tobi_motion *motion, double start, do
 TOBI_API tobi_status tobi_motion_sum(tobi_motion *const *parts, int count, tobi_motion **out,
                                      tobi_error *err);
 
+/* A wave maker: a piston shifts along a direction, a flap turns about a hinge. One kind of waves, by its
+   height above 0: regular by linear theory (Biesel 1951) or, of a piston, second order (Madsen 1971);
+   solitary, of a piston (Goring 1978); irregular, a sum of regular ones. Members of the other kinds are not
+   read. */
+typedef enum tobi_spectrum { TOBI_JONSWAP, TOBI_PIERSON_MOSKOWITZ } tobi_spectrum;
+typedef struct tobi_wave_maker_def {
+    int    flap;                  /* 1: it turns, 0: a piston                                        */
+    double direction[3];          /* of any length, level: where the waves go                        */
+    double up[3];                 /* of any length, against gravity; of a flap                       */
+    double hinge[3];              /* m, a point of the axis of a flap                                */
+    double hinge_height;          /* m above the bottom, negative below; of a flap                   */
+    double depth;                 /* m, of still water                                               */
+    double gravity;               /* m/s2                                                            */
+    double height, period, phase; /* m from trough to crest, s, degrees: regular waves               */
+    int    order;                 /* 1 or 2                                                          */
+    double solitary_height;       /* m                                                               */
+    double significant_height;    /* m, 4 sqrt(m0): irregular waves                                  */
+    double peak_period;           /* s                                                               */
+    int    spectrum;              /* tobi_spectrum                                                   */
+    double peakedness;            /* 1, gamma of JONSWAP                                             */
+    int    seed, components;      /* of the phases; how many regular waves                           */
+    double start, ramp;           /* s: at rest until then; displacements rise as (1 - cos)/2, but of
+                                     a solitary wave                                                 */
+} tobi_wave_maker_def;
+
+/* TOBI_INVALID, with what is allowed, for waves that break (Miche; 0.78 of the depth) and numbers out of
+   range; TOBI_UNSUPPORTED for what a flap cannot. */
+TOBI_API tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion **out,
+                                            tobi_error *err);
+
 /* Rows of a CSV file: position = pivot + shift + R (rest - pivot), cubic
    between the rows. Errors name file and line:
    TOBI_NOT_FOUND, TOBI_IO, TOBI_INVALID, TOBI_NO_MEMORY. */

@@ -65,6 +65,9 @@ TOBI_API extern const tobi_param_table tobi_probe_table;
 TOBI_API extern const tobi_param_table tobi_output_table;
 TOBI_API extern const tobi_param_table tobi_view_table;
 TOBI_API extern const tobi_param_table tobi_reference_table;
+TOBI_API extern const tobi_param_table tobi_gravity_table;
+/* Whether gravity can follow it, its file included. */
+TOBI_API tobi_status tobi_gravity_check(const tobi_gravity_def *def, tobi_error *err);
 
 /* Every table by index, those of methods among them; NULL past the end. */
 TOBI_API const tobi_param_table *tobi_param_table_at(int index);

@@ -51,6 +51,7 @@ TOBI_API tobi_outlet_def tobi_default_outlet_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
+TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
@@ -117,6 +118,15 @@ TOBI_API void tobi_world_set_stop(tobi_world *world, tobi_stop_fn stop, void *us
    Gravity, m/s2, in 2-D without z. Still water, the sums of energies and the bounds of the time step follow.
    TOBI_INVALID beyond the range of the definition's gravity. */
 TOBI_API tobi_status tobi_world_set_gravity(tobi_world *world, const double gravity[3], tobi_error *err);
+/* Before the start. Gravity as a function of time; TOBI_INVALID for numbers out of range and rows that go
+   back in time, TOBI_NOT_FOUND and TOBI_IO for the file. Checkpoints do not hold it. */
+TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,
+                                                    tobi_error *err);
+/* Before the start. All of the world is seen from a frame that moves, by a rigid motion from the pose of time
+   0, instead of a tank that does: the liquid feels the fictitious forces. user must outlive the world.
+   TOBI_UNSUPPORTED for a frame that turns, in mlsmpm. */
+TOBI_API tobi_status tobi_world_set_frame(tobi_world *world, tobi_motion_fn motion, void *user,
+                                          tobi_error *err);
 /* Constant force (N, on the centre of mass) and torque (N m) on a free or controlled body, in place of those
    of its definition. TOBI_NOT_FOUND for a number that is no body, TOBI_INVALID for a prescribed one and for
    numbers that are not finite. */

@@ -399,6 +399,16 @@ typedef struct tobi_reference_def {
     const char *label;            /* name in pictures; NULL = the file's                             */
 } tobi_reference_def;
 
+/* Gravity as a function of time, in place of the constant one: by the rows of a file, and a swing added to
+   that. The constant one stays what still water, energies and gauges refer to. */
+typedef struct tobi_gravity_def {
+    const char *file;             /* CSV: time (s), x, y, z (m/s2, a missing one as the constant); or NULL */
+    double amplitude[3];          /* m/s2, of the swing amplitude sin(2 pi t/period + phase)         */
+    double period;                /* s; 0 = no swing                                                 */
+    double phase[3];              /* degrees                                                         */
+    double start, ramp;           /* s, of the swing: tobi_motion_set_times                          */
+} tobi_gravity_def;
+
 /* What one step did. */
 typedef struct tobi_step_info {
     int64_t step;                 /* number of this step, first = 1                                   */

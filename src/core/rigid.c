@@ -313,6 +313,33 @@ void tobi_rigid_apply_locks(tobi_rigid *r)
     for (int a = 0; a < 3; a++) r->angular_velocity[a] = vec3_dot(turn[a], r->momentum);
 }
 
+/* A point r from the centre moves by v + W r and feels a + B r with B = G + C W: the sums of both over the
+   mass need its second moments S = tr(I)/2 - I alone. */
+void tobi_rigid_feel(tobi_rigid *r, const tobi_acceleration *f)
+{
+    const double *w = r->angular_velocity;
+    const double W[3][3] = { { 0, -w[2], w[1] }, { w[2], 0, -w[0] }, { -w[1], w[0], 0 } };
+    double m[3][3], at[3], B[3][3], moments[3][3] = { { 0 } }, P[3][3] = { { 0 } };
+    const double half = 0.5*(r->inertia[0] + r->inertia[4] + r->inertia[8]);
+    tobi_quaternion_matrix(r->orientation, m);
+    tobi_acceleration_at(f, r->position, at);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) at[i] += f->turning[i][k]*r->velocity[k];
+        r->inertial[i] = r->mass*at[i];
+        for (int j = 0; j < 3; j++) {
+            B[i][j] = f->gradient[i][j];
+            for (int k = 0; k < 3; k++) B[i][j] += f->turning[i][k]*W[k][j];
+            for (int a = 0; a < 3; a++)
+                for (int b = 0; b < 3; b++)
+                    moments[i][j] += m[i][a]*((a == b ? half : 0) - r->inertia[3*a + b])*m[j][b];
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++) P[i][j] += B[i][k]*moments[k][j];
+    for (int i = 0; i < 3; i++) r->inertial[3 + i] = P[(i + 2)%3][(i + 1)%3] - P[(i + 1)%3][(i + 2)%3];
+}
+
 double tobi_rigid_kinetic_energy(const tobi_rigid *r)
 {
     return 0.5*r->mass*vec3_dot(r->velocity, r->velocity) + 0.5*vec3_dot(r->momentum, r->angular_velocity);

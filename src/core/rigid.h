@@ -5,6 +5,7 @@
    last bit, and implicit midpoint in the body frame keeps the energy (docs/theory/rigid.md). */
 #pragma once
 #include "base/error.h"
+#include "core/acceleration.h"
 #include "geom/massprops.h"
 #include "tobiuo/types.h"
 
@@ -38,6 +39,7 @@ typedef struct tobi_rigid {
 
     double next_position[3];         /* at the end of the step that is being made                       */
     double next_orientation[4];
+    double inertial[6];              /* N, N m about the centre: of what acts besides gravity           */
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
     /* Within the step of a liquid, sph/boundary.h: */
@@ -74,6 +76,9 @@ void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
 void tobi_rigid_apply_locks(tobi_rigid *r);
 /* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */
 double tobi_rigid_kinetic_energy(const tobi_rigid *r);
+
+/* Finds `inertial`: force and torque of the field over the body's mass, at its present velocities. */
+void tobi_rigid_feel(tobi_rigid *r, const tobi_acceleration *field);
 
 void tobi_quaternion_matrix(const double q[4], double m[3][3]);
 /* From a's rest axes to b's: x in a is turn x + shift in b, shift in m. */

@@ -1,6 +1,7 @@
 /* The clock of the world: the length of steps, the caller who stops them, the timers of their stages. */
 #include "core/simulation.h"
 #include "base/error.h"
+#include <math.h>
 #include <string.h>
 
 void tobi_stage_end(tobi_stages *st, const char *name, double *since)
@@ -16,6 +17,18 @@ void tobi_stage_end(tobi_stages *st, const char *name, double *since)
     }
     st->seconds[k] += now - *since;
     *since = now;
+}
+
+double tobi_simulation_pull(const tobi_simulation *s, int axis)
+{
+    return fmax(fabs(s->def.gravity[axis]), s->acceleration_most[axis]);
+}
+
+double tobi_simulation_pull_size(const tobi_simulation *s)
+{
+    double sum = 0;
+    for (int a = 0; a < s->def.dimension; a++) sum += tobi_simulation_pull(s, a)*tobi_simulation_pull(s, a);
+    return sqrt(sum);
 }
 
 int tobi_simulation_stops(tobi_simulation *s)

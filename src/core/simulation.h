@@ -1,5 +1,6 @@
 /* What all systems of a world share: the definition, the threads, the bodies, the planes, the clock. */
 #pragma once
+#include "core/acceleration.h"
 #include "core/body.h"
 #include "core/cells.h"
 #include "core/opening.h"
@@ -24,6 +25,9 @@ typedef struct tobi_simulation {
     int plane_count;
     tobi_opening *openings;         /* owned by the world                                    */
     int opening_count;
+    tobi_acceleration acceleration; /* besides gravity, at the middle of the step             */
+    double acceleration_change;     /* m/s2, largest of the run in the liquid of the start, without gravity */
+    double acceleration_most[3];    /* m/s2, of the whole run with gravity; 0: gravity alone  */
     double time, dt;                /* s; dt of the last step                                */
     int64_t step;
     int64_t body_first_id;          /* of the particles of bodies                            */
@@ -41,6 +45,10 @@ typedef struct tobi_simulation {
 /* The step to take where `dt` is stable and `max_dt` (0 = any) is left: not longer than both, and no crumb
    remains. */
 double tobi_simulation_fit_dt(double dt, double max_dt);
+
+/* The largest acceleration that liquid and bodies feel along an axis, and its size, m/s2. */
+double tobi_simulation_pull(const tobi_simulation *s, int axis);
+double tobi_simulation_pull_size(const tobi_simulation *s);
 
 /* Asks the caller whether to stop, until the answer is yes: then 1. */
 int tobi_simulation_stops(tobi_simulation *s);

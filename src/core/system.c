@@ -56,7 +56,7 @@ tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, to
 double tobi_system_speed_scale(const tobi_system *s)
 {
     double fall = 0, capillary = 0;
-    for (int a = 0; a < s->box.dimension; a++) fall += fabs(s->sim->def.gravity[a])*s->box.size[a];
+    for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
     for (int f = 0; f < s->fluid_count; f++)
         capillary = fmax(capillary, 8*s->fluid[f].tension/(s->fluid[f].density*s->smoothing.spacing));
     return sqrt(2*fall + capillary) + s->sim->body_speed + 2*s->start_speed;

@@ -253,8 +253,10 @@ static double dither(const tobi_system *s, double speed)
 static void use_dt(const tobi_system *s, mlsmpm *m)
 {
     const double shift = dither(s, m->memory.speed);
-    for (int a = 0; a < s->box.dimension; a++)
-        m->view.fall[a] = (float)(s->sim->def.gravity[a] != 0 ? s->sim->def.gravity[a]*s->dt + shift : 0);
+    for (int a = 0; a < s->box.dimension; a++) {
+        const double g = s->sim->def.gravity[a] + s->sim->acceleration.uniform[a];
+        m->view.fall[a] = (float)(g != 0 ? g*s->dt + shift : 0);
+    }
     m->view.dt = (float)s->dt;
     m->view.strain_dt = (float)m->memory.strain_dt;
     for (int k = 0; k < s->solid_count; k++) m->material[k].keep = (float)exp(-m->damping[k]*s->dt);

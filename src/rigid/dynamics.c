@@ -185,6 +185,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
     if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
+    vec3_add_scaled(force, force, 1, r->inertial);
+    vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     for (int a = 0; a < 3; a++) {
         double dv = dt*(d->world.gravity[a] + force[a]/r->mass) + r->impulse[a]/r->mass;
         r->velocity[a] = keep*(r->velocity[a] + dv);

@@ -25,6 +25,7 @@ static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "
 
 /* The units that a column's name may bring along, as in "x [m]". */
 static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
+static const char *const pull_units[] = {"m/s2", NULL};
 static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
 
 typedef struct keyframe {
@@ -38,7 +39,7 @@ struct tobi_keyframes {
 };
 
 typedef struct reader {
-    const char *path;
+    const char *what, *path;            /* "keyframes" or "gravity"                    */
     int64_t line;
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
     int fields;
@@ -76,7 +77,7 @@ static void between(const double a[4], const double b[4], double v[3])
 
 static tobi_status fail_here(const reader *r, tobi_error *err, const char *what, const char *word)
 {
-    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: %s%s", r->path, (long long)r->line, what, word);
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: %s%s", r->what, r->path, (long long)r->line, what, word);
 }
 
 /* The next field of a line, without blanks and quotes around it; NULL at the end. */
@@ -92,12 +93,16 @@ static char *next_field(char **rest)
     return field;
 }
 
+static int is_gravity(const reader *r) { return strcmp(r->what, "gravity") == 0; }
+
 static tobi_status check_columns(const reader *r, tobi_error *err)
 {
     const int *g = r->given;
     int quaternion = g[QW] + g[QX] + g[QY] + g[QZ], axis = g[AX] + g[AY] + g[AZ] + g[ANGLE];
     int angles = g[ROLL] + g[PITCH] + g[YAW];
     if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
+    if (is_gravity(r) && quaternion + axis + angles)
+        return fail_here(r, err, "gravity does not turn: allowed are time (s), x, y and z (m/s2)", "");
     if ((quaternion && quaternion < 4) || (axis && axis < 4))
         return fail_here(r, err, "a turn needs all of ", quaternion ? "qw, qx, qy, qz" : "ax, ay, az, angle");
     if (!!quaternion + !!axis + !!angles > 1)
@@ -108,10 +113,10 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     return TOBI_OK;
 }
 
-static const char *const *column_units(column c)
+static const char *const *column_units(const reader *r, column c)
 {
     if (c == TIME) return time_units;
-    if (c <= Z) return length_units;
+    if (c <= Z) return is_gravity(r) ? pull_units : length_units;
     return c < ANGLE ? plain_units : angle_units;
 }
 
@@ -128,15 +133,16 @@ static char *split_unit(char *field)
 /* Another unit than the column's own would be misread, so it is refused. */
 static tobi_status check_unit(const reader *r, char *unit, column c, tobi_error *err)
 {
-    const char *const *units = column_units(c);
+    const char *const *units = column_units(r, c);
     size_t n = strlen(unit);
     if (n < 2 || unit[n - 1] != ']')
         return fail_here(r, err, "no ] after the unit [", tobi_excerpt(unit).text);
     unit[n - 1] = 0;
     for (int k = 0; units[k]; k++)
         if (strcmp(unit, units[k]) == 0) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: column %s is in [%s]; allowed is [%s] or no "
-                     "unit", r->path, (long long)r->line, column_names[c], tobi_excerpt(unit).text, units[0]);
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: column %s is in [%s]; allowed is [%s] or no "
+                     "unit", r->what, r->path, (long long)r->line, column_names[c], tobi_excerpt(unit).text,
+                     units[0]);
 }
 
 static tobi_status read_header(reader *r, char *line, tobi_error *err)
@@ -149,9 +155,9 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
             if (strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
-            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: there is no column \"%s\"; allowed "
+            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed "
                              "are time (s), x, y, z (m) and qw, qx, qy, qz or ax, ay, az, angle or roll, "
-                             "pitch, yaw (degrees)", r->path, (long long)r->line,
+                             "pitch, yaw (degrees)", r->what, r->path, (long long)r->line,
                              tobi_excerpt(field).text);
         if (unit) TOBI_TRY(check_unit(r, unit, found, err));
         if (r->given[found]++) return fail_here(r, err, "a column comes twice: ", column_names[found]);
@@ -169,18 +175,18 @@ static tobi_status read_numbers(const reader *r, char *line, double value[COLUMN
         if (n == r->fields) break;
         double x = strtod(field, &end);
         if (end == field || *end || !isfinite(x))
-            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: \"%s\" in column %s is no finite "
-                             "number", r->path, (long long)r->line, tobi_excerpt(field).text,
+            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: \"%s\" in column %s is no finite "
+                             "number", r->what, r->path, (long long)r->line, tobi_excerpt(field).text,
                              column_names[r->meaning[n]]);
         if (fabs(x) > LARGEST)
-            return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: %.4g in column %s is too large; allowed "
-                             "is up to %g", r->path, (long long)r->line, x, column_names[r->meaning[n]],
-                             LARGEST);
+            return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: %.4g in column %s is too large; allowed "
+                             "is up to %g", r->what, r->path, (long long)r->line, x,
+                             column_names[r->meaning[n]], LARGEST);
         value[r->meaning[n]] = x;
     }
     if (n == r->fields && !field) return TOBI_OK;
-    return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: the row has %s columns than the header, %d",
-                     r->path, (long long)r->line, field ? "more" : "fewer", r->fields);
+    return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: the row has %s columns than the header, %d",
+                     r->what, r->path, (long long)r->line, field ? "more" : "fewer", r->fields);
 }
 
 static tobi_status read_turn(const reader *r, const double v[COLUMNS], double q[4], tobi_error *err)
@@ -226,8 +232,8 @@ static tobi_status check_rates(const reader *r, const keyframe *k, tobi_error *e
     for (int a = 0; a < 3; a++) {
         if (fabs(velocity[a]) <= LARGEST && fabs(spin[a]) <= LARGEST) continue;
         int turns = fabs(velocity[a]) <= LARGEST;
-        return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: from %.10g s of the row before to %.10g s "
-                         "the body %s too fast; allowed is up to %g %s", r->path, (long long)r->line,
+        return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: from %.10g s of the row before to %.10g s "
+                         "the body %s too fast; allowed is up to %g %s", r->what, r->path, (long long)r->line,
                          k[0].time, k[1].time, turns ? "turns" : "moves", LARGEST, turns ? "rad/s" : "m/s");
     }
     return TOBI_OK;
@@ -242,13 +248,13 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     memcpy(row.shift, value + X, sizeof row.shift);
     TOBI_TRY(read_turn(r, value, row.turn, err));
     if (f->count && !(row.time > f->rows[f->count - 1].time))
-        return tobi_fail(err, TOBI_INVALID, "keyframes %s:%lld: time %.10g s does not come after %.10g s of "
-                         "the row before", r->path, (long long)r->line, row.time,
+        return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: time %.10g s does not come after %.10g s of "
+                         "the row before", r->what, r->path, (long long)r->line, row.time,
                          f->rows[f->count - 1].time);
     if (f->count == MOST_ROWS) return fail_here(r, err, "more rows than are allowed, 20 million", "");
     if (f->count == *room) {
         keyframe *more = realloc(f->rows, (size_t)(2**room + 64)*sizeof *more);
-        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "keyframes %s: out of memory", r->path);
+        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "%s %s: out of memory", r->what, r->path);
         f->rows = more;
         *room = 2**room + 64;
     }
@@ -275,11 +281,11 @@ static tobi_status read_rows(FILE *file, reader *r, tobi_keyframes *f, tobi_erro
     }
     free(line);
     if (status == TOBI_OK && ferror(file))
-        status = tobi_fail(err, TOBI_IO, "keyframes %s: cannot be read to its end: %s", r->path,
-                           strerror(errno));
+        status = tobi_fail(err, TOBI_IO, "%s %s: cannot be read to its end: %s", r->what,
+                           r->path, strerror(errno));
     if (status == TOBI_OK && !f->count)
-        status = tobi_fail(err, TOBI_INVALID, "keyframes %s: no rows; a header with the columns' names and a "
-                           "row per time are needed", r->path);
+        status = tobi_fail(err, TOBI_INVALID, "%s %s: no rows; a header with the columns' names and "
+                           "a row per time are needed", r->what, r->path);
     return status;
 }
 
@@ -369,15 +375,14 @@ static void fill_matrix(const double quaternion[4], double m[3][3])
     tobi_quaternion_matrix(unit, m);
 }
 
-tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)
+static tobi_status load(reader *r, tobi_keyframes **out, tobi_error *err)
 {
     *out = NULL;
     FILE *file;
-    TOBI_TRY(tobi_plain_open(path, "keyframes", FILE_LIMIT, &file, NULL, err));
-    reader r = {.path = path};
+    TOBI_TRY(tobi_plain_open(r->path, r->what, FILE_LIMIT, &file, NULL, err));
     tobi_keyframes *f = calloc(1, sizeof *f);
-    tobi_status status = f ? read_rows(file, &r, f, err)
-                           : tobi_fail(err, TOBI_NO_MEMORY, "keyframes %s: out of memory", path);
+    tobi_status status = f ? read_rows(file, r, f, err)
+                           : tobi_fail(err, TOBI_NO_MEMORY, "%s %s: out of memory", r->what, r->path);
     fclose(file);
     if (status != TOBI_OK) {
         tobi_keyframes_free(f);
@@ -385,6 +390,20 @@ tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_err
     }
     find_slopes(f);
     *out = f;
+    return TOBI_OK;
+}
+
+tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err)
+{
+    reader r = {.what = "keyframes", .path = path};
+    return load(&r, out, err);
+}
+
+tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_keyframes **out, tobi_error *err)
+{
+    reader r = {.what = "gravity", .path = path};
+    TOBI_TRY(load(&r, out, err));
+    for (int a = 0; a < 3; a++) given[a] = r.given[X + a];
     return TOBI_OK;
 }
 

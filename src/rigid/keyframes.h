@@ -25,6 +25,10 @@ typedef struct tobi_keyframes tobi_keyframes;
 
 /* Errors name file and line: TOBI_NOT_FOUND, TOBI_IO, TOBI_INVALID, TOBI_NO_MEMORY. */
 tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_error *err);
+/* The same for gravity: columns time (s), x, y, z (m/s2), no turn; its "shift" is that of gravity. given:
+   which of x, y, z there are. */
+tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_keyframes **out,
+                                        tobi_error *err);
 void tobi_keyframes_free(tobi_keyframes *frames);
 
 /* Shift (m) and rotation matrix at time t (s). */

@@ -3,6 +3,7 @@
    shift it. Drawback: the library takes velocities from positions at the ends of a step. */
 #include "rigid/keyframes.h"
 #include "rigid/script.h"
+#include "rigid/waves.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,8 @@ typedef enum motion_kind {
     KIND_OSCILLATION,
     KIND_SWING,
     KIND_KEYFRAMES,
+    KIND_PISTON,
+    KIND_FLAP,
     KIND_SUM
 } motion_kind;
 
@@ -23,6 +26,8 @@ struct tobi_motion {
     motion_kind kind;
     tobi_script *script;    /* KIND_SCRIPT, owned                                          */
     tobi_keyframes *frames; /* KIND_KEYFRAMES, owned                                       */
+    tobi_waves *waves;      /* KIND_PISTON, KIND_FLAP, owned                               */
+    double arm;             /* m, of a flap: from its hinge to the still water             */
     double vector[3];       /* velocity m/s | unit axis | unit direction                   */
     double centre[3];       /* m, of what turns                                            */
     double amplitude;       /* m | degrees                                                 */
@@ -138,7 +143,7 @@ tobi_status tobi_motion_set_times(tobi_motion *motion, double start, double stop
 {
     TOBI_NEED(motion, "the motion");
     const motion_kind kind = motion->kind;
-    if (kind == KIND_SCRIPT || kind == KIND_KEYFRAMES || kind == KIND_SUM)
+    if (kind == KIND_SCRIPT || kind >= KIND_KEYFRAMES)
         return tobi_fail(err, TOBI_INVALID, "motion: times are for motions by numbers");
     const int swings = kind == KIND_OSCILLATION || kind == KIND_SWING;
     if (!isfinite(start) || isnan(stop) || !isfinite(ramp) || ramp < 0)
@@ -199,12 +204,48 @@ tobi_status tobi_motion_keyframes(const char *path, const double pivot[3], tobi_
     return TOBI_OK;
 }
 
+/* The axis of a flap turns the upper end to where the waves go. */
+tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion **out, tobi_error *err)
+{
+    double along[3], up[3], axis[3];
+    tobi_waves *waves = NULL;
+    TOBI_NEED(out, "where the motion goes");
+    *out = NULL;
+    TOBI_NEED(def, "the definition");
+    const double numbers[] = { def->depth, def->gravity, def->height, def->period, def->phase,
+                               def->solitary_height, def->significant_height, def->peak_period,
+                               def->peakedness, def->hinge_height, def->start, def->ramp };
+    TOBI_TRY(check_finite("every number of a wave maker", numbers, sizeof numbers/sizeof *numbers, err));
+    TOBI_TRY(check_finite("hinge", def->hinge, 3, err));
+    TOBI_TRY(set_direction("direction", def->direction, along, err));
+    if (def->flap) {
+        TOBI_TRY(set_direction("up", def->up, up, err));
+        for (int a = 0; a < 3; a++)
+            axis[a] = up[(a + 1)%3]*along[(a + 2)%3] - up[(a + 2)%3]*along[(a + 1)%3];
+        TOBI_TRY(set_direction("direction, across up,", axis, axis, err));
+    }
+    TOBI_TRY(tobi_waves_create(def, &waves, err));
+    const tobi_status status = make(def->flap ? KIND_FLAP : KIND_PISTON, out, err);
+    if (status != TOBI_OK) {
+        tobi_waves_free(waves);
+        return status;
+    }
+    (*out)->waves = waves;
+    (*out)->arm = def->depth - def->hinge_height;
+    for (int a = 0; a < 3; a++) {
+        (*out)->vector[a] = def->flap ? axis[a] : along[a];
+        (*out)->centre[a] = def->hinge[a];
+    }
+    return TOBI_OK;
+}
+
 void tobi_motion_free(tobi_motion *motion)
 {
     if (!motion) return;
     for (int k = 0; k < motion->parts; k++) tobi_motion_free(motion->part[k]);
     free(motion->part);
     tobi_keyframes_free(motion->frames);
+    tobi_waves_free(motion->waves);
     tobi_script_free(motion->script);
     free(motion);
 }
@@ -284,15 +325,18 @@ static tobi_status find_pose(const tobi_motion *m, double t, tobi_pose *pose, to
 {
     *pose = (tobi_pose){ .axis = { 0.0, 0.0, 1.0 } };
     if (m->kind == KIND_SCRIPT) return tobi_script_place(m->script, t, pose, err);
-    const int turns = m->kind == KIND_ROTATION || m->kind == KIND_SWING;
+    const int turns = m->kind == KIND_ROTATION || m->kind == KIND_SWING || m->kind == KIND_FLAP;
+    const double way = m->waves ? tobi_waves_displacement(m->waves, t) : 0;
     for (int a = 0; a < 3; a++) {
         if (turns) pose->axis[a] = m->vector[a];
         if (turns) pose->pivot[a] = m->centre[a];
         if (m->kind == KIND_TRANSLATION) pose->shift[a] = m->vector[a]*count_time(m, t);
+        if (m->kind == KIND_PISTON) pose->shift[a] = m->vector[a]*way;
         if (m->kind == KIND_OSCILLATION) pose->shift[a] = m->vector[a]*swing(m, t);
     }
     if (m->kind == KIND_ROTATION) pose->degrees = m->rate*count_time(m, t);
     if (m->kind == KIND_SWING) pose->degrees = swing(m, t);
+    if (m->kind == KIND_FLAP) pose->degrees = atan(way/m->arm)*(180/PI);
     return TOBI_OK;
 }
 

@@ -274,7 +274,7 @@ static void write_parts(FILE *out, const char *owner, const char *path)
         snprintf(title, sizeof title, "`%s`", inner);
         if (part.table) write_table(out, title, part.table);
         if (part.table == &tobi_output_table) write_fields(out);
-        if (part.form == TOBI_PART_MOTION) write_motions(out);
+        if (part.form == TOBI_PART_MOTION && strcmp(owner, "body") == 0) write_motions(out);
         if (part.table) write_parts(out, part.table->name, inner);
     }
 }

@@ -95,6 +95,55 @@ static const tobi_param keyframes_rows[] = {
     { 0 }
 };
 
+#define WAVE AT(tobi_wave_maker_def,
+#define HEIGHTS RANGE(1e-6, 1e4), .unit = "m", .text = "none"
+#define MAKER \
+    { .key = "direction", VEC3, WAVE direction), .def = { 1, 0, 0 }, DIRECTION, .unit = "1", \
+      .doc = "Where the waves go, of any length." }, \
+    { .key = "depth", REAL, WAVE depth), LENGTHS, .unit = "m", .required = true, \
+      .doc = "Depth of the still water." }, \
+    { .key = "gravity", REAL, WAVE gravity), .def = { 9.81 }, RANGE(1e-6, 1e6), .unit = "m/s2", \
+      .doc = "Size of gravity, for the theory." }, \
+    { .key = "regular.height", REAL, WAVE height), HEIGHTS, \
+      .doc = "Height of regular waves from trough to crest, by Biesel's transfer function. One of the " \
+             "three kinds of waves is given." }, \
+    { .key = "regular.period", REAL, WAVE period), DURATION, .unit = "s", .text = "none", \
+      .doc = "Their period." }, \
+    { .key = "regular.phase", REAL, WAVE phase), RANGE(-1e9, 1e9), .unit = "degrees", \
+      .doc = "Phase of the displacement at time 0." }, \
+    { .key = "irregular.height", REAL, WAVE significant_height), HEIGHTS, \
+      .doc = "Significant height of irregular waves, 4 sqrt(m0)." }, \
+    { .key = "irregular.peak_period", REAL, WAVE peak_period), DURATION, .unit = "s", .text = "none", \
+      .doc = "Period of the peak of their spectrum." }, \
+    { .key = "irregular.spectrum", CHOICE("jonswap|pierson-moskowitz", 2), WAVE spectrum), \
+      .doc = "The shape of their spectrum." }, \
+    { .key = "irregular.peakedness", REAL, WAVE peakedness), .def = { 3.3 }, RANGE(1, 10), .unit = "1", \
+      .doc = "Gamma of jonswap." }, \
+    { .key = "irregular.seed", INT, WAVE seed), .def = { 1 }, RANGE(0, 2147483647), .unit = "1", \
+      .doc = "Another number, other phases of the same spectrum." }, \
+    { .key = "irregular.components", INT, WAVE components), .def = { 100 }, RANGE(1, 10000), .unit = "1", \
+      .doc = "How many regular waves they are the sum of, between 0.5 and 3 peak frequencies." }, \
+    { .key = "start", REAL, WAVE start), RANGE(-1e9, 1e9), .unit = "s", .doc = "Until then it rests." }, \
+    { .key = "ramp", REAL, WAVE ramp), RANGE(0, 1e9), .unit = "s", \
+      .doc = "Displacements rise like (1 - cos(pi s/ramp))/2 in so many seconds after start; not those of " \
+             "a solitary wave." }
+static const tobi_param piston_rows[] = {
+    MAKER,
+    { .key = "regular.order", INT, WAVE order), .def = { 1 }, RANGE(1, 2), .unit = "1",
+      .doc = "2 adds what takes away the free second harmonic (Madsen 1971)." },
+    { .key = "solitary.height", REAL, WAVE solitary_height), HEIGHTS,
+      .doc = "Height of one solitary wave above the still water, by Goring 1978." },
+    { 0 }
+};
+static const tobi_param flap_rows[] = {
+    MAKER,
+    { .key = "hinge", VEC3, WAVE hinge), PLACE, .unit = "m", .required = true,
+      .doc = "A point of the axis that the flap turns about." },
+    { .key = "hinge_height", REAL, WAVE hinge_height), PLACE, .unit = "m",
+      .doc = "How far the hinge is above the bottom of the water; negative below." },
+    { 0 }
+};
+
 static const tobi_param_table tables[] = {
     { "script", "motion: a user's program in Lua, for rigid and deforming bodies.",
       sizeof(tobi_script_def), script_rows },
@@ -110,9 +159,14 @@ static const tobi_param_table tables[] = {
     { "heave", "motion.heave: to and fro along z.", sizeof(tobi_degree_def), shift_rows },
     { "roll", "motion.roll: to and fro about an axis along x.", sizeof(tobi_degree_def), turn_rows },
     { "pitch", "motion.pitch: to and fro about an axis along y.", sizeof(tobi_degree_def), turn_rows },
-    { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows }
+    { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows },
+    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves.",
+      sizeof(tobi_wave_maker_def), piston_rows },
+    { "flap", "motion.flap: a wave maker that turns about a hinge; regular or irregular waves.",
+      sizeof(tobi_wave_maker_def), flap_rows }
 };
-enum { SCRIPT, TRANSLATION, ROTATION, OSCILLATION, KEYFRAMES, SURGE, ROLL = SURGE + 3 };
+enum { SCRIPT, TRANSLATION, ROTATION, OSCILLATION, KEYFRAMES, SURGE, ROLL = SURGE + 3,
+       PISTON = ROLL + 3, FLAP };
 enum { TABLE_COUNT = sizeof tables / sizeof tables[0] };
 
 const tobi_param_table *tobi_motion_table(int index)
@@ -125,7 +179,7 @@ static const tobi_param_table *choose_table(const tobi_binder *binder, json_t *v
                                             const tobi_place *place)
 {
     const char *keys[TABLE_COUNT + 1] = { "params" };
-    char all[300] = "";
+    char all[400] = "";
     for (size_t i = 0, used = 0; i < TABLE_COUNT; i++) {
         keys[i + 1] = tables[i].name;
         if (used < sizeof all)
@@ -173,6 +227,16 @@ static tobi_status create_script(const tobi_motion_def *def, tobi_motion **motio
     return status;
 }
 
+/* Against gravity is along the last axis of the scene. */
+static tobi_status create_wave_maker(const tobi_motion_def *def, int flap, tobi_motion **motion,
+                                     tobi_error *err)
+{
+    tobi_wave_maker_def waves = def->as.waves;
+    waves.flap = flap;
+    waves.up[def->dimension - 1] = 1;
+    return tobi_motion_wave_maker(&waves, motion, err);
+}
+
 static tobi_status create_kind(const tobi_motion_def *def, int kind, tobi_motion **motion, tobi_error *err)
 {
     const tobi_rotation_def *turn = &def->as.rotation;
@@ -190,6 +254,7 @@ static tobi_status create_kind(const tobi_motion_def *def, int kind, tobi_motion
         return tobi_motion_oscillation(swing->direction, swing->amplitude, swing->frequency, swing->phase,
                                        motion, err);
     }
+    if (kind >= PISTON) return create_wave_maker(def, kind == FLAP, motion, err);
     const double rate = 1/degree->period;
     if (kind < ROLL)
         return tobi_motion_oscillation(along, degree->amplitude, rate, degree->phase, motion, err);
@@ -202,7 +267,7 @@ static tobi_status create_motion(const tobi_motion_def *def, tobi_motion **motio
     const tobi_times_def *times = kind == TRANSLATION   ? &def->as.translation.times
                                   : kind == ROTATION    ? &def->as.rotation.times
                                   : kind == OSCILLATION ? &def->as.oscillation.times
-                                  : kind >= SURGE       ? &def->as.degree.times : NULL;
+                                  : kind >= SURGE && kind < PISTON ? &def->as.degree.times : NULL;
     TOBI_TRY(create_kind(def, kind, motion, err));
     if (!times) return TOBI_OK;
     const tobi_status status = tobi_motion_set_times(
@@ -227,7 +292,7 @@ static tobi_motion *bind_one(const tobi_binder *binder, json_t *value, const tob
 {
     const char *beside_script[TOBI_PARTS];
     tobi_part_keys("script", beside_script);
-    *def = (tobi_motion_def){ 0 };
+    *def = (tobi_motion_def){ .dimension = binder->dimension };
     int64_t before = tobi_report_total(binder->source->report);
     if (!json_is_object(value)) {
         tobi_source_mistake(binder->source, place, "is %s, must be an object { ... }",

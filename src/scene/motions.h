@@ -35,7 +35,9 @@ typedef struct tobi_motion_def {
         tobi_oscillation_def oscillation;
         tobi_degree_def degree;
         tobi_keyframes_def keyframes;
+        tobi_wave_maker_def waves;
     } as;
+    int dimension;                     /* of the scene                                   */
     json_t *params;                    /* of a script; borrowed from the scene, or NULL  */
 } tobi_motion_def;
 

@@ -251,6 +251,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_fluids(scene, &binder, &root));
     TOBI_TRY(read_solids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
+    tobi_tank_bind(&scene->tank, &binder, scene->root, &root);
     TOBI_TRY(read_planes(scene, &binder, &root));
     TOBI_TRY(tobi_openings_read(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
@@ -371,6 +372,7 @@ void tobi_scene_free(tobi_scene *scene)
         tobi_motion_free(scene->bodies[i].motion);
         tobi_script_free(scene->bodies[i].control);
     }
+    tobi_tank_free(&scene->tank);
     free(scene->fluids);
     free(scene->solids);
     free(scene->bodies);
@@ -448,6 +450,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     if (status == TOBI_OK) status = tobi_openings_build(scene, world, err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
+    if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);
     return status;
@@ -564,6 +567,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     if (scene->fluid_count) failed |= json_object_set(root, "fluids", fluids);
     if (scene->solid_count) failed |= json_object_set(root, "solids", solids);
     failed |= json_object_set_new(root, "bodies", bodies);
+    failed |= tobi_tank_write(&scene->tank, root);
     if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
     failed |= tobi_openings_write(scene, root);
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);

@@ -2,6 +2,7 @@
 #pragma once
 #include "scene/controls.h"
 #include "scene/motions.h"
+#include "scene/tank.h"
 #include "tobiuo/scene.h"
 
 typedef struct tobi_scene_fill {
@@ -48,6 +49,7 @@ struct tobi_scene {
     int fluid_count;
     tobi_scene_solid *solids;
     int solid_count;
+    tobi_scene_tank tank;
     tobi_scene_body *bodies;
     int body_count;
     tobi_plane_def *planes;

@@ -3,6 +3,7 @@
    of the distance to a plane, sum A W f(s_b)/sigma(s_b) with s_b the distance to the point's tangent
    plane gives f(s) exactly on a plane and its natural extension on curves and edges. */
 #include "sph/boundary.h"
+#include "sph/hydrostatic.h"
 #include "sph/state.h"
 #include "sph/wall_law.h"
 #include <math.h>
@@ -213,20 +214,11 @@ static int add_point(void *user, int32_t k)
     return 0;
 }
 
-/* Gravity less what still water holds; fluids have one density then. */
-static void feel_gravity(look *l)
-{
-    const tobi_system *s = l->s;
-    const tobi_reference *reference = &sph_of(s)->reference;
-    double held = tobi_reference_share(reference, l->x)*reference->push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l->gravity[a] = s->gravity[a] - held*reference->down[a];
-}
-
 static int look_at(look *l, int32_t i, int body)
 {
     tobi_boundary_entry *e = l->entry;
     tobi_bvh_hit hit;
-    feel_gravity(l);
+    sph_gravity_at(l->s, l->x, l->gravity);
     memset(e, 0, sizeof *e);
     *l->link = (tobi_boundary_link){.particle = i, .body = (int16_t)body};
     e->triangle = -1;

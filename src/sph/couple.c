@@ -26,9 +26,10 @@ static void predict(const tobi_system *s, tobi_body *b, const double f[6])
     double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
     tobi_rigid_inverse(r, shift, turn);
     for (int a = 0; a < 3; a++) {
-        double force = r->mass*s->sim->def.gravity[a] + r->force[a] + r->held[a] + f[a];
+        double force = r->mass*s->sim->def.gravity[a] + r->force[a] + r->inertial[a] + r->held[a] + f[a];
         r->predicted[a] = keep*(r->velocity[a] + s->dt*shift[a]*force);
-        momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + r->held[3 + a] + f[3 + a]));
+        momentum[a] = keep*(r->momentum[a] + s->dt*(r->torque[a] + r->inertial[3 + a] + r->held[3 + a] +
+                                                    f[3 + a]));
         r->mobility[a] = keep*shift[a];
         for (int c = 0; c < 3; c++) r->turn_mobility[a][c] = keep*turn[a][c];
     }

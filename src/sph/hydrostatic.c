@@ -11,6 +11,17 @@ void sph_remove_gravity(tobi_system *s)
         if (!s->box.periodic[a]) s->gravity[a] = 0;
 }
 
+void sph_gravity_at(const tobi_system *s, const double x[3], double gravity[3])
+{
+    const tobi_reference *w = &sph_of(s)->reference;
+    const double held = tobi_reference_share(w, x)*w->push/s->fluid[0].density;
+    for (int a = 0; a < 3; a++) gravity[a] = s->gravity[a] - held*w->down[a];
+    if (!s->sim->acceleration.acts) return;
+    double more[3];
+    tobi_acceleration_at(&s->sim->acceleration, x, more);
+    for (int a = 0; a < 3; a++) gravity[a] += more[a];
+}
+
 double sph_hydrostatic(const tobi_system *s, const double x[3])
 {
     double sum = 0;

@@ -138,6 +138,7 @@ void isph_forces(tobi_system *s)
     const int corrected = m->def.viscosity_form != TOBI_VISCOSITY_PLAIN;
     if (corrected) launch(s, m, m->kernel->isph_viscosity, NULL);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    without.acceleration.acts = 0;
     sph_apply_forces(s, &without, m->kernel, &clock);
     if (corrected) launch(s, m, m->kernel->isph_add_shift_velocity, NULL);
     isph_bodies_remove_hydrostatic(s);
@@ -188,6 +189,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     sph_view without = m->view;
     without.pressure = NULL;
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
+    without.acceleration.acts = 0;
     tobi_launch(&s->sim->exec, m->kernel->sph_wall_force, &without, 0, s->particles.count, friction);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
     tobi_boundary_load(s);

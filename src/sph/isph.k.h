@@ -193,8 +193,15 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
 /* v += dt g, and what neighbours read while rows are made. */
 TOBI_FN void isph_gravity(const isph_view *v, int64_t i, double *totals)
 {
+    float g[3], *u = &v->velocity[i].x;
     (void)totals;
-    for (int a = 0; a < v->dimension; a++) (&v->velocity[i].x)[a] += (float)v->dt*v->gravity[a];
+    isph_gravity_at(v, i, g);
+    if (v->acceleration.acts) {
+        double turning[3];
+        tobi_acceleration_by_velocity(&v->acceleration, u, turning);
+        for (int a = 0; a < v->dimension; a++) u[a] += (float)(v->dt*turning[a]);
+    }
+    for (int a = 0; a < v->dimension; a++) u[a] += (float)v->dt*g[a];
     v->record[i].w = v->own_scale ? 0 : v->scale[i];
 }
 

@@ -39,6 +39,7 @@ static void add_viscosity(tobi_system *s, isph_solver *m, const sph_view *shared
     v.dt = (float)dt;
     v.filter = 0;
     for (int a = 0; a < 3; a++) v.gravity[a] = 0;
+    v.acceleration.acts = 0;
     s->dt = m->view.dt = dt;
     if (corrected) launch(s, m, m->kernel->isph_viscosity);
     tobi_launch(&s->sim->exec, m->kernel->sph_laplacian, &v, 0, s->particles.count, NULL);

@@ -42,13 +42,15 @@ static void measure(const body_points *q, int64_t point, const tobi_double3 *at,
 static void add_cell(const body_points *q, int64_t k, int64_t cell, isph_point *sum)
 {
     const isph_view *v = q->v;
+    double more[3] = { 0 };
+    if (v->acceleration.acts) tobi_acceleration_at(&v->acceleration, body_of(q)->point[k], more);
     for (int64_t i = q->s->cells.start[cell]; i < q->s->cells.start[cell + 1]; i++) {
         double x[3];
         measure(q, k, &v->position[i], x);
         const double w = weigh(q, k, x);
         sum->weight += w;
         sum->distance += w*vec3_dot(x, body_of(q)->normal[k]);
-        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*v->gravity[a]*x[a];
+        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*(v->gravity[a] + more[a])*x[a];
     }
 }
 

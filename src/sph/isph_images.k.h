@@ -11,12 +11,23 @@ typedef struct isph_image {
     int64_t k;                       /* entry of the first pair in the list; -1: of i and itself    */
     lane sign[3];                    /* of velocities: -1 along mirrored axes                       */
     lane displacement[3];            /* m, from j to its image                                      */
+    float gravity[3];                /* m/s2, that i feels at rest                                  */
     /* bodies only */
     const int64_t *entry;            /* of each pair, in place of k                                 */
     lane weight;                     /* 1; less at edges                                            */
     lane normal[3];
     lane normal_velocity, velocity_change;     /* m/s: of the surface along the normal; its change  */
 } isph_image;
+
+/* Gravity and what acts besides on particle i at rest, m/s2. */
+TOBI_FN void isph_gravity_at(const isph_view *v, int64_t i, float g[3])
+{
+    double more[3];
+    for (int a = 0; a < 3; a++) g[a] = v->gravity[a];
+    if (!v->acceleration.acts) return;
+    tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);
+    for (int a = 0; a < v->dimension; a++) g[a] += (float)more[a];
+}
 
 /* V F over slope: V grad W = -V F x_ij. 0 out of reach. */
 TOBI_FN lane isph_falloff(const isph_view *v, const tobi_neighbors *n, const isph_image *m, const int shape,
@@ -41,9 +52,9 @@ TOBI_FN void isph_velocity(const isph_view *v, const tobi_neighbors *n, const is
     lane w, across = lane_set(0);
     lane_load_float4(v->velocity, n->j, &u[0], &u[1], &u[2], &w);
     if (kind == ISPH_PLAIN) return;
-    for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->gravity_dt*v->gravity[a]);
+    for (int a = 0; a < 3; a++) u[a] = m->sign[a]*u[a] + (1.0f - m->sign[a])*(v->gravity_dt*m->gravity[a]);
     if (kind == ISPH_SIDE) return;
-    for (int a = 0; a < 3; a++) across += 2*(u[a] - v->gravity_dt*v->gravity[a])*m->normal[a];
+    for (int a = 0; a < 3; a++) across += 2*(u[a] - v->gravity_dt*m->gravity[a])*m->normal[a];
     across -= 2*(m->normal_velocity - (v->gravity_dt > 0 ? m->velocity_change : lane_set(0)));
     for (int a = 0; a < 3; a++) u[a] -= across*m->normal[a];
 }
@@ -53,7 +64,7 @@ TOBI_FN lane isph_pressure_difference(const isph_view *v, const isph_image *m, c
 {
     if (kind == ISPH_PLAIN) return lane_set(0);
     const lane *d = m->displacement, *n = m->normal;
-    const lane still = (float)v->density*(v->gravity[0]*d[0] + v->gravity[1]*d[1] + v->gravity[2]*d[2]);
+    const lane still = (float)v->density*(m->gravity[0]*d[0] + m->gravity[1]*d[1] + m->gravity[2]*d[2]);
     if (kind == ISPH_SIDE) return still;
     return still - (float)(v->density/v->dt)*m->velocity_change*(n[0]*d[0] + n[1]*d[1] + n[2]*d[2]);
 }

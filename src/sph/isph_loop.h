@@ -42,6 +42,7 @@
             K##_acc acc;                                                                            \
             tobi_neighbors near;                                                                    \
             isph_image image;                                                                       \
+            isph_gravity_at(v, i, image.gravity);                                                   \
             for (int k = 0; k < 8; k++) self[k] = (int32_t)i;                                       \
             K##_start(v, i, &acc);                                                                  \
             for (int g = 0; g < groups; g += TOBI_LANES) {                                          \

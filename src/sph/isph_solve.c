@@ -144,6 +144,7 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->list_start = s->cells.list_start;
     v->list_groups = s->cells.list_groups;
     v->dt = s->dt;
+    v->acceleration = s->sim->acceleration;
     for (int a = 0; a < 3; a++) v->gravity[a] = a < v->dimension ? (float)s->gravity[a] : 0;
     return TOBI_OK;
 }

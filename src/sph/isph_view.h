@@ -1,6 +1,7 @@
 /* What the kernels of isph read and write: a flat struct of plain pointers and constants, and the mirror
    planes in which particles see bodies. */
 #pragma once
+#include "core/acceleration.h"
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
 #include "sph/couple.k.h"
@@ -35,6 +36,7 @@ typedef struct isph_view {
     float from_fixed[3];             /* m per unit of the records                                   */
     int32_t side[2][3];              /* lower and upper sides of the domain, units of the records   */
     float gravity[3];                /* m/s2                                                        */
+    tobi_acceleration acceleration;  /* besides gravity                                             */
     float gravity_dt;                /* s: dt while velocities hold the step's gravity, else 0      */
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */

@@ -78,13 +78,13 @@ typedef struct membrane {
 } membrane;
 
 /* Of isph: as at rest from the particle to the place. */
-static void carry(membrane *m, int64_t i, const double r[3])
+static void carry(membrane *m, int64_t i, const double r[3], const double gravity[3])
 {
     const tobi_smoothing_constants *c = &m->s->smoothing;
     const double weight = c->volume*tobi_smoothing_w(c->shape, c->dimension, c->h,
                                                      sqrt(r[0]*r[0] + r[1]*r[1] + r[2]*r[2]));
     double p = sph_fields_of(&m->s->particles)->pressure[i];
-    for (int a = 0; a < c->dimension; a++) p -= m->s->fluid[0].density*m->s->gravity[a]*r[a];
+    for (int a = 0; a < c->dimension; a++) p -= m->s->fluid[0].density*gravity[a]*r[a];
     m->traction += weight*p;
     m->weight += weight;
 }
@@ -94,15 +94,17 @@ static void press(void *user, int64_t i, const double r[3])
     membrane *m = user;
     const tobi_smoothing_constants *c = &m->s->smoothing;
     double r2 = r[0]*r[0] + r[1]*r[1] + r[2]*r[2], depth = 0, along = 0;
-    const tobi_reference *w = &sph_of(m->s)->reference;
-    double held = tobi_reference_share(w, &m->s->particles.position[i].x)*w->push/m->s->fluid[0].density;
+    const tobi_double3 *q = &m->s->particles.position[i];
+    const double at[3] = { q->x, q->y, q->z };
+    double gravity[3];
+    sph_gravity_at(m->s, at, gravity);
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
-        along += (m->s->gravity[a] - held*w->down[a])*m->normal[a];
+        along += gravity[a]*m->normal[a];
     }
     if (!(r2 < c->h*c->h) || !(depth > 0)) return;
     if (sph_of(m->s)->mirrors) {
-        carry(m, i, r);
+        carry(m, i, r, gravity);
         return;
     }
     int k = (int)(depth/c->h*TOBI_PLANE_SAMPLES);

@@ -3,11 +3,14 @@
 #include "sph/state.h"
 #include "sph/hydrostatic.h"
 #include "sph/reference.h"
+#include "geom/vec3.h"
 #include <math.h>
 
 /* In support radii. COVER keeps clear of kernels that a surface cuts. The pressure of REST stays with the
    solve: pressures that fluctuate about zero order no particles, and a tank then never rests. */
 static const double COVER = 1, RAMP = 3, REST = 0.5;
+/* Of gravity: what acts besides it in water that is still at rest. */
+static const double DRIVEN = 0.3;
 enum { DROPS = 1024 };
 
 void sph_reference_set(tobi_system *s, double low)
@@ -81,11 +84,26 @@ static int has_lost_support(const tobi_system *s)
     return 0;
 }
 
+/* Whether what acts besides gravity is no small part of it: then no water is at rest. Of the whole run, since
+   to give still water up and to take it again stirs the water. */
+static int is_driven(const tobi_system *s)
+{
+    double g2 = 0;
+    for (int a = 0; a < 3; a++) g2 += s->sim->def.gravity[a]*s->sim->def.gravity[a];
+    return s->sim->acceleration_change > DRIVEN*sqrt(g2);
+}
+
+int sph_reference_begins(const tobi_system *s)
+{
+    const double *g = s->sim->def.gravity, *more = s->sim->acceleration.uniform;
+    return vec3_dot(more, more) <= DRIVEN*DRIVEN*vec3_dot(g, g);
+}
+
 void sph_reference_move(tobi_system *s, tobi_reference *before, double low, double speed, double *level)
 {
     sph_reference_set(s, *level);
     *before = sph_of(s)->reference;
-    *level = has_lost_support(s) ? 0 : follow(s, *level, low, speed);
+    *level = has_lost_support(s) || is_driven(s) ? 0 : follow(s, *level, low, speed);
 }
 
 typedef struct referring { const tobi_system *s; int sign; } referring;

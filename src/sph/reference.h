@@ -21,6 +21,8 @@ typedef struct sph_surface {
     double (*find)(tobi_system *s);      /* the first of them now                   */
     int rests;                               /* 1: the method takes still water         */
 } sph_surface;
+/* Whether water may begin at rest: nothing else acts at the start that is no small part of gravity. */
+int sph_reference_begins(const tobi_system *s);
 /* Gravity has changed (tobi_method.follow_gravity). Before the first step everything is found anew. Else the
    pressures stay what they are in sum, and refer to water at rest below the present surface under the new
    gravity. */

@@ -212,12 +212,25 @@ TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
     return p >= full ? 1 : p > 0 ? p/full : 0;
 }
 
-/* Gravity less what still water holds, m/s2. */
+/* Gravity less what still water holds, and what acts besides, m/s2. */
 TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
 {
     double taken = tobi_reference_share(&v->reference, &v->position[i].x)*v->reference.push*
                    v->inverse_density[v->fluid[i]];
     for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->reference.down[c]);
+    if (!v->acceleration.acts) return;
+    double more[3];
+    tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);
+    for (int c = 0; c < 3; c++) g[c] += (float)more[c];
+}
+
+/* The Coriolis part, which walls do not mirror. */
+TOBI_FN void sph_add_turning(const sph_view *v, int64_t i, float add[3])
+{
+    double more[3];
+    if (!v->acceleration.acts) return;
+    tobi_acceleration_by_velocity(&v->acceleration, &v->velocity[i].x, more);
+    for (int c = 0; c < 3; c++) add[c] += (float)more[c];
 }
 
 /* Rate at which a no-slip plane at the distance s brakes a particle along itself, eq. (14), (14b). */
@@ -258,6 +271,7 @@ TOBI_FN void sph_kick_finish(const sph_view *v, int64_t i, sph_laplacian_acc *a,
     tobi_float4 sum = lane_sum4(a->ax, a->ay, a->az, lane_set(0));
     float add[3] = {g[0] + 2*nu*l.x + k*sum.x, g[1] + 2*nu*l.y + k*sum.y, g[2] + 2*nu*l.z + k*sum.z};
     (void)totals;
+    sph_add_turning(v, i, add);
     for (int p = 0; p < v->plane_count; p++) {
         float s = sph_plane_distance(v, p, i);
         if (s >= v->h) continue;

@@ -102,6 +102,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     }
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);
+    v->acceleration = s->sim->acceleration;
     for (int a = 0; a < 3; a++) {
         v->gravity[a] = a < c->dimension ? (float)s->gravity[a] : 0;
         v->removed_gravity[a] = a < c->dimension ? (float)(s->sim->def.gravity[a] - s->gravity[a]) : 0;
@@ -110,9 +111,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
 
 double sph_gravity_dt(const tobi_system *s)
 {
-    double g2 = 0;
-    for (int a = 0; a < s->box.dimension; a++) g2 += s->sim->def.gravity[a]*s->sim->def.gravity[a];
-    return 0.25*sqrt(s->smoothing.spacing/fmax(sqrt(g2), 1e-12));
+    return 0.25*sqrt(s->smoothing.spacing/fmax(tobi_simulation_pull_size(s->sim), 1e-12));
 }
 
 double sph_viscous_dt(const tobi_system *s)

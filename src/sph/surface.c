@@ -36,7 +36,7 @@ static void press(look *l, int64_t i, double w, double depth)
 static void carry(look *l, int64_t i, const double r[3], double w, double depth)
 {
     double p = sph_fields_of(&l->s->particles)->pressure[i];
-    for (int a = 0; a < l->s->box.dimension; a++) p -= l->s->fluid[0].density*l->s->gravity[a]*r[a];
+    for (int a = 0; a < l->s->box.dimension; a++) p -= l->s->fluid[0].density*l->gravity[a]*r[a];
     l->pressure += w*p;
     l->weight += w;
     l->away += w*depth;
@@ -98,9 +98,7 @@ void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place 
     *pressure = 0;
     memset(shear, 0, 3*sizeof *shear);
     if (s->step == 0) return;       /* no pressure has been found yet */
-    const tobi_reference *w = &sph_of(s)->reference;
-    const double held = tobi_reference_share(w, place->x)*w->push/s->fluid[0].density;
-    for (int a = 0; a < 3; a++) l.gravity[a] = s->gravity[a] - held*w->down[a];
+    sph_gravity_at(s, place->x, l.gravity);
     const sph_range cells = sph_cells_around(s, place->x, s->smoothing.h);
     sph_visit(s, place->x, &cells, see, &l);
     *pressure = l.pressure;

@@ -1,5 +1,6 @@
 /* Everything an SPH kernel may read or write, as plain pointers and constants. */
 #pragma once
+#include "core/acceleration.h"
 #include "core/wall_table.h"
 #include "exec/portable.h"
 #include "linear/grid.h"
@@ -62,6 +63,7 @@ typedef struct sph_view {
     /* the step and the solve at hand */
     float dt, inverse_dt;
     float gravity[3];
+    tobi_acceleration acceleration;           /* besides gravity                             */
     float removed_gravity[3];                 /* m/s2, what a full vessel takes from gravity    */
     tobi_reference reference, reference_before;           /* the second: what `pressure` still refers to    */
     float speed_cap;                          /* m/s */

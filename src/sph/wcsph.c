@@ -117,7 +117,7 @@ static double find_surface(tobi_system *s)
 /* Once, in a vessel just looked into. */
 static void start_at_rest(tobi_system *s, wcsph *m)
 {
-    if (m->def.still_water) m->memory.level = m->memory.low = find_surface(s);
+    if (m->def.still_water && sph_reference_begins(s)) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
     m->view.reference_before = sph_of(s)->reference;
     launch(s, m, m->kernel->sph_rest, NULL);

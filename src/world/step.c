@@ -2,6 +2,7 @@
    length; one whose stable step is shorter takes substeps. Drawback: systems meet only through bodies, and
    where there are bodies the shortest stable step holds for all. */
 #include "world/step.h"
+#include "world/acceleration.h"
 #include "world/bodies.h"
 #include "world/limits.h"
 #include "world/openings.h"
@@ -184,6 +185,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     tobi_world_cap_step(w);
     TOBI_TRY(remember(w, err));
     choose_dt(w, max_dt, substeps);
+    TOBI_TRY(tobi_world_drive(w, err));
     TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;
     TOBI_TRY(step_systems(w, substeps, err));

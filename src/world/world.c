@@ -1,5 +1,6 @@
 /* A world: definitions become a simulation, the method steps it. */
 #include "world/world.h"
+#include "world/acceleration.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"
 #include "world/bodies.h"
@@ -71,6 +72,7 @@ void tobi_world_destroy(tobi_world *w)
     w->alive = 0;
     for (int k = 0; k < w->system_count; k++) tobi_world_free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
+    tobi_world_free_drive(w);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) {
         tobi_mesh_free(&w->regions[k].shape);
@@ -231,6 +233,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     TOBI_TRY(check_systems(w, err));
+    TOBI_TRY(tobi_world_start_drive(w, err));
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_fill_system(w, &w->system[k], err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));

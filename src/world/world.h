@@ -8,6 +8,8 @@
 
 typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
 
+typedef struct tobi_drive tobi_drive;
+
 enum { TOBI_ALIVE = 0x70b10 };
 
 struct tobi_world {
@@ -15,6 +17,7 @@ struct tobi_world {
     tobi_simulation sim;          /* what the systems share                                  */
     tobi_system system[TOBI_SYSTEM_LIMIT];    /* [0]: the one of the definition's method      */
     int system_count;
+    struct tobi_drive *drive;      /* owned: gravity in time and the frame; NULL if there is neither */
     struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
     double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
     tobi_region *regions;

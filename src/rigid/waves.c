@@ -1,0 +1,276 @@
+/* Wave makers: regular waves by Biesel's transfer function and Madsen's second order, solitary waves by
+   Goring, irregular ones as sums of regular ones. Drawback: sums leave out what their components do to one
+   another, so that long waves travel with their groups too free. */
+#include "rigid/waves.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+/* Heights over the depth and, after Miche, over the length times tanh kh at which waves break. */
+static const double SOLITARY_BREAKS = 0.78, MICHE = 0.142;
+/* H L^2/h^3 up to which the second order is no larger than it may be: no second crest (Madsen 1971). */
+static const double MADSEN_LIMIT = 8*PI*PI/3;
+/* Goring: the paddle moves while its argument is within so much, plus H/h, of the crest. */
+static const double GORING_REACH = 3.8;
+/* Of the peak frequency: the band that irregular waves have. */
+static const double BAND_LOW = 0.5, BAND_HIGH = 3;
+enum { EVANESCENT = 30 };
+
+typedef struct wave { double omega, phase, stroke, level, local; } wave;
+
+struct tobi_waves {
+    tobi_wave_maker_def def;
+    wave *wave;                 /* owned: stroke: m, half of it; level, local: m, beside and behind it    */
+    int count;
+    double second;              /* m, of the second order                                                 */
+    double kappa, speed, span;  /* solitary: 1/m, m/s, s                                                   */
+};
+
+double tobi_waves_number(double gravity, double depth, double period)
+{
+    const double deep = 4*PI*PI/(period*period*gravity)*depth;      /* omega^2 h/g = kh tanh kh */
+    double kh = deep/sqrt(tanh(deep));                              /* within 5 %, Eckart 1952 */
+    for (int n = 0; n < 50; n++) {
+        const double t = tanh(kh), step = (kh*t - deep)/(t + kh*(1 - t*t));
+        kh -= step;
+        if (fabs(step) <= 1e-15*kh) break;
+    }
+    return kh/depth;
+}
+
+/* Integral over the depth of the shape of the maker, 1 at the still water, with cosh kz, times k/cosh kh. */
+static double shape_integral(double k, double h, double hinge)
+{
+    const double scale = cosh(k*h);
+    if (isinf(hinge)) return tanh(k*h);
+    const double low = fmax(hinge, 0), arm = h - hinge;
+    return (arm*k*sinh(k*h) - cosh(k*h) - (low - hinge)*k*sinh(k*low) + cosh(k*low))/(k*arm*scale);
+}
+
+double tobi_waves_per_stroke(double k, double depth, double hinge)
+{
+    const double kh = k*depth, c = cosh(kh);
+    return 4*sinh(kh)*shape_integral(k, depth, hinge)*c/(sinh(2*kh) + 2*kh);
+}
+
+/* The level at a piston of the local waves over its displacement: sum of 4 sin^2/(sin 2kh + 2kh) over the
+   roots of omega^2 = -g k tan kh. */
+static double local_level(double gravity, double depth, double omega)
+{
+    const double deep = omega*omega*depth/gravity;
+    double sum = 0;
+    for (int n = 1; n <= EVANESCENT; n++) {
+        double low = (n - 0.5)*PI, high = n*PI;
+        for (int i = 0; i < 60; i++) {
+            const double kh = 0.5*(low + high);
+            if (deep + kh*tan(kh) < 0) low = kh;
+            else high = kh;
+        }
+        const double kh = 0.5*(low + high);
+        sum += 4*sin(kh)*sin(kh)/(sin(2*kh) + 2*kh);
+    }
+    return sum;
+}
+
+/* --- checks ------------------------------------------------------------------------------------ */
+
+static double breaking_height(const tobi_wave_maker_def *d, double k)
+{
+    return MICHE*2*PI/k*tanh(k*d->depth);
+}
+
+static tobi_status check_height(const tobi_wave_maker_def *d, const char *what, double height, double period,
+                                tobi_error *err)
+{
+    if (!(period > 0))
+        return tobi_fail(err, TOBI_INVALID, "%s waves of a height of %g m have no period", what, height);
+    const double most = breaking_height(d, tobi_waves_number(d->gravity, d->depth, period));
+    if (height <= most) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "%s waves %g m high with a period of %g s break on water %g m deep: "
+                     "allowed are up to %.4g m, 0.142 L tanh kh (Miche)", what, height, period, d->depth,
+                     most);
+}
+
+static tobi_status check_second_order(const tobi_wave_maker_def *d, tobi_error *err)
+{
+    const double length = 2*PI/tobi_waves_number(d->gravity, d->depth, d->period);
+    const double most = MADSEN_LIMIT*d->depth*d->depth*d->depth/(length*length);
+    if (d->order < 2) return TOBI_OK;
+    if (d->flap) return tobi_fail(err, TOBI_UNSUPPORTED, "order 2 is for pistons; a flap has order 1");
+    if (d->height <= most) return TOBI_OK;
+    return tobi_fail(err, TOBI_INVALID, "waves %g m high and %.4g m long are too long for order 2 on %g m of "
+                     "water: allowed are up to %.4g m, H L^2/h^3 <= 8 pi^2/3 (Madsen); take order 1",
+                     d->height, length, d->depth, most);
+}
+
+static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
+{
+    const int kinds = (d->height > 0) + (d->solitary_height > 0) + (d->significant_height > 0);
+    if (!(d->depth > 0) || !(d->gravity > 0))
+        return tobi_fail(err, TOBI_INVALID, "a wave maker needs the depth of the water and gravity, both "
+                         "greater than 0; given are %g m and %g m/s2", d->depth, d->gravity);
+    if (kinds != 1)
+        return tobi_fail(err, TOBI_INVALID, "a wave maker makes one kind of waves: regular, solitary or "
+                         "irregular, by its height; given are %d", kinds);
+    if (d->significant_height > 0 && (d->components < 1 || !(d->peakedness >= 1)))
+        return tobi_fail(err, TOBI_INVALID, "irregular waves have %d components and the peakedness %g; "
+                         "allowed are 1 and more of both", d->components, d->peakedness);
+    if (d->flap && !(d->hinge_height < d->depth))
+        return tobi_fail(err, TOBI_INVALID, "the hinge is %g m above the bottom, not below the still water, "
+                         "%g m", d->hinge_height, d->depth);
+    if (d->flap && d->solitary_height > 0)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "a flap makes no solitary waves; a piston does");
+    if (d->solitary_height > SOLITARY_BREAKS*d->depth)
+        return tobi_fail(err, TOBI_INVALID, "a solitary wave %g m high breaks on water %g m deep: allowed "
+                         "are up to %.4g m, 0.78 of the depth", d->solitary_height, d->depth,
+                         SOLITARY_BREAKS*d->depth);
+    if (d->height > 0) {
+        TOBI_TRY(check_height(d, "regular", d->height, d->period, err));
+        return check_second_order(d, err);
+    }
+    return d->solitary_height > 0 ? TOBI_OK
+         : check_height(d, "irregular", d->significant_height, d->peak_period, err);
+}
+
+/* --- making ------------------------------------------------------------------------------------ */
+
+/* A component of the height 2 a. */
+static wave make_wave(const tobi_wave_maker_def *d, double amplitude, double period, double phase)
+{
+    const double k = tobi_waves_number(d->gravity, d->depth, period), omega = 2*PI/period;
+    wave w = { .omega = omega, .phase = phase, .level = amplitude };
+    w.stroke = amplitude/tobi_waves_per_stroke(k, d->depth, d->flap ? d->hinge_height : INFINITY);
+    w.local = d->flap ? 0 : w.stroke*local_level(d->gravity, d->depth, omega);
+    return w;
+}
+
+/* Of the piston at 2 omega, which takes away the free second harmonic (Madsen 1971, eq. 30). */
+static double second_order(const tobi_wave_maker_def *d)
+{
+    const double k = tobi_waves_number(d->gravity, d->depth, d->period), kh = k*d->depth, s = sinh(kh);
+    return d->height*d->height/(32*d->depth)*
+           (3*cosh(kh)/(s*s*s) - 2/tobi_waves_per_stroke(k, d->depth, INFINITY));
+}
+
+static uint64_t shuffle(uint64_t *state)        /* splitmix64, Steele et al. 2014 */
+{
+    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30))*0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27))*0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+static double random_share(uint64_t *state) { return (double)(shuffle(state) >> 11)*0x1p-53; }
+
+/* Of JONSWAP, Hasselmann et al. 1973, but for its scale; peakedness 1: Pierson-Moskowitz. */
+static double density(double f, double peak, double peakedness)
+{
+    const double r = f/peak, width = r <= 1 ? 0.07 : 0.09, x = (r - 1)/width;
+    return pow(r, -5)*exp(-1.25*pow(r, -4))*pow(peakedness, exp(-0.5*x*x));
+}
+
+/* One component anywhere in each of equal parts of the band: the sum does not repeat itself. The scale is
+   that of the significant height, 4 sqrt(m0). */
+static void make_irregular(tobi_waves *w)
+{
+    const tobi_wave_maker_def *d = &w->def;
+    const double peak = 1/d->peak_period, width = (BAND_HIGH - BAND_LOW)*peak/w->count;
+    const double peakedness = d->spectrum == TOBI_JONSWAP ? d->peakedness : 1;
+    uint64_t state = (uint64_t)d->seed;
+    double m0 = 0;
+    for (int n = 0; n < w->count; n++)
+        m0 += width*density(BAND_LOW*peak + (n + 0.5)*width, peak, peakedness);
+    const double scale = d->significant_height*d->significant_height/(16*m0);
+    for (int n = 0; n < w->count; n++) {
+        const double middle = BAND_LOW*peak + (n + 0.5)*width;
+        const double f = middle + (random_share(&state) - 0.5)*width;
+        const double amplitude = sqrt(2*scale*width*density(middle, peak, peakedness));
+        w->wave[n] = make_wave(d, amplitude, 1/f, 2*PI*random_share(&state));
+    }
+}
+
+static void make_solitary(tobi_waves *w)
+{
+    const double H = w->def.solitary_height, h = w->def.depth;
+    w->kappa = sqrt(0.75*H/h)/h;
+    w->speed = sqrt(w->def.gravity*(h + H));
+    w->span = 2*(GORING_REACH + H/h)/(w->kappa*w->speed);
+}
+
+tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, tobi_error *err)
+{
+    *out = NULL;
+    TOBI_TRY(check(def, err));
+    tobi_waves *w = calloc(1, sizeof *w);
+    const int count = def->significant_height > 0 ? def->components : 1;
+    if (w) w->wave = calloc((size_t)count, sizeof *w->wave);
+    if (!w || !w->wave) {
+        free(w);
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for waves");
+    }
+    w->def = *def;
+    w->count = count;
+    if (def->solitary_height > 0) make_solitary(w);
+    else if (def->significant_height > 0) make_irregular(w);
+    else w->wave[0] = make_wave(def, 0.5*def->height, def->period, def->phase*(PI/180));
+    if (def->height > 0 && def->order == 2) w->second = second_order(def);
+    *out = w;
+    return TOBI_OK;
+}
+
+void tobi_waves_free(tobi_waves *w)
+{
+    if (!w) return;
+    free(w->wave);
+    free(w);
+}
+
+/* --- at a time --------------------------------------------------------------------------------- */
+
+/* Goring 1978: x = H/(kappa h) tanh kappa (c t - x), by Newton, from the middle of the stroke. */
+static double solitary_place(const tobi_waves *w, double t)
+{
+    const double reach = w->def.solitary_height/(w->kappa*w->def.depth);
+    double x = 0;
+    for (int n = 0; n < 60; n++) {
+        const double s = tanh(w->kappa*(w->speed*t - x)), slope = 1 + reach*w->kappa*(1 - s*s);
+        const double step = (x - reach*s)/slope;
+        x -= step;
+        if (fabs(step) <= 1e-14*reach) break;
+    }
+    return x;
+}
+
+static double rise(const tobi_waves *w, double t)
+{
+    const double since = t - w->def.start, ramp = w->def.ramp;
+    return since <= 0 ? 0 : since >= ramp ? 1 : 0.5*(1 - cos(PI*since/ramp));
+}
+
+double tobi_waves_displacement(const tobi_waves *w, double t)
+{
+    if (w->def.solitary_height > 0) {
+        const double since = fmin(fmax(t - w->def.start, 0), w->span);
+        return solitary_place(w, since - 0.5*w->span) - solitary_place(w, -0.5*w->span);
+    }
+    double sum = 0;
+    for (int n = 0; n < w->count; n++) sum += w->wave[n].stroke*sin(w->wave[n].omega*t + w->wave[n].phase);
+    if (w->second != 0) sum += w->second*sin(2*(w->wave[0].omega*t + w->wave[0].phase));
+    return rise(w, t)*sum;
+}
+
+double tobi_waves_level(const tobi_waves *w, double t)
+{
+    if (w->def.solitary_height > 0) {
+        const double at = t - w->def.start - 0.5*w->span;
+        const double c = cosh(w->kappa*(w->speed*at - solitary_place(w, at)));
+        return fabs(at) <= 0.5*w->span ? w->def.solitary_height/(c*c) : 0;
+    }
+    double sum = 0;
+    for (int n = 0; n < w->count; n++) {
+        const double angle = w->wave[n].omega*t + w->wave[n].phase;
+        sum += w->wave[n].level*cos(angle) + w->wave[n].local*sin(angle);
+    }
+    return rise(w, t)*sum;
+}

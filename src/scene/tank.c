@@ -1,0 +1,50 @@
+/* What a scene says about its tank as a whole: gravity in time, and the frame that it is seen from. */
+#include "scene/tank.h"
+#include "scene/write.h"
+#include "base/param.h"
+#include <stdlib.h>
+
+static void bind_gravity(tobi_scene_tank *t, const tobi_binder *binder, json_t *value,
+                         const tobi_place *place)
+{
+    tobi_error why = { 0 };
+    const tobi_bound bound = tobi_bind(binder, &tobi_gravity_table, value, place, NULL, &t->gravity);
+    t->changes = 1;
+    if (bound.given != bound.good || tobi_gravity_check(&t->gravity, &why) == TOBI_OK) return;
+    tobi_source_mistake(binder->source, place, "%s", why.text);
+}
+
+static void bind_frame(tobi_scene_tank *t, const tobi_binder *binder, json_t *value, const tobi_place *root)
+{
+    const tobi_place place = { root, "frame", 0 };
+    t->frame = tobi_motion_bind(binder, value, &place, t->frame_def);
+    if (!t->frame || tobi_motion_is_rigid(t->frame)) return;
+    tobi_source_mistake(binder->source, &place, "changes its shape; the motion of a frame is rigid");
+}
+
+void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)
+{
+    const tobi_place gravity = { root, "gravity_in_time", 0 };
+    json_t *changes = json_object_get(scene, "gravity_in_time"), *frame = json_object_get(scene, "frame");
+    t->gravity = tobi_default_gravity_def();
+    if (changes) bind_gravity(t, binder, changes, &gravity);
+    if (frame) bind_frame(t, binder, frame, root);
+}
+
+tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
+{
+    if (t->changes) TOBI_TRY(tobi_world_set_gravity_in_time(world, &t->gravity, err));
+    return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
+}
+
+int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
+{
+    int failed = 0;
+    if (t->changes)
+        failed |= json_object_set_new(root, "gravity_in_time",
+                                      tobi_write_def(&tobi_gravity_table, &t->gravity));
+    if (t->frame) failed |= json_object_set_new(root, "frame", tobi_motion_write(t->frame_def));
+    return failed;
+}
+
+void tobi_tank_free(tobi_scene_tank *t) { tobi_motion_free(t->frame); }
