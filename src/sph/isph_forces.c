@@ -50,7 +50,8 @@ static void add_cell(const body_points *q, int64_t k, int64_t cell, isph_point *
         const double w = weigh(q, k, x);
         sum->weight += w;
         sum->distance += w*vec3_dot(x, body_of(q)->normal[k]);
-        for (int a = 0; a < v->dimension; a++) sum->hydrostatic -= w*v->density*(v->gravity[a] + more[a])*x[a];
+        for (int a = 0; a < v->dimension; a++)
+            sum->hydrostatic -= w*v->density*(v->gravity[a] + more[a])*x[a];
     }
 }
 

@@ -1,9 +1,11 @@
 /* Gravity in time, and the frame that a tank is seen from. */
 #include "calls.h"
+#include "tobiuo/scene.h"
 #include "world/acceleration.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -213,6 +215,39 @@ static void every_method_follows(void **state)
     unlink("gravity.csv");
 }
 
+static tobi_status parse(const char *more, tobi_error *err)
+{
+    char text[1200];
+    tobi_scene *scene;
+    snprintf(text, sizeof text,
+             "{ \"dimension\": 2, \"domain\": { \"min\": [0, 0], \"max\": [1, 1] }, \"spacing\": 0.1,\n"
+             "\"end_time\": 1, \"fluids\": [ { \"name\": \"w\", \"fill\": [ { \"box\": { \"min\": [0, 0],\n"
+             "\"max\": [1, 0.5] } } ] } ],\n%s }", more);
+    const tobi_status status = tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err);
+    if (status != TOBI_OK) return status;
+    char *resolved = tobi_scene_resolved(scene);
+    tobi_world *w = NULL;
+    if (!strstr(resolved, "frame") || !strstr(resolved, "gravity_in_time")) fail_msg("%s", resolved);
+    OK(tobi_scene_build(scene, &w, &err));
+    tobi_world_destroy(w);
+    free(resolved);
+    tobi_scene_free(scene);
+    return TOBI_OK;
+}
+
+static void scenes_say_it(void **state)
+{
+    (void)state;
+    OK(parse("\"frame\": [ { \"yaw\": { \"amplitude\": 2, \"period\": 1 } } ],\n"
+             "\"gravity_in_time\": { \"amplitude\": [1, 0], \"period\": 2 }", &err));
+    REFUSED(parse("\"gravity_in_time\": { \"amplitude\": [1, 0] }", &err), TOBI_INVALID,
+            "gravity in time has an amplitude without a period");
+    REFUSED(parse("\"gravity_in_time\": { \"period\": -1 }", &err), TOBI_INVALID, "s.json:4");
+    write_file("bend.lua", "function deform(x, y, z, t) return x, y*(1 + t), z end");
+    REFUSED(parse("\"frame\": { \"script\": \"bend.lua\" }", &err), TOBI_INVALID, "changes its shape");
+    unlink("bend.lua");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -222,6 +257,7 @@ int main(void)
         cmocka_unit_test(bodies_feel_the_frame),
         cmocka_unit_test(bad_frames_are_refused),
         cmocka_unit_test(every_method_follows),
+        cmocka_unit_test(scenes_say_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

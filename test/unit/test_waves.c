@@ -1,0 +1,194 @@
+/* Wave makers: theory by numbers that stand in books, and what is refused. */
+#include "calls.h"
+#include "rigid/waves.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+static void close_to(double value, double expected, double within)
+{
+    if (!(fabs(value - expected) <= within))
+        fail_msg("%.12g is not %.12g within %g", value, expected, within);
+}
+
+static tobi_wave_maker_def make_def(void)
+{
+    return (tobi_wave_maker_def){ .direction = { 1, 0, 0 }, .up = { 0, 1, 0 }, .depth = 1, .gravity = 9.81,
+                                  .order = 1, .peakedness = 3.3, .seed = 1, .components = 100 };
+}
+
+static void lengths_follow_the_dispersion_relation(void **state)
+{
+    (void)state;
+    for (double period = 0.3; period < 60; period *= 1.3) {
+        const double k = tobi_waves_number(9.81, 1, period), omega = 2*PI/period;
+        close_to(9.81*k*tanh(k)/(omega*omega), 1, 1e-12);
+    }
+    close_to(2*PI/tobi_waves_number(9.81, 1, 1), 9.81/(2*PI), 0.01);       /* deep: g T^2/2 pi */
+    close_to(2*PI/tobi_waves_number(9.81, 1, 50)/50, sqrt(9.81), 0.01);    /* shallow: sqrt(g h) */
+}
+
+/* Dean and Dalrymple, Water Wave Mechanics for Engineers and Scientists, eq. 6.25, 6.26, and their limits. */
+static void heights_per_stroke_are_biesels(void **state)
+{
+    (void)state;
+    close_to(tobi_waves_per_stroke(1, 1, INFINITY), 0.98178, 1e-4);
+    close_to(tobi_waves_per_stroke(1, 1, 0), 0.52809, 1e-4);
+    close_to(tobi_waves_per_stroke(0.01, 1, INFINITY), 0.01, 1e-5);
+    close_to(tobi_waves_per_stroke(0.01, 1, 0), 0.005, 1e-5);
+    close_to(tobi_waves_per_stroke(30, 1, INFINITY), 2, 1e-9);
+    close_to(tobi_waves_per_stroke(1, 1, -1e7), 0.98178, 1e-4);            /* a far hinge is a piston */
+    assert_true(tobi_waves_per_stroke(1, 1, 0.5) < tobi_waves_per_stroke(1, 1, 0));
+}
+
+static void regular_waves_have_their_stroke(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    tobi_waves *w;
+    (void)state;
+    d.height = 0.1;
+    d.period = 2;
+    const double k = tobi_waves_number(9.81, 1, 2), half = 0.05/tobi_waves_per_stroke(k, 1, INFINITY);
+    OK(tobi_waves_create(&d, &w, &err));
+    close_to(tobi_waves_displacement(w, 0.5), half, 1e-12);
+    close_to(tobi_waves_level(w, 1e-9), 0.05, 1e-8);
+    assert_true(tobi_waves_level(w, 0.5) > 0);         /* local waves; long ones have next to none */
+    tobi_waves_free(w);
+    d.order = 2;
+    OK(tobi_waves_create(&d, &w, &err));
+    const double s = sinh(k), more = 0.01/32*(3*cosh(k)/(s*s*s) - 2/tobi_waves_per_stroke(k, 1, INFINITY));
+    close_to(tobi_waves_displacement(w, 0.25), half*sin(PI/4) + more, 1e-12);
+    tobi_waves_free(w);
+    d.order = 1;
+    d.ramp = 2;
+    d.start = 1;
+    OK(tobi_waves_create(&d, &w, &err));
+    assert_true(tobi_waves_displacement(w, 0.9) == 0);
+    close_to(tobi_waves_displacement(w, 2.5), half*0.5*(1 - cos(0.75*PI))*sin(2.5*PI), 1e-12);
+    tobi_waves_free(w);
+}
+
+/* Goring: a stroke of sqrt(16 H h/3) in all, and the speed of the water under the crest in the middle. */
+static void solitary_waves_have_gorings_stroke(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    tobi_waves *w;
+    (void)state;
+    d.solitary_height = 0.2;
+    OK(tobi_waves_create(&d, &w, &err));
+    close_to(tobi_waves_displacement(w, 100), sqrt(16*0.2/3), 2e-3*sqrt(16*0.2/3));
+    assert_true(tobi_waves_displacement(w, 0) == 0);
+    const double kappa = sqrt(0.75*0.2), c = sqrt(9.81*1.2), middle = (3.8 + 0.2)/(kappa*c), dt = 1e-4;
+    const double way = tobi_waves_displacement(w, middle + dt) - tobi_waves_displacement(w, middle - dt);
+    close_to(way/(2*dt), c*0.2/1.2, 1e-6);
+    close_to(tobi_waves_level(w, middle), 0.2, 1e-9);
+    assert_true(tobi_waves_level(w, 100) == 0);
+    tobi_waves_free(w);
+}
+
+static void irregular_waves_have_their_height(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    tobi_waves *w, *other;
+    (void)state;
+    d.flap = 1;
+    d.significant_height = 0.1;
+    d.peak_period = 2;
+    for (int spectrum = TOBI_JONSWAP; spectrum <= TOBI_PIERSON_MOSKOWITZ; spectrum++) {
+        double sum = 0;
+        d.spectrum = spectrum;
+        d.seed = 1;
+        OK(tobi_waves_create(&d, &w, &err));
+        for (int n = 0; n < 40000; n++) sum += pow(tobi_waves_level(w, 0.11*n), 2)/40000;
+        close_to(4*sqrt(sum), 0.1, 0.002);
+        OK(tobi_waves_create(&d, &other, &err));
+        assert_true(tobi_waves_displacement(w, 7) == tobi_waves_displacement(other, 7));
+        tobi_waves_free(other);
+        d.seed = 2;
+        OK(tobi_waves_create(&d, &other, &err));
+        assert_true(tobi_waves_displacement(w, 7) != tobi_waves_displacement(other, 7));
+        tobi_waves_free(other);
+        tobi_waves_free(w);
+    }
+}
+
+/* The top of a flap goes where the waves go, by the stroke at the still water. */
+static void flaps_turn_about_their_hinge(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    tobi_motion *m;
+    const double rest[1][3] = { { 0.2, 1.3, 0 } };
+    double at[1][3];
+    (void)state;
+    d.flap = 1;
+    d.height = 0.1;
+    d.period = 2;
+    d.hinge[0] = 0.2;
+    d.hinge[1] = 0.3;
+    OK(tobi_motion_wave_maker(&d, &m, &err));
+    OK(tobi_motion_positions(m, 0.5, 1, rest, at, &err));
+    const double half = 0.05/tobi_waves_per_stroke(tobi_waves_number(9.81, 1, 2), 1, 0);
+    close_to(tan(asin(at[0][0] - 0.2)), half, 1e-12);
+    assert_true(at[0][0] > 0.2 && tobi_motion_is_rigid(m));
+    tobi_motion_free(m);
+}
+
+static tobi_status try(const tobi_wave_maker_def *d, tobi_error *err)
+{
+    tobi_motion *m;
+    const tobi_status status = tobi_motion_wave_maker(d, &m, err);
+    if (status == TOBI_OK) tobi_motion_free(m);
+    return status;
+}
+
+static void what_cannot_be_is_refused(void **state)
+{
+    tobi_wave_maker_def d = make_def();
+    (void)state;
+    REFUSED(try(&d, &err), TOBI_INVALID, "makes one kind of waves: regular, solitary or irregular");
+    d.height = 0.1;
+    REFUSED(try(&d, &err), TOBI_INVALID, "regular waves of a height of 0.1 m have no period");
+    d.period = 1;
+    d.height = 0.3;
+    REFUSED(try(&d, &err), TOBI_INVALID, "break on water 1 m deep: allowed are up to 0.2214 m");
+    d.order = 2;
+    d.period = 9;
+    REFUSED(try(&d, &err), TOBI_INVALID, "are too long for order 2 on 1 m of water");
+    d.flap = 1;
+    REFUSED(try(&d, &err), TOBI_UNSUPPORTED, "order 2 is for pistons");
+    d.hinge_height = 1.5;
+    REFUSED(try(&d, &err), TOBI_INVALID, "the hinge is 1.5 m above the bottom");
+    d = make_def();
+    d.solitary_height = 0.8;
+    REFUSED(try(&d, &err), TOBI_INVALID, "a solitary wave 0.8 m high breaks on water 1 m deep");
+    d.solitary_height = 0.2;
+    d.flap = 1;
+    REFUSED(try(&d, &err), TOBI_UNSUPPORTED, "a flap makes no solitary waves");
+    d.up[0] = 1;
+    d.up[1] = 0;
+    REFUSED(try(&d, &err), TOBI_INVALID, "direction, across up, must not be zero");
+    d = make_def();
+    d.significant_height = 0.1;
+    d.peak_period = 2;
+    d.components = 0;
+    REFUSED(try(&d, &err), TOBI_INVALID, "irregular waves have 0 components");
+    d.depth = 0;
+    REFUSED(try(&d, &err), TOBI_INVALID, "needs the depth of the water and gravity");
+    d.depth = NAN;
+    REFUSED(try(&d, &err), TOBI_INVALID, "every number of a wave maker must be finite");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lengths_follow_the_dispersion_relation),
+        cmocka_unit_test(heights_per_stroke_are_biesels),
+        cmocka_unit_test(regular_waves_have_their_stroke),
+        cmocka_unit_test(solitary_waves_have_gorings_stroke),
+        cmocka_unit_test(irregular_waves_have_their_height),
+        cmocka_unit_test(flaps_turn_about_their_hinge),
+        cmocka_unit_test(what_cannot_be_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
