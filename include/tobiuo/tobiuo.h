@@ -65,8 +65,11 @@ TOBI_API void tobi_world_destroy(tobi_world *world);
    at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
-/* Adds a solid of the material point method with the regions it fills. TOBI_UNSUPPORTED for other
-   methods; they take fluids, and this one takes no fluids. */
+/* Parameters of the material point method for solids beside the fluids of another method; before the first
+   solid. def NULL: the defaults. */
+TOBI_API tobi_status tobi_world_use_solids(tobi_world *world, const tobi_mlsmpm_def *def, tobi_error *err);
+/* Adds a solid of the material point method with the regions it fills. Beside fluids of another method it
+   presses them and they press it; the fluid is cut out where solids start. */
 TOBI_API tobi_status tobi_world_add_solid(tobi_world *world, const tobi_solid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
 /* Adds a body. Its mesh is closed and oriented outwards if the file leaves no doubt how; what was

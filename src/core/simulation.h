@@ -5,6 +5,7 @@
 #include "core/cells.h"
 #include "core/opening.h"
 #include "core/plane.h"
+#include "core/soft.h"
 #include "tobiuo/tobiuo.h"
 
 enum { TOBI_STAGE_LIMIT = 32 };
@@ -34,6 +35,7 @@ typedef struct tobi_simulation {
     int64_t next_id;                /* ids given so far to particles of all systems and bodies are below */
     double wall_speed;              /* m/s, fastest side of the domain                       */
     double body_speed;              /* m/s, fastest body point or side of the last step      */
+    tobi_soft soft;                 /* solids that a liquid sees                             */
     tobi_step_info info;            /* of the last step, of all systems                      */
     tobi_stages stages;
     tobi_stop_fn stop;              /* of the caller, NULL = none                            */

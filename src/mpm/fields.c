@@ -107,6 +107,17 @@ double mpm_kinetic(const mpm_view *v, int64_t i)
     return 0.5*v->strain[i].c[2].w*square;
 }
 
+double mpm_volume_ratio(const mpm_view *v, int64_t i)
+{
+    const int model = v->material[v->solid[i]].model;
+    float gradient[9], e[9], other[3], unused[3];
+    mpm_load_columns(v->affine + i, gradient, unused);
+    mpm_load_columns(v->strain + i, e, other);
+    mpm_deform(v->strain_dt, gradient, e);
+    const double ratio = 1 + (double)mpm_dilation(e);
+    return model == TOBI_SNOW ? ratio*(1 + other[1]) : model == TOBI_SAND ? ratio*exp(other[1]) : ratio;
+}
+
 /* Power of a symmetric stress along a velocity gradient. */
 static double stress_power(const float tau[6], const float c[9])
 {

@@ -14,6 +14,8 @@ typedef struct mpm_sample {
 
 /* v->strain_dt: the gradients that strain lacks, s. */
 mpm_sample mpm_sample_particle(const mpm_view *v, int64_t i);
+/* Its volume over that at the start. */
+double mpm_volume_ratio(const mpm_view *v, int64_t i);
 /* Kinetic energy of one particle, J, that of the affine motion of APIC included. */
 double mpm_kinetic(const mpm_view *v, int64_t i);
 /* totals[0]: what plastic flow and viscosity take from the energy when the gradient that strain lacks is put

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "mpm/damage.h"
 #include "mpm/energy.h"
+#include "mpm/liquid.h"
 #include "mpm/fields.h"
 #include "mpm/material.h"
 #include "mpm/nodes.h"
@@ -372,6 +373,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     use_dt(s, m);
     if (s->particles.count > 0 && m->memory.age < 0) mpm_energy_start(s, m);
+    mpm_liquid_kick(s, m);
     if (m->view.held != ALL_SIDES(s->box.dimension) && is_stale(m)) remove_leavers(s, m);
     return s->particles.count > 0 ? sort_particles(s, m, &clock, err) : TOBI_OK;
 }
@@ -488,6 +490,7 @@ static void free_state(void *state)
     mpm_grid_free(&m->grid);
     mpm_touch_free(&m->touch);
     mpm_cut_free(&m->cut);
+    tobi_array_free(m->size);
     free(m);
 }
 
@@ -511,6 +514,7 @@ const tobi_method tobi_mlsmpm = {
     .read = read_field,
     .accept = accept_solid,
     .stable_dt = limit_dt,
+    .points = mpm_liquid_points,
     .nodes = find_nodes,
     .measure = mpm_energy_report,
     .memory = list_memory,

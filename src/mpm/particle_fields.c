@@ -14,10 +14,11 @@ const tobi_output mpm_outputs[] = {
 
 unsigned mpm_needs(const tobi_system *s, int full)
 {
+    unsigned needs = s->sim->soft.solids == s ? MPM_NEED_LIQUID : 0;
     (void)full;
     for (int k = 0; k < s->sim->body_count; k++)
-        if (s->sim->bodies[k].blade) return MPM_NEED_BLADES;
-    return 0;
+        if (s->sim->bodies[k].blade) needs |= MPM_NEED_BLADES;
+    return needs;
 }
 
 void mpm_place(tobi_system *s, int64_t i, const tobi_start *start)

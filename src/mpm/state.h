@@ -38,6 +38,8 @@ typedef struct mlsmpm {
     double viscous_dt;                 /* s                                                        */
     double cell;                       /* m                                                        */
     mpm_memory memory;
+    tobi_soft_size *size;              /* [size_room] of the particles, for a liquid               */
+    int64_t size_room;
     int built;                         /* blocks fit the particles                                 */
     int fresh;                         /* 1: they were built in this step                          */
     int blades;                        /* 1: nodes may have two velocities                         */

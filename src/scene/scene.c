@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The method of solids. */
+#define SOLIDS "mlsmpm"
+
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place, const char *owner)
 {
     int limit = tobi_part_find(owner, place->key).most;
@@ -204,6 +207,10 @@ static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, con
         tobi_bound bound = { 0 };
         if (value) bound = tobi_bind(binder, table, value, &place, NULL, def);
         if (table != scene->method) {
+            if (strcmp(name, SOLIDS) == 0) {
+                memcpy(&scene->solids_def, def, sizeof scene->solids_def);
+                scene->solids_bound = bound;
+            }
             free(def);
             continue;
         }
@@ -431,6 +438,12 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
     return tobi_world_add_note(world, text, err);
 }
 
+/* Solids beside the fluids of the scene's method. */
+static int has_both(const tobi_scene *scene)
+{
+    return scene->solid_count > 0 && scene->method && strcmp(scene->method->name, SOLIDS) != 0;
+}
+
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {
     tobi_world *world;
@@ -439,6 +452,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     TOBI_NEED(scene, "scene");
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
+    if (has_both(scene)) status = tobi_world_use_solids(world, &scene->solids_def, err);
     for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
         status = add_body(scene, world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
@@ -551,6 +565,9 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
            *probes = json_array(), *references = json_array();
     int failed = json_object_set_new(root, scene->method->name, method);
+    if (has_both(scene))
+        failed |= json_object_set_new(root, SOLIDS, tobi_write_def(tobi_method_table(SOLIDS),
+                                                                   &scene->solids_def));
     for (int i = 0; i < scene->fluid_count; i++)
         failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->solid_count; i++)

@@ -309,8 +309,8 @@ static void require_matter(json_t *schema)
                                   none, "probes", none, "anyOf", "required", "solids", "properties", "solids",
                                   some, "required", "bodies", "properties", "bodies", some));
     json_object_set_new(schema, "else",
-                        json_pack("{s:[s],s:{s:O,s:O,s:O}}", "required", "fluids", "properties", "fluids",
-                                  some, "solids", none, "planes", none));
+                        json_pack("{s:[s],s:{s:O,s:O}}", "required", "fluids", "properties", "fluids", some,
+                                  "planes", none));
     json_decref(none);
     json_decref(some);
 }

@@ -66,7 +66,7 @@ static int is_there(const tobi_scene *scene, const void *def, reader who)
     tobi_method_describe(scene->world.method, &method);
     switch (who) {
     case SPH: return !method.solids;
-    case SOLIDS: return method.solids;
+    case SOLIDS: return method.solids || scene->solid_count > 0;
     case FORCES: return body->dynamics != TOBI_PRESCRIBED;
     case BLADE: return body->blade;
     case RISE: return !tobi_solid_uses(solid->model, "friction_rise") || solid->friction_rise > 0;

@@ -101,6 +101,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     dfsph *m = s->state = calloc(1, sizeof *m);
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the dfsph state");
     m->def = *(const tobi_dfsph_def *)s->def;
+    m->def.still_water &= !s->sim->soft.solids;      /* the solids' points know nothing of it */
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
     if (sph_has_openings(s)) m->def.still_water = 0;       /* the level of the start is none for long */
     return TOBI_OK;
@@ -192,6 +193,7 @@ static double apply(void *user)
     launch(c->s, c->m, c->m->kernel->sph_pressure_accel, NULL);
     launch(c->s, c->m, c->m->kernel->sph_product, c->t);
     if (c->q->coupled) tobi_couple_product(c->s, c->t);
+    if (c->q->coupled) sph_soft_product(c->s, c->t);
     center(c->s, c->m, c->q, c->m->kernel->sph_center_product, c->t[1], c->t);
     return c->t[0];
 }
@@ -309,6 +311,7 @@ static void remove_divergence(tobi_system *s, dfsph *m, double *clock)
                .coupled = 1,
                .constant_free = m->memory.vessel == SPH_VESSEL_FULL};
     tobi_couple_product(s, NULL);
+    sph_soft_product(s, NULL);
     launch(s, m, k->sph_warm_residual, t);
     set_grid(s, m);
     solve_pressure(s, m, t, &q);
@@ -414,6 +417,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         m->memory.low = sph_reference_low(s);
         apply_forces(s, m, clock);
         tobi_couple_begin(s);
+        sph_soft_begin(s);
         remove_divergence(s, m, clock);
         restore_velocities(s, kept);
         set_reference(s, m);
@@ -471,6 +475,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     tobi_couple_begin(s);
+    sph_soft_begin(s);
     remove_divergence(s, m, &clock);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     correct_density(s, m, &clock);
@@ -518,6 +523,7 @@ static void free_state(void *state)
 {
     dfsph *m = state;
     if (m) tobi_boundary_links_free(&m->common.links);
+    if (m) sph_soft_free(&m->common.soft);
     if (m) tobi_multigrid_free(&m->grid);
     if (m) sph_undo_free(&m->undo);
     free(m);

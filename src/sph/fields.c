@@ -39,4 +39,7 @@ void sph_read(const tobi_system *s, const char *name, int64_t i, double *out)
     }
 }
 
-int64_t sph_bytes(const tobi_system *s) { return tobi_boundary_links_bytes(&sph_of(s)->links); }
+int64_t sph_bytes(const tobi_system *s)
+{
+    return tobi_boundary_links_bytes(&sph_of(s)->links) + sph_soft_bytes(&sph_of(s)->soft);
+}

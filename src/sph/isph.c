@@ -72,6 +72,15 @@ static double share_of_shift(const tobi_system *s, const isph *m)
     return fmax(SHIFT_AT_REST, fmin(speed*s->dt/(FULL_SHIFT_STEP*s->smoothing.spacing), 1));
 }
 
+static void bind_soft(const tobi_system *s, isph_view *v)
+{
+    const sph_soft *q = &sph_of(s)->soft;
+    v->soft_last = s->sim->soft.solids ? q->last : NULL;
+    v->soft = q->link;
+    v->soft_velocity = q->velocity;
+    v->soft_change = (const double (*)[3])q->change;
+}
+
 static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_error *err)
 {
     TOBI_TRY(sph_find_neighbors(s, clock, err));
@@ -86,6 +95,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     TOBI_TRY(isph_solver_bind(&m->solver, s, err));
     TOBI_TRY(isph_bodies_find_mirrors(&m->solver, s, err));
     TOBI_TRY(isph_forces_find_coupling(&m->solver, s, err));
+    bind_soft(s, &m->solver.view);
     sph_measure_density(s, &m->view, m->kernel, 0, clock);
     return TOBI_OK;
 }
@@ -167,12 +177,14 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     isph_forces_predict(&m->solver, s);
+    sph_soft_predict(s);
     const tobi_linear_report report = isph_solver_run(&m->solver, s);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));
     m->memory.started = 1;
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
     isph_forces_correct(&m->solver, s);
+    sph_soft_correct(s, m->solver.view.solution);
     launch(s, m, m->kernel->isph_projection, t);
     sph_openings_hold(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
@@ -194,6 +206,7 @@ static void measure_forces(tobi_system *s, isph *m, double *clock)
     for (int a = 0; a < 3; a++) s->info.wall_force[a] = m->side_force[a] + friction[a];
     tobi_boundary_load(s);
     isph_forces_load(&m->solver, s);
+    sph_soft_load(s);
     tobi_couple_correct(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
@@ -250,6 +263,7 @@ void isph_free_state(void *state)
 {
     isph *m = state;
     if (m) tobi_boundary_links_free(&m->common.links);
+    if (m) sph_soft_free(&m->common.soft);
     if (m) isph_solver_free(&m->solver);
     if (m) sph_undo_free(&m->undo);
     free(m);

@@ -2,6 +2,7 @@
    double. */
 #pragma once
 #include "sph/isph_images.k.h"
+#include "sph/isph_soft.k.h"
 
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
 #define ISPH_GATE_BEGIN 0.05
@@ -75,8 +76,23 @@ typedef struct isph_geometry_acc { lane xx, yy, zz, xy, yz, zx, w, gx, gy, gz, b
 
 TOBI_FN void isph_geometry_start(const isph_view *v, int64_t i, isph_geometry_acc *a)
 {
-    (void)v; (void)i;
+    double s[10] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     a->xx = a->yy = a->zz = a->xy = a->yz = a->zx = a->w = a->gx = a->gy = a->gz = a->bodies = lane_set(0);
+    if (isph_soft_last(v, i) < 0) return;
+    ISPH_SOFT_LINKS(v, i, k) {
+        const sph_soft_link *l = &v->soft[k];
+        const double g[3] = {l->gradient[0], l->gradient[1], l->gradient[2]}, f = 1/(v->slope*l->rate);
+        for (int c = 0; c < 3; c++) {
+            s[c] += f*g[c]*g[c];
+            s[3 + c] += f*g[c]*g[(c + 1)%3];
+            s[6 + c] -= g[c]/v->slope;
+        }
+        s[9] += l->share/v->weight;
+    }
+    a->xx = isph_first(s[0]); a->yy = isph_first(s[1]); a->zz = isph_first(s[2]);
+    a->xy = isph_first(s[3]); a->yz = isph_first(s[4]); a->zx = isph_first(s[5]);
+    a->gx = isph_first(s[6]); a->gy = isph_first(s[7]); a->gz = isph_first(s[8]);
+    a->w = isph_first(s[9]);
 }
 
 TOBI_FN void isph_geometry_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
@@ -222,6 +238,25 @@ typedef struct isph_rows_acc {
     float bodies;                    /* of self, by bodies */
 } isph_rows_acc;
 
+/* Points of soft solids: their pressure is that of i and the difference, which is known. */
+TOBI_FN void isph_rows_soft(const isph_view *v, int64_t i, isph_rows_acc *a)
+{
+    double n[3], along[3], sum = 0, difference = 0, divergence = 0;
+    isph_soft_normal(v, i, n);
+    isph_apply(&v->inverse[i], n, along);
+    ISPH_SOFT_LINKS(v, i, k) {
+        const sph_soft_link *l = &v->soft[k];
+        const double entry = 2*(double)v->scale[i]*l->rate;
+        sum += entry;
+        difference += entry*isph_soft_difference(v, l, n);
+        divergence -= isph_soft_speed(v, i, l, n)/v->slope*
+                      (along[0]*l->gradient[0] + along[1]*l->gradient[1] + along[2]*l->gradient[2]);
+    }
+    a->sum = a->self = isph_first(sum);
+    a->difference = isph_first(difference);
+    a->divergence = isph_first(divergence);
+}
+
 TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
 {
     const tobi_float4 u = v->velocity[i];
@@ -232,6 +267,7 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->scale = lane_set(v->own_scale ? 2*v->scale[i] : v->scale[i]);
     a->sum = a->self = a->difference = a->divergence = lane_set(0);
     a->bodies = 0;
+    if (isph_soft_last(v, i) >= 0) isph_rows_soft(v, i, a);
 }
 
 /* Into the entries of the list: images add to those of their pairs. */
@@ -357,6 +393,13 @@ TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projectio
 {
     a->p = lane_set(v->pressure[i]);
     a->x = a->y = a->z = a->fx = a->fy = a->fz = lane_set(0);
+    if (isph_soft_last(v, i) < 0) return;
+    double n[3], s[3] = {0, 0, 0};
+    isph_soft_normal(v, i, n);
+    ISPH_SOFT_LINKS(v, i, k)
+        for (int c = 0; c < 3; c++)
+            s[c] -= isph_soft_difference(v, &v->soft[k], n)/v->slope*v->soft[k].gradient[c];
+    a->x = isph_first(s[0]); a->y = isph_first(s[1]); a->z = isph_first(s[2]);
 }
 
 TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
@@ -394,12 +437,33 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
    it. totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
 typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9]; } isph_shift_acc;
 
+/* Points of soft solids push by their core, and mirror velocities. */
+TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
+{
+    double n[3], core[3] = {0, 0, 0}, slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    isph_soft_normal(v, i, n);
+    ISPH_SOFT_LINKS(v, i, k) {
+        const sph_soft_link *l = &v->soft[k];
+        const double speed = isph_soft_speed(v, i, l, n)/v->slope;
+        double r2 = 0;
+        for (int c = 0; c < 3; c++) r2 += (double)l->gradient[c]*l->gradient[c]/((double)l->rate*l->rate);
+        const double r = sqrt(r2), push = ISPH_PUSH*isph_larger(ISPH_CORE*v->spacing - r, 0)/(r + 1e-20);
+        for (int b = 0; b < 3; b++) {
+            core[b] -= push*l->gradient[b]/l->rate;
+            for (int c = 0; c < 3; c++) slope[3*b + c] -= speed*n[b]*l->gradient[c];
+        }
+    }
+    for (int b = 0; b < 3; b++) a->core[b] = isph_first(core[b]);
+    for (int k = 0; k < 9; k++) a->slope[k] = isph_first(slope[k]);
+}
+
 TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
 {
     const tobi_float4 u = v->velocity[i];
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
     for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = lane_set(0);
     for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
+    if (isph_soft_last(v, i) >= 0) isph_shift_soft(v, i, a);
 }
 
 TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,

@@ -6,6 +6,7 @@
 #include "sph/isph_forces.h"
 #include "sph/isph_surface.h"
 #include "sph/isph_sweeps.h"
+#include "sph/soft.h"
 #include <math.h>
 #include <string.h>
 
@@ -162,6 +163,7 @@ static void apply(void *user, double *y, const double *x)
 {
     multiply(user, y, x);
     isph_forces_add_answer(user, y, x);
+    sph_soft_add_answer(((isph_solver *)user)->system, y, x);
 }
 
 static int ask_stop(void *user)

@@ -5,6 +5,7 @@
 #include "core/smoothing.k.h"
 #include "exec/pairs.h"
 #include "sph/couple.k.h"
+#include "sph/soft.k.h"
 
 /* Symmetric. */
 typedef struct isph_tensor { float xx, yy, zz, xy, yz, zx; } isph_tensor;
@@ -70,6 +71,10 @@ typedef struct isph_view {
     const tobi_boundary_link *link;  /* which particle sees which body; mirror and coupling go with it */
     const isph_coupling *coupling;
     const double (*answer)[6];       /* of each body: accelerations, m/s2 and rad/s2                */
+    const int32_t *soft_last;        /* last link of each particle to a soft solid; NULL: no solids */
+    const sph_soft_link *soft;
+    const tobi_float4 *soft_velocity;      /* m/s, of each point before the step                    */
+    const double (*soft_change)[3];  /* m/s, of each point in this step                             */
     float *body_share;               /* 1: share of the kernel in and behind bodies                 */
     /* the method's own: geometry, eq. (2) to (5) */
     isph_tensor *inverse;            /* 1: B                                                        */

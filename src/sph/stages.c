@@ -164,6 +164,8 @@ tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *
         tobi_boundary_mark_near_body(s);
         tobi_boundary_add_gradients(s);
     }
+    TOBI_TRY(sph_soft_find(s, err));
+    sph_soft_add_gradients(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     return TOBI_OK;
 }
@@ -243,6 +245,7 @@ void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double 
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
+    sph_soft_add_forces(s);
     apply_tension(s, v, k);
     sph_openings_hold(s);
     tobi_stage_end(&s->sim->stages, "forces", clock);
@@ -255,6 +258,7 @@ void sph_measure_forces(tobi_system *s, sph_view *v, const sph_kernels *k, doubl
     memcpy(s->info.wall_force, t, sizeof s->info.wall_force);
     sph_of(s)->reference_volume = t[3]*s->smoothing.volume;
     if (s->sim->body_count > 0) tobi_boundary_load(s);
+    sph_soft_load(s);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
 }
 
@@ -299,6 +303,7 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     launch(s, v, k->sph_laplacian, NULL);
     launch(s, v, k->sph_kick, NULL);
     if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
+    sph_soft_add_forces(s);
     apply_tension(s, v, k);
     s->dt = step;
     v->dt = dt;

@@ -3,10 +3,12 @@
 #include "core/system.h"
 #include "sph/fields.h"
 #include "sph/boundary_links.h"
+#include "sph/soft.h"
 #include "sph/reference_pressure.h"
 
 typedef struct sph_state {
     tobi_boundary_links links;         /* particles that see a body                                        */
+    sph_soft soft;                  /* particles that see soft solids                                   */
     tobi_reference reference;       /* what still water holds of gravity                                */
     double reference_volume;        /* m3 of fluid times the share of gravity so held                   */
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */

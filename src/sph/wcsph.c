@@ -27,6 +27,7 @@ typedef struct wcsph {
     /* survives a restart; vessel: SPH_VESSEL_*; low, level: depths of the surface and of still water, m */
     struct { double speed, vessel, low, level; } memory;
     double sound;                                 /* m/s                                              */
+    int rests;                                    /* 1: water begins at rest                          */
     double compliance;                            /* m2/kg, of the bodies: tobi_couple_compliance     */
 } wcsph;
 
@@ -60,9 +61,11 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     if (!m) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the wcsph state");
     m->def = *(const tobi_wcsph_def *)s->def;
     m->kernel = sph_kernels_for(s->sim->exec.isa, m->def.kernel);
+    m->rests = m->def.still_water;
+    m->def.still_water &= !s->sim->soft.solids;   /* the solids' points know nothing of it */
     m->sound = find_sound(s, &m->def);
-    m->compliance = tobi_couple_compliance(s);
-    if (sph_has_openings(s)) m->def.still_water = 0;       /* the level of the start is none for long */
+    m->compliance = fmax(tobi_couple_compliance(s), sph_soft_compliance(s));
+    if (sph_has_openings(s)) m->def.still_water = m->rests = 0;   /* the level of the start is none for long */
     return TOBI_OK;
 }
 
@@ -114,13 +117,15 @@ static double find_surface(tobi_system *s)
     return sph_reference_low(s);
 }
 
-/* Once, in a vessel just looked into. */
+/* Once, in a vessel just looked into. Beside soft solids the pressure of rest is all in the particles. */
 static void start_at_rest(tobi_system *s, wcsph *m)
 {
-    if (m->def.still_water && sph_reference_begins(s)) m->memory.level = m->memory.low = find_surface(s);
+    if (m->rests && sph_reference_begins(s)) m->memory.level = m->memory.low = find_surface(s);
     bind_view(s, m);
     m->view.reference_before = sph_of(s)->reference;
+    if (!m->def.still_water) m->view.reference.cover = INFINITY;
     launch(s, m, m->kernel->sph_rest, NULL);
+    if (!m->def.still_water) m->memory.level = 0;
 }
 
 static tobi_status find_neighbors(tobi_system *s, wcsph *m, double *clock, tobi_error *err)
@@ -210,6 +215,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     (void)err;
     tobi_couple_begin(s);
+    sph_soft_begin(s);
     apply_pressure(s, s->state, &clock);
     return TOBI_OK;
 }
@@ -252,6 +258,7 @@ static void follow_gravity(tobi_system *s, int loaded)
 static void free_state(void *state)
 {
     if (state) tobi_boundary_links_free(&((wcsph *)state)->common.links);
+    if (state) sph_soft_free(&((wcsph *)state)->common.soft);
     free(state);
 }
 

@@ -1,6 +1,7 @@
 /* Points of a lattice, or scattered by a seed, inside a region, less those in bodies or behind planes.
    Drawback: a lattice does not follow round walls; the first step relaxes it. */
 #include "world/fill.h"
+#include "world/overlap.h"
 #include "base/error.h"
 #include "world/openings.h"
 #include "geom/seed.h"
@@ -233,6 +234,7 @@ static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, do
         if (out || tobi_openings_cover(s->sim, x)) continue;
         if (inside_body(s, r, x)) r->covered++;
         else if (behind_plane(s, x)) r->behind++;
+        else if (tobi_overlap_meets(s->sim->soft.start, x)) r->soaked++;
         else add_particle(s, r, x);
     }
     r->placed = s->particles.count - first;
@@ -245,7 +247,7 @@ tobi_status tobi_region_fill(tobi_system *s, tobi_region *r, tobi_error *err)
 {
     const tobi_mesh *m = &r->shape;
     tobi_bvh *tree = NULL;
-    r->outside = r->covered = r->behind = r->cut = 0;
+    r->outside = r->covered = r->behind = r->soaked = r->cut = 0;
     r->blade = 0;
     if (m->triangle_count)
         TOBI_TRY(tobi_bvh_build(m->vertex_count, (const double (*)[3])m->vertices, m->triangle_count,

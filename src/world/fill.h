@@ -23,6 +23,7 @@ typedef struct tobi_region {
     double flow_speed;             /* m/s, the most that it added */
     int64_t placed;                /* particles */
     int64_t outside, covered, behind;   /* points left out beyond the domain, inside bodies, behind planes */
+    int64_t soaked;                /* the same, of a fluid, inside solids */
     int blade;                     /* 1 + number of a blade that stands in it, 0 = none */
     int64_t cut;                   /* points in that blade, or nearer than a quarter spacing */
 } tobi_region;

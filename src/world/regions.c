@@ -161,6 +161,16 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     return TOBI_OK;
 }
 
+tobi_status tobi_world_use_solids(tobi_world *w, const tobi_mlsmpm_def *def, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more solids");
+    if (tobi_world_solids(w))
+        return tobi_fail(err, TOBI_INVALID, "the method of the solids is chosen already; its parameters come "
+                         "before the first solid");
+    return tobi_world_add_system(w, tobi_method_find("mlsmpm"), def, err);
+}
+
 tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const tobi_fill_def *fills,
                                  int fill_count, tobi_error *err)
 {
@@ -201,14 +211,14 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* What an owner's regions could not place: inside bodies, behind planes, outside the domain. */
-enum { COVERED, BEHIND, OUTSIDE, LOSSES };
+/* What an owner's regions could not place: inside bodies, behind planes, inside solids, outside the domain. */
+enum { COVERED, BEHIND, SOAKED, OUTSIDE, LOSSES };
 
 /* A solid or fluid without a particle is left out of the run altogether, which nobody asks for. */
 static tobi_status check_placed(const char *kind, const char *name, int64_t placed,
                                 const int64_t lost[LOSSES], tobi_error *err)
 {
-    const long long all = lost[COVERED] + lost[BEHIND] + lost[OUTSIDE];
+    const long long all = lost[COVERED] + lost[BEHIND] + lost[SOAKED] + lost[OUTSIDE];
     if (placed > 0) return TOBI_OK;
     if (all == 0)
         return tobi_fail(err, TOBI_INVALID,
@@ -216,9 +226,9 @@ static tobi_status check_placed(const char *kind, const char *name, int64_t plac
                          "particles, spacing; allowed are regions of a spacing or more", kind, name);
     return tobi_fail(err, TOBI_INVALID,
                      "no particles at all in %s '%s': of the %lld that it would start with, %lld lie inside "
-                     "bodies, %lld behind planes and %lld outside the domain; allowed is a %s of which a "
-                     "part lies free", kind, name, all, (long long)lost[COVERED], (long long)lost[BEHIND],
-                     (long long)lost[OUTSIDE], kind);
+                     "bodies, %lld behind planes, %lld inside solids and %lld outside the domain; allowed is "
+                     "a %s of which a part lies free", kind, name, all, (long long)lost[COVERED],
+                     (long long)lost[BEHIND], (long long)lost[SOAKED], (long long)lost[OUTSIDE], kind);
 }
 
 /* A line per cause: what was cut off at the domain, by bodies and by planes. */
@@ -226,6 +236,7 @@ static tobi_status note_losses(tobi_world *w, const char *kind, const char *name
                                const int64_t lost[LOSSES], tobi_error *err)
 {
     static const char *const what[LOSSES] = { "inside bodies were cut out", "behind planes were cut out",
+                                              "inside solids were cut out",
                                               "outside the domain were left out" };
     for (int c = 0; c < LOSSES; c++) {
         char text[200];
@@ -247,6 +258,7 @@ static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *
             if (&w->system[r->system] != s || r->owner != k) continue;
             lost[COVERED] += r->covered;
             lost[BEHIND] += r->behind;
+            lost[SOAKED] += r->soaked;
             lost[OUTSIDE] += r->outside;
             placed += r->placed;
             regions++;

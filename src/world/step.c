@@ -1,6 +1,6 @@
 /* The step of the world. Bodies and the clock are moved here and nowhere else. The first system sets the
-   length; one whose stable step is shorter takes substeps. Drawback: systems meet only through bodies, and
-   where there are bodies the shortest stable step holds for all. */
+   length; one whose stable step is shorter takes substeps, under the constant forces of a liquid on solids.
+   Drawback: where there are bodies the shortest stable step holds for all. */
 #include "world/step.h"
 #include "world/acceleration.h"
 #include "world/bodies.h"
@@ -24,8 +24,12 @@ static void take_back(tobi_world *w, double dt)
     w->sim.dt = dt;
 }
 
+/* Substeps of a system in a step of another. */
+enum { SUBSTEP_LIMIT = 10000 };
+
 /* The step of all, and the substeps that each system takes in it. */
-static void choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI_SYSTEM_LIMIT])
+static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI_SYSTEM_LIMIT],
+                             tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
     double stable[TOBI_SYSTEM_LIMIT] = { 0 }, dt;
@@ -36,7 +40,12 @@ static void choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI_SYSTEM
     for (int k = 0; k < w->system_count; k++) {
         substeps[k] = k > 0 ? (int64_t)fmax(ceil(s->dt/stable[k]*(1 - 1e-9)), 1) : 1;
         w->system[k].dt = s->dt/(double)substeps[k];
+        if (substeps[k] > SUBSTEP_LIMIT)
+            return tobi_fail(err, TOBI_INVALID, "the solids need %lld substeps in a step of %.3g s, allowed are "
+                             "%d; solids less stiff, or a shorter time_step_max, need fewer",
+                             (long long)substeps[k], s->dt, SUBSTEP_LIMIT);
     }
+    return TOBI_OK;
 }
 
 static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
@@ -184,11 +193,12 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     int64_t substeps[TOBI_SYSTEM_LIMIT];
     tobi_world_cap_step(w);
     TOBI_TRY(remember(w, err));
-    choose_dt(w, max_dt, substeps);
+    TOBI_TRY(choose_dt(w, max_dt, substeps, err));
     TOBI_TRY(tobi_world_drive(w, err));
     TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;
     TOBI_TRY(step_systems(w, substeps, err));
+    if (s->soft.solids) s->body_speed = fmax(s->body_speed, s->soft.speed);
     TOBI_TRY(move_bodies(w, err));
     s->time += s->dt;
     s->step++;

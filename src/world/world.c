@@ -9,6 +9,7 @@
 #include "world/limits.h"
 #include "world/note_pieces.h"
 #include "world/openings.h"
+#include "world/overlap.h"
 #include "base/param.h"
 #include "world/step.h"
 #include <math.h>
@@ -216,8 +217,23 @@ static tobi_status check_systems(tobi_world *w, tobi_error *err)
         return tobi_fail(err, TOBI_UNSUPPORTED, "bodies beside fluids of %s and solids of %s: allowed are "
                          "bodies with the one or the other", w->system[0].method->name,
                          w->system[1].method->name);
-    return tobi_world_add_notes(w, "world", NULL, "fluids and solids do not touch each other yet: each moves "
-                                "as if it were alone\n", err);
+    w->sim.soft.solids = &w->system[1];
+    return TOBI_OK;
+}
+
+/* Solids first: no fluid starts inside them. */
+static tobi_status fill_systems(tobi_world *w, tobi_error *err)
+{
+    tobi_soft *soft = &w->sim.soft;
+    tobi_status status = TOBI_OK;
+    for (int k = w->system_count - 1; k >= 0 && status == TOBI_OK; k--) {
+        status = tobi_world_fill_system(w, &w->system[k], err);
+        if (status == TOBI_OK && soft->solids == &w->system[k])
+            status = tobi_overlap_create(soft->solids, &soft->start, err);
+    }
+    tobi_overlap_free(soft->start);
+    soft->start = NULL;
+    return status;
 }
 
 tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
@@ -234,7 +250,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(check_memory(fluid, bytes, err));
     TOBI_TRY(check_systems(w, err));
     TOBI_TRY(tobi_world_start_drive(w, err));
-    for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_fill_system(w, &w->system[k], err));
+    TOBI_TRY(fill_systems(w, err));
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));

@@ -254,7 +254,8 @@ static void methods_refuse_what_they_do_not_know(void **state)
     refuse(make(ball, ", \"output\": { \"fields\": [\"vorticity\"] }"), "s.json:6:25: output.fields: ",
            "there is no field \"vorticity\"; allowed are position, velocity, pressure");
     snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s } ] }", plain, ball);
-    refuse(text, "s.json:2:11: solids: ", "dfsph takes fluids; solids need \"method\": \"mlsmpm\"");
+    refuse(text, "s.json:2:11: fluids: ", "is missing or empty: dfsph needs at least one fluid; the method of "
+           "solids alone is mlsmpm");
     snprintf(text, sizeof text, "%s%s, \"output\": {\n\"grid\": true } }", plain, fluid);
     refuse(text, "s.json:3:9: output.grid: ", "dfsph has no grid; mlsmpm has one");
     refuse(make(ball, ", \"output\": { \"tractions\": true }"), "s.json:6:28: output.tractions: ",

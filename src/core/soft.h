@@ -1,0 +1,22 @@
+/* What a liquid sees of soft solids: each of their particles is a point with a volume. The liquid presses the
+   points; the solids' method gives that to their particles. The world owns it, one method fills it, the other
+   reads it: rows are those of the solids' particles, good until these are sorted again. */
+#pragma once
+#include "exec/portable.h"
+
+struct tobi_system;
+
+/* m3 now, 1/kg: the answer of a point to a force; 0: it does not move. */
+typedef struct tobi_soft_size { float volume, inverse_mass; } tobi_soft_size;
+
+typedef struct tobi_soft {
+    struct tobi_system *solids;      /* NULL: no liquid beside solids in this world                 */
+    int64_t count;
+    const tobi_double3 *position;    /* m, from the lower corner of the domain                      */
+    const tobi_float4 *velocity;     /* m/s                                                         */
+    const tobi_soft_size *size;
+    tobi_float4 *push;               /* N: by the liquid, in the last step, then in this one        */
+    struct tobi_overlap *start;      /* where they are, while fluids are placed; else NULL          */
+    double speed;                    /* m/s, of the fastest point near the liquid                   */
+    int slip;                        /* 1: the liquid glides along the solids                       */
+} tobi_soft;

@@ -1,0 +1,8 @@
+/* Solids as a liquid sees them, and what it does to them (docs/decisions/0064). */
+#pragma once
+#include "mpm/state.h"
+
+/* The verb `points` of tobi_method. */
+tobi_status mpm_liquid_points(tobi_system *s, tobi_error *err);
+/* Before a substep: gives the particles the impulse of the liquid in it. */
+void mpm_liquid_kick(tobi_system *s, mlsmpm *m);

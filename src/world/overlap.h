@@ -1,0 +1,11 @@
+/* Where solids start, so that no fluid starts in the same place. */
+#pragma once
+#include "core/system.h"
+
+typedef struct tobi_overlap tobi_overlap;
+
+/* From the particles of a system of solids; freed by tobi_overlap_free. */
+tobi_status tobi_overlap_create(const tobi_system *solids, tobi_overlap **out, tobi_error *err);
+/* 1 if a particle of a fluid at x, m from the lower corner, would lie in a solid. NULL: no solids. */
+int tobi_overlap_meets(const tobi_overlap *o, const double x[3]);
+void tobi_overlap_free(tobi_overlap *o);

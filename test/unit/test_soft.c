@@ -1,0 +1,187 @@
+/* Water and soft solids in one world: what goes from one to the other, bits, restarts, what is refused. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "calls.h"
+#include "world/world.h"
+
+/* A jelly that a block of water flies against, without gravity; or, with it, one that falls into a pool. */
+static tobi_world *make_world(const char *method, int pool, int threads, double density)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
+    tobi_world *world;
+    w.method = method;
+    w.threads = threads;
+    w.spacing = 0.01;
+    w.time_step_max = 1e-3;
+    solid.youngs_modulus = 2e4;
+    solid.density = density;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = pool ? 0.2 : 0.5;
+        if (!pool) w.gravity[a] = 0;
+        water.box_min[a] = pool ? 0 : 0.05;
+        water.box_max[a] = pool && a < 2 ? 0.2 : pool ? 0.1 : 0.11;
+        jelly.box_min[a] = a == 2 ? 0.12 : 0.06;
+        jelly.box_max[a] = a == 2 ? 0.17 : 0.11;
+    }
+    if (!pool) water.velocity[2] = 0.5;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    return world;
+}
+
+static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+enum { METHODS = 4 };
+
+/* Momentum of a system, kg m/s. */
+static void measure(tobi_world *w, int system, double out[3])
+{
+    tobi_system_measure(&w->system[system]);
+    memcpy(out, w->system[system].info.momentum, 3*sizeof *out);
+}
+
+static void what_one_loses_the_other_gains(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++)             /* isph keeps no momentum to rounding, with or without solids */
+        for (int light = 0; light < 2; light++) {
+            tobi_world *w = make_world(methods[k], 0, 1, light ? 50 : 1500);
+            double before[2][3], after[2][3];
+            OK(tobi_world_start(w, &err));
+            for (int s = 0; s < 2; s++) measure(w, s, before[s]);
+            OK(tobi_world_advance(w, 0.05, NULL, &err));
+            for (int s = 0; s < 2; s++) measure(w, s, after[s]);
+            const double given = after[1][2] - before[1][2];
+            if (!(given > 0.1*before[0][2]*(light ? 0.05 : 1))) fail_msg("%s: only %g went over", methods[k], given);
+            for (int a = 0; a < 3; a++) {
+                const double lost = after[0][a] + after[1][a] - before[0][a] - before[1][a];
+                if (fabs(lost) > (k ? 5e-6 : 1e-6)*given)   /* wcsph rounds in ten times as many steps */
+                    fail_msg("%s, %c: %g lost of %g", methods[k], "xyz"[a], lost, given);
+            }
+            tobi_world_destroy(w);
+        }
+}
+
+static void the_same_bits(void **state)
+{
+    (void)state;
+    for (int k = 0; k < METHODS; k++) {
+        tobi_world *one = make_world(methods[k], 1, 1, 700), *three = make_world(methods[k], 1, 3, 700),
+                   *later = make_world(methods[k], 1, 2, 700);
+        OK(tobi_world_advance(one, 0.06, NULL, &err));
+        OK(tobi_world_advance(three, 0.06, NULL, &err));
+        if (tobi_world_hash(one) != tobi_world_hash(three)) fail_msg("%s: threads differ", methods[k]);
+        OK(tobi_world_save(one, "soft.h5", &err));
+        OK(tobi_world_load(later, "soft.h5", &err));
+        OK(tobi_world_advance(one, 0.09, NULL, &err));
+        OK(tobi_world_advance(later, 0.09, NULL, &err));
+        if (tobi_world_hash(one) != tobi_world_hash(later)) fail_msg("%s: a restart differs", methods[k]);
+        tobi_world_destroy(one);
+        tobi_world_destroy(three);
+        tobi_world_destroy(later);
+    }
+    remove("soft.h5");
+}
+
+/* A jelly in the middle of the water: none of it is where the jelly is. */
+static void water_is_cut_out(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
+    tobi_world *world;
+    w.spacing = 0.01;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = 0.2;
+        water.box_max[a] = a == 2 ? 0.1 : 0.2;
+        jelly.box_min[a] = 0.05;
+        jelly.box_max[a] = a == 2 ? 0.12 : 0.1;
+    }
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    OK(tobi_world_start(world, &err));
+    assert_int_equal(world->system[0].particles.count, 20*20*10 - 5*5*5);
+    assert_int_equal(world->system[1].particles.count, 5*5*7);
+    int told = 0;
+    for (int k = 0; tobi_world_note(world, k); k++)
+        told |= strstr(tobi_world_note(world, k), "125 particles that would start inside solids were cut out")
+                != NULL;
+    assert_true(told);
+    tobi_world_destroy(world);
+    for (int a = 0; a < 3; a++) water.box_min[a] = 0.06, water.box_max[a] = 0.09;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    REFUSED(tobi_world_start(world, &err), TOBI_INVALID, "27 inside solids");
+    tobi_world_destroy(world);
+}
+
+static void parameters_of_solids(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_mlsmpm_def m = tobi_default_mlsmpm_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_world *world;
+    w.spacing = 0.01;
+    for (int a = 0; a < 3; a++) w.domain_max[a] = 0.2;
+    m.cell = 1.5;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_use_solids(world, &m, &err));
+    assert_true(((tobi_mlsmpm_def *)world->system[1].def)->cell == 1.5);
+    OK(tobi_world_add_solid(world, &solid, NULL, 0, &err));
+    REFUSED(tobi_world_use_solids(world, &m, &err), TOBI_INVALID, "chosen already");
+    tobi_world_destroy(world);
+    world = make_world("dfsph", 1, 1, 700);
+    OK(tobi_world_start(world, &err));
+    REFUSED(tobi_world_use_solids(world, &m, &err), TOBI_INVALID, "takes no more solids");
+    tobi_world_destroy(world);
+}
+
+static void too_many_substeps(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
+    tobi_world *world;
+    w.spacing = 0.01;
+    solid.youngs_modulus = 1e15;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = 0.2;
+        water.box_max[a] = 0.05;
+        jelly.box_min[a] = 0.1;
+        jelly.box_max[a] = 0.15;
+    }
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_INVALID, "substeps in a step of");
+    tobi_world_destroy(world);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_one_loses_the_other_gains),
+        cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(water_is_cut_out),
+        cmocka_unit_test(parameters_of_solids),
+        cmocka_unit_test(too_many_substeps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
