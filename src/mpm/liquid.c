@@ -1,6 +1,6 @@
 /* Solids beside a liquid: every particle is a point that the liquid presses, and the impulse goes to that
-   particle, so that nothing is lost on the way. A point answers with the mass of its particle alone; it is
-   never heavier than it, which the exchange needs (decision 64). Drawback: thin sheets of one or two particles
+   particle, so that nothing is lost on the way. A point answers with the mass of its particle alone, which is
+   less than what moves with it, as the exchange needs (decision 64). Drawback: sheets of one or two particles
    let the liquid on both sides see each other. */
 #include "mpm/liquid.h"
 #include "base/error.h"

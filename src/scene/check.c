@@ -112,8 +112,8 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
                             "domain and bodies", method.name);
     if (!method.solids) {
         if (is_empty(scene, "fluids") && !is_empty(scene, "solids"))
-            tobi_source_mistake(source, &fluids, "is missing or empty: %s needs at least one fluid; the method "
-                                "of solids alone is mlsmpm", method.name);
+            tobi_source_mistake(source, &fluids, "is missing or empty: %s needs at least one fluid; the "
+                                "method of solids alone is mlsmpm", method.name);
         else if (is_empty(scene, "fluids"))
             tobi_source_mistake(source, &fluids, "is missing or empty: a scene needs at least one fluid");
         return;

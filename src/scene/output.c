@@ -47,13 +47,25 @@ json_t *tobi_output_write(const tobi_scene *scene)
     return NULL;
 }
 
+/* Appends the fields of a method that are not there yet. */
+static int list_fields(const char *method, const char **names, int count, int most)
+{
+    const char *name;
+    for (int k = 0; count < most && (name = tobi_method_field(method, k)); k++) {
+        int there = 0;
+        for (int n = 0; n < count; n++) there |= strcmp(names[n], name) == 0;
+        if (!there) names[count++] = name;
+    }
+    return count;
+}
+
 static void check_field(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
                         const char *field)
 {
     enum { FIELDS = 32 };
     const char *names[FIELDS];
-    int count = 0;
-    while (count < FIELDS && (names[count] = tobi_method_field(scene->world.method, count))) count++;
+    int count = list_fields(scene->world.method, names, 0, FIELDS);
+    if (scene->solid_count > 0) count = list_fields("mlsmpm", names, count, FIELDS);
     char all[512] = "";
     if (strcmp(field, "usual") == 0) return;
     for (int k = 0; k < count; k++)

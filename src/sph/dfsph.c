@@ -417,7 +417,7 @@ static tobi_status find_first_pressure(tobi_system *s, dfsph *m, double *clock, 
         m->memory.low = sph_reference_low(s);
         apply_forces(s, m, clock);
         tobi_couple_begin(s);
-        sph_soft_begin(s);
+        sph_soft_begin(s, 1);
         remove_divergence(s, m, clock);
         restore_velocities(s, kept);
         set_reference(s, m);
@@ -475,7 +475,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     tobi_couple_begin(s);
-    sph_soft_begin(s);
+    sph_soft_begin(s, 1);
     remove_divergence(s, m, &clock);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     correct_density(s, m, &clock);

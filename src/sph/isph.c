@@ -177,7 +177,7 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     double t[TOBI_TOTALS], clock = tobi_clock();
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     isph_forces_predict(&m->solver, s);
-    sph_soft_predict(s);
+    sph_soft_predict(s, m->solver.sweeps.count == 0);
     const tobi_linear_report report = isph_solver_run(&m->solver, s);
     TOBI_TRY(tobi_simulation_check_stop(s->sim, err));
     TOBI_TRY(judge(s, m, &report, err));

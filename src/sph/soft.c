@@ -114,6 +114,40 @@ static void fill_links(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* sum of V rho V_b F (d . n)^2 over the particles at d from the point. */
+static double find_layer(const tobi_system *s, int64_t k)
+{
+    const sph_soft *q = soft_of(s);
+    double n[3] = { 0 }, sum = 0, square = 0;
+    for (int64_t l = q->first[k]; l < q->first[k + 1]; l++)
+        for (int a = 0; a < 3; a++) n[a] += q->link[l].gradient[a];
+    for (int a = 0; a < 3; a++) square += n[a]*n[a];
+    for (int64_t l = q->first[k]; l < q->first[k + 1] && square > 0; l++) {
+        double along = 0;
+        for (int a = 0; a < 3; a++) along += q->link[l].gradient[a]*n[a];
+        if (q->link[l].rate > 0) sum += along*along/(square*q->link[l].rate);
+    }
+    return s->smoothing.volume*s->fluid[0].density*sum;
+}
+
+static void begin_mirrors(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const sph_soft *q = soft_of(s);
+    for (int64_t k = begin; k < end; k++) {
+        q->velocity[k] = solids_of(s)->velocity[q->wet[k]];
+        q->layer[k] = find_layer(s, k);
+        memset(q->change[k], 0, sizeof q->change[k]);
+    }
+}
+
+/* 1/kg: of a point, with the liquid before it where that belongs to it. */
+static double inverse_mass(const tobi_system *s, int64_t k)
+{
+    const double own = solids_of(s)->size[soft_of(s)->wet[k]].inverse_mass;
+    return sph_of(s)->mirrors ? own/(1 + own*soft_of(s)->layer[k]) : own;
+}
+
 static void chain_links(const tobi_system *s)
 {
     const sph_soft *q = soft_of(s);
@@ -138,6 +172,7 @@ static tobi_status list_points(const tobi_system *s, tobi_error *err)
     if (sph_of(s)->mirrors) {
         TOBI_TRY(grow(&q->change, &q->change_room, points, err));
         TOBI_TRY(grow(&q->velocity, &q->velocity_room, points, err));
+        TOBI_TRY(grow(&q->layer, &q->layer_room, points, err));
     }
     q->points = 0;
     for (int64_t b = 0; b < solids_of(s)->count; b++) {
@@ -165,12 +200,17 @@ tobi_status sph_soft_find(tobi_system *s, tobi_error *err)
     TOBI_TRY(list_points(s, err));
     tobi_loop(s->sim->exec.threads, q->points, 64, fill_links, s);
     memset(q->known, 0, (size_t)q->points*sizeof *q->known);
-    for (int64_t k = 0; k < q->points && sph_of(s)->mirrors; k++) {
-        q->velocity[k] = soft->velocity[q->wet[k]];
-        memset(q->change[k], 0, sizeof q->change[k]);
-    }
+    if (sph_of(s)->mirrors) tobi_loop(s->sim->exec.threads, q->points, 0, begin_mirrors, s);
     chain_links(s);
     return TOBI_OK;
+}
+
+/* The share of the kernel of which sph_wall_density makes this sum over a lattice: its inverse. */
+static double find_share(const tobi_smoothing_constants *c, double sum)
+{
+    const double at = c->wall_share, full = c->wall_lattice;
+    if (sum <= full) return sum*at/full;
+    return sum < 0.5 ? at + (sum - full)*(0.5 - at)/(0.5 - full) : fmin(sum, 0.98);
 }
 
 static void add_gradients(const void *view, int64_t begin, int64_t end)
@@ -186,7 +226,7 @@ static void add_gradients(const void *view, int64_t begin, int64_t end)
             sum[3] += q->link[k].share;
         }
         for (int a = 0; a < 3; a++) (&f->wall[i].x)[a] += (float)sum[a];
-        f->density[i] = 1 - (1 - f->density[i])*(1 - (float)fmin(sum[3], 0.98));
+        f->density[i] = 1 - (1 - f->density[i])*(1 - (float)find_share(&s->smoothing, sum[3]));
     }
 }
 
@@ -249,6 +289,7 @@ void sph_soft_add_forces(tobi_system *s)
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, find_forces, s);
 }
 
+/* Where no solve follows, the points keep their velocities. */
 static void predict(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -256,9 +297,9 @@ static void predict(const void *view, int64_t begin, int64_t end)
     const sph_soft *q = soft_of(s);
     for (int64_t k = begin; k < end; k++) {
         const int32_t b = q->wet[k];
+        const double dt = q->solved ? s->dt*inverse_mass(s, k) : 0;
         for (int a = 0; a < 3; a++)
-            q->answer[k][a] = (&soft->velocity[b].x)[a] + s->dt*soft->size[b].inverse_mass*
-                              (q->known[k][a] - (&soft->push[b].x)[a]);
+            q->answer[k][a] = (&soft->velocity[b].x)[a] + dt*(q->known[k][a] - (&soft->push[b].x)[a]);
     }
 }
 
@@ -281,9 +322,10 @@ static void add_flux(const void *view, int64_t begin, int64_t end)
         if (q->last[i] >= 0) sph_fields_of(&s->particles)->wall[i].w += (float)sum_answers(q, i);
 }
 
-void sph_soft_begin(tobi_system *s)
+void sph_soft_begin(tobi_system *s, int solved)
 {
     if (is_alone(s)) return;
+    soft_of(s)->solved = solved;
     tobi_loop(s->sim->exec.threads, soft_of(s)->points, 0, predict, s);
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_flux, s);
 }
@@ -307,7 +349,7 @@ static void find_answers(const void *view, int64_t begin, int64_t end)
     const sph_soft *q = soft_of(s);
     for (int64_t k = begin; k < end; k++) {
         sum_pressure(s, k, NULL, q->answer[k]);
-        for (int a = 0; a < 3; a++) q->answer[k][a] *= solids_of(s)->size[q->wet[k]].inverse_mass;
+        for (int a = 0; a < 3; a++) q->answer[k][a] *= inverse_mass(s, k);
     }
 }
 
@@ -349,7 +391,7 @@ static void answer_points(const void *view, int64_t begin, int64_t end)
         for (int64_t n = q->first[k]; n < q->first[k + 1]; n++)
             for (int a = 0; a < 3; a++) sum[a] += w->in[q->link[n].particle]*q->link[n].gradient[a];
         for (int a = 0; a < 3; a++)
-            q->answer[k][a] = 2*w->s->smoothing.volume*sum[a]*solids_of(w->s)->size[q->wet[k]].inverse_mass;
+            q->answer[k][a] = 2*w->s->smoothing.volume*sum[a]*inverse_mass(w->s, k);
     }
 }
 
@@ -369,10 +411,11 @@ void sph_soft_add_answer(tobi_system *s, double *out, const double *in)
     tobi_loop(s->sim->exec.threads, s->particles.count, 0, add_answer, &view);
 }
 
-void sph_soft_predict(tobi_system *s)
+void sph_soft_predict(tobi_system *s, int solved)
 {
-    const sph_soft *q = soft_of(s);
+    sph_soft *q = soft_of(s);
     if (is_alone(s)) return;
+    q->solved = solved;
     tobi_loop(s->sim->exec.threads, q->points, 0, predict, s);
     for (int64_t k = 0; k < q->points; k++)
         for (int a = 0; a < 3; a++) q->change[k][a] = q->answer[k][a] - (&q->velocity[k].x)[a];
@@ -382,7 +425,7 @@ void sph_soft_correct(tobi_system *s, const double *in)
 {
     const answering view = { s, in, NULL };
     const sph_soft *q = soft_of(s);
-    if (is_alone(s)) return;
+    if (is_alone(s) || !q->solved) return;
     tobi_loop(s->sim->exec.threads, q->points, 0, answer_points, &view);
     for (int64_t k = 0; k < q->points; k++)
         for (int a = 0; a < 3; a++) q->change[k][a] += s->dt*q->answer[k][a];
@@ -402,6 +445,13 @@ static void press_all(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* N: what the liquid between particles and point takes to be accelerated with it. */
+static double take_layer(const tobi_system *s, int64_t k, int axis)
+{
+    const sph_soft *q = soft_of(s);
+    return sph_of(s)->mirrors && q->solved ? q->layer[k]*q->change[k][axis]/s->dt : 0;
+}
+
 static void press_points(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
@@ -412,7 +462,8 @@ static void press_points(const void *view, int64_t begin, int64_t end)
         sum_pressure(s, k, f->pressure, pressure);
         if (f->capillary) sum_pressure(s, k, f->capillary, capillary);
         for (int a = 0; a < 3; a++)
-            (&solids_of(s)->push[q->wet[k]].x)[a] += (float)(pressure[a] - capillary[a] + q->known[k][a]);
+            (&solids_of(s)->push[q->wet[k]].x)[a] +=
+                (float)(pressure[a] - capillary[a] + q->known[k][a] - take_layer(s, k, a));
     }
 }
 
@@ -437,7 +488,8 @@ int64_t sph_soft_bytes(const sph_soft *q)
     return q->link_room*(int64_t)sizeof *q->link + q->wet_room*(int64_t)sizeof *q->wet +
            q->first_room*(int64_t)sizeof *q->first + q->answer_room*(int64_t)sizeof *q->answer +
            q->known_room*(int64_t)sizeof *q->known +
-           q->change_room*(int64_t)sizeof *q->change + q->velocity_room*(int64_t)sizeof *q->velocity + q->last_room*(int64_t)sizeof *q->last +
+           q->change_room*(int64_t)sizeof *q->change + q->velocity_room*(int64_t)sizeof *q->velocity +
+           q->layer_room*(int64_t)sizeof *q->layer + q->last_room*(int64_t)sizeof *q->last +
            q->found_room*(int64_t)sizeof *q->found;
 }
 
@@ -450,6 +502,7 @@ void sph_soft_free(sph_soft *q)
     tobi_array_free(q->known);
     tobi_array_free(q->change);
     tobi_array_free(q->velocity);
+    tobi_array_free(q->layer);
     tobi_array_free(q->last);
     tobi_array_free(q->found);
     memset(q, 0, sizeof *q);

@@ -1,7 +1,6 @@
-/* Soft solids as a liquid meets them: their particles are points with a volume (core/soft.h,
-   docs/decisions/0064-water-and-soft-solids.md). In the order of a step: find, add gradients; the forces of the
-   particles; begin; product after each product of the pressure's operator; load. All do nothing in a world
-   without both. */
+/* Soft solids as a liquid meets them: their particles are points with a volume (core/soft.h, decision 64 in
+   docs/decisions). In the order of a step: find, add gradients; the forces of the particles; begin; product
+   after each product of the pressure's operator; load. All do nothing in a world without both. */
 #pragma once
 #include "base/error.h"
 #include "sph/soft.k.h"
@@ -18,9 +17,13 @@ typedef struct sph_soft {
     double (*known)[3];              /* [points] N: all that does not wait for the pressure         */
     double (*change)[3];             /* [points] m/s, in this step; of isph                         */
     tobi_float4 *velocity;           /* [points] m/s, before this step; of isph                     */
+    double *layer;                   /* [points] kg: of the liquid between particles and point, whose
+                                        inertia the pressure at the point has less; of isph         */
     int32_t *last;                   /* [particles] last link of each, -1 = none                    */
     int64_t *found;                  /* [rows of the solids] scratch of the search                  */
-    int64_t link_room, wet_room, first_room, answer_room, known_room, change_room, velocity_room, last_room, found_room;
+    int solved;                      /* 1: they answer within a solve                               */
+    int64_t link_room, wet_room, first_room, answer_room, known_room, change_room, velocity_room;
+    int64_t layer_room, last_room, found_room;
 } sph_soft;
 
 /* Finds which particles see which points, at their present places. */
@@ -29,15 +32,16 @@ tobi_status sph_soft_find(struct tobi_system *s, tobi_error *err);
 void sph_soft_add_gradients(struct tobi_system *s);
 /* Adds dt times hydrostatic pressure of mirrors and friction to the velocities; keeps the reactions. */
 void sph_soft_add_forces(struct tobi_system *s);
-/* Velocities of the points by all forces but the change of pressure, and their flux into particles.wall. */
-void sph_soft_begin(struct tobi_system *s);
+/* Velocities of the points by all forces but the change of pressure, and their flux into particles.wall.
+   solved: whether the pressure is solved for, with their answer; else they keep their velocities. */
+void sph_soft_begin(struct tobi_system *s, int solved);
 /* Adds to particles.product how the points answer the pressures in the records. totals as of
    tobi_couple_product. */
 void sph_soft_product(struct tobi_system *s, double *totals);
 /* The same for pressures in double: out += density times the answer to `in`. */
 void sph_soft_add_answer(struct tobi_system *s, double *out, const double *in);
 /* Of isph: the change of the points' velocities before the solve, and with the pressures `in`. */
-void sph_soft_predict(struct tobi_system *s);
+void sph_soft_predict(struct tobi_system *s, int solved);
 void sph_soft_correct(struct tobi_system *s, const double *in);
 /* The forces of this step on the points. After the solve. */
 void sph_soft_load(struct tobi_system *s);

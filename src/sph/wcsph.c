@@ -215,7 +215,7 @@ static tobi_status solve(tobi_system *s, tobi_error *err)
     double clock = tobi_clock();
     (void)err;
     tobi_couple_begin(s);
-    sph_soft_begin(s);
+    sph_soft_begin(s, 0);
     apply_pressure(s, s->state, &clock);
     return TOBI_OK;
 }

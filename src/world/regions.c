@@ -211,7 +211,7 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
-/* What an owner's regions could not place: inside bodies, behind planes, inside solids, outside the domain. */
+/* What an owner's regions could not place: inside bodies, behind planes, inside solids, out of the domain. */
 enum { COVERED, BEHIND, SOAKED, OUTSIDE, LOSSES };
 
 /* A solid or fluid without a particle is left out of the run altogether, which nobody asks for. */

@@ -41,8 +41,8 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
         substeps[k] = k > 0 ? (int64_t)fmax(ceil(s->dt/stable[k]*(1 - 1e-9)), 1) : 1;
         w->system[k].dt = s->dt/(double)substeps[k];
         if (substeps[k] > SUBSTEP_LIMIT)
-            return tobi_fail(err, TOBI_INVALID, "the solids need %lld substeps in a step of %.3g s, allowed are "
-                             "%d; solids less stiff, or a shorter time_step_max, need fewer",
+            return tobi_fail(err, TOBI_INVALID, "the solids need %lld substeps in a step of %.3g s, allowed "
+                             "are %d; solids less stiff, or a shorter time_step_max, need fewer",
                              (long long)substeps[k], s->dt, SUBSTEP_LIMIT);
     }
     return TOBI_OK;

@@ -151,7 +151,7 @@ static void solids_without_particles_are_refused(void **state)
     assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
     assert_int_equal(tobi_world_start(world, &err), TOBI_INVALID);
     if (!strstr(err.text, "no particles at all in solid 'it': of the 552 that it would start with, 552 lie "
-                          "inside bodies, 0 behind planes and 0 outside")) fail_msg("%s", err.text);
+                          "inside bodies, 0 behind planes, 0 inside solids and 0 outside")) fail_msg("%s", err.text);
     tobi_world_destroy(world);
     tobi_scene_free(scene);
     scene = parse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.01") " } ]", ""));
@@ -254,8 +254,8 @@ static void methods_refuse_what_they_do_not_know(void **state)
     refuse(make(ball, ", \"output\": { \"fields\": [\"vorticity\"] }"), "s.json:6:25: output.fields: ",
            "there is no field \"vorticity\"; allowed are position, velocity, pressure");
     snprintf(text, sizeof text, "%s\"solids\": [ { \"name\": \"a\", %s } ] }", plain, ball);
-    refuse(text, "s.json:2:11: fluids: ", "is missing or empty: dfsph needs at least one fluid; the method of "
-           "solids alone is mlsmpm");
+    refuse(text, "s.json:1:1: fluids: ", "is missing or empty: dfsph needs at least one fluid; the "
+           "method of solids alone is mlsmpm");
     snprintf(text, sizeof text, "%s%s, \"output\": {\n\"grid\": true } }", plain, fluid);
     refuse(text, "s.json:3:9: output.grid: ", "dfsph has no grid; mlsmpm has one");
     refuse(make(ball, ", \"output\": { \"tractions\": true }"), "s.json:6:28: output.tractions: ",
