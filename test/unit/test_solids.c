@@ -151,7 +151,8 @@ static void solids_without_particles_are_refused(void **state)
     assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
     assert_int_equal(tobi_world_start(world, &err), TOBI_INVALID);
     if (!strstr(err.text, "no particles at all in solid 'it': of the 552 that it would start with, 552 lie "
-                          "inside bodies, 0 behind planes, 0 inside solids and 0 outside")) fail_msg("%s", err.text);
+                          "inside bodies, 0 behind planes, 0 inside solids and 0 outside"))
+        fail_msg("%s", err.text);
     tobi_world_destroy(world);
     tobi_scene_free(scene);
     scene = parse(make("\"fill\": [ { " SPHERE("[0, 0, 0]", "0.01") " } ]", ""));
