@@ -207,10 +207,7 @@ static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, con
         tobi_bound bound = { 0 };
         if (value) bound = tobi_bind(binder, table, value, &place, NULL, def);
         if (table != scene->method) {
-            if (strcmp(name, SOLIDS) == 0) {
-                memcpy(&scene->solids_def, def, sizeof scene->solids_def);
-                scene->solids_bound = bound;
-            }
+            if (strcmp(name, SOLIDS) == 0) scene->solids_def = *(const tobi_mlsmpm_def *)def;
             free(def);
             continue;
         }
@@ -565,9 +562,8 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
            *probes = json_array(), *references = json_array();
     int failed = json_object_set_new(root, scene->method->name, method);
-    if (has_both(scene))
-        failed |= json_object_set_new(root, SOLIDS, tobi_write_def(tobi_method_table(SOLIDS),
-                                                                   &scene->solids_def));
+    json_t *beside = has_both(scene) ? tobi_write_def(tobi_method_table(SOLIDS), &scene->solids_def) : NULL;
+    if (has_both(scene)) failed |= json_object_set_new(root, SOLIDS, beside);
     for (int i = 0; i < scene->fluid_count; i++)
         failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
     for (int i = 0; i < scene->solid_count; i++)

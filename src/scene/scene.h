@@ -46,7 +46,6 @@ struct tobi_scene {
     void *method_def;              /* method->size bytes                          */
     tobi_bound method_bound;
     tobi_mlsmpm_def solids_def;    /* of solids beside fluids                     */
-    tobi_bound solids_bound;
     tobi_scene_fluid *fluids;
     int fluid_count;
     tobi_scene_solid *solids;

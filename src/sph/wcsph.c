@@ -65,7 +65,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     m->def.still_water &= !s->sim->soft.solids;   /* the solids' points know nothing of it */
     m->sound = find_sound(s, &m->def);
     m->compliance = fmax(tobi_couple_compliance(s), sph_soft_compliance(s));
-    if (sph_has_openings(s)) m->def.still_water = m->rests = 0;   /* the level of the start is none for long */
+    if (sph_has_openings(s)) m->def.still_water = m->rests = 0;  /* the level of the start is none for long */
     return TOBI_OK;
 }
 
