@@ -344,6 +344,31 @@ typedef struct tobi_probe_def {
     double position[3];         /* m */
 } tobi_probe_def;
 
+/* A spring, a rope or a mooring line between a body and the domain or another body. */
+enum { TOBI_LINE_LIMIT = 256 };
+typedef enum tobi_line_kind { TOBI_LINE_SPRING, TOBI_LINE_ROPE, TOBI_LINE_CATENARY } tobi_line_kind;
+typedef struct tobi_line_def {
+    const char *name;
+    int    kind;                /* tobi_line_kind                                                    */
+    const char *body;           /* name of a free or controlled body                                 */
+    double point[3];            /* m, the place on it, where the body starts                         */
+    const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
+    double to[3];               /* m, the other end at the start                                     */
+    double length;              /* m, without force; 0 = the distance at the start                   */
+    double stiffness;           /* N/m, force per stretch; of a catenary EA/length                   */
+    double damping;             /* N s/m, of springs and taut ropes                                  */
+    double weight;              /* N/m, of a catenary in the liquid                                  */
+    int    rests;               /* 1: a catenary may lie on a floor at the height of its lower end   */
+} tobi_line_def;
+
+/* A line after a step. */
+typedef struct tobi_line_info {
+    double tension;             /* N at the body; below 0 a spring pushes                            */
+    double distance;            /* m between the ends                                                */
+    double force[3];            /* N on the body                                                     */
+    double point[3], to[3];     /* m, the ends                                                       */
+} tobi_line_info;
+
 /* What pictures show, and from where. */
 enum { TOBI_VIEW_LIMIT = 8 };        /* views besides the output's own */
 typedef struct tobi_view_def {

@@ -123,7 +123,7 @@ double tobi_rigid_step_limit(const tobi_dynamics_state *d)
         limit = fmin(limit, fmin(turn, 0.5)/(vec3_length(r->angular_velocity) + 1e-9));
         if (g > 0) limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
     }
-    return limit;
+    return fmin(limit, tobi_lines_step_limit(d->world.lines, d->world.line_count, d->bodies));
 }
 
 void tobi_rigid_free(tobi_dynamics_state *d)
@@ -141,6 +141,11 @@ void tobi_rigid_free(tobi_dynamics_state *d)
 }
 
 /* --- the kick ---------------------------------------------------------------------------------- */
+
+void tobi_rigid_update_lines(tobi_dynamics_state *d)
+{
+    for (int k = 0; k < d->world.line_count; k++) tobi_line_update(&d->world.lines[k], d->bodies);
+}
 
 static tobi_status run_control(tobi_body *b, double t, double force[3], double torque[3], tobi_error *err)
 {
@@ -187,15 +192,19 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
+    tobi_line_load now = { 0 }, mean = { 0 };
+    const int body = (int)(b - d->bodies);
+    tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_NOW, &now);
+    tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_MEAN, &mean);
     for (int a = 0; a < 3; a++) {
-        double dv = dt*(d->world.gravity[a] + force[a]/r->mass) + r->impulse[a]/r->mass;
+        double dv = dt*(d->world.gravity[a] + (force[a] + mean.force[a])/r->mass) + r->impulse[a]/r->mass;
         r->velocity[a] = keep*(r->velocity[a] + dv);
-        r->momentum[a] = keep*(r->momentum[a] + dt*torque[a] + r->twist[a]);
+        r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + r->twist[a]);
         r->contact_force[a] = r->impulse[a]/span;
         r->contact_torque[a] = r->twist[a]/span;
         r->impulse[a] = r->twist[a] = 0;
-        r->pull[a] = d->world.gravity[a] + force[a]/r->mass;
-        r->pull_torque[a] = torque[a];
+        r->pull[a] = d->world.gravity[a] + (force[a] + now.force[a])/r->mass;
+        r->pull_torque[a] = torque[a] + now.torque[a];
     }
     r->span = 0;
     tobi_rigid_apply_locks(r);
@@ -395,6 +404,7 @@ static void keep_contact_force(tobi_body *b)
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
+    tobi_rigid_update_lines(d);
     for (int k = 0; k < d->count; k++) {
         tobi_body_info *info = &d->bodies[k].info;
         memset(info->contact_force, 0, sizeof info->contact_force);
@@ -442,11 +452,16 @@ static void note_planes(tobi_dynamics_state *d, char *notes, size_t room)
 static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
 {
     double dt = tobi_rigid_step_limit(d);
+    tobi_rigid_update_lines(d);
     for (int k = 0; k < d->count; k++) {
         tobi_rigid *r = &d->bodies[k].rigid;
+        tobi_line_load load = { 0 };
         if (r->kind == TOBI_PRESCRIBED) continue;
-        vec3_add_scaled(r->pull, d->world.gravity, 1/r->mass, r->force);
-        memcpy(r->pull_torque, r->torque, sizeof r->torque);
+        tobi_lines_add(d->world.lines, d->world.line_count, k, TOBI_LINES_NOW, &load);
+        for (int a = 0; a < 3; a++) {
+            r->pull[a] = d->world.gravity[a] + 1/r->mass*(r->force[a] + load.force[a]);
+            r->pull_torque[a] = r->torque[a] + load.torque[a];
+        }
     }
     TOBI_TRY(find_contacts(d, dt, err));
     hold_bodies(d, dt);
@@ -502,16 +517,16 @@ static int is_held(const tobi_dynamics_state *d, const tobi_rigid *r)
            vec3_dot(due, due) + vec3_dot(r->torque, r->torque) > 0;
 }
 
-/* The pull of the next drift. What a control program adds to it stays. */
+/* The pull of the next drift. What lines and a control program add to it stays. */
 static void change_pull(const tobi_dynamics_state *d, tobi_rigid *r, const double gravity[3],
                         const double force[3], const double torque[3])
 {
     if (r->kind == TOBI_PRESCRIBED || is_held(d, r)) return;
     for (int a = 0; a < 3; a++) {
         const double now = gravity[a] + force[a]/r->mass;
-        const double added = r->control ? r->pull[a] - (d->world.gravity[a] + r->force[a]/r->mass) : 0;
+        const double added = r->control || d->world.line_count ? r->pull[a] - (d->world.gravity[a] + r->force[a]/r->mass) : 0;
         r->pull[a] = now + added;
-        r->pull_torque[a] = torque[a] + (r->control ? r->pull_torque[a] - r->torque[a] : 0);
+        r->pull_torque[a] = torque[a] + (r->control || d->world.line_count ? r->pull_torque[a] - r->torque[a] : 0);
     }
 }
 

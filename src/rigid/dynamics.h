@@ -2,6 +2,7 @@
    tobi_body_advance) and gathers what particles do to them; then tobi_rigid_step changes their velocities:
    gravity, particles, constant forces, control programs, air resistance, contact. */
 #pragma once
+#include "rigid/lines.h"
 #include "rigid/solve.h"
 
 /* The surroundings of a step. */
@@ -12,6 +13,8 @@ typedef struct tobi_rigid_world {
     int wall[3];                 /* sides along this axis: 1 the lower, 2 the upper, 3 both     */
     const tobi_fixed_plane *planes;   /* owned by the caller, must outlive the state             */
     int plane_count;
+    tobi_line *lines;            /* owned by the caller, must outlive the state                 */
+    int line_count;
     int threads;                 /* that look for contacts; they do not change the result       */
 } tobi_rigid_world;
 
@@ -35,6 +38,9 @@ void tobi_rigid_set_force(tobi_dynamics_state *state, int body, const double for
                           const double torque[3]);
 /* The same gravity where the state is a checkpoint's, whose pull is of it already. */
 void tobi_rigid_restore_gravity(tobi_dynamics_state *state, const double gravity[3]);
+
+/* Loads of the lines where the bodies are, after a checkpoint has placed them. */
+void tobi_rigid_update_lines(tobi_dynamics_state *state);
 
 /* s: at most 1/60, a step in which gravity does little to the smallest body that moves and the fastest turns
    by half a radian, less where bodies are thin: contact looks ahead along straight lines. */

@@ -46,6 +46,7 @@ static const char head[] =
     "|---|---|---|\n"
     "| `history.csv` | each output | always |\n"
     "| `bodies.csv` | each output and body | where the scene has bodies |\n"
+    "| `lines.csv` | as probes.csv: NAME_tension in N, NAME_distance in m | where the scene has lines |\n"
     "| `probes.csv` | each step, or each `output.probe_interval` | where the scene has probes |\n"
     "\n"
     "- Units are SI. In 2-D masses, forces, torques and energies are per metre of depth.\n"

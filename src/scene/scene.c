@@ -258,6 +258,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     tobi_tank_bind(&scene->tank, &binder, scene->root, &root);
     TOBI_TRY(read_planes(scene, &binder, &root));
     TOBI_TRY(tobi_openings_read(scene, &binder, &root));
+    TOBI_TRY(tobi_lines_bind(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
     TOBI_TRY(tobi_output_bind(scene, &binder, &root));
     TOBI_TRY(read_references(scene, &binder, &root));
@@ -382,6 +383,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->bodies);
     free(scene->planes);
     free(scene->planes_bound);
+    free(scene->lines);
     free(scene->probes);
     tobi_openings_clear(scene);
     free(scene->references);
@@ -459,6 +461,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     for (int i = 0; i < scene->plane_count && status == TOBI_OK; i++)
         status = tobi_world_add_plane(world, &scene->planes[i], err);
     if (status == TOBI_OK) status = tobi_openings_build(scene, world, err);
+    for (int i = 0; i < scene->line_count && status == TOBI_OK; i++)
+        status = tobi_world_add_line(world, &scene->lines[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);
@@ -583,6 +587,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     failed |= tobi_tank_write(&scene->tank, root);
     if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
     failed |= tobi_openings_write(scene, root);
+    if (scene->line_count) failed |= json_object_set_new(root, "lines", tobi_lines_write_json(scene));
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
     failed |= json_object_set_new(root, "output", tobi_output_write(scene));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);

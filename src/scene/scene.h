@@ -60,6 +60,8 @@ struct tobi_scene {
     int inlet_count;
     tobi_outlet_def *outlets;
     int outlet_count;
+    tobi_line_def *lines;
+    int line_count;
     tobi_probe_def *probes;
     int probe_count;
     tobi_output_def output;
@@ -78,6 +80,11 @@ char *tobi_scene_find_directory(const char *path);
    reported. */
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
                         const char *owner);
+
+/* lines.c: the key lines of the scene, which is `of`. */
+tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
+void tobi_lines_check(const tobi_scene *scene, tobi_source *source);
+json_t *tobi_lines_write_json(const tobi_scene *scene);      /* NULL: no memory */
 
 /* output.c: the key output of the scene, which is `of`. */
 tobi_status tobi_output_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);

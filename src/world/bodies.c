@@ -29,6 +29,8 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);
+    world.lines = w->lines;
+    world.line_count = w->line_count;
     tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES,
                                           &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);

@@ -142,6 +142,7 @@ tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_er
 {
     if (w->dynamics) TOBI_TRY(tobi_rigid_set_warm(w->dynamics, l->contact_count, l->contacts, err));
     for (int k = 0; k < l->count; k++) take_body(&w->sim.bodies[k], &l->body[k]);
+    if (w->dynamics) tobi_rigid_update_lines(w->dynamics);
     return TOBI_OK;
 }
 

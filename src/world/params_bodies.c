@@ -127,6 +127,37 @@ const tobi_param_table tobi_body_table = {
     "body", "An entry of bodies: the inside of a closed mesh, at rest or moved by a motion.",
     sizeof(tobi_body_def), body_rows };
 
+static const tobi_param line_rows[] = {
+    { .key = "name", TEXT, AT(tobi_line_def, name), .unit = "name", .text = "line", .required = true,
+      .doc = "Name of the line, used once in a scene and in the columns of lines.csv." },
+    { .key = "kind", CHOICE("spring|rope|catenary", 3), AT(tobi_line_def, kind),
+      .doc = "A spring pulls and pushes, a rope pulls when it is taut, a catenary is a mooring line that "
+             "hangs by its weight." },
+    { .key = "body", TEXT, AT(tobi_line_def, body), .unit = "name", .required = true,
+      .doc = "Name of the free or controlled body that it holds." },
+    { .key = "point", VEC3, AT(tobi_line_def, point), PLACE, .unit = "m", .required = true,
+      .doc = "Where it holds the body, as the body starts." },
+    { .key = "to_body", TEXT, AT(tobi_line_def, to_body), .unit = "name",
+      .doc = "Name of the body at its other end, which may be prescribed; without it that end is fixed." },
+    { .key = "to", VEC3, AT(tobi_line_def, to), PLACE, .unit = "m", .required = true,
+      .doc = "The other end at the start." },
+    { .key = "length", REAL, AT(tobi_line_def, length), RANGE(1e-7, 1e7), .unit = "m", .text = "as placed",
+      .doc = "Length without force; as placed takes the distance of the ends at the start." },
+    { .key = "stiffness", REAL, AT(tobi_line_def, stiffness), RANGE(1e-9, 1e12), .unit = "N/m",
+      .required = true,
+      .doc = "Force per stretch; of a catenary its EA over its length. Stiff lines shorten the time step." },
+    { .key = "damping", REAL, AT(tobi_line_def, damping), RANGE(0, 1e12), .unit = "N s/m",
+      .doc = "Force per speed at which a spring or a taut rope grows." },
+    { .key = "weight", REAL, AT(tobi_line_def, weight), RANGE(0, 1e9), .unit = "N/m",
+      .doc = "Of a catenary: weight per length less buoyancy." },
+    { .key = "rests", BOOL, AT(tobi_line_def, rests),
+      .doc = "Whether a catenary may lie on a floor at the height of its lower end." },
+    { 0 }
+};
+
+const tobi_param_table tobi_line_table = {
+    "line", "An entry of lines: a spring, a rope or a mooring line.", sizeof(tobi_line_def), line_rows };
+
 static const tobi_param plane_rows[] = {
     { .key = "point", VEC3, AT(tobi_plane_def, point), PLACE, .unit = "m", .required = true,
       .doc = "Any point of the plane, in the domain." },

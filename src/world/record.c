@@ -102,11 +102,12 @@ static tobi_status keep_scene(const tobi_run *run, tobi_error *err)
 static void tell_losses(tobi_run *run)
 {
     const struct { const tobi_csv *csv; const char *name; } tables[] = {
-        { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" } };
+        { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" },
+        { run->lines, "lines.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
     if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
-    for (int k = 0; k < 3; k++)
+    for (size_t k = 0; k < sizeof tables/sizeof *tables; k++)
         if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
             at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
     if (run->missing)
@@ -243,6 +244,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     tobi_tally_add(&run->since, &sim->info);
     tobi_tally_bodies(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
+    TOBI_TRY(tobi_lines_write(run, start, err));
     return tobi_tables_write_probes(run, start, err);
 }
 
@@ -314,6 +316,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->history);
     tobi_csv_close(run->bodies);
     tobi_csv_close(run->probes);
+    tobi_csv_close(run->lines);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);

@@ -95,7 +95,7 @@ struct tobi_run {
     int series;
     int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
-    tobi_csv *history, *bodies, *probes;  /* NULL without bodies, without probes     */
+    tobi_csv *history, *bodies, *probes, *lines;        /* NULL where the scene has none */
     int64_t outputs;                      /* taken so far = number of the next       */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
@@ -129,6 +129,12 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 /* The row of probes.csv that is due after the step from `before`, if any. */
 tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
+/* record_lines.c: lines.csv, as often as probes.csv. */
+tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err);
+tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
+/* A table of the run: new, or continued after the rows up to the world's time. */
+tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
+                            const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 

@@ -4,6 +4,7 @@
 #include "mpm/particle_fields.h"
 #include "tobiuo/picture.h"
 #include "base/param.h"
+#include "world/line_tube.h"
 #include "world/record.h"
 #include "world/world.h"
 #include <math.h>
@@ -30,6 +31,7 @@ typedef struct tobi_drawing {
     int32_t *group;                    /* n, with opaque: material or piece             */
     int mesh_count;
     tobi_picture_mesh *meshes;
+    tobi_line_tube *tubes;             /* of the lines                                  */
     const tobi_record_view *view;      /* of the run                                    */
 } tobi_drawing;
 
@@ -44,6 +46,7 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->opaque);
     free(d->group);
     free(d->meshes);
+    free(d->tubes);
     free(d);
 }
 
@@ -292,8 +295,10 @@ static tobi_status color_materials(tobi_run *run, tobi_drawing *d, tobi_error *e
 static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapshot, tobi_drawing *d,
                                tobi_error *err)
 {
-    d->meshes = calloc((size_t)snapshot->surfaces + 1, sizeof *d->meshes);
-    if (!d->meshes) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    const int lines = tobi_world_line_count(run->world);
+    d->meshes = calloc((size_t)(snapshot->surfaces + lines) + 1, sizeof *d->meshes);
+    d->tubes = malloc((size_t)lines*sizeof *d->tubes + 1);
+    if (!d->meshes || !d->tubes) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int b = 0; b < snapshot->surfaces; b++) {
         const tobi_body *body = &run->world->sim.bodies[b];
         if (!body->visible || !snapshot->surface[b]) continue;
@@ -305,6 +310,9 @@ static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapsho
         memcpy(m->color, body_colors[b % COLOR_COUNT], sizeof m->color);
         for (int k = 0; k < 3 && body->color[0] >= 0; k++) m->color[k] = (float)(body->color[k] / 255.0);
     }
+    for (int k = 0; k < lines; k++)
+        d->meshes[d->mesh_count++] = tobi_line_draw(&run->world->lines[k],
+                                                    0.15*run->world->sim.def.spacing, &d->tubes[k]);
     return TOBI_OK;
 }
 

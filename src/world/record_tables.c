@@ -54,9 +54,8 @@ static tobi_body_tally mean_of_body(const tobi_body_tally *t)
     return m;
 }
 
-static tobi_status open_table(const tobi_run *run, const char *name, bool continued,
-                              const tobi_csv_column *columns, int count, tobi_csv **csv,
-                              tobi_error *err)
+tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
+                            const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err)
 {
     char *path = tobi_record_path(run->dir, "%s", name);
     if (!path) return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
@@ -119,7 +118,7 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
         }
     }
     tobi_status status = columns && names
-        ? open_table(run, "probes.csv", continued, columns, count, &run->probes, err)
+        ? tobi_table_open(run, "probes.csv", continued, columns, count, &run->probes, err)
         : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
     free(columns);
     free(names);
@@ -128,11 +127,12 @@ static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
 {
-    TOBI_TRY(open_table(run, "history.csv", continued, history_columns,
+    TOBI_TRY(tobi_table_open(run, "history.csv", continued, history_columns,
                         tables[TOBI_TABLE_HISTORY].count, &run->history, err));
     if (tobi_world_body_count(run->world) > 0)
-        TOBI_TRY(open_table(run, "bodies.csv", continued, body_columns,
+        TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, body_columns,
                             tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
+    TOBI_TRY(tobi_lines_open(run, continued, err));
     return open_probes(run, continued, err);
 }
 

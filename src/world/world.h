@@ -22,6 +22,8 @@ struct tobi_world {
     double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
     tobi_region *regions;
     int region_count;
+    struct tobi_line *lines;       /* rigid/lines.h                                            */
+    int line_count;
     tobi_probe *probes;
     int probe_count;
     int32_t *leaving;              /* owned: rows that outlets take, of the step at hand           */

@@ -1,0 +1,43 @@
+/* lines.csv: of each line of the scene tension and distance of its ends, as often as the probes are read. */
+#include "world/record.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err)
+{
+    enum { NAME = 128 };
+    const int lines = tobi_world_line_count(run->world);
+    int count = 1;
+    if (lines == 0) return TOBI_OK;
+    tobi_csv_column *columns = calloc((size_t)lines*2 + 1, sizeof *columns);
+    char (*names)[NAME] = calloc((size_t)lines*2 + 1, sizeof *names);
+    tobi_status status = columns && names ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    for (int k = 0; status == TOBI_OK && k < lines; k++)
+        for (int v = 0; v < 2; v++, count++) {
+            snprintf(names[count], NAME, "%s_%s", tobi_world_line(run->world, k, NULL),
+                     v ? "distance" : "tension");
+            columns[count].name = names[count];
+        }
+    if (status == TOBI_OK) columns[0].name = "time";
+    if (status == TOBI_OK)
+        status = tobi_table_open(run, "lines.csv", continued, columns, count, &run->lines, err);
+    free(columns);
+    free(names);
+    return status;
+}
+
+tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err)
+{
+    double every = run->output.probe_interval, now = tobi_world_time(run->world);
+    if (!run->lines || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
+    if (tobi_csv_is_gone(run->lines)) TOBI_TRY(tobi_record_keep_dir(run, err));
+    tobi_csv_add_real(run->lines, now);
+    for (int k = 0; k < tobi_world_line_count(run->world); k++) {
+        tobi_line_info info;
+        tobi_world_line(run->world, k, &info);
+        tobi_csv_add_real(run->lines, info.tension);
+        tobi_csv_add_real(run->lines, info.distance);
+    }
+    return tobi_csv_end_row(run->lines, err);
+}

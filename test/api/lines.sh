@@ -1,0 +1,41 @@
+#!/bin/bash
+# lines of a scene: their table, the same bits after a resume, messages.
+# usage: lines.sh PROGRAM      works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > buoy.json <<'END'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.2,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],
+  "bodies": [ { "name": "buoy", "box": { "min": [0.4, 0.2, -0.1], "max": [0.6, 0.4, 0.1] }, "dynamics": "free",
+                "density": 300 } ],
+  "lines": [ { "name": "chain", "kind": "catenary", "body": "buoy", "point": [0.5, 0.2], "to": [0.2, 0],
+               "length": 0.4, "stiffness": 2000, "weight": 50, "rests": true },
+             { "name": "spring", "body": "buoy", "point": [0.6, 0.3], "to": [1, 0.3], "stiffness": 200,
+               "damping": 2 } ],
+  "output": { "interval": 0.05 } }
+END
+expect 0 "" run buoy.json --out whole --quiet
+check "a table of tensions and distances" \
+    test "$(head -1 whole/lines.csv)" = "time,chain_tension,chain_distance,spring_tension,spring_distance"
+check "a row for each step, none without a number" \
+    test "$(grep -c nan whole/lines.csv) $(($(wc -l < whole/lines.csv) > 20))" = "0 1"
+expect 0 "" run buoy.json --out parts --quiet --until 0.1
+expect 0 "" resume parts --quiet --until 0.2
+check "the same tensions after a resume" cmp whole/lines.csv parts/lines.csv
+check "resolved.json has the lines" grep -q '"rests": true' whole/resolved.json
+expect 0 "" run whole/resolved.json --out again --quiet
+check "and runs alike" cmp whole/lines.csv again/lines.csv
+
+refuse() { expect 1 "$1" check buoy.json --set "$2"; }
+refuse '"ship" is no body of the scene' lines.chain.body=ship
+refuse '"pier" is no body of the scene' lines.chain.to_body=pier
+refuse 'is the body at the other end too' lines.chain.to_body=buoy
+refuse '"buoy" is prescribed; a line holds a free or controlled body' bodies.buoy.dynamics=prescribed
+refuse '"spring" is already the name of lines[0]' lines.chain.name=spring
+refuse 'weight: is 0 N/m, a catenary has a weight' lines.chain.weight=0
+refuse 'damping: is of springs and ropes' lines.chain.damping=1
+refuse 'weight: is of a catenary' lines.spring.weight=1
+refuse 'rests: is of a catenary' lines.spring.rests=true
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
