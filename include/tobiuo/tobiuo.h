@@ -90,8 +90,8 @@ TOBI_API tobi_status tobi_world_add_outlet(tobi_world *world, const tobi_outlet_
 /* Adds a probe, at any time. TOBI_INVALID if it sits outside the domain. */
 TOBI_API tobi_status tobi_world_add_probe(tobi_world *world, const tobi_probe_def *def, tobi_error *err);
 
-/* Adds a line, after the bodies that it names. TOBI_INVALID if they are not there, if `body` is prescribed, or
-   for constants that its kind does not have; TOBI_UNSUPPORTED if to_body deforms. */
+/* Adds a line, after the bodies that it names. TOBI_INVALID if they are not there, if `body` is prescribed,
+   or for constants that its kind does not have; TOBI_UNSUPPORTED if to_body deforms. */
 TOBI_API tobi_status tobi_world_add_line(tobi_world *world, const tobi_line_def *def, tobi_error *err);
 TOBI_API int tobi_world_line_count(const tobi_world *world);
 /* Name and, if info is not NULL, values after the last step; NULL past the end. */

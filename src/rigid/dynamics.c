@@ -2,7 +2,7 @@
    contacts between two steps are seen at the next. */
 #include "rigid/dynamics.h"
 #include "geom/vec3.h"
-#include "rigid/broad.h"
+#include "rigid/dynamics_state.h"
 #include "rigid/overlap.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,18 +11,6 @@
 #define PLASTIC 3.0          /* times gravity and step: slower approaches do not bounce                 */
 #define SAGITTA 0.3          /* of the least thickness: twice what a corner's arc may leave its chord     */
 #define PLASTIC_LEAST 1e-3   /* m/s, the same without gravity                                           */
-
-struct tobi_dynamics_state {
-    tobi_body *bodies;
-    int count;
-    tobi_rigid_world world;
-    tobi_shape *shapes;
-    tobi_broad broad;
-    double thinnest;             /* m, the least thickness of all bodies that can be touched */
-    tobi_touch_list contacts, before;
-    tobi_touch_list *part;     /* [threads] */
-    tobi_solver solver;
-};
 
 /* --- start ------------------------------------------------------------------------------------- */
 
@@ -521,12 +509,13 @@ static int is_held(const tobi_dynamics_state *d, const tobi_rigid *r)
 static void change_pull(const tobi_dynamics_state *d, tobi_rigid *r, const double gravity[3],
                         const double force[3], const double torque[3])
 {
+    const int more = r->control || d->world.line_count > 0;
     if (r->kind == TOBI_PRESCRIBED || is_held(d, r)) return;
     for (int a = 0; a < 3; a++) {
         const double now = gravity[a] + force[a]/r->mass;
-        const double added = r->control || d->world.line_count ? r->pull[a] - (d->world.gravity[a] + r->force[a]/r->mass) : 0;
+        const double added = more ? r->pull[a] - (d->world.gravity[a] + r->force[a]/r->mass) : 0;
         r->pull[a] = now + added;
-        r->pull_torque[a] = torque[a] + (r->control || d->world.line_count ? r->pull_torque[a] - r->torque[a] : 0);
+        r->pull_torque[a] = torque[a] + (more ? r->pull_torque[a] - r->torque[a] : 0);
     }
 }
 
@@ -550,66 +539,4 @@ void tobi_rigid_set_force(tobi_dynamics_state *d, int body, const double force[3
     change_pull(d, r, d->world.gravity, force, torque);
     memcpy(r->force, force, sizeof r->force);
     memcpy(r->torque, torque, sizeof r->torque);
-}
-
-/* --- restart ----------------------------------------------------------------------------------- */
-
-enum { KEY_HALF = 30 };
-
-int64_t tobi_rigid_warm(const tobi_dynamics_state *d, double *rows)
-{
-    int64_t n = 0;
-    for (int64_t k = 0; k < d->contacts.count; k++) {
-        const tobi_touch *c = &d->contacts.at[k];
-        if (c->impulse == 0 && vec3_dot(c->slide, c->slide) == 0) continue;
-        double row[TOBI_WARM] = { c->a, c->b, (double)(c->key >> KEY_HALF),
-                                  (double)(c->key & (((int64_t)1 << KEY_HALF) - 1)), c->impulse,
-                                  c->slide[0], c->slide[1], c->slide[2] };
-        if (rows) memcpy(rows + TOBI_WARM*n, row, sizeof row);
-        n++;
-    }
-    return n;
-}
-
-static tobi_status read_warm(const tobi_dynamics_state *d, int64_t count, const double *rows,
-                             tobi_touch_list *out, tobi_error *err)
-{
-    for (int64_t k = 0; k < count; k++) {
-        const double *row = rows + TOBI_WARM*k;
-        for (int i = 0; i < TOBI_WARM; i++)
-            if (!isfinite(row[i]) || fabs(row[i]) > 1e18)
-                return tobi_fail(err, TOBI_DAMAGED, "the contact %lld of the bodies is no number",
-                                 (long long)k);
-        if (row[0] < 0 || row[0] >= d->count || row[1] < -TOBI_SIDES - d->world.plane_count ||
-            row[1] >= d->count)
-            return tobi_fail(err, TOBI_DAMAGED, "the contact %lld names no body of the scene", (long long)k);
-        tobi_touch *c = tobi_touch_add(out);
-        if (!c) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for contacts");
-        c->a = (int32_t)row[0];
-        c->b = (int32_t)row[1];
-        c->key = (int64_t)((uint64_t)(int64_t)fmin(row[2], 1e10) << KEY_HALF) | (int64_t)row[3];
-        c->impulse = row[4];
-        memcpy(c->slide, row + 5, sizeof c->slide);
-    }
-    return TOBI_OK;
-}
-
-tobi_status tobi_rigid_set_warm(tobi_dynamics_state *d, int64_t count, const double *rows, tobi_error *err)
-{
-    tobi_touch_list read = { 0 };
-    const tobi_status status = read_warm(d, count, rows, &read, err);
-    if (status != TOBI_OK) {
-        free(read.at);
-        return status;
-    }
-    tobi_touch_list *kept = &d->contacts;      /* its memory, if that suffices: steps allocate nothing */
-    if (kept->capacity >= read.count) {
-        if (read.count > 0) memcpy(kept->at, read.at, (size_t)read.count*sizeof *read.at);
-        kept->count = read.count;
-        free(read.at);
-    } else {
-        free(kept->at);
-        *kept = read;
-    }
-    return TOBI_OK;
 }

@@ -38,8 +38,8 @@ static void check_ends(const tobi_scene *scene, tobi_source *source, const tobi_
     if (line->body && !held)
         tobi_source_mistake(source, &body, "\"%s\" is no body of the scene", line->body);
     if (held && held->dynamics == TOBI_PRESCRIBED)
-        tobi_source_mistake(source, &body, "\"%s\" is prescribed; a line holds a free or controlled body, and "
-                            "may go to a prescribed one", line->body);
+        tobi_source_mistake(source, &body, "\"%s\" is prescribed; a line holds a free or controlled body, "
+                            "and may go to a prescribed one", line->body);
     if (!line->to_body) return;
     if (!find_body(scene, line->to_body))
         tobi_source_mistake(source, &to_body, "\"%s\" is no body of the scene", line->to_body);

@@ -4,7 +4,8 @@
 #include <math.h>
 
 /* Around p, across the way from a to b. */
-static void make_ring(const double a[3], const double b[3], const double p[3], double radius, double (*ring)[3])
+static void make_ring(const double a[3], const double b[3], const double p[3], double radius,
+                      double (*ring)[3])
 {
     double along[3], across[3], third[3];
     vec3_sub(along, b, a);

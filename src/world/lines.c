@@ -44,7 +44,8 @@ static tobi_status check_kind(const tobi_world *w, const tobi_line_def *def, con
                          def->name);
     if (def->kind != TOBI_LINE_CATENARY)
         return def->weight > 0 || def->rests
-            ? tobi_fail(err, TOBI_INVALID, "line '%s': weight and rests are of a catenary", def->name) : TOBI_OK;
+            ? tobi_fail(err, TOBI_INVALID, "line '%s': weight and rests are of a catenary", def->name)
+            : TOBI_OK;
     if (!(def->weight > 0))
         return tobi_fail(err, TOBI_INVALID, "line '%s': a catenary has a weight above 0 N/m", def->name);
     if (def->damping > 0)

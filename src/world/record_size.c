@@ -85,7 +85,8 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
     const int bodies = tobi_world_body_count(world), checkpoints = every > 0 && every < end ? 2 : 1,
               lists = 1 + (bodies > 0) + output->grid + output->surface +
                       (output->surfaces + output->tractions)*bodies,
-              tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) + (tobi_world_line_count(world) > 0);
+              tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) +
+                       (tobi_world_line_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
     size->outputs = tobi_record_count(output->interval, end);
     /* Besides: the list of all, resolved.json, summary.json. */

@@ -148,7 +148,8 @@ static void a_catenary_lies_on_the_floor(void **state)
     const double w = 3, horizontal = 60, height = 12, a = horizontal/w, length = 100;
     const double vertical = sqrt(2*horizontal*w*height + w*w*height*height);
     const double span = length - vertical/w + a*asinh(vertical/horizontal);
-    tobi_line line = { .kind = TOBI_LINE_CATENARY, .weight = w, .length = length, .stiffness = 1e9, .rests = 1 };
+    tobi_line line = { .kind = TOBI_LINE_CATENARY, .weight = w, .length = length, .stiffness = 1e9,
+                       .rests = 1 };
     double pull[2];
     tobi_catenary(&line, span, height, pull);
     assert_true(fabs(pull[0]/horizontal - 1) < 1e-5 && fabs(pull[1]/vertical - 1) < 1e-5);
