@@ -13,9 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The method of solids. */
-#define SOLIDS "mlsmpm"
-
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place, const char *owner)
 {
     int limit = tobi_part_find(owner, place->key).most;
@@ -207,7 +204,7 @@ static tobi_status read_method(tobi_scene *scene, const tobi_binder *binder, con
         tobi_bound bound = { 0 };
         if (value) bound = tobi_bind(binder, table, value, &place, NULL, def);
         if (table != scene->method) {
-            if (strcmp(name, SOLIDS) == 0) scene->solids_def = *(const tobi_mlsmpm_def *)def;
+            if (strcmp(name, TOBI_METHOD_OF_SOLIDS) == 0) scene->solids_def = *(const tobi_mlsmpm_def *)def;
             free(def);
             continue;
         }
@@ -438,9 +435,9 @@ static tobi_status add_body(const tobi_scene *scene, tobi_world *world, const to
 }
 
 /* Solids beside the fluids of the scene's method. */
-static int has_both(const tobi_scene *scene)
+int tobi_scene_has_both(const tobi_scene *scene)
 {
-    return scene->solid_count > 0 && scene->method && strcmp(scene->method->name, SOLIDS) != 0;
+    return scene->solid_count > 0 && scene->method && strcmp(scene->method->name, TOBI_METHOD_OF_SOLIDS) != 0;
 }
 
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
@@ -451,7 +448,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     TOBI_NEED(scene, "scene");
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
-    if (has_both(scene)) status = tobi_world_use_solids(world, &scene->solids_def, err);
+    if (tobi_scene_has_both(scene)) status = tobi_world_use_solids(world, &scene->solids_def, err);
     for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
         status = add_body(scene, world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
@@ -481,123 +478,4 @@ const char *tobi_scene_import_table(const tobi_scene *scene) { return scene ? sc
 const char *tobi_scene_import_program(const tobi_scene *scene)
 {
     return scene && scene->import_table ? scene->import_program : NULL;
-}
-
-/* jansson's calls answer a NULL argument or a lack of memory with -1, so that one flag gathers all. */
-static json_t *whole(json_t *value, int failed)
-{
-    if (!failed) return value;
-    json_decref(value);
-    return NULL;
-}
-
-/* The regions of an object, each with the keys of its own shape alone. */
-static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int count)
-{
-    json_t *list = json_array();
-    int failed = 0;
-    for (int i = 0; i < count; i++) {
-        const tobi_fill_def *def = &fills[i].def;
-        json_t *fill = tobi_write_def(&tobi_fill_table, def);
-        if (def->mesh || def->radius > 0) json_object_del(fill, "box");
-        if (def->mesh || !(def->radius > 0)) json_object_del(fill, "sphere");
-        for (int k = 0; !def->mesh && k < 3; k++)
-            json_object_del(fill, (const char *[]){ "scale", "translation", "rotation" }[k]);
-        json_t *flow = fills[i].flow ? tobi_control_write(TOBI_FLOW_SCRIPT, &fills[i].flow_def) : NULL;
-        if (fills[i].flow) failed |= json_object_set_new(fill, "flow", flow);
-        failed |= json_array_append_new(list, fill);
-    }
-    failed |= json_object_set_new(object, "fill", list);
-    return whole(object, failed);
-}
-
-static json_t *write_fluid(const tobi_scene_fluid *fluid)
-{
-    return write_fills(tobi_write_def(&tobi_fluid_table, &fluid->def), fluid->fills, fluid->fill_count);
-}
-
-/* What counts: density or mass, and the constants of its model. */
-static json_t *write_solid(const tobi_scene *scene, const tobi_scene_solid *solid)
-{
-    json_t *object = tobi_write_def(&tobi_solid_table, &solid->def);
-    tobi_unused_drop(scene, &tobi_solid_table, &solid->def, object);
-    json_object_del(object, solid->def.mass > 0 ? "density" : "mass");
-    for (const tobi_param *row = tobi_solid_table.rows; row->key; row++)
-        if (!tobi_solid_uses(solid->def.model, row->key)) json_object_del(object, row->key);
-    return write_fills(object, solid->fills, solid->fill_count);
-}
-
-/* Of the shapes only the body's own is written. */
-static void drop_shapes(const tobi_body_def *def, json_t *object)
-{
-    const struct { const char *key; int has; } shapes[] = {
-        { "mesh", def->mesh != NULL }, { "sphere", def->sphere_radius > 0 },
-        { "cylinder", def->cylinder_radius > 0 }, { "capsule", def->capsule_radius > 0 },
-        { "plate", def->plate_thickness > 0 } };
-    int box = 1;
-    for (size_t k = 0; k < sizeof shapes/sizeof *shapes; k++) {
-        if (!shapes[k].has) json_object_del(object, shapes[k].key);
-        box &= !shapes[k].has;
-    }
-    if (!box) json_object_del(object, "box");
-}
-
-static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
-{
-    json_t *object = tobi_write_def(&tobi_body_table, &body->def);
-    int failed = 0;
-    tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
-    drop_shapes(&body->def, object);
-    if (body->motion_def[0].table)
-        failed = json_object_set_new(object, "motion", tobi_motion_write(body->motion_def));
-    if (body->control)
-        failed |= json_object_set_new(object, "control",
-                                      tobi_control_write(TOBI_CONTROL_SCRIPT, &body->control_def));
-    return whole(object, failed);
-}
-
-char *tobi_scene_resolved(const tobi_scene *scene)
-{
-    if (!scene) return NULL;
-    json_t *root = tobi_write_def(&tobi_world_table, &scene->world);
-    json_t *method = tobi_write_def(scene->method, scene->method_def);
-    tobi_unused_drop(scene, &tobi_world_table, NULL, root);
-    tobi_unused_drop(scene, scene->method, NULL, method);
-    json_t *fluids = json_array(), *solids = json_array(), *bodies = json_array(), *planes = json_array(),
-           *probes = json_array(), *references = json_array();
-    int failed = json_object_set_new(root, scene->method->name, method);
-    json_t *beside = has_both(scene) ? tobi_write_def(tobi_method_table(SOLIDS), &scene->solids_def) : NULL;
-    if (has_both(scene)) failed |= json_object_set_new(root, SOLIDS, beside);
-    for (int i = 0; i < scene->fluid_count; i++)
-        failed |= json_array_append_new(fluids, write_fluid(&scene->fluids[i]));
-    for (int i = 0; i < scene->solid_count; i++)
-        failed |= json_array_append_new(solids, write_solid(scene, &scene->solids[i]));
-    for (int i = 0; i < scene->body_count; i++)
-        failed |= json_array_append_new(bodies, write_body(scene, &scene->bodies[i]));
-    for (int i = 0; i < scene->plane_count; i++)
-        failed |= json_array_append_new(planes, tobi_write_def(&tobi_plane_table, &scene->planes[i]));
-    for (int i = 0; i < scene->probe_count; i++)
-        failed |= json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
-    for (int i = 0; i < scene->reference_count; i++)
-        failed |= json_array_append_new(
-            references, tobi_write_def(&tobi_reference_table, &scene->references[i]));
-    if (scene->fluid_count) failed |= json_object_set(root, "fluids", fluids);
-    if (scene->solid_count) failed |= json_object_set(root, "solids", solids);
-    failed |= json_object_set_new(root, "bodies", bodies);
-    failed |= tobi_tank_write(&scene->tank, root);
-    if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
-    failed |= tobi_openings_write(scene, root);
-    if (scene->line_count) failed |= json_object_set_new(root, "lines", tobi_lines_write_json(scene));
-    if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
-    failed |= json_object_set_new(root, "output", tobi_output_write(scene));
-    if (scene->reference_count) failed |= json_object_set(root, "references", references);
-    json_decref(fluids);
-    json_decref(solids);
-    json_decref(planes);
-    json_decref(probes);
-    json_decref(references);
-    root = whole(root, failed);
-    char *text = root ? tobi_write_json(root) : NULL;
-    json_decref(root);
-    return text;
 }

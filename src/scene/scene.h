@@ -76,6 +76,9 @@ struct tobi_scene {
 /* The absolute directory of a file that may not exist; owned by the caller. */
 char *tobi_scene_find_directory(const char *path);
 
+/* scene.c: whether solids stand beside fluids, which have another method. */
+#define TOBI_METHOD_OF_SOLIDS "mlsmpm"
+int tobi_scene_has_both(const tobi_scene *scene);
 /* scene.c: the list of objects at the key of `place`, a part of `owner`. NULL if there is none; mistakes are
    reported. */
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place,
