@@ -53,6 +53,7 @@ TOBI_API tobi_line_def   tobi_default_line_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
 TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
+TOBI_API tobi_damping_def tobi_default_damping_def(void);
 
 /* Creates an empty world. method_def points to the method's parameters (tobi_dfsph_def, ...), NULL = its
    defaults. On failure *world is NULL and err says why. */
@@ -129,6 +130,9 @@ TOBI_API void tobi_world_set_stop(tobi_world *world, tobi_stop_fn stop, void *us
    Gravity, m/s2, in 2-D without z. Still water, the sums of energies and the bounds of the time step follow.
    TOBI_INVALID beyond the range of the definition's gravity. */
 TOBI_API tobi_status tobi_world_set_gravity(tobi_world *world, const double gravity[3], tobi_error *err);
+/* Before the start. A damping zone; TOBI_INVALID for boxes without an inside and for negative rates,
+   TOBI_UNSUPPORTED in mlsmpm and for more than 16. */
+TOBI_API tobi_status tobi_world_add_damping(tobi_world *world, const tobi_damping_def *def, tobi_error *err);
 /* Before the start. Gravity as a function of time; TOBI_INVALID for numbers out of range and rows that go
    back in time, TOBI_NOT_FOUND and TOBI_IO for the file. Checkpoints do not hold it. */
 TOBI_API tobi_status tobi_world_set_gravity_in_time(tobi_world *world, const tobi_gravity_def *def,

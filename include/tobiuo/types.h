@@ -424,6 +424,15 @@ typedef struct tobi_reference_def {
     const char *label;            /* name in pictures; NULL = the file's                             */
 } tobi_reference_def;
 
+/* A zone in which the liquid is damped: a beach, where waves end. The rate at a place is `rate` times the
+   square of the way into the box along `direction` over `length`, at most 1. */
+typedef struct tobi_damping_def {
+    double box_min[3], box_max[3];    /* m                                                             */
+    double direction[3];              /* where the rate grows, of any length                           */
+    double length;                    /* m, over which it grows; 0 = all of the box                    */
+    double rate;                      /* 1/s, at its end                                               */
+} tobi_damping_def;
+
 /* Gravity as a function of time, in place of the constant one: by the rows of a file, and a swing added to
    that. The constant one stays what still water, energies and gauges refer to. */
 typedef struct tobi_gravity_def {

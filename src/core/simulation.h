@@ -3,6 +3,7 @@
 #include "core/acceleration.h"
 #include "core/body.h"
 #include "core/cells.h"
+#include "core/damping.h"
 #include "core/opening.h"
 #include "core/plane.h"
 #include "core/soft.h"
@@ -26,6 +27,8 @@ typedef struct tobi_simulation {
     int plane_count;
     tobi_opening *openings;         /* owned by the world                                    */
     int opening_count;
+    tobi_damping damping[TOBI_DAMPING_LIMIT];
+    int damping_count;
     tobi_acceleration acceleration; /* besides gravity, at the middle of the step             */
     double acceleration_change;     /* m/s2, largest of the run in the liquid of the start, without gravity */
     double acceleration_most[3];    /* m/s2, of the whole run with gravity; 0: gravity alone  */

@@ -257,6 +257,13 @@ int tobi_motion_is_rigid(const tobi_motion *motion)
     return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
 }
 
+int tobi_motion_is_piston(const tobi_motion *motion)
+{
+    int is = motion->kind == KIND_PISTON;
+    for (int k = 0; k < motion->parts; k++) is |= tobi_motion_is_piston(motion->part[k]);
+    return is;
+}
+
 /* Rodrigues' formula as a matrix; axis is a unit vector. The angle is brought to (-360, 360) first,
    which is exact, so that long spins lose nothing. */
 static void fill_rotation(const double axis[3], double degrees, double m[3][3])

@@ -14,6 +14,9 @@ double tobi_waves_displacement(const tobi_waves *waves, double t);
 /* m: the level at the front of a piston by the same theory, local waves included. */
 double tobi_waves_level(const tobi_waves *waves, double t);
 
+/* 1: the motion is a piston, or one of its parts is. */
+int tobi_motion_is_piston(const tobi_motion *motion);
+
 /* 1/m: k of omega^2 = g k tanh kh for a period (s) and a depth (m). */
 double tobi_waves_number(double gravity, double depth, double period);
 /* 1: height of the waves over the stroke of the maker at the still water (Biesel 1951). hinge: m above the

@@ -27,6 +27,8 @@ static const tobi_part parts[] = {
       "Data that `tobiuo plot` draws beside the run's, if any." },
     { "world", "gravity_in_time", TOBI_PART_OBJECT, &tobi_gravity_table, 0, 0,
       "Gravity that changes with time." },
+    { "world", "damping_zones", TOBI_PART_LIST, &tobi_damping_table, 0, 16,
+      "Where liquids are damped, if anywhere: beaches." },
     { "world", "frame", TOBI_PART_MOTION, NULL, 0, 0,
       "How the tank moves that all is seen from: one motion, or a list of them, as of a body." },
     { "world", "output", TOBI_PART_OBJECT, &tobi_output_table, 0, 0, "The files of a run." },

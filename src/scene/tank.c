@@ -22,24 +22,48 @@ static void bind_frame(tobi_scene_tank *t, const tobi_binder *binder, json_t *va
     tobi_source_mistake(binder->source, &place, "changes its shape; the motion of a frame is rigid");
 }
 
+static void bind_zones(tobi_scene_tank *t, const tobi_binder *binder, json_t *list, const tobi_place *root)
+{
+    const tobi_place place = { root, "damping_zones", 0 };
+    if (!json_is_array(list) || json_array_size(list) > TOBI_ZONES) {
+        tobi_source_mistake(binder->source, &place, "must be a list [ { ... } ] of %d zones at most",
+                            TOBI_ZONES);
+        return;
+    }
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const tobi_place entry = { &place, NULL, i };
+        t->damping[i] = tobi_default_damping_def();
+        tobi_bind(binder, &tobi_damping_table, json_array_get(list, i), &entry, NULL, &t->damping[i]);
+        t->damping_count++;
+    }
+}
+
 void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene, const tobi_place *root)
 {
     const tobi_place gravity = { root, "gravity_in_time", 0 };
     json_t *changes = json_object_get(scene, "gravity_in_time"), *frame = json_object_get(scene, "frame");
+    json_t *zones = json_object_get(scene, "damping_zones");
     t->gravity = tobi_default_gravity_def();
     if (changes) bind_gravity(t, binder, changes, &gravity);
     if (frame) bind_frame(t, binder, frame, root);
+    if (zones) bind_zones(t, binder, zones, root);
 }
 
 tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
 {
+    for (int k = 0; k < t->damping_count; k++) TOBI_TRY(tobi_world_add_damping(world, &t->damping[k], err));
     if (t->changes) TOBI_TRY(tobi_world_set_gravity_in_time(world, &t->gravity, err));
     return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
 }
 
 int tobi_tank_write(const tobi_scene_tank *t, json_t *root)
 {
-    int failed = 0;
+    json_t *zones = json_array();
+    int failed = !zones;
+    for (int k = 0; k < t->damping_count; k++)
+        failed |= json_array_append_new(zones, tobi_write_def(&tobi_damping_table, &t->damping[k]));
+    if (t->damping_count) failed |= json_object_set(root, "damping_zones", zones);
+    json_decref(zones);
     if (t->changes)
         failed |= json_object_set_new(root, "gravity_in_time",
                                       tobi_write_def(&tobi_gravity_table, &t->gravity));

@@ -3,10 +3,14 @@
 #include "scene/motions.h"
 #include "tobiuo/tobiuo.h"
 
+enum { TOBI_ZONES = 16 };
+
 typedef struct tobi_scene_tank {
     tobi_gravity_def gravity;
     int changes;                   /* 1: gravity does                             */
     tobi_motion_def frame_def[TOBI_MOTION_LIMIT];
+    tobi_damping_def damping[TOBI_ZONES];
+    int damping_count;
     tobi_motion *frame;            /* owned; NULL = at rest                       */
 } tobi_scene_tank;
 

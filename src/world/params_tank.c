@@ -1,4 +1,4 @@
-/* Parameters of what a tank has: gravity in time. */
+/* Parameters of what a tank has: gravity in time, damping zones. */
 #include "base/param_rows.h"
 #include "base/param.h"
 
@@ -24,3 +24,21 @@ const tobi_param_table tobi_gravity_table = {
     "gravity_in_time", "Gravity by a table, by a swing of each component, or both. "
     "The key gravity stays.",
     sizeof(tobi_gravity_def), gravity_rows };
+
+static const tobi_param damping_rows[] = {
+    { .key = "box.min", VEC3, AT(tobi_damping_def, box_min), PLACE, .unit = "m", .required = true,
+      .doc = "Lower corner of the zone." },
+    { .key = "box.max", VEC3, AT(tobi_damping_def, box_max), PLACE, .unit = "m", .required = true,
+      .doc = "Upper corner of the zone." },
+    { .key = "rate", REAL, AT(tobi_damping_def, rate), RANGE(0, 1e6), .unit = "1/s", .required = true,
+      .doc = "How fast velocities decay at its end. Some 10 over the period of the waves is a beach." },
+    { .key = "direction", VEC3, AT(tobi_damping_def, direction), .def = { 1, 0, 0 }, DIRECTION, .unit = "1",
+      .doc = "Where the rate grows, as the square of the way: where the waves go." },
+    { .key = "length", REAL, AT(tobi_damping_def, length), LENGTHS, .unit = "m", .text = "the box",
+      .doc = "Over how much it grows; from there on it stays. A wave length and more is a beach." },
+    { 0 }
+};
+
+const tobi_param_table tobi_damping_table = {
+    "damping_zone", "A box in which the velocities of liquids decay: a beach.", sizeof(tobi_damping_def),
+    damping_rows };

@@ -65,6 +65,7 @@ static tobi_status step_system(tobi_system *s, tobi_error *err)
 {
     const tobi_method *m = s->method;
     if (m->begin) TOBI_TRY(m->begin(s, err));
+    tobi_damping_apply(s);
     if (m->forces) m->forces(s);
     if (m->solve) TOBI_TRY(m->solve(s, err));
     m->move(s);

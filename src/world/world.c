@@ -145,7 +145,7 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
                                  "allowed is %g to %g m",
                                  b->name, "xyz"[a], b -> vertex[i][a] + box -> lower[a],
                                  box -> lower[a], box -> lower[a] + box -> size[a]);
-    return TOBI_OK;
+    return tobi_world_check_stroke(w, b, err);
 }
 
 tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_error *err)

@@ -62,6 +62,9 @@ tobi_system *tobi_world_fluids(const tobi_world *w);
 /* Materials come in the order of systems: the number of the first of a system. */
 int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
 
+/* Refuses a piston whose stroke takes it out of the domain before the end time. */
+tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err);
+
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
    NULL. */
 tobi_status tobi_world_add_notes(tobi_world *w, const char *kind, const char *name, const char *notes,

@@ -215,6 +215,57 @@ static void every_method_follows(void **state)
     unlink("gravity.csv");
 }
 
+static tobi_damping_def make_zone(void)
+{
+    tobi_damping_def d = tobi_default_damping_def();
+    d.box_min[0] = 0.05;
+    d.box_max[0] = d.box_max[1] = d.box_max[2] = 0.1;
+    d.rate = 50;
+    return d;
+}
+
+/* Nothing before the zone, all of the rate at its end, a quarter in its middle. */
+static void zones_damp_velocities(void **state)
+{
+    tobi_world *w = make_tank("isph", 2);
+    tobi_damping_def d = make_zone();
+    (void)state;
+    OK(tobi_world_add_damping(w, &d, &err));
+    OK(tobi_world_start(w, &err));
+    tobi_system *s = &w->system[0];
+    s->dt = 0.01;
+    for (int64_t i = 0; i < s->particles.count; i++) s->particles.velocity[i].x = 1;
+    tobi_damping_apply(s);
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const double f = fmax(s->particles.position[i].x - 0.05, 0)/0.05;
+        close_to(s->particles.velocity[i].x, 1/(1 + 0.5*f*f), 1e-6);
+    }
+    tobi_world_destroy(w);
+}
+
+static void bad_zones_are_refused(void **state)
+{
+    tobi_world *w = make_tank("dfsph", 2), *solids = make_tank("mlsmpm", 2);
+    tobi_damping_def d = make_zone();
+    (void)state;
+    d.rate = -1;
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "rate");
+    d.rate = 1;
+    d.direction[0] = 0;
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "of a damping zone has no length");
+    d = make_zone();
+    REFUSED(tobi_world_add_damping(solids, &d, &err), TOBI_UNSUPPORTED, "mlsmpm knows no damping zones");
+    for (int k = 0; k < 16; k++) OK(tobi_world_add_damping(w, &d, &err));
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_UNSUPPORTED, "more than 16 damping zones");
+    d.box_max[1] = 0;
+    w->sim.damping_count = 0;
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "reaches from 0 to 0 m in y");
+    OK(tobi_world_start(w, &err));
+    REFUSED(tobi_world_add_damping(w, &d, &err), TOBI_INVALID, "a started world takes no more damping zones");
+    tobi_world_destroy(w);
+    tobi_world_destroy(solids);
+}
+
 static tobi_status parse(const char *more, tobi_error *err)
 {
     char text[1200];
@@ -242,6 +293,9 @@ static void scenes_say_it(void **state)
              "\"gravity_in_time\": { \"amplitude\": [1, 0], \"period\": 2 }", &err));
     REFUSED(parse("\"gravity_in_time\": { \"amplitude\": [1, 0] }", &err), TOBI_INVALID,
             "gravity in time has an amplitude without a period");
+    REFUSED(parse("\"damping_zones\": 3", &err), TOBI_INVALID, "list [ { ... } ] of 16 zones at most");
+    REFUSED(parse("\"damping_zones\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 1] }, \"rate\": -1 } ]",
+                  &err), TOBI_INVALID, "s.json:4:");
     REFUSED(parse("\"gravity_in_time\": { \"period\": -1 }", &err), TOBI_INVALID, "s.json:4");
     write_file("bend.lua", "function deform(x, y, z, t) return x, y*(1 + t), z end");
     REFUSED(parse("\"frame\": { \"script\": \"bend.lua\" }", &err), TOBI_INVALID, "changes its shape");
@@ -257,6 +311,8 @@ int main(void)
         cmocka_unit_test(bodies_feel_the_frame),
         cmocka_unit_test(bad_frames_are_refused),
         cmocka_unit_test(every_method_follows),
+        cmocka_unit_test(zones_damp_velocities),
+        cmocka_unit_test(bad_zones_are_refused),
         cmocka_unit_test(scenes_say_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 /* Wave makers: theory by numbers that stand in books, and what is refused. */
 #include "calls.h"
 #include "rigid/waves.h"
+#include "tobiuo/tobiuo.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -179,6 +180,39 @@ static void what_cannot_be_is_refused(void **state)
     REFUSED(try(&d, &err), TOBI_INVALID, "every number of a wave maker must be finite");
 }
 
+/* A piston in front of a side, closer to it than its stroke. */
+static void strokes_fit_into_the_tank(void **state)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_body_def b = tobi_default_body_def();
+    tobi_wave_maker_def d = make_def();
+    tobi_world *world;
+    tobi_motion *m;
+    (void)state;
+    w.dimension = 2;
+    w.domain_max[0] = 5;
+    w.domain_max[1] = 2;
+    w.gravity[2] = 0;
+    w.spacing = 0.1;
+    w.end_time = 4;
+    d.height = 0.1;
+    d.period = 2;
+    OK(tobi_motion_wave_maker(&d, &m, &err));
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    b.name = "piston";
+    b.box_min[0] = 0.02;
+    b.box_max[0] = 0.5;
+    b.box_max[1] = 1.9;
+    b.motion = tobi_motion_positions;
+    b.motion_user = m;
+    b.motion_rigid = 1;
+    REFUSED(tobi_world_add_body(world, &b, &err), TOBI_INVALID, "the stroke of 'piston' is beyond the tank");
+    b.box_min[0] = 0.1;
+    OK(tobi_world_add_body(world, &b, &err));
+    tobi_world_destroy(world);
+    tobi_motion_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -188,6 +222,7 @@ int main(void)
         cmocka_unit_test(solitary_waves_have_gorings_stroke),
         cmocka_unit_test(irregular_waves_have_their_height),
         cmocka_unit_test(flaps_turn_about_their_hinge),
+        cmocka_unit_test(strokes_fit_into_the_tank),
         cmocka_unit_test(what_cannot_be_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

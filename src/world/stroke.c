@@ -1,0 +1,38 @@
+/* The stroke of a wave maker must fit into its tank. Drawback: it is looked for at times, so that one that
+   is out for a moment between them is missed. */
+#include "rigid/waves.h"
+#include "world/world.h"
+#include <stdlib.h>
+
+enum { TIMES = 2000 };
+
+static tobi_status check_place(const tobi_world *w, const tobi_body *b, const double (*at)[3], double t,
+                               tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        for (int a = 0; a < box->dimension; a++) {
+            const double lower = box->lower[a], upper = box->lower[a] + box->size[a];
+            if (box->periodic[a] || (at[i][a] >= lower && at[i][a] <= upper)) continue;
+            return tobi_fail(err, TOBI_INVALID, "the stroke of '%s' is beyond the tank: at t = %.4g s a "
+                             "vertex is at %c = %.4g m, allowed is %g to %g m", b->name, t, "xyz"[a],
+                             at[i][a], lower, upper);
+        }
+    return TOBI_OK;
+}
+
+tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err)
+{
+    const int64_t n = b->mesh.vertex_count;
+    if (b->motion != tobi_motion_positions || !tobi_motion_is_piston(b->motion_user)) return TOBI_OK;
+    double (*at)[3] = malloc((size_t)(n + 1)*sizeof *at);
+    if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
+    tobi_status status = TOBI_OK;
+    for (int k = 0; k <= TIMES && status == TOBI_OK; k++) {
+        const double t = w->sim.def.end_time*k/TIMES;
+        status = b->motion(b->motion_user, t, n, (const double (*)[3])b->mesh.vertices, at, err);
+        if (status == TOBI_OK) status = check_place(w, b, (const double (*)[3])at, t, err);
+    }
+    free(at);
+    return status;
+}
