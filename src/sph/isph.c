@@ -185,8 +185,9 @@ tobi_status isph_solve(tobi_system *s, tobi_error *err)
     tobi_stage_end(&s->sim->stages, "pressure solve", &clock);
     isph_forces_correct(&m->solver, s);
     sph_soft_correct(s, m->solver.view.solution);
+    sph_openings_continue(s, 1);
     launch(s, m, m->kernel->isph_projection, t);
-    sph_openings_hold(s);
+    sph_openings_drive(s);
     s->info.force_sum = t[0]*s->smoothing.volume;
     memcpy(m->side_force, t + 1, sizeof m->side_force);
     tobi_stage_end(&s->sim->stages, "pressure force", &clock);

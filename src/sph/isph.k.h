@@ -44,8 +44,8 @@
 #define ISPH_SPARSE 0.75
 #define ISPH_BULK 0.95
 
-/* Whether velocity and pressure of a particle are given: it lies in the buffer of an opening. */
-TOBI_FN int isph_held(const isph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
+/* Whether the pressure of a particle is no unknown: it lies in the buffer of an opening. */
+TOBI_FN int isph_held(const isph_view *v, int64_t i) { return v->held && v->held[i].w != 0; }
 
 TOBI_FN double isph_larger(double a, double b) { return a > b ? a : b; }
 TOBI_FN double isph_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }

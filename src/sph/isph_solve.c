@@ -206,19 +206,27 @@ static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
     return tobi_cg(m->exec, a, &how, b, x, m->work);
 }
 
-/* Adds what neighbours in buffers of openings, whose pressures are given, make of a row. */
+/* Neighbours in buffers: those of an outlet have a given pressure, which goes to the source; those of an inlet
+   do not move by pressure, so that nothing passes between them and a row. */
 static void take_held(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;
     (void)totals;
     for (int64_t i = begin; i < end; i++) {
         const int64_t first = 8*(int64_t)v->list_start[i];
-        double sum = 0;
+        double sum = 0, less = 0;
         for (int k = 0; k < 8*v->list_groups[i]; k++) {
             const int32_t j = v->list[first + k];
-            if (v->held[j].w > 0) sum += v->entry[first + k]*(double)v->pressure[j];
+            float *a = &v->entry[first + k];
+            if (v->held[j].w < 0) sum += *a*(double)v->pressure[j];
+            if (!(v->held[j].w > 0)) continue;
+            less += *a;
+            *a = 0;
         }
         v->source[i] += sum;
+        if (!(less > 0) || !(v->inverse_diagonal[i] > 0)) continue;
+        const double left = 1/v->inverse_diagonal[i] - less;
+        v->inverse_diagonal[i] = left > 1e-6*v->full ? 1/left : 0;
     }
 }
 

@@ -57,7 +57,7 @@ typedef struct isph_view {
     int full_viscosity;              /* 1: by the tensor of Fatehi and Manzari                      */
     const float *kinematic;          /* m2/s, by fluid                                              */
     const uint8_t *fluid;
-    const tobi_float4 *held;         /* w > 0: in the buffer of an opening; NULL: there is none     */
+    const tobi_float4 *held;         /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none   */
     /* particle arrays */
     const tobi_double3 *position;
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */

@@ -5,6 +5,10 @@
 #include "sph/state.h"
 #include <math.h>
 
+/* The free liquid gives way to the pressure of an inlet: all of its own in the next step would be too much, and
+   from step to step it would swing. */
+static const double CONTINUE = 0.5;
+
 int sph_has_openings(const tobi_system *s) { return s->sim->opening_count > 0; }
 
 static void mark_range(const void *view, int64_t begin, int64_t end)
@@ -16,8 +20,9 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
         const tobi_double3 *p = &s->particles.position[i];
         const double x[3] = { p->x, p->y, p->z };
         const int k = tobi_opening_find(w->openings, w->opening_count, x);
-        held[i] = (tobi_float4){ 0, 0, 0, (float)(k + 1) };
-        if (k < 0 || w->openings[k].outlet) continue;
+        const int outlet = k >= 0 && w->openings[k].outlet;
+        held[i] = (tobi_float4){ 0, 0, 0, outlet ? -(float)(k + 1) : (float)(k + 1) };
+        if (k < 0 || outlet) continue;
         const tobi_opening *o = &w->openings[k];
         double at[3];
         tobi_opening_locate(o, x, at);
@@ -48,7 +53,7 @@ static around look_around(const tobi_system *s, int64_t i)
         const double w = tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
         sum.weight += w;
         for (int a = 0; a < 3; a++) sum.velocity[a] += w*(&p->velocity[j[k]].x)[a];
-        if (f->held[j[k]].w > 0) continue;
+        if (f->held[j[k]].w != 0) continue;
         sum.free += w;
         sum.pressure += w*(f->pressure[j[k]] + still);
     }
@@ -67,22 +72,23 @@ static double find_pressure(const tobi_system *s, const tobi_opening *o, int64_t
     return fmax(s->fluid[0].density*(sqrt(g)*o->level + along), 0);
 }
 
-/* Reads pressures of free particles and velocities as they were; writes held ones only. */
+static const tobi_opening *opening_of(const tobi_system *s, int64_t i)
+{
+    const float w = sph_fields_of(&s->particles)->held[i].w;
+    return w != 0 ? &s->sim->openings[(int)fabsf(w) - 1] : NULL;
+}
+
+/* Velocities and pressures of outlets. */
 static void extend_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
-        const int k = (int)f->held[i].w - 1;
-        if (k < 0) continue;
-        const tobi_opening *o = &s->sim->openings[k];
+        const tobi_opening *o = opening_of(s, i);
+        if (!o || !o->outlet) continue;
         const around sum = look_around(s, i);
-        if (!o->outlet) {
-            if (sum.free > 0) f->pressure[i] = (float)(sum.pressure/sum.free);
-            continue;
-        }
-        f->pressure[i] = (float)find_pressure(s, o, i);
         double out = 0, v[3];
+        f->pressure[i] = (float)find_pressure(s, o, i);
         for (int a = 0; a < 3; a++) {
             v[a] = sum.weight > 0 ? sum.velocity[a]/sum.weight : (&s->particles.velocity[i].x)[a];
             out += v[a]*o->normal[a];
@@ -91,14 +97,48 @@ static void extend_range(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* Reads pressures of free particles and writes those of inlets. */
+typedef struct continuing { const tobi_system *s; double share; } continuing;
+
+static void continue_range(const void *view, int64_t begin, int64_t end)
+{
+    const continuing *c = view;
+    const sph_fields *f = sph_fields_of(&c->s->particles);
+    for (int64_t i = begin; i < end; i++) {
+        if (!(f->held[i].w > 0)) continue;
+        const around sum = look_around(c->s, i);
+        if (sum.free > 0) f->pressure[i] += (float)(c->share*(sum.pressure/sum.free - f->pressure[i]));
+        c->s->cells.record[i].w = f->pressure[i];
+    }
+}
+
+void sph_openings_continue(tobi_system *s, double share)
+{
+    const continuing c = { s, share };
+    if (sph_has_openings(s)) tobi_loop(s->sim->exec.threads, s->particles.count, 512, continue_range, &c);
+}
+
 static void hold_range(const void *view, int64_t begin, int64_t end)
+{
+    const tobi_system *s = view;
+    const tobi_float4 *held = sph_fields_of(&s->particles)->held;
+    for (int64_t i = begin; i < end; i++)
+        if (held[i].w != 0) s->particles.velocity[i] = (tobi_float4){ held[i].x, held[i].y, held[i].z, 0 };
+}
+
+static void drive_range(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
     const sph_fields *f = sph_fields_of(&s->particles);
     for (int64_t i = begin; i < end; i++) {
-        if (!(f->held[i].w > 0)) continue;
-        s->particles.velocity[i] = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
+        const tobi_opening *o = opening_of(s, i);
+        tobi_float4 *v = &s->particles.velocity[i];
+        double out = 0;
+        if (!o) continue;
         f->accel[i] = (tobi_float4){ 0, 0, 0, 0 };
+        if (!o->outlet) *v = (tobi_float4){ f->held[i].x, f->held[i].y, f->held[i].z, 0 };
+        for (int a = 0; a < 3; a++) out += (&v->x)[a]*o->normal[a];
+        for (int a = 0; a < 3 && out < 0; a++) (&v->x)[a] -= (float)(out*o->normal[a]);
     }
 }
 
@@ -108,6 +148,7 @@ void sph_openings_mark(tobi_system *s, sph_view *v)
     if (!sph_has_openings(s)) return;
     tobi_loop(s->sim->exec.threads, n, 0, mark_range, s);
     tobi_loop(s->sim->exec.threads, n, 512, extend_range, s);
+    sph_openings_continue(s, CONTINUE);
     sph_of(s)->marked = 1;
     v->held = sph_fields_of(&s->particles)->held;
     sph_openings_hold(s);
@@ -117,4 +158,10 @@ void sph_openings_hold(tobi_system *s)
 {
     if (sph_has_openings(s) && sph_of(s)->marked)
         tobi_loop(s->sim->exec.threads, s->particles.count, 0, hold_range, s);
+}
+
+void sph_openings_drive(tobi_system *s)
+{
+    if (sph_has_openings(s) && sph_of(s)->marked)
+        tobi_loop(s->sim->exec.threads, s->particles.count, 0, drive_range, s);
 }

@@ -11,5 +11,9 @@ int sph_has_openings(const tobi_system *s);
    the mean velocity of the liquid around, not inwards; the pressure of their level. The view sees the marks
    until the next sort. */
 void sph_openings_mark(tobi_system *s, sph_view *v);
-/* Gives them their velocities again, and takes their accelerations. */
+/* Pressures of inlets go on by `share` to those of the free liquid beside them; in the records too. */
+void sph_openings_continue(tobi_system *s, double share);
+/* After forces: gives what is marked its velocities again. */
 void sph_openings_hold(tobi_system *s);
+/* After pressure, before positions: the same of inlets; outlets let nothing in. No shift of either. */
+void sph_openings_drive(tobi_system *s);

@@ -266,7 +266,7 @@ double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, dou
 {
     double t[TOBI_TOTALS];
     v->speed_cap = (float)(1.5*tobi_system_speed_scale(s));
-    sph_openings_hold(s);
+    sph_openings_drive(s);
     launch(s, v, k->sph_advance, t);
     for (int a = 0; a < 3; a++) s->info.wall_force[a] += t[1 + a]/s->dt;
     s->info.contacts = (int64_t)t[0];

@@ -32,7 +32,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
     uint8_t *TOBI_RESTRICT surface;
     const uint8_t *TOBI_RESTRICT fluid;
-    const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in the buffer of an opening; NULL: there is none */
+    const tobi_float4 *TOBI_RESTRICT held;    /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none */
     /* neighbour list */
     const int32_t *TOBI_RESTRICT list;
     const uint32_t *TOBI_RESTRICT list_start;
@@ -81,8 +81,10 @@ typedef struct sph_view {
     float alpha, beta;                        /* conjugate gradient coefficients       */
 } sph_view;
 
-/* Whether velocity and pressure of a particle are given: it lies in the buffer of an opening. */
-TOBI_FN int sph_held(const sph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
+/* Whether the pressure of a particle is given: it lies in the buffer of an opening; and its velocity: of an
+   inlet. */
+TOBI_FN int sph_held(const sph_view *v, int64_t i) { return v->held && v->held[i].w != 0; }
+TOBI_FN int sph_driven(const sph_view *v, int64_t i) { return v->held && v->held[i].w > 0; }
 
 /* Surface tension times curvature, Pa; 0 where no fluid has tension. */
 TOBI_FN float sph_capillary(const sph_view *v, int64_t i) { return v->capillary ? v->capillary[i] : 0; }
