@@ -17,8 +17,9 @@ shapes and keys (metres):
                                                          origin is the middle of its back, or x away from it
   wire      radius=0.0005 length=0.2 sides=16            axis y, centred
   carrot    radius=0.016 tip=0.007 length=0.15 sides=32  axis x, thinner towards +x, centred
+  glass     bottom=0.026 top=0.032 height=0.1 sides=40   axis z, stands on z = 0; the inner surface alone, open
 
-Every mesh but the apple is one closed surface; triangles counter-clockwise seen from outside.
+Every mesh but the apple and the glass is one closed surface; triangles counter-clockwise seen from outside.
 """
 import math
 import os
@@ -387,8 +388,27 @@ def fish():
     return half.mirrored()
 
 
+def glass(bottom=0.026, top=0.032, height=0.1, sides=40, layers=12, rings=5):
+    mesh, sides = Mesh(), int(sides)
+
+    def point(i, r, z):
+        angle = 2 * math.pi * (i % sides) / sides
+        return mesh.vertex(r * math.cos(angle), r * math.sin(angle), z)
+
+    for i in range(sides):
+        for k in range(layers):
+            z0, z1 = (height * m / layers for m in (k, k + 1))
+            r0, r1 = (bottom + (top - bottom) * m / layers for m in (k, k + 1))
+            mesh.quad(point(i, r0, z0), point(i + 1, r0, z0), point(i + 1, r1, z1), point(i, r1, z1))
+        for k in range(rings):
+            r0, r1 = bottom * k / rings, bottom * (k + 1) / rings
+            mesh.quad(point(i, r0, 0), point(i + 1, r0, 0), point(i + 1, r1, 0), point(i, r1, 0))
+    return mesh
+
+
 SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "torus": torus, "wedge": wedge,
-          "apple": apple, "blade": blade, "wire": wire, "carrot": carrot}
+          "apple": apple, "blade": blade, "wire": wire, "carrot": carrot,
+          "glass": glass}
 
 # file below scenes: shape, its keys, title
 OF_SCENES = {
@@ -401,6 +421,7 @@ OF_SCENES = {
                                      "wedge, 100 x 100 x 30 mm"),
     "cheese_wire/meshes/wire.obj": ("wire", {}, "wire, 200 mm, 1 mm across"),
     "carrot/meshes/carrot.obj": ("carrot", {}, "carrot, 0.15 m"),
+    "hose_glass/meshes/glass.obj": ("glass", {}, "inner surface of a glass, 0.1 m high"),
 }
 
 

@@ -31,12 +31,12 @@ json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_pl
 
 /* The regions of an entry of fluids or solids, `owner` is "fluid" or "solid". */
 static tobi_status read_fills(const tobi_binder *binder, json_t *value, const tobi_place *place,
-                              const char *owner, tobi_scene_fill **fills, int *count)
+                              const char *owner, int needed, tobi_scene_fill **fills, int *count)
 {
     tobi_place fill = { place, "fill", 0 };
     json_t *list = tobi_scene_list(binder, value, &fill, owner);
     if (json_array_size(list) == 0) {
-        if (json_is_object(value) && (list || !json_object_get(value, "fill")))
+        if (needed && json_is_object(value) && (list || !json_object_get(value, "fill")))
             tobi_source_mistake(binder->source, &fill,
                                 "is missing or empty: a list of the regions this %s "
                                 "fills, [ { \"box\": { \"min\": [..], \"max\": [..] } } ]", owner);
@@ -60,14 +60,14 @@ static tobi_status read_fills(const tobi_binder *binder, json_t *value, const to
     return TOBI_OK;
 }
 
-static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const tobi_place *place,
+static tobi_status read_fluid(const tobi_binder *binder, json_t *value, const tobi_place *place, int needed,
                               tobi_scene_fluid *fluid)
 {
     const char *also[TOBI_PARTS];
     tobi_part_keys("fluid", also);
     fluid->def = tobi_default_fluid_def();
     fluid->bound = tobi_bind(binder, &tobi_fluid_table, value, place, also, &fluid->def);
-    return read_fills(binder, value, place, "fluid", &fluid->fills, &fluid->fill_count);
+    return read_fills(binder, value, place, "fluid", needed, &fluid->fills, &fluid->fill_count);
 }
 
 static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root)
@@ -79,7 +79,7 @@ static tobi_status read_fluids(tobi_scene *scene, const tobi_binder *binder, con
     if (!scene->fluids) return TOBI_NO_MEMORY;
     for (size_t i = 0; i < json_array_size(list); i++) {
         tobi_place entry = { &place, NULL, i };
-        TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry,
+        TOBI_TRY(read_fluid(binder, json_array_get(list, i), &entry, !json_object_get(scene->root, "inlets"),
                             &scene->fluids[scene->fluid_count++]));
     }
     return TOBI_OK;
@@ -100,7 +100,7 @@ static tobi_status read_solids(tobi_scene *scene, const tobi_binder *binder, con
         tobi_scene_solid *solid = &scene->solids[scene->solid_count++];
         solid->def = tobi_default_solid_def();
         solid->bound = tobi_bind(binder, &tobi_solid_table, value, &entry, also, &solid->def);
-        TOBI_TRY(read_fills(binder, value, &entry, "solid", &solid->fills, &solid->fill_count));
+        TOBI_TRY(read_fills(binder, value, &entry, "solid", 1, &solid->fills, &solid->fill_count));
     }
     return TOBI_OK;
 }

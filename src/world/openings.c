@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Phases of columns follow each other by the golden ratio, so that mass comes in evenly. */
+/* Phases of columns are all n-ths, one after the other some golden ratio of n on, so that mass comes in evenly
+   in time and neighbours are far from each other. */
 static const double GOLDEN = 0.6180339887498949;
 /* Support radii: how far an outlet's particles are kept, and where they may still be found. */
 static const double KEPT = 1;
@@ -84,13 +85,25 @@ static int64_t lay_columns(const tobi_opening *o, double d, tobi_inlet_column *o
             const double u = side[0]*((2*(double)i + 1)/(double)n[0] - 1),
                          v = side[1]*((2*(double)j + 1)/(double)n[1] - 1);
             if (o->radius > 0 && u*u + v*v > o->radius*o->radius) continue;
-            if (out) {
-                const double phase = GOLDEN*(double)(count + 1);
-                out[count] = (tobi_inlet_column){ u, v, 0, phase - floor(phase) };
-            }
+            if (out) out[count] = (tobi_inlet_column){ .along = u, .across = v };
             count++;
         }
     return count;
+}
+
+static void set_phases(tobi_opening *o)
+{
+    const int64_t n = o->column_count;
+    int64_t stride = (int64_t)(GOLDEN*(double)n + 0.5), a, b;
+    for (stride = stride > 0 ? stride : 1;; stride++) {
+        for (a = n, b = stride; b > 0;) {
+            const int64_t rest = a%b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1) break;                      /* no common divisor: each phase comes once */
+    }
+    for (int64_t k = 0; k < n; k++) o->columns[k].phase = ((double)(k*stride%n) + 0.5)/(double)n;
 }
 
 /* The spacing within columns makes each particle's share of the flow its volume. */
@@ -102,6 +115,7 @@ static tobi_status make_columns(tobi_opening *o, const tobi_smoothing_constants 
     o->columns = malloc((size_t)(o->column_count + 1)*sizeof *o->columns);
     if (!o->columns) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for inlet '%s'", o->name);
     lay_columns(o, c->spacing, o->columns);
+    set_phases(o);
     o->scale = 1;
     for (int64_t k = 0; k < o->column_count; k++)
         mean += tobi_opening_factor(o, o->columns[k].along, o->columns[k].across)/(double)o->column_count;
