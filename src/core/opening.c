@@ -33,10 +33,16 @@ int tobi_opening_find(const tobi_opening *o, int count, const double x[3])
     return -1;
 }
 
-double tobi_opening_speed(const tobi_opening *o, double t)
+double tobi_opening_way(const tobi_opening *o, double t)
 {
-    if (t < o->start || (o->stop > 0 && t >= o->stop)) return 0;
-    return o->speed*(o->ramp > 0 ? fmin((t - o->start)/o->ramp, 1) : 1);
+    const double since = (o->stop > 0 ? fmin(t, o->stop) : t) - o->start;
+    if (!(since > 0)) return 0;
+    return since < o->ramp ? 0.5*o->speed*since*since/o->ramp : o->speed*(since - 0.5*o->ramp);
+}
+
+double tobi_opening_speed(const tobi_opening *o, double t, double dt)
+{
+    return dt > 0 ? (tobi_opening_way(o, t + dt) - tobi_opening_way(o, t))/dt : 0;
 }
 
 /* Of a laminar flow between plates, or in a pipe; the product of two of the first in a rectangle. */

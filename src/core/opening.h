@@ -42,7 +42,9 @@ void tobi_opening_locate(const tobi_opening *o, const double x[3], double at[3])
 int tobi_opening_faces(const tobi_opening *o, const double at[3]);
 /* Number of the opening in whose buffer a place lies, -1 = none. Buffers of outlets have no end. */
 int tobi_opening_find(const tobi_opening *o, int count, const double x[3]);
-/* Mean speed of an inlet at a time, m/s. */
-double tobi_opening_speed(const tobi_opening *o, double t);
+/* How far the mean flow of an inlet has gone from time 0 to t, m. */
+double tobi_opening_way(const tobi_opening *o, double t);
+/* Mean speed of an inlet from t to t + dt, m/s. */
+double tobi_opening_speed(const tobi_opening *o, double t, double dt);
 /* Speed at coordinates over the mean. */
 double tobi_opening_factor(const tobi_opening *o, double along, double across);

@@ -206,8 +206,8 @@ static tobi_linear_report run(isph_solver *m, const tobi_linear_system *a)
     return tobi_cg(m->exec, a, &how, b, x, m->work);
 }
 
-/* Neighbours in buffers: those of an outlet have a given pressure, which goes to the source; those of an inlet
-   do not move by pressure, so that nothing passes between them and a row. */
+/* Neighbours in buffers: those of an outlet have a given pressure, which goes to the source; those of an
+   inlet do not move by pressure, so that nothing passes between them and a row. */
 static void take_held(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const isph_view *v = view;

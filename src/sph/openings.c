@@ -5,8 +5,8 @@
 #include "sph/state.h"
 #include <math.h>
 
-/* The free liquid gives way to the pressure of an inlet: all of its own in the next step would be too much, and
-   from step to step it would swing. */
+/* The free liquid gives way to the pressure of an inlet: all of its own in the next step would be too much,
+   and from step to step it would swing. */
 static const double CONTINUE = 0.5;
 
 int sph_has_openings(const tobi_system *s) { return s->sim->opening_count > 0; }
@@ -26,7 +26,7 @@ static void mark_range(const void *view, int64_t begin, int64_t end)
         const tobi_opening *o = &w->openings[k];
         double at[3];
         tobi_opening_locate(o, x, at);
-        const double u = tobi_opening_speed(o, w->time + w->dt)*tobi_opening_factor(o, at[1], at[2]);
+        const double u = tobi_opening_speed(o, w->time, w->dt)*tobi_opening_factor(o, at[1], at[2]);
         for (int a = 0; a < 3; a++) (&held[i].x)[a] = (float)(u*o->normal[a]);
     }
 }

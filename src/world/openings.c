@@ -11,11 +11,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Phases of columns are all n-ths, one after the other some golden ratio of n on, so that mass comes in evenly
-   in time and neighbours are far from each other. */
+/* Phases of columns are all n-ths, one after the other some golden ratio of n on, so that mass comes in
+   evenly in time and neighbours are far from each other. */
 static const double GOLDEN = 0.6180339887498949;
 /* Support radii: how far an outlet's particles are kept, and where they may still be found. */
 static const double KEPT = 1;
+/* s: what a new particle's velocity is the mean of. */
+static const double SOON = 1e-6;
 /* Buffers: how far behind an inlet regions are cut out. */
 static const double BEHIND = 3;
 
@@ -306,7 +308,7 @@ static void put(tobi_system *s, const tobi_opening *o, const tobi_inlet_column *
     double x[3];
     place(o, at, c->along, c->across, x);
     p->position[i] = (tobi_double3){ x[0], x[1], x[2] };
-    const double u = tobi_opening_speed(o, t)*c->factor;
+    const double u = tobi_opening_speed(o, t, SOON)*c->factor;
     for (int a = 0; a < 3; a++) (&p->velocity[i].x)[a] = (float)(u*o->normal[a]);
     p->fluid[i] = (uint8_t)o->fluid;
 }
@@ -430,7 +432,7 @@ static int64_t count_in(const tobi_opening *o, const tobi_inlet_column *c, doubl
 static tobi_status follow(tobi_world *w, tobi_opening *o, tobi_error *err)
 {
     tobi_system *s = &w->system[0];
-    const double next = o->way + tobi_opening_speed(o, w->sim.time)*w->sim.dt;
+    const double next = tobi_opening_way(o, w->sim.time);
     int64_t count = 0, row;
     for (int64_t c = 0; c < o->column_count; c++)
         count += count_in(o, &o->columns[c], next) - count_in(o, &o->columns[c], o->way);
