@@ -326,6 +326,9 @@ static int write_script(plotter *plot)
         if (code == 0) code = draw_bodies(plot);
         if (code == 0) code = draw_probes(plot, "pressure", "Pressure at the probes");
         if (code == 0) code = draw_probes(plot, "level", "Level of the fluid at the probes");
+        if (code == 0) code = draw_probes(plot, "run_up", "Run-up at the probes");
+        if (code == 0) code = draw_probes(plot, "flow", "Flow through the probes");
+        if (code == 0) code = draw_probes(plot, "volume", "Volume in the probes");
         for (int k = 0; code == 0 && plot->scene && tobi_scene_reference(plot->scene, k); k++)
             code = draw_comparison(plot, k);
         int failed = ferror(plot->script);
@@ -341,6 +344,7 @@ static int read_table(table *t, const char *dir, const char *name, const char *k
     char *path = NULL;
     if (asprintf(&path, "%s/%s", dir, name) < 0) return complain("out of memory");
     int code = table_read(t, path) == 0 ? 0 : EXIT_ERROR;
+    table_strip_units(t);
     if (code == 0 && (table_column(t, "time") < 0 || table_column(t, key) < 0))
         code = complain("%s has no column \"%s\": it is not a table of a run", path,
                         table_column(t, "time") < 0 ? "time" : key);

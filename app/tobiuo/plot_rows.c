@@ -103,7 +103,8 @@ const char *plot_unit(const char *column, int dimension)
         { "divergence", "1/s", "1/s" }, { "angular_velocity", "rad/s", "rad/s" },
         { "velocity", "m/s", "m/s" }, { "speed", "m/s", "m/s" }, { "position", "m", "m" },
         { "torque", "N m", "N m per m" }, { "force", "N", "N per m" }, { "weight", "N", "N per m" },
-        { "pressure", "Pa", "Pa" }, { "level", "m", "m" },
+        { "pressure", "Pa", "Pa" }, { "level", "m", "m" }, { "run_up", "m", "m" }, { "distance", "m", "m" },
+        { "moment_", "N m", "N m per m" }, { "flow", "m3/s", "m2/s" }, { "_volume", "m3", "m2" },
         { "energy", "J", "J per m" }, { "work", "J", "J per m" }, { "dissipation", "J", "J per m" },
         { "momentum", "kg m/s", "kg m/s per m" },
     };

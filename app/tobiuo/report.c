@@ -91,6 +91,7 @@ static int read_one(table *t, const char *dir, const char *name)
     char *path = join(dir, name);
     const int there = access(path, F_OK) == 0, code = there && table_read(t, path) != 0 ? EXIT_ERROR : 0;
     free(path);
+    table_strip_units(t);
     if (code == 0 && there && table_column(t, "time") < 0)
         return complain("%s has no column \"time\": it is not a table of a run", t->path);
     return code;

@@ -40,6 +40,7 @@ static table *read_probes(const sweep *s)
     for (int run = 0; run < s->runs; run++) {
         char *name = sweep_name(s, run), *path = sweep_path(s, "%s/probes.csv", name);
         if (access(path, F_OK) == 0) table_read(&list[run], path);
+        table_strip_units(&list[run]);
         free(path);
         free(name);
     }
@@ -81,7 +82,7 @@ static void add_head(const sweep *s, grid *g, const table *probes)
         add_cell(g, "%s%s%s%s", numbers[k].key, *unit ? " [" : "", unit, *unit ? "]" : "");
     }
     for (int k = 1; probes && k < probes->columns; k++) {
-        const char *unit = strchr(probes->names[k], '[') ? "" : plot_unit(probes->names[k], 3);
+        const char *unit = plot_unit(probes->names[k], 3);
         add_cell(g, "max %s%s%s%s", probes->names[k], *unit ? " [" : "", unit, *unit ? "]" : "");
     }
 }
@@ -191,7 +192,9 @@ static int add_run(const sweep *s, int run, const char *column, panel *a, pictur
     for (int f = 0; f < 2 && k < 0; f++) {
         char *path = sweep_path(s, "%s/%s", *name, files[f]);
         table_free(&t);
-        if (access(path, F_OK) == 0 && table_read(&t, path) == 0) k = table_column(&t, column);
+        if (access(path, F_OK) != 0 || table_read(&t, path) != 0) table_free(&t);
+        table_strip_units(&t);
+        k = t.columns ? table_column(&t, column) : -1;
         free(path);
     }
     const int time = k < 0 ? -1 : table_column(&t, "time");
@@ -245,7 +248,7 @@ int sweep_draw(const sweep *s)
     for (int run = 0; run < s->runs; run++) names[run] = sweep_name(s, run);
     for (int k = 0; k < columns; k++) {
         panel *a = &p.panel[p.panels];
-        const char *unit = strchr(column[k], '[') ? "" : plot_unit(column[k], 3);
+        const char *unit = plot_unit(column[k], 3);
         snprintf(a->y_label, sizeof a->y_label, "%s%s%s", column[k], *unit ? ", " : "", unit);
         for (int run = 0; run < s->runs; run++) drawn += add_run(s, run, column[k], a, &p, &names[run]);
         p.panels += a->curves > 0;

@@ -160,3 +160,11 @@ void table_list_columns(const table *t, char *list, size_t size)
     for (int k = 0; k < t->columns && used < size; k++)
         used += (size_t)snprintf(list + used, size - used, "%s%s", k ? ", " : "", t->names[k]);
 }
+
+void table_strip_units(table *t)
+{
+    for (int k = 0; k < t->columns; k++) {
+        char *unit = strstr(t->names[k], " [");
+        if (unit) *unit = '\0';
+    }
+}

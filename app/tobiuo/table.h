@@ -17,6 +17,8 @@ typedef struct table {
 /* Reads the file. 0; or -1 after a message on stderr, and then t is empty. */
 int table_read(table *t, const char *path);
 void table_free(table *t);
+/* Names without their units: "P1_pressure [Pa]" becomes "P1_pressure". */
+void table_strip_units(table *t);
 /* -1 if there is no such column. */
 int table_column(const table *t, const char *name);
 /* NaN for what is not a number. */

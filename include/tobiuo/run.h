@@ -3,7 +3,7 @@
    DIR/resolved.json            the scene with every default explicit (what the caller handed over)
    DIR/history.csv              one row per output: clock, solver, walls, energies, losses
    DIR/bodies.csv               one row per output and body: pose, rates, forces and torques
-   DIR/probes.csv               one row per step: what the scene's probes measure
+   DIR/probes.csv               one row per step: what the scene's probes measure, units in its header
    DIR/fluid.pvd, fluid/        the fluid's particles, VTU per output
    DIR/bodies.pvd, bodies/      the bodies' particles
    DIR/<body>.pvd, surfaces/    the body's moving surface, VTP and STL
@@ -104,9 +104,10 @@ TOBI_API tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_er
    resumable. */
 TOBI_API void tobi_run_free(tobi_run *run);
 
-/* The tables of a run; probes.csv has columns of points and of levels. */
+/* The tables of a run; probes.csv has columns by the kinds of its sensors. */
 typedef enum tobi_table {
-    TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL
+    TOBI_TABLE_HISTORY, TOBI_TABLE_BODIES, TOBI_TABLE_POINT, TOBI_TABLE_LEVEL, TOBI_TABLE_PATCH,
+    TOBI_TABLE_RUN_UP, TOBI_TABLE_FLOW, TOBI_TABLE_VOLUME      /* in the order of tobi_probe_kind */
 } tobi_table;
 typedef struct tobi_column {
     const char *name, *unit;        /* "1": without a unit                                      */

@@ -336,12 +336,25 @@ typedef struct tobi_outlet_def {
 } tobi_outlet_def;
 
 /* A sensor in the domain. A point reports pressure and velocity of the fluid there, a level how high the
-   fluid stands on the plumb line through the position (its coordinate along gravity does not matter). */
-typedef enum tobi_probe_kind { TOBI_PROBE_POINT, TOBI_PROBE_LEVEL } tobi_probe_kind;
+   fluid stands on the plumb line through the position (its coordinate along gravity does not matter), a
+   run-up
+   how far it reaches along a line. A patch is a rectangle on a wall that feels the fluid, a flow a rectangle
+   that the fluid passes through, a volume a box. Their axes: along, normal x along, normal. */
+typedef enum tobi_probe_kind {
+    TOBI_PROBE_POINT, TOBI_PROBE_LEVEL, TOBI_PROBE_PATCH, TOBI_PROBE_RUN_UP, TOBI_PROBE_FLOW,
+    TOBI_PROBE_VOLUME
+} tobi_probe_kind;
 typedef struct tobi_probe_def {
     const char *name;
-    int    kind;                /* tobi_probe_kind */
-    double position[3];         /* m */
+    int    kind;                /* tobi_probe_kind                                                   */
+    double position[3];         /* m, the middle of a rectangle or box, the wet end of a run-up      */
+    double end[3];              /* m, the other end of a run-up                                      */
+    double normal[3], along[3]; /* of any length; 0 = up, and any direction that is normal to normal */
+    double length, width, height;   /* m; in 2-D a rectangle is a line and a box has no width        */
+    const char *body;           /* name of the body that it sits on and moves with, or NULL          */
+    double rate;                /* Hz, of its values; 0 = as output.probe_interval says              */
+    double cutoff;              /* Hz, of its low pass; 0 = none                                     */
+    int    order;               /* 0: of first order, 1: Butterworth of second order                 */
 } tobi_probe_def;
 
 /* A spring, a rope or a mooring line between a body and the domain or another body. */
@@ -482,9 +495,13 @@ typedef struct tobi_step_info {
 
 /* What a probe measures; members that its kind does not measure are 0. */
 typedef struct tobi_probe_info {
-    double pressure;              /* Pa                                                               */
+    double pressure;              /* Pa; of a patch the mean                                          */
     double velocity[3];           /* m/s                                                              */
     double level;                 /* m, coordinate of the surface along gravity                       */
+    double force[3], moment[3];   /* N, N m about the middle: of the fluid on a patch; 2-D: per m     */
+    double distance, run_up;      /* m, of the water's end from the begin; its coordinate along gravity */
+    double flow;                  /* m3/s along the normal (2-D: m2/s), against the body that it sits on */
+    double volume;                /* m3 (2-D: m2)                                                     */
 } tobi_probe_info;
 
 /* A solid: what it is made of. Before the start `particles` is a good guess for spheres and meshes, and

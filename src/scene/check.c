@@ -316,27 +316,6 @@ static void check_planes(const tobi_scene *scene, tobi_source *source)
     }
 }
 
-static void check_probes(const tobi_scene *scene, tobi_source *source)
-{
-    const tobi_world_def *w = &scene->world;
-    tobi_place probes = { &root, "probes", 0 };
-    for (int i = 0; i < scene->probe_count && !tobi_report_full(source->report); i++) {
-        const tobi_probe_def *probe = &scene->probes[i];
-        tobi_place entry = { &probes, NULL, (size_t)i }, name = { &entry, "name", 0 },
-                   position = { &entry, "position", 0 };
-        for (int j = 0; j < i; j++)
-            if (probe->name && scene->probes[j].name && strcmp(probe->name, scene->probes[j].name) == 0)
-                tobi_source_mistake(source, &name, "\"%s\" is already the name of probes[%d]",
-                                    probe->name, j);
-        for (int a = 0; tobi_check_has_domain(scene) && a < w->dimension; a++) {
-            double at = probe->position[a];
-            if (at < w->domain_min[a] || at > w->domain_max[a])
-                tobi_source_mistake(source, &position, "is %.10g m in %c, the domain reaches from %.10g to "
-                                    "%.10g m", at, axis_name[a], w->domain_min[a], w->domain_max[a]);
-        }
-    }
-}
-
 void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
 {
     check_method(scene, source);
@@ -348,7 +327,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_bodies(scene, source);
     check_planes(scene, source);
     tobi_unused_check(scene, source);
-    check_probes(scene, source);
+    tobi_check_probes(scene, source);
     tobi_lines_check(scene, source);
     tobi_output_check(scene, source);
     tobi_references_check(scene, source);

@@ -64,6 +64,14 @@ static const struct { const char *topic, *file, *doc; tobi_table table; } tables
       TOBI_TABLE_POINT },
     { "probes", "probes.csv", "The columns of probes.csv for a probe of kind level: NAME_level.",
       TOBI_TABLE_LEVEL },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind patch: NAME_pressure, ...",
+      TOBI_TABLE_PATCH },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind run-up: NAME_run_up, ...",
+      TOBI_TABLE_RUN_UP },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind flow: NAME_flow.",
+      TOBI_TABLE_FLOW },
+    { "probes", "probes.csv", "The columns of probes.csv for a probe of kind volume: NAME_volume.",
+      TOBI_TABLE_VOLUME },
 };
 enum { TABLES = sizeof tables/sizeof *tables };
 
@@ -136,6 +144,7 @@ static void write_rows(FILE *out, tobi_table table)
 
 char *tobi_tables_manual(void)
 {
+    static const char *const kinds[] = { "point", "level", "patch", "run-up", "flow", "volume" };
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -145,11 +154,13 @@ char *tobi_tables_manual(void)
     write_rows(out, TOBI_TABLE_HISTORY);
     fputs("\n## bodies.csv\n\n", out);
     write_rows(out, TOBI_TABLE_BODIES);
-    fputs("\n## probes.csv\n\nThe first column is `time` (s). Then, for each probe P of kind point,\n"
-          "P_pressure and so on:\n\n", out);
-    write_rows(out, TOBI_TABLE_POINT);
-    fputs("\nand for each probe L of kind level L_level:\n\n", out);
-    write_rows(out, TOBI_TABLE_LEVEL);
+    fputs("\n## probes.csv\n\nThe header names each column with its unit, `P_pressure [Pa]`. The first is\n"
+          "`time [s]`. Where a sensor with a rate of its own is not due, its cells are empty.\n"
+          "`summary.json` has the extremes of each column (`sensors`).\n", out);
+    for (int k = 0; k < 6; k++) {
+        fprintf(out, "\nFor each probe P of kind %s, after P and `_`:\n\n", kinds[k]);
+        write_rows(out, (tobi_table)(TOBI_TABLE_POINT + k));
+    }
     int failed = ferror(out);
     if (fclose(out) == 0 && !failed) return text;
     free(text);

@@ -21,7 +21,9 @@ static void check_column(tobi_source *source, const tobi_place *entry, tobi_tabl
     static const char *const where[] = {
         [TOBI_TABLE_HISTORY] = "history.csv (one of bodies.csv or probes.csv needs body or probe)",
         [TOBI_TABLE_BODIES] = "bodies.csv", [TOBI_TABLE_POINT] = "a point of probes.csv",
-        [TOBI_TABLE_LEVEL] = "a level of probes.csv" };
+        [TOBI_TABLE_LEVEL] = "a level of probes.csv", [TOBI_TABLE_PATCH] = "a patch of probes.csv",
+        [TOBI_TABLE_RUN_UP] = "a run-up of probes.csv", [TOBI_TABLE_FLOW] = "a flow of probes.csv",
+        [TOBI_TABLE_VOLUME] = "a volume of probes.csv" };
     enum { COLUMNS = 64 };
     const char *names[COLUMNS];
     char near[200];
@@ -64,7 +66,7 @@ static void check_owner(const tobi_scene *scene, tobi_source *source, const tobi
     if (def->probe) {
         int probe = find_owner(scene, source, entry, "probe", def->probe);
         if (probe < 0) return;
-        table = scene->probes[probe].kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
+        table = (tobi_table)(TOBI_TABLE_POINT + scene->probes[probe].kind);
     }
     if (def->column) check_column(source, entry, table, def->column);
 }

@@ -103,8 +103,11 @@ char *tobi_scene_resolved(const tobi_scene *scene)
         failed |= json_array_append_new(bodies, write_body(scene, &scene->bodies[i]));
     for (int i = 0; i < scene->plane_count; i++)
         failed |= json_array_append_new(planes, tobi_write_def(&tobi_plane_table, &scene->planes[i]));
-    for (int i = 0; i < scene->probe_count; i++)
-        failed |= json_array_append_new(probes, tobi_write_def(&tobi_probe_table, &scene->probes[i]));
+    for (int i = 0; i < scene->probe_count; i++) {
+        json_t *probe = tobi_write_def(&tobi_probe_table, &scene->probes[i]);
+        tobi_probe_drop_unread(&scene->probes[i], probe);
+        failed |= json_array_append_new(probes, probe);
+    }
     for (int i = 0; i < scene->reference_count; i++)
         failed |= json_array_append_new(
             references, tobi_write_def(&tobi_reference_table, &scene->references[i]));

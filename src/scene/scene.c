@@ -162,12 +162,14 @@ static tobi_status read_probes(tobi_scene *scene, const tobi_binder *binder, con
     json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
     if (!list) return TOBI_OK;
     scene->probes = calloc(json_array_size(list) + 1, sizeof *scene->probes);
-    if (!scene->probes) return TOBI_NO_MEMORY;
+    scene->probes_bound = calloc(json_array_size(list) + 1, sizeof *scene->probes_bound);
+    if (!scene->probes || !scene->probes_bound) return TOBI_NO_MEMORY;
     for (size_t i = 0; i < json_array_size(list); i++) {
         tobi_place entry = { &place, NULL, i };
-        tobi_probe_def *probe = &scene->probes[scene->probe_count++];
+        tobi_probe_def *probe = &scene->probes[scene->probe_count];
         *probe = tobi_default_probe_def();
-        tobi_bind(binder, &tobi_probe_table, json_array_get(list, i), &entry, NULL, probe);
+        scene->probes_bound[scene->probe_count++] =
+            tobi_bind(binder, &tobi_probe_table, json_array_get(list, i), &entry, NULL, probe);
     }
     return TOBI_OK;
 }
@@ -382,6 +384,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->planes_bound);
     free(scene->lines);
     free(scene->probes);
+    free(scene->probes_bound);
     tobi_openings_clear(scene);
     free(scene->references);
     free(scene->views);

@@ -63,6 +63,7 @@ struct tobi_scene {
     tobi_line_def *lines;
     int line_count;
     tobi_probe_def *probes;
+    tobi_bound *probes_bound;
     int probe_count;
     tobi_output_def output;
     tobi_view_def *views;          /* of output, which points to them             */
@@ -102,6 +103,9 @@ void tobi_references_check(const tobi_scene *scene, tobi_source *source);
 void tobi_check_fills(const tobi_scene *scene, tobi_source *source, const tobi_place *owner,
                       const tobi_scene_fill *fills, int count);
 void tobi_check_overlaps(const tobi_scene *scene, tobi_source *source);
+/* check_probes.c; what the kind of a probe does not read is taken out of what its definition has become. */
+void tobi_check_probes(const tobi_scene *scene, tobi_source *source);
+void tobi_probe_drop_unread(const tobi_probe_def *def, json_t *object);
 /* check.c: whether both corners are right; a file that the scene names. */
 int  tobi_check_has_domain(const tobi_scene *scene);
 void tobi_check_file(tobi_source *source, const tobi_place *place, const char *path);

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #define RADIUS 3.0          /* of the fit, spacings */
-#define BULK 0.6            /* relative density that spray does not reach */
 #define DRY 0.1             /* share of the kernel, a place with less before it is dry */
 #define ON_WALL 0.5         /* a point nearer to a surface than this sits on it, spacings */
 enum { BASIS = 4, VALUES = 4 };
@@ -166,6 +165,17 @@ static double open_share(const membrane *m, const double y[3])
     return open;
 }
 
+/* Traction at one place of the wall. */
+static double measure_place(membrane *m, const double y[3])
+{
+    const tobi_system *s = m->s;
+    const sph_range cells = sph_cells_around(s, y, s->smoothing.h + s->smoothing.spacing);
+    m->traction = m->weight = 0;
+    sph_visit(s, y, &cells, press, m);
+    if (!sph_of(s)->mirrors) return m->traction/open_share(m, y);
+    return m->weight > DRY ? m->traction/m->weight : 0;
+}
+
 /* Mean traction over the part of a disc that is wall: rings of equal area. */
 static double measure_wall(membrane *m)
 {
@@ -185,67 +195,53 @@ static double measure_wall(membrane *m)
             for (int a = 0; a < 3; a++) y[a] = m->foot[a] + r*(cos(turn)*u[a] + sin(turn)*v[a]);
             if (s->box.dimension == 2) y[2] = 0;
             if (!is_on_wall(m, y)) continue;
-            sph_range cells = sph_cells_around(s, y, s->smoothing.h + d);
-            m->traction = m->weight = 0;
-            sph_visit(s, y, &cells, press, m);
-            if (!sph_of(s)->mirrors) sum += m->traction/open_share(m, y);
-            else if (m->weight > DRY) sum += m->traction/m->weight;
+            sum += measure_place(m, y);
             used++;
         }
     return used > 0 ? sum/used : 0;
 }
 
-int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3])
+/* Pressure and velocity at a place in box coordinates; the number of particles that were used. */
+static int fit_values(const tobi_system *s, const double local[3], double value[VALUES])
 {
     fit f = {.s = s, .radius = RADIUS*s->smoothing.spacing};
-    double local[3], value[VALUES] = {0};
     int n = 1 + s->box.dimension;
-    for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
+    memset(value, 0, VALUES*sizeof *value);
     sph_range r = sph_cells_around(s, local, f.radius + s->smoothing.spacing);
     sph_visit(s, local, &r, add_to_fit, &f);
     fit full = f;
     if (f.count >= 2*n && eliminate(&full, n)) substitute(&full, n, value);
     else if (f.count > 0)
         for (int k = 0; k < VALUES; k++) value[k] = f.right[0][k]/f.matrix[0][0];
-    *pressure = value[0];
-    memcpy(velocity, value + 1, 3*sizeof *velocity);
-    membrane wall;
-    if (f.count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
-    if (f.count > 0) *pressure += sph_hydrostatic(s, local);
     return f.count;
 }
 
-typedef struct column {
-    const tobi_system *s;
-    double near2, sign, top;    /* top: along the axis, box coordinates */
-    int axis;
-} column;
-
-static void look_for_top(void *user, int64_t i, const double d[3])
+static void find_local(const tobi_system *s, const double x[3], double local[3])
 {
-    column *c = user;
-    double r2 = d[0]*d[0] + d[1]*d[1] + d[2]*d[2] - d[c->axis]*d[c->axis];
-    double height = (&c->s->particles.position[i].x)[c->axis];
-    if (r2 > c->near2 || !(sph_fields_of(&c->s->particles)->density[i] > BULK)) return;
-    if (!(c->sign*height < c->sign*c->top)) c->top = height;
+    for (int a = 0; a < 3; a++) local[a] = a < s->box.dimension ? x[a] - s->box.lower[a] : 0;
 }
 
-double tobi_probe_level(const tobi_system *s, const double x[3])
+int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3])
 {
-    double local[3] = {0}, d = s->smoothing.spacing, size = 0;
-    column c = {.s = s, .near2 = d*d, .sign = 1, .axis = s->box.dimension - 1};
-    for (int a = 0; a < s->box.dimension; a++) {
-        local[a] = x[a] - s->box.lower[a];
-        if (fabs(s->sim->def.gravity[a]) <= size) continue;
-        size = fabs(s->sim->def.gravity[a]);
-        c.axis = a;
-        c.sign = s->sim->def.gravity[a] > 0 ? -1 : 1;
-    }
-    sph_range r = sph_cells_around(s, local, 2*d);
-    r.first[c.axis] = 0;
-    r.last[c.axis] = s->cells.n[c.axis] - 1;
-    double floor_at = c.sign > 0 ? 0 : s->box.size[c.axis];
-    c.top = floor_at;
-    sph_visit(s, local, &r, look_for_top, &c);
-    return s->box.lower[c.axis] + (c.top == floor_at ? floor_at : c.top + 0.5*d*c.sign);
+    double local[3], value[VALUES];
+    membrane wall;
+    find_local(s, x, local);
+    const int count = fit_values(s, local, value);
+    *pressure = value[0];
+    memcpy(velocity, value + 1, 3*sizeof *velocity);
+    if (count > 0 && find_surface(s, local, &wall)) *pressure = measure_wall(&wall);
+    if (count > 0) *pressure += sph_hydrostatic(s, local);
+    return count;
+}
+
+double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3])
+{
+    double local[3], value[VALUES];
+    membrane wall;
+    find_local(s, x, local);
+    const int count = fit_values(s, local, value);
+    if (count == 0) return 0;
+    if (!find_surface(s, local, &wall)) return value[0] + sph_hydrostatic(s, local);
+    memcpy(normal, wall.normal, sizeof wall.normal);
+    return measure_place(&wall, wall.foot) + sph_hydrostatic(s, local);
 }

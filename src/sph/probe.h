@@ -11,7 +11,7 @@
    the last sort by less than a spacing. Returns how many particles were used. */
 int tobi_probe_point(const tobi_system *s, const double x[3], double *pressure, double velocity[3]);
 
-/* Height of the surface on the plumb line through x: world coordinate along gravity, m (z, in 2-D y, without
-   gravity). Topmost particle within one spacing that has more than 0.6 of the rest density, plus half
-   a spacing; the domain's lower side where it is dry. */
-double tobi_probe_level(const tobi_system *s, const double x[3]);
+/* Pressure at a place, Pa, without the mean over a disc; on a side or a body, *normal becomes its
+   direction out
+   of the wall. 0 where there is no fluid. */
+double tobi_probe_place(const tobi_system *s, const double x[3], double normal[3]);

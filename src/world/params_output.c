@@ -5,10 +5,34 @@
 static const tobi_param probe_rows[] = {
     { .key = "name", TEXT, AT(tobi_probe_def, name), .unit = "name", .text = "probe", .required = true,
       .doc = "Name of the probe, used once in a scene and in the columns of probes.csv." },
-    { .key = "kind", CHOICE("point|level", 2), AT(tobi_probe_def, kind),
-      .doc = "A point measures pressure and velocity, a level the height of the surface above or below it." },
+    { .key = "kind", CHOICE("point|level|patch|run-up|flow|volume", 6), AT(tobi_probe_def, kind),
+      .doc = "A point measures pressure and velocity; a level the height of the surface above or below it; a "
+             "patch mean pressure, force and moment on a rectangle of a wall; a run-up how far water reaches "
+             "along a line; a flow what passes a rectangle; a volume the liquid in a box." },
     { .key = "position", VEC3, AT(tobi_probe_def, position), PLACE, .unit = "m", .required = true,
-      .doc = "Where it sits; for a level any point of its plumb line." },
+      .doc = "Where it sits: for a level any point of its plumb line, the middle of a patch, a flow or a "
+             "volume, the wet end of a run-up." },
+    { .key = "end", VEC3, AT(tobi_probe_def, end), PLACE, .unit = "m", .doc = "The other end of a run-up." },
+    { .key = "normal", VEC3, AT(tobi_probe_def, normal), DIRECTION, .unit = "1",
+      .doc = "Direction across a patch (into the water), of a flow (where it counts as positive), or of the "
+             "height of a volume; zero is up." },
+    { .key = "along", VEC3, AT(tobi_probe_def, along), DIRECTION, .unit = "1",
+      .doc = "Direction of its length, which normal makes square; zero takes x, or y where normal is x." },
+    { .key = "length", REAL, AT(tobi_probe_def, length), LENGTHS, .unit = "m",
+      .text = "none", .doc = "Length of a patch, flow or volume." },
+    { .key = "width", REAL, AT(tobi_probe_def, width), LENGTHS, .unit = "m", .text = "none",
+      .doc = "Its width, across along and normal; in 2-D there is none." },
+    { .key = "height", REAL, AT(tobi_probe_def, height), LENGTHS, .unit = "m",
+      .text = "none", .doc = "Height of a volume, along normal." },
+    { .key = "body", TEXT, AT(tobi_probe_def, body), .unit = "name",
+      .doc = "Name of the body that it sits on and moves with, from where the scene places the body." },
+    { .key = "rate", REAL, AT(tobi_probe_def, rate), RANGE(1e-9, 1e12), .unit = "Hz",
+      .text = "output", .doc = "Its values per second, each of the first step that is due; output goes by "
+                               "output.probe_interval." },
+    { .key = "filter.cutoff", REAL, AT(tobi_probe_def, cutoff), RANGE(1e-9, 1e12),
+      .unit = "Hz", .text = "none", .doc = "Frequency of a low pass that sees its value of every step." },
+    { .key = "filter.order", CHOICE("first|butterworth", 2), AT(tobi_probe_def, order),
+      .doc = "A low pass of first order, or one of second order without a peak (Butterworth)." },
     { 0 }
 };
 
@@ -124,7 +148,7 @@ static const tobi_param reference_rows[] = {
     { .key = "body", TEXT, AT(tobi_reference_def, body), .unit = "name",
       .doc = "Name of the body, for a column of bodies.csv." },
     { .key = "probe", TEXT, AT(tobi_reference_def, probe), .unit = "name",
-      .doc = "Name of the probe, for a column of probes.csv: pressure, velocity_x .. z or level." },
+      .doc = "Name of the probe, for a column of probes.csv: pressure, velocity_x .. z, level, flow ..." },
     { .key = "x", TEXT, AT(tobi_reference_def, x), .unit = "text", .text = "time",
       .doc = "Column of the file with the times." },
     { .key = "y", TEXT, AT(tobi_reference_def, y), .unit = "text",

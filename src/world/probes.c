@@ -1,34 +1,106 @@
-/* The world's probes: added by definition, read by number. */
+/* The world's probes: added by definition, read by number. One that sits on a body is turned and shifted with
+   it. Drawback: bodies that deform have no pose that a probe could follow, and are refused. */
 #include "base/error.h"
 #include "sph/probe.h"
+#include "sph/sensor.h"
 #include "base/param.h"
+#include "geom/vec3.h"
 #include "world/world.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+static int has_box(int kind)
+{
+    return kind == TOBI_PROBE_PATCH || kind == TOBI_PROBE_FLOW || kind == TOBI_PROBE_VOLUME;
+}
+
+static tobi_status check_place(const tobi_world *w, const tobi_probe_def *def, const double x[3],
+                               tobi_error *err)
+{
+    const tobi_box *box = &w->system[0].box;
+    for (int a = 0; a < box->dimension; a++)
+        if (!(x[a] >= box->lower[a] && x[a] <= box->lower[a] + box->size[a]))
+            return tobi_fail(err, TOBI_INVALID,
+                             "probe '%s' sits outside the domain: %c = %g m, allowed is %g to %g m",
+                             def->name, "xyz"[a], x[a], box->lower[a], box->lower[a] + box->size[a]);
+    return TOBI_OK;
+}
+
+/* Length, width and height as far as the kind and the dimension need them. */
+static tobi_status check_sizes(const tobi_world *w, const tobi_probe_def *def, tobi_error *err)
+{
+    const int flat = w->sim.def.dimension == 2;
+    const double *normal = def->normal;
+    if (!has_box(def->kind)) return TOBI_OK;
+    if (!(def->length > 0) || (!flat && !(def->width > 0)) ||
+        (def->kind == TOBI_PROBE_VOLUME && !(def->height > 0)))
+        return tobi_fail(err, TOBI_INVALID, "probe '%s' needs length%s%s, greater than 0 m", def->name,
+                         flat ? "" : ", width", def->kind == TOBI_PROBE_VOLUME ? ", height" : "");
+    if (flat && (normal[2] != 0 || def->along[2] != 0))
+        return tobi_fail(err, TOBI_INVALID, "probe '%s': normal and along have no z in 2-D", def->name);
+    return TOBI_OK;
+}
+
+/* A rate that no step can follow, and a filter that the rate would fold over. */
+static tobi_status check_rate(const tobi_world *w, const tobi_probe_def *def, tobi_error *err)
+{
+    const double steps = w->sim.def.time_step > 0 ? 1/w->sim.def.time_step : INFINITY;
+    const double rate = def->rate > 0 ? def->rate : steps;
+    if (def->rate > steps*(1 + 1e-9))
+        return tobi_fail(err, TOBI_INVALID,
+                         "probe '%s': a rate of %g Hz is more than a value per time step, %g Hz",
+                         def->name, def->rate, steps);
+    if (def->cutoff > 0.5*rate)
+        return tobi_fail(err, TOBI_INVALID,
+                         "probe '%s': a filter of %g Hz lets through what %g values per second "
+                         "cannot tell, allowed is up to %g Hz", def->name, def->cutoff, rate, 0.5*rate);
+    return TOBI_OK;
+}
+
+static tobi_status find_body(const tobi_world *w, const tobi_probe_def *def, int *body, tobi_error *err)
+{
+    *body = -1;
+    if (!def->body) return TOBI_OK;
+    for (int b = 0; b < w->sim.body_count && *body < 0; b++)
+        if (strcmp(w->sim.bodies[b].name, def->body) == 0) *body = b;
+    if (*body < 0)
+        return tobi_fail(err, TOBI_NOT_FOUND, "probe '%s' sits on the body '%s', which is not there",
+                         def->name,
+                         def->body);
+    if (def->kind == TOBI_PROBE_LEVEL)
+        return tobi_fail(err, TOBI_INVALID, "probe '%s': a level stands still; use a run-up on a body",
+                         def->name);
+    if (w->sim.bodies[*body].deforms)
+        return tobi_fail(err, TOBI_UNSUPPORTED,
+                         "probe '%s' sits on the body '%s', which deforms: it would have "
+                         "no place there", def->name, def->body);
+    return TOBI_OK;
+}
+
 tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_error *err)
 {
+    int body;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_NEED(def->name, "the name of the probe");
-    const tobi_box *box = &w->system[0].box;
     TOBI_TRY(tobi_param_check(&tobi_probe_table, def, err));
-    for (int a = 0; a < box->dimension; a++)
-        if (!(def->position[a] >= box->lower[a] && def->position[a] <= box->lower[a] + box->size[a]))
-            return tobi_fail(err, TOBI_INVALID,
-                             "probe '%s' sits outside the domain: %c = %g m, allowed is %g to %g m",
-                             def->name, "xyz"[a], def->position[a], box->lower[a],
-                             box->lower[a] + box->size[a]);
+    TOBI_TRY(check_place(w, def, def->position, err));
+    if (def->kind == TOBI_PROBE_RUN_UP) TOBI_TRY(check_place(w, def, def->end, err));
+    if (def->kind == TOBI_PROBE_RUN_UP && vec3_distance2(def->end, def->position) == 0)
+        return tobi_fail(err, TOBI_INVALID, "probe '%s': the run-up ends where it begins", def->name);
+    TOBI_TRY(check_sizes(w, def, err));
+    TOBI_TRY(check_rate(w, def, err));
+    TOBI_TRY(find_body(w, def, &body, err));
     if (w->probe_count == TOBI_PROBE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d probes", TOBI_PROBE_LIMIT);
     tobi_probe *more = realloc(w->probes, (size_t)(w->probe_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a probe");
     w->probes = more;
     tobi_probe *p = &w->probes[w->probe_count++];
-    *p = (tobi_probe){ .kind = def->kind };
+    *p = (tobi_probe){ .def = *def, .body = body };
+    p->def.name = p->def.body = NULL;
     snprintf(p->name, sizeof p->name, "%s", def->name);
-    memcpy(p->position, def->position, sizeof p->position);
     return TOBI_OK;
 }
 
@@ -37,16 +109,107 @@ int tobi_world_probe_count(const tobi_world *w) { return w ? w->probe_count : 0;
 const char *tobi_world_probe_name(const tobi_world *w, int probe, tobi_probe_kind *kind)
 {
     if (!w || probe < 0 || probe >= w->probe_count) return NULL;
-    if (kind) *kind = (tobi_probe_kind)w->probes[probe].kind;
+    if (kind) *kind = (tobi_probe_kind)w->probes[probe].def.kind;
     return w->probes[probe].name;
+}
+
+/* A direction of the scene as the body has turned it. */
+static void turn(const tobi_body *b, double v[3])
+{
+    double out[3] = { 0 };
+    for (int k = 0; b && k < 3; k++) vec3_add_scaled(out, out, v[k], b->frame[k]);
+    if (b) memcpy(v, out, sizeof out);
+}
+
+/* A place of the scene as the body has carried it. */
+static void carry(const tobi_body *b, double x[3])
+{
+    double arm[3];
+    if (!b) return;
+    vec3_sub(arm, x, b->rest.centre);
+    turn(b, arm);
+    for (int a = 0; a < 3; a++) x[a] = b->centre[a] + arm[a];
+}
+
+/* Unit axes: up from normal, along made square to it, and up x along. */
+static void make_axes(const tobi_world *w, const tobi_probe_def *def, double axis[3][3])
+{
+    const int flat = w->sim.def.dimension == 2;
+    double *along = axis[0], *across = axis[1], *up = axis[2];
+    memcpy(up, def->normal, sizeof axis[2]);
+    memcpy(along, def->along, sizeof axis[0]);
+    if (vec3_length(up) == 0) up[flat ? 1 : 2] = 1;
+    const double size = vec3_length(up);
+    for (int a = 0; a < 3; a++) up[a] /= size;
+    double square = vec3_dot(along, up);
+    vec3_add_scaled(along, along, -square, up);
+    if (!(vec3_length(along) > 1e-9*vec3_length(def->along))) {      /* zero, or along the normal */
+        memset(along, 0, sizeof axis[0]);
+        if (flat) along[0] = up[1], along[1] = -up[0];
+        else along[fabs(up[0]) > 0.9] = 1;
+        square = vec3_dot(along, up);
+        vec3_add_scaled(along, along, -square, up);
+    }
+    const double length = vec3_length(along);
+    for (int a = 0; a < 3; a++) along[a] /= length;
+    vec3_cross(across, up, along);
+}
+
+static void make_box(const tobi_world *w, const tobi_probe *p, const tobi_body *b, tobi_sensor_box *box)
+{
+    const tobi_probe_def *def = &p->def;
+    memcpy(box->middle, def->position, sizeof box->middle);
+    make_axes(w, def, box->axis);
+    carry(b, box->middle);
+    for (int k = 0; k < 3; k++) turn(b, box->axis[k]);
+    box->size[0] = def->length;
+    box->size[1] = w->sim.def.dimension == 2 ? 1 : def->width;
+    box->size[2] = def->kind == TOBI_PROBE_VOLUME ? def->height : 0;
+}
+
+static void measure_run_up(const tobi_world *w, const tobi_probe *p, const tobi_body *b,
+                           tobi_probe_info *info)
+{
+    double from[3], to[3], along[3], floor_at, sign;
+    memcpy(from, p->def.position, sizeof from);
+    memcpy(to, p->def.end, sizeof to);
+    carry(b, from);
+    carry(b, to);
+    vec3_sub(along, to, from);
+    const double length = vec3_length(along);
+    for (int a = 0; a < 3; a++) along[a] /= length;
+    const double reach = tobi_sensor_column(&w->system[0], from, along, length, &floor_at);
+    const int axis = tobi_sensor_up(&w->system[0], &sign);
+    info->distance = reach > 0 ? reach : 0;
+    info->run_up = from[axis] + info->distance*along[axis];
 }
 
 void tobi_world_measure_probe(const tobi_world *w, int probe, tobi_probe_info *info)
 {
+    static const double still[3];
     const tobi_probe *p = &w->probes[probe];
+    const tobi_system *s = &w->system[0];
+    const tobi_body *b = p->body >= 0 ? &w->sim.bodies[p->body] : NULL;
+    double place[3];
+    tobi_sensor_box box;
     memset(info, 0, sizeof *info);
-    if (p->kind == TOBI_PROBE_LEVEL) info->level = tobi_probe_level(&w->system[0], p->position);
-    else tobi_probe_point(&w->system[0], p->position, &info->pressure, info->velocity);
+    if (b && b->is_absent) return;
+    if (has_box(p->def.kind)) make_box(w, p, b, &box);
+    switch (p->def.kind) {
+    case TOBI_PROBE_LEVEL: info->level = tobi_sensor_level(s, p->def.position); break;
+    case TOBI_PROBE_RUN_UP: measure_run_up(w, p, b, info); break;
+    case TOBI_PROBE_PATCH: tobi_sensor_patch(s, &box, &info->pressure, info->force, info->moment); break;
+    case TOBI_PROBE_VOLUME: info->volume = tobi_sensor_volume(s, &box); break;
+    case TOBI_PROBE_FLOW:
+        info->flow = tobi_sensor_flow(s, &box, b ? b->rigid.velocity : still,
+                                      b ? b->rigid.angular_velocity : still,
+                                      b ? b->centre : box.middle);
+        break;
+    default:
+        memcpy(place, p->def.position, sizeof place);
+        carry(b, place);
+        tobi_probe_point(s, place, &info->pressure, info->velocity);
+    }
 }
 
 tobi_status tobi_world_probe(tobi_world *w, int probe, tobi_probe_info *info, tobi_error *err)

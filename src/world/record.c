@@ -321,6 +321,7 @@ void tobi_run_free(tobi_run *run)
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);
     free(run->body_since);
+    free(run->sensor);
     free(run->resolved);
     free(run->dir);
     free(run);

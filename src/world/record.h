@@ -70,6 +70,13 @@ typedef struct tobi_snapshot {
     bool bodies_written;                  /* so that a second try adds no row twice  */
 } tobi_snapshot;
 
+/* A column of probes.csv: its low pass, and the extremes of what was written. */
+typedef struct tobi_sensor_state {
+    double y, v, last;                    /* filtered value, its rate, the last raw value */
+    double max, max_time, min, min_time;
+    int begun, noted;                     /* 1: there are values in the first, the second line */
+} tobi_sensor_state;
+
 struct tobi_run {
     tobi_world *world;
     tobi_output_def output;               /* fields is not used after creation       */
@@ -99,6 +106,7 @@ struct tobi_run {
     int64_t outputs;                      /* taken so far = number of the next       */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
+    tobi_sensor_state *sensor;            /* one per column of probes.csv; NULL = none */
     double wall, step_wall;               /* s, earlier sessions + this one          */
     double begun;                         /* s, monotonic clock at the start         */
     double particle_steps;                /* sum of fluid particles over steps       */
@@ -127,8 +135,6 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 /* The rows of an output: made, and written. */
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-/* The row of probes.csv that is due after the step from `before`, if any. */
-tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
 /* record_lines.c: lines.csv, as often as probes.csv. */
 tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
@@ -137,6 +143,19 @@ tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continue
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
+
+/* record_probes.c: probes.csv. */
+tobi_status tobi_probes_open(tobi_run *run, bool continued, tobi_error *err);
+/* The row that is due after the step from `before`, if any. */
+tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err);
+/* A low pass of first (order 0) or second order (Butterworth), cutoff in Hz, 0 = none; x: the raw value
+   after a
+   step of dt, s. f->y is the filtered one. */
+void tobi_sensor_pass(tobi_sensor_state *f, double cutoff, int order, double dt, double x);
+/* The state of all columns in a checkpoint, and the extremes in summary.json. */
+struct json_t *tobi_probes_to_json(const tobi_run *run);
+bool tobi_probes_from_json(struct json_t *list, tobi_run *run);
+struct json_t *tobi_probes_sum_up(const tobi_run *run);
 
 /* record_snapshot.c: what an output holds, from the world. */
 tobi_status tobi_snapshot_take(tobi_run *run, tobi_snapshot **snapshot, tobi_error *err);

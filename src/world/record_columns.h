@@ -123,3 +123,18 @@
 #define LEVEL(P) \
     P("level", "m", \
       "Coordinate of the free surface on the plumb line of the point: y or z if gravity is along -y or -z.")
+#define PATCH(P) \
+    P("pressure", "Pa", "Mean pressure on the rectangle.") \
+    P("force_x", "N", "Force of the fluid on it; in 2-D per metre of depth.") \
+    P("force_y", "N", "") \
+    P("force_z", "N", "") \
+    P("moment_x", "N m", "Moment of that force about the middle of the rectangle.") \
+    P("moment_y", "N m", "") \
+    P("moment_z", "N m", "")
+#define RUN_UP(P) \
+    P("run_up", "m", "Coordinate, along gravity, of the place on the line where the water ends.") \
+    P("distance", "m", "How far that place is from the begin of the line; 0 where it is dry.")
+#define FLOW(P) \
+    P("flow", "m3/s", "Volume per second through the rectangle, positive along its normal; in 2-D m2/s.")
+#define VOLUME(P) \
+    P("volume", "m3", "Volume of liquid in the box; in 2-D m2.")

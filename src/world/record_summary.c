@@ -102,6 +102,8 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
         (json_int_t)(run->outputs - tobi_writer_pending(run->writer)), "state_hash", hash,
         "stages_s", make_stages(run));
     if (json && more) json_object_update(json, more);
+    if (json && tobi_world_probe_count(run->world)) json_object_set_new(json, "sensors",
+        tobi_probes_sum_up(run));
     json_decref(more);
     return json;
 }

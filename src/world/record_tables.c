@@ -1,4 +1,5 @@
-/* history.csv, bodies.csv and probes.csv: the columns are lists (record_columns.h), so that header, row and
+/* history.csv and bodies.csv (probes.csv: record_probes.c): the columns are lists (record_columns.h), so
+   that header, row and
    what is said of them cannot disagree. */
 #include "world/record.h"
 #include "world/record_columns.h"
@@ -83,46 +84,21 @@ static const tobi_column body[] = {
     { "time", "s", "Simulated time." }, { "name", "text", "Name of the body." }, BODY(B) };
 #undef B
 #define P(name, unit, doc) { name, unit, doc },
-static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) };
+static const tobi_column point[] = { POINT(P) }, level[] = { LEVEL(P) }, patch[] = { PATCH(P) },
+    run_up[] = { RUN_UP(P) }, flow[] = { FLOW(P) }, volume[] = { VOLUME(P) };
 #undef P
 
 static const struct { const tobi_column *columns; int count; } tables[] = {
 #define LIST(columns) { columns, (int)(sizeof columns / sizeof *columns) }
     [TOBI_TABLE_HISTORY] = LIST(history), [TOBI_TABLE_BODIES] = LIST(body),
-    [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level),
+    [TOBI_TABLE_POINT] = LIST(point), [TOBI_TABLE_LEVEL] = LIST(level), [TOBI_TABLE_PATCH] = LIST(patch),
+    [TOBI_TABLE_RUN_UP] = LIST(run_up), [TOBI_TABLE_FLOW] = LIST(flow), [TOBI_TABLE_VOLUME] = LIST(volume),
 #undef LIST
 };
 
 const tobi_column *tobi_run_column(tobi_table table, int index)
 {
     return index >= 0 && index < tables[table].count ? &tables[table].columns[index] : NULL;
-}
-
-/* Columns of probes.csv: time, then P_pressure, P_velocity_x .. z of a point P, H_level of a level H. */
-static tobi_status open_probes(tobi_run *run, bool continued, tobi_error *err)
-{
-    enum { NAME = 128, MOST = 4 };
-    int probes = tobi_world_probe_count(run->world), count = 1;
-    if (probes == 0) return TOBI_OK;
-    tobi_csv_column *columns = calloc((size_t)probes*MOST + 1, sizeof *columns);
-    char (*names)[NAME] = calloc((size_t)probes*MOST + 1, sizeof *names);
-    if (columns) columns[0].name = "time";
-    for (int k = 0; columns && names && k < probes; k++) {
-        tobi_probe_kind kind;
-        const char *name = tobi_world_probe_name(run->world, k, &kind);
-        const tobi_column *column;
-        tobi_table table = kind == TOBI_PROBE_LEVEL ? TOBI_TABLE_LEVEL : TOBI_TABLE_POINT;
-        for (int v = 0; (column = tobi_run_column(table, v)); v++, count++) {
-            snprintf(names[count], NAME, "%s_%s", name, column->name);
-            columns[count].name = names[count];
-        }
-    }
-    tobi_status status = columns && names
-        ? tobi_table_open(run, "probes.csv", continued, columns, count, &run->probes, err)
-        : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
-    free(columns);
-    free(names);
-    return status;
 }
 
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
@@ -133,29 +109,7 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, body_columns,
                             tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
-    return open_probes(run, continued, err);
-}
-
-/* A sensor's signal is followed step by step: at impacts nothing less will do. */
-tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *err)
-{
-    double every = run->output.probe_interval, now = tobi_world_time(run->world);
-    if (!run->probes || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
-    if (tobi_csv_is_gone(run->probes)) TOBI_TRY(tobi_record_keep_dir(run, err));
-    tobi_csv_add_real(run->probes, now);
-    for (int k = 0; k < tobi_world_probe_count(run->world); k++) {
-        tobi_probe_kind kind;
-        tobi_probe_info info;
-        tobi_world_probe_name(run->world, k, &kind);
-        tobi_world_measure_probe(run->world, k, &info);
-        if (kind == TOBI_PROBE_LEVEL) {
-            tobi_csv_add_real(run->probes, info.level);
-            continue;
-        }
-        tobi_csv_add_real(run->probes, info.pressure);
-        for (int a = 0; a < 3; a++) tobi_csv_add_real(run->probes, info.velocity[a]);
-    }
-    return tobi_csv_end_row(run->probes, err);
+    return tobi_probes_open(run, continued, err);
 }
 
 static tobi_status take_bodies(tobi_run *run, tobi_csv_rows *rows, tobi_error *err)

@@ -6,7 +6,8 @@
 #include "world/methods.h"
 #include <assert.h>
 
-typedef struct tobi_probe { char name[104]; int kind; double position[3]; } tobi_probe;
+/* def: its name and body are NULL. body: by number, -1 = none. */
+typedef struct tobi_probe { tobi_probe_def def; char name[104]; int body; } tobi_probe;
 
 typedef struct tobi_drive tobi_drive;
 

@@ -323,7 +323,7 @@ def read_table(path):
             return float(text)
         except ValueError:
             return text
-    return {key: [value(row[key]) for row in rows] for key in rows[0]}
+    return {key.split(" [")[0]: [value(row[key]) for row in rows] for key in rows[0]}
 
 
 def read_cost(folder):

@@ -19,7 +19,7 @@
 #define REFUSED(call, expected, words)                                          \
     do {                                                                        \
         tobi_error err = { 0 };                                                 \
-        int got = (call);                                                       \
-        if (got != (expected) || !strstr(err.text, words))                      \
+        int got = (int)(call);                                                  \
+        if (got != (int)(expected) || !strstr(err.text, words))                      \
             fail_msg("%s: status %d, '%s' without '%s'", #call, got, err.text, words); \
     } while (0)
