@@ -258,21 +258,115 @@ static void write_impact(const family_choice *c, FILE *out)
 
 static const family_option slosh_options[] = {
     SPACING(0.02), UNTIL(4), TANK(0.9, 0.1, 0.5), LENGTH("depth", 0.2, "of the water"),
-    { "tilt", "degrees", 4, -45, 45, "about y, at once at time 0; the water swings about its new level" },
-    { 0 } };
+    { "angle", "degrees", 4, -45, 45, "of the tank about y" },
+    { "period", "s", 0, 0, 1e5, "of its turns to and fro; 0: tilted at once, and kept" }, { 0 } };
+
+/* The turn to and fro as a frame: the tank stands still, gravity and inertia turn. */
+static void put_frame(const family_choice *c, FILE *out, const double size[3])
+{
+    if (!(chosen(c, "period") > 0)) return;
+    fprintf(out, "  \"frame\": { \"%s\": { \"amplitude\": %.10g, \"period\": %.10g, \"center\": ",
+            c->dimension == 2 ? "yaw" : "pitch", chosen(c, "angle"), chosen(c, "period"));
+    put_place(c, out, size[0]/2, size[1]/2, 0);
+    fputs(" } },\n", out);
+}
 
 static void write_slosh(const family_choice *c, FILE *out)
 {
     const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
     const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
-    put_world(c, out, size, "a tank is tilted at once; seen from the tank, gravity turns",
-              chosen(c, "tilt"));
+    put_world(c, out, size, "water swings in a tank that is tilted; all is seen from the tank",
+              chosen(c, "period") > 0 ? 0 : chosen(c, "angle"));
+    put_frame(c, out, size);
     put_water(c, out, zero, water);
     fputs("  \"probes\": [", out);
     put_probe(c, out, 1, "left", "level", 0, size[1]/2, 0);
     put_probe(c, out, 0, "right", "level", size[0], size[1]/2, 0);
     put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, water[2]/2);
     fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+/* --- waves and a hose ---------------------------------------------------------------------- */
+
+static const family_option wave_options[] = {
+    SPACING(0.02), UNTIL(6), TANK(4, 0.1, 0.5), LENGTH("depth", 0.3, "of the water"),
+    LENGTH("wave-height", 0.06, "from trough to crest; of a solitary wave above the still water"),
+    { "period", "s", 1.2, 0, 1e5, "of regular waves; 0: one solitary wave" },
+    LENGTH("maker-at", 0.3, "where the water begins: the face of the piston at rest"), { 0 } };
+
+static const char *object_wave(const family_choice *c)
+{
+    const double depth = chosen(c, "depth");
+    if (depth > chosen(c, "height")) return above;
+    if (chosen(c, "wave-height") > 0.78*depth) return "waves higher than 0.78 depths break";
+    return chosen(c, "maker-at") >= chosen(c, "length") ? "the piston stands beyond the tank" : NULL;
+}
+
+static void write_wave(const family_choice *c, FILE *out)
+{
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), chosen(c, "height") };
+    const double at = chosen(c, "maker-at"), depth = chosen(c, "depth"), thick = 4*chosen(c, "spacing");
+    const double low[3] = { at, 0, 0 }, high[3] = { size[0], size[1], depth };
+    const double back[3] = { at - thick, 0, 0 }, face[3] = { at, size[1], size[2] };
+    char name[8];
+    put_world(c, out, size, "a piston makes waves, by Biesel's or Goring's theory", 0);
+    put_water(c, out, low, high);
+    fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);
+    put_corners(c, out, back, face);
+    fprintf(out, " },\n      \"motion\": { \"piston\": { \"depth\": %.10g, ", depth);
+    if (chosen(c, "period") > 0)
+        fprintf(out, "\"regular\": { \"height\": %.10g, \"period\": %.10g }, \"ramp\": %.10g } } }\n  ],\n",
+                chosen(c, "wave-height"), chosen(c, "period"), chosen(c, "period"));
+    else
+        fprintf(out, "\"solitary\": { \"height\": %.10g } } } }\n  ],\n", chosen(c, "wave-height"));
+    fputs("  \"probes\": [", out);
+    for (int k = 0; k < 3; k++) {
+        snprintf(name, sizeof name, "G%d", k + 1);
+        put_probe(c, out, k == 0, name, "level", at + (k + 1)*(size[0] - at)/4, size[1]/2, 0);
+    }
+    put_probe(c, out, 0, "wall", "point", size[0], size[1]/2, depth/2);
+    fputs("\n  ],\n", out);
+    put_output(c, out);
+}
+
+static const family_option hose_options[] = {
+    SPACING(0.005), UNTIL(1), TANK(0.06, 0.06, 0.12), LENGTH("depth", 0.015, "of the water at the start"),
+    LENGTH("diameter", 0.02, "of the hose"),
+    { "speed", "m/s", 0.5, 1e-6, 1e3, "of the water in the hose" }, { 0 } };
+
+static const char *object_hose(const family_choice *c)
+{
+    const double width = c->dimension == 2 ? chosen(c, "length") : fmin(chosen(c, "length"), chosen(c,
+        "width"));
+    if (chosen(c, "depth") > 0.7*chosen(c,
+                                        "height")) return "the glass is full before the hose begins";
+    return chosen(c, "diameter") > width ? "the hose is wider than the glass" : NULL;
+}
+
+/* The domain is the glass, and holds the end of the hose above it. */
+static void write_hose(const family_choice *c, FILE *out)
+{
+    const double d = chosen(c, "spacing"), up = chosen(c, "height");
+    const double size[3] = { chosen(c, "length"), chosen(c, "width"), up + 6*d };
+    const double zero[3] = { 0 }, water[3] = { size[0], size[1], chosen(c, "depth") };
+    const double wide = chosen(c, "diameter");
+    put_world(c, out, size, "a hose fills a glass", 0);
+    put_water(c, out, zero, water);
+    fputs("  \"inlets\": [ { \"name\": \"hose\", \"centre\": ", out);
+    put_place(c, out, size[0]/2, size[1]/2, 0.8*up);
+    fputs(", \"normal\": ", out);
+    put_place(c, out, 0, 0, -1);
+    fprintf(out, ", \"%s\": %.10g, \"speed\": %.10g } ],\n", c->dimension == 2 ? "width" : "radius",
+            c->dimension == 2 ? wide : wide/2, chosen(c, "speed"));
+    fputs("  \"probes\": [", out);
+    put_probe(c, out, 1, "gauge", "level", 0, size[1]/2, 0);
+    put_probe(c, out, 0, "floor", "point", size[0]/2, size[1]/2, 0);
+    fputs(",\n    { \"name\": \"glass\", \"kind\": \"volume\", \"position\": ", out);
+    put_place(c, out, size[0]/2, size[1]/2, 0.4*up);
+    fprintf(out, ", \"length\": %.10g, ", size[0]);
+    if (c->dimension == 3) fprintf(out, "\"width\": %.10g, ", size[1]);
+    fprintf(out, "\"height\": %.10g }\n  ],\n", 0.8*up);
     put_output(c, out);
 }
 
@@ -283,8 +377,12 @@ static const family families[] = {
       object_lobovsky, write_lobovsky },
     { "kamra", "a dam breaks on a square or round post (Kamra et al. 2019)", kamra_options, 0,
       object_kamra, write_kamra },
-    { "sloshing", "water swings in a tank that is tilted at once", slosh_options, 1, object_static,
+    { "sloshing", "water swings in a tank that is tilted, at once or to and fro", slosh_options, 1,
+      object_static,
       write_slosh },
+    { "wave_tank", "a piston makes regular waves or a solitary one", wave_options, 1, object_wave,
+      write_wave },
+    { "hose", "a hose fills a glass", hose_options, 1, object_hose, write_hose },
     { "wave_impact", "a dam breaks onto a box (SPHERIC test 2)", impact_options, 1, object_impact,
       write_impact },
 };
