@@ -455,6 +455,25 @@ static void scenes_tell_the_place(void **state)
            "probes[0].filter.cutoff: is 60 Hz, more than half of 100");
 }
 
+static void a_deforming_body_holds_no_sensor(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
+        "\"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0, 0],"
+        "\"max\": [1, 1, 0.5] } } ] } ],\n"
+        "\"bodies\": [ { \"name\": \"fin\", \"box\": { \"min\": [0.4, 0.4, 0], \"max\": [0.6, 0.6, 0.6] },\n"
+        "\"motion\": { \"script\": \"sensor_fin.lua\" } } ],\n"
+        "\"probes\": [ { \"name\": \"p\", \"position\": [0.5, 0.5, 0.5], \"body\": \"fin\" } ] }";
+    FILE *file = fopen("sensor_fin.lua", "w");
+    tobi_scene *scene;
+    fputs("function deform(x, y, z, t) return x + 0.01*t*z, y, z end\n", file);
+    fclose(file);
+    REFUSED(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err), TOBI_INVALID,
+            "s.json:5:65: probes[0].body: \"fin\" deforms: the sensor would have no place on it");
+    remove("sensor_fin.lua");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -464,7 +483,7 @@ int main(void)
         cmocka_unit_test(levels_of_the_main_body_of_water), cmocka_unit_test(a_dry_floor_and_a_block),
         cmocka_unit_test(a_run_up_ends_at_the_surface), cmocka_unit_test(low_passes),
         cmocka_unit_test(bad_sensors_are_refused), cmocka_unit_test(rates_and_filters_are_checked),
-        cmocka_unit_test(scenes_tell_the_place),
+        cmocka_unit_test(scenes_tell_the_place), cmocka_unit_test(a_deforming_body_holds_no_sensor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
