@@ -84,8 +84,8 @@ static int has_lost_support(const tobi_system *s)
     return 0;
 }
 
-/* Whether what acts besides gravity is no small part of it: then no water is at rest. Of the whole run, since
-   to give still water up and to take it again stirs the water. */
+/* Whether what acts besides gravity is no small part of it: then no water is at rest. For good, since to
+   give still water up and to take it again stirs the water. */
 static int is_driven(const tobi_system *s)
 {
     double g2 = 0;

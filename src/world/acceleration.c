@@ -10,14 +10,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s, between the five poses; samples of the run, where its largest acceleration is looked for. */
-static const double STEP = 1e-3;
+/* s, between the five poses; between the times at which the largest acceleration so far is looked for, which
+   is so a function of time alone: steps are the same after a restart and whatever the end time. */
+static const double STEP = 1e-3, SAMPLE = 0.01;
 enum { SAMPLES = 1000 };
 
 struct tobi_drive {
     tobi_keyframes *rows;       /* of gravity, NULL = constant                      */
     int given[3];               /* which of its components                          */
     tobi_motion *swing;         /* its shift is gravity, m/s2; NULL = none          */
+    int64_t sampled;            /* times that `sim.acceleration_most` knows         */
     tobi_motion_fn frame;       /* NULL = at rest                                   */
     void *frame_user;
 };
@@ -247,20 +249,37 @@ static double change_at(const tobi_world *w, const tobi_acceleration *f, int cor
     return sqrt(sum);
 }
 
-static tobi_status keep_largest(tobi_world *w, const tobi_acceleration *f, double t, tobi_error *err)
+static void keep_largest(tobi_world *w, const tobi_acceleration *f)
 {
     tobi_simulation *s = &w->sim;
     for (int a = 0; a < s->def.dimension; a++) {
         double most = fabs(s->def.gravity[a] + f->uniform[a]);
         for (int k = 0; k < 3; k++) most += fabs(f->gradient[a][k])*w->system[0].box.size[k];
-        if (!isfinite(most))
-            return tobi_fail(err, TOBI_INVALID, "at t = %.9g s the acceleration of the frame is no number",
-                             t);
         s->acceleration_most[a] = fmax(s->acceleration_most[a], most);
     }
     for (int corner = 0; corner < 8; corner++)
         s->acceleration_change = fmax(s->acceleration_change, change_at(w, f, corner));
+}
+
+tobi_status tobi_world_sample_drive(tobi_world *w, tobi_error *err)
+{
+    if (!w->drive) return TOBI_OK;
+    for (; (double)w->drive->sampled*SAMPLE <= w->sim.time; w->drive->sampled++) {
+        tobi_acceleration f;
+        TOBI_TRY(find_field(w, (double)w->drive->sampled*SAMPLE, STEP, &f, err));
+        keep_largest(w, &f);
+    }
     return TOBI_OK;
+}
+
+static int is_finite(const tobi_acceleration *f)
+{
+    double sum = 0;
+    for (int a = 0; a < 3; a++) {
+        sum += f->uniform[a];
+        for (int k = 0; k < 3; k++) sum += f->gradient[a][k];
+    }
+    return isfinite(sum);
 }
 
 tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
@@ -270,12 +289,15 @@ tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err)
     for (int n = 0; n <= SAMPLES; n++) {
         tobi_acceleration f;
         TOBI_TRY(find_field(w, end*n/SAMPLES, STEP, &f, err));
-        TOBI_TRY(keep_largest(w, &f, end*n/SAMPLES, err));
+        if (!is_finite(&f))
+            return tobi_fail(err, TOBI_INVALID, "at t = %.9g s the acceleration of the frame is no number",
+                             end*n/SAMPLES);
         for (int k = 0; k < w->system_count && turns(&f); k++)
             if (w->system[k].method->solids)
                 return tobi_fail(err, TOBI_UNSUPPORTED, "the frame turns, which %s does not know; allowed "
                                  "are frames that shift", w->system[k].method->name);
     }
+    TOBI_TRY(tobi_world_sample_drive(w, err));
     return find_field(w, 0, STEP, &w->sim.acceleration, err);
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 #include "world/world.h"
 
-/* Looks for the largest acceleration of the run, for bounds of steps and speeds. */
+/* Checks the field of the whole run. */
 tobi_status tobi_world_start_drive(tobi_world *w, tobi_error *err);
+/* Brings the largest acceleration so far up to the present time, for bounds of steps and speeds. */
+tobi_status tobi_world_sample_drive(tobi_world *w, tobi_error *err);
 /* Finds sim.acceleration for the step that has just been chosen. */
 tobi_status tobi_world_drive(tobi_world *w, tobi_error *err);
 void tobi_world_free_drive(tobi_world *w);

@@ -194,6 +194,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     int64_t substeps[TOBI_SYSTEM_LIMIT];
     tobi_world_cap_step(w);
     TOBI_TRY(remember(w, err));
+    TOBI_TRY(tobi_world_sample_drive(w, err));
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
     TOBI_TRY(tobi_world_drive(w, err));
     TOBI_TRY(predict_bodies(s, err));
