@@ -175,6 +175,7 @@ typedef struct tobi_solid_def {
     double fracture_energy;           /* J/m2, of a crack, per area at the start                      */
     double cut_friction;              /* 1, Coulomb, between the faces of a cut                       */
     double surface_friction;          /* 1, Coulomb, against solids that it is not bonded to          */
+    int    liquid_friction;           /* tobi_friction, of fluids beside it                           */
     double damping;                   /* 1/s, velocities decay like exp(-damping t)                   */
     int    seeding;                   /* tobi_seeding                                                 */
     int    bonded;                    /* 1: sticks to other bonded solids that it touches              */

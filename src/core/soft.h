@@ -6,8 +6,8 @@
 
 struct tobi_system;
 
-/* m3 now, 1/kg: the answer of a point to a force; 0: it does not move. */
-typedef struct tobi_soft_size { float volume, inverse_mass; } tobi_soft_size;
+/* m3 now; 1/kg: the answer of a point to a force, 0: it does not move; 1 where liquid sticks, else 0. */
+typedef struct tobi_soft_size { float volume, inverse_mass, grip; } tobi_soft_size;
 
 typedef struct tobi_soft {
     struct tobi_system *solids;      /* NULL: no liquid beside solids in this world                 */
@@ -18,5 +18,4 @@ typedef struct tobi_soft {
     tobi_float4 *push;               /* N: by the liquid, in the last step, then in this one        */
     struct tobi_overlap *start;      /* where they are, while fluids are placed; else NULL          */
     double speed;                    /* m/s, of the fastest point near the liquid                   */
-    int slip;                        /* 1: the liquid glides along the solids                       */
 } tobi_soft;

@@ -222,5 +222,5 @@ double tobi_couple_dt(const tobi_system *s)
         if (!moves(b) || b->friction != TOBI_NO_SLIP || !(viscosity > 0)) continue;
         dt = fmin(dt, 0.8*b->rigid.mass*s->smoothing.spacing/(12*viscosity*b->rest.area));
     }
-    return dt;
+    return fmin(dt, sph_soft_dt(s));
 }

@@ -5,6 +5,7 @@
    points deep inside a solid are asked too. */
 #include "sph/soft.h"
 #include "exec/exec.h"
+#include "sph/stages.h"
 #include "sph/state.h"
 #include <math.h>
 #include <string.h>
@@ -242,7 +243,7 @@ static void find_force(const tobi_system *s, const sph_soft_link *l, int hydrost
     const tobi_soft *q = solids_of(s);
     const int32_t b = soft_of(s)->wet[l->point];
     const tobi_fluid *fluid = &s->fluid[s->particles.fluid[l->particle]];
-    const double nu = q->slip ? 0 : fluid->viscosity/fluid->density;
+    const double nu = q->size[b].grip*fluid->viscosity/fluid->density;
     const float *u = &s->particles.velocity[l->particle].x, *w = &q->velocity[b].x;
     double r[3], fall = 0;
     subtract(s, l->particle, &q->position[b].x, r);
@@ -481,6 +482,20 @@ double sph_soft_compliance(const tobi_system *s)
     if (is_alone(s)) return 0;
     for (int k = 0; k < solids->solid_count; k++) least = fmin(least, solids->solids[k].def.density);
     return 1/(least*solids->smoothing.spacing);
+}
+
+/* Half the limit of the liquid, whose pairs rub half as much, by the mass of the lightest. */
+double sph_soft_dt(const tobi_system *s)
+{
+    const tobi_system *solids = solids_of(s)->solids;
+    double dt = INFINITY;
+    if (is_alone(s)) return dt;
+    for (int k = 0; k < solids->solid_count; k++) {
+        const tobi_solid_def *d = &solids->solids[k].def;
+        if (d->liquid_friction == TOBI_NO_SLIP)
+            dt = fmin(dt, 0.5*sph_viscous_dt(s)*fmin(d->density/s->fluid[0].density, 1));
+    }
+    return dt;
 }
 
 int64_t sph_soft_bytes(const sph_soft *q)

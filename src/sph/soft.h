@@ -47,5 +47,7 @@ void sph_soft_correct(struct tobi_system *s, const double *in);
 void sph_soft_load(struct tobi_system *s);
 /* As tobi_couple_compliance, of the lightest point: m2/kg. */
 double sph_soft_compliance(const struct tobi_system *s);
+/* The longest step for the friction at points where liquid sticks, s; INFINITY without. */
+double sph_soft_dt(const struct tobi_system *s);
 int64_t sph_soft_bytes(const sph_soft *q);
 void sph_soft_free(sph_soft *q);

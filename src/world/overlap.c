@@ -3,10 +3,12 @@
    not. Drawback: between scattered particles (seeding blue-noise) a hole may be found. */
 #include "world/overlap.h"
 #include "base/error.h"
+#include "world/world.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-static const double NEAR = 0.9;
+static const double NEAR = 0.9, THIN = 2;
 
 struct tobi_overlap {
     const tobi_system *solids;
@@ -78,6 +80,24 @@ int tobi_overlap_meets(const tobi_overlap *o, const double x[3])
                 if (meets_bucket(o, find_bucket(o, cell), x)) return 1;
             }
     return 0;
+}
+
+tobi_status tobi_overlap_note_thin(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *solids = w->sim.soft.solids;
+    for (int k = 0; solids && k < w->region_count; k++) {
+        const tobi_region *r = &w->regions[k];
+        const double d = solids->smoothing.spacing;
+        double least = INFINITY;
+        char text[200];
+        if (&w->system[r->system] != solids || r->shape.triangle_count) continue;
+        for (int a = 0; a < solids->box.dimension; a++) least = fmin(least, r->upper[a] - r->lower[a]);
+        if (!(least < THIN*d*(1 - 1e-6))) continue;
+        snprintf(text, sizeof text, "fill[%d] is %.3g m thin, less than two spacings: water on both sides "
+                 "meets through it; a spacing of %.3g m would do\n", r->number, least, least/THIN);
+        TOBI_TRY(tobi_world_add_notes(w, "solid", solids->solids[r->owner].name, text, err));
+    }
+    return TOBI_OK;
 }
 
 void tobi_overlap_free(tobi_overlap *o)

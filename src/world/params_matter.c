@@ -122,6 +122,8 @@ static const tobi_param solid_rows[] = {
       .unit = "1",
       .doc = "Coulomb friction where it meets solids that it is not bonded to; of two the square root "
              "of the product counts, and liquids have none." },
+    { .key = "liquid_friction", CHOICE("slip|no-slip", 2), AT(tobi_solid_def, liquid_friction),
+      .doc = "Whether fluids in the same scene slip along it or stick to it." },
     { .key = "damping", REAL, AT(tobi_solid_def, damping), RANGE(0, 1e6), .unit = "1/s", .text = "none",
       .doc = "Its velocities decay like exp(-damping t); brings a solid to rest." },
     { .key = "seeding", CHOICE("regular|blue-noise", 2), AT(tobi_solid_def, seeding),

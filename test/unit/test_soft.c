@@ -95,6 +95,45 @@ static void the_same_bits(void **state)
     remove("soft.h5");
 }
 
+/* Water glides under a jelly: kg m/s that the jelly takes along. */
+static double drag_jelly(int friction)
+{
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
+    tobi_world *world;
+    double out[3];
+    w.spacing = 0.01;
+    fluid.viscosity = 5;
+    water.velocity[0] = 0.3;
+    solid.liquid_friction = friction;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = 0.3;
+        w.gravity[a] = 0;
+        water.box_min[a] = a == 2 ? 0.1 : 0.08;
+        water.box_max[a] = a == 2 ? 0.14 : 0.18;
+        jelly.box_min[a] = a == 2 ? 0.14 : 0.1;
+        jelly.box_max[a] = a == 2 ? 0.18 : 0.16;
+    }
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    OK(tobi_world_advance(world, 0.02, NULL, &err));
+    measure(world, 1, out);
+    tobi_world_destroy(world);
+    return out[0];
+}
+
+static void water_slips_or_sticks(void **state)
+{
+    (void)state;
+    const double slip = drag_jelly(TOBI_SLIP), stick = drag_jelly(TOBI_NO_SLIP), whole = 0.3*0.4;
+    /* points are a rough surface: some is left where it slips */
+    if (!(stick > 0.02*whole && fabs(slip) < 0.2*stick))
+        fail_msg("%g where it slips, %g where it sticks", slip, stick);
+}
+
 /* A jelly in the middle of the water: none of it is where the jelly is. */
 static void water_is_cut_out(void **state)
 {
@@ -102,7 +141,7 @@ static void water_is_cut_out(void **state)
     tobi_world_def w = tobi_default_world_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def(), sheet = jelly;
     tobi_world *world;
     w.spacing = 0.01;
     for (int a = 0; a < 3; a++) {
@@ -110,18 +149,24 @@ static void water_is_cut_out(void **state)
         water.box_max[a] = a == 2 ? 0.1 : 0.2;
         jelly.box_min[a] = 0.05;
         jelly.box_max[a] = a == 2 ? 0.12 : 0.1;
+        sheet.box_min[a] = a == 2 ? 0.15 : 0.05;
+        sheet.box_max[a] = a == 2 ? 0.16 : 0.1;
     }
     OK(tobi_world_create(&w, NULL, &world, &err));
     OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
     OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    solid.name = "sheet";
+    OK(tobi_world_add_solid(world, &solid, &sheet, 1, &err));
     OK(tobi_world_start(world, &err));
     assert_int_equal(world->system[0].particles.count, 20*20*10 - 5*5*5);
-    assert_int_equal(world->system[1].particles.count, 5*5*7);
+    assert_int_equal(world->system[1].particles.count, 5*5*7 + 5*5);
     int told = 0;
-    for (int k = 0; tobi_world_note(world, k); k++)
-        told |= strstr(tobi_world_note(world, k), "125 particles that would start inside solids were cut out")
-                != NULL;
-    assert_true(told);
+    for (int k = 0; tobi_world_note(world, k); k++) {
+        const char *note = tobi_world_note(world, k);
+        told |= strstr(note, "125 particles that would start inside solids were cut out") != NULL;
+        told |= 2*(strstr(note, "solid 'sheet': fill[0] is 0.01 m thin, less than two spacings") != NULL);
+    }
+    assert_int_equal(told, 3);
     tobi_world_destroy(world);
     for (int a = 0; a < 3; a++) water.box_min[a] = 0.06, water.box_max[a] = 0.09;
     OK(tobi_world_create(&w, NULL, &world, &err));
@@ -181,6 +226,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_one_loses_the_other_gains),
         cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(water_slips_or_sticks),
         cmocka_unit_test(water_is_cut_out),
         cmocka_unit_test(parameters_of_solids),
         cmocka_unit_test(too_many_substeps),
