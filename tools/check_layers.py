@@ -19,7 +19,7 @@ RANK = {
     "core": 3,
     "sph": 4, "mpm": 4, "rigid": 4, "io": 4, "view": 4,
     "world": 5,
-    "scene": 6,
+    "record": 6, "scene": 6,
 }
 # Rooms that read the world through include/tobiuo alone, and the rooms below that they stand on.
 ONLY = {"view": {"base", "exec"}, "scene": {"base", "geom"}}

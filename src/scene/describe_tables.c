@@ -1,5 +1,5 @@
 /* The columns of the tables that a run writes: as help texts and as docs/tables.md, from the lists that
-   write them (world/record_columns.h). Drawback: only what no list knows, such as when a row is written,
+   write them (record/columns.h). Drawback: only what no list knows, such as when a row is written,
    stands here and must be kept true by hand. */
 #define _GNU_SOURCE 1
 #include "scene/manual.h"

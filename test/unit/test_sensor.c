@@ -10,7 +10,7 @@
 #include "calls.h"
 #include "tobiuo/tobiuo.h"
 #include "tobiuo/scene.h"
-#include "world/record.h"
+#include "record/record.h"
 
 #define D 0.01      /* spacing, m */
 

@@ -2,7 +2,7 @@
    solid, so that the faces of a cut stay apart. The arrays are taken between steps; the mesh is made on the
    writer's thread. Drawback: the fields of the surface are read a second time, in double. */
 #include "io/surface_files.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "base/param.h"
 #include "core/smoothing.h"
 #include "io/vtk.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>

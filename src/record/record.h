@@ -2,7 +2,7 @@
 
    An output is a snapshot, taken from the world by the caller's thread, and then files, written by a
    thread of the run. What a resumed run must know besides the world itself is in two tobi_tally and a
-   few totals; record_state.c saves them beside each checkpoint. Everything else follows from the
+   few totals; record/state.c saves them beside each checkpoint. Everything else follows from the
    world's time.
  */
 #pragma once
@@ -114,7 +114,7 @@ struct tobi_run {
     double next_checkpoint;               /* s                                       */
 };
 
-/* record_files.c: the directory. */
+/* record/files.c: the directory. */
 /* dir/format..., owned by the caller; NULL without memory. */
 char *tobi_record_path(const char *dir, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -129,13 +129,13 @@ tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err);
 /* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
 
-/* record_tables.c: history.csv, bodies.csv and probes.csv. */
+/* record/tables.c: history.csv, bodies.csv and probes.csv. */
 /* Opens them: new, or continued after the rows up to the world's time. */
 tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 /* The rows of an output: made, and written. */
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-/* record_lines.c: lines.csv, as often as probes.csv. */
+/* record/lines.c: lines.csv, as often as probes.csv. */
 tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to the world's time. */
@@ -157,14 +157,14 @@ struct json_t *tobi_probes_to_json(const tobi_run *run);
 bool tobi_probes_from_json(struct json_t *list, tobi_run *run);
 struct json_t *tobi_probes_sum_up(const tobi_run *run);
 
-/* record_snapshot.c: what an output holds, from the world. */
+/* record/snapshot.c: what an output holds, from the world. */
 tobi_status tobi_snapshot_take(tobi_run *run, tobi_snapshot **snapshot, tobi_error *err);
 /* NULL is fine. */
 void tobi_snapshot_free(tobi_snapshot *snapshot);
 /* What the surfaces needed. */
 void tobi_snapshot_free_skins(tobi_run *run);
 
-/* record_series.c: VTU, VTP, STL, PNG and PVD. */
+/* record/series.c: VTU, VTP, STL, PNG and PVD. */
 /* Reads "velocity,pressure" of output.fields into run->field. */
 tobi_status tobi_series_fields(tobi_run *run, tobi_error *err);
 /* Names, folders and empty lists. */
@@ -179,26 +179,26 @@ tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *snapshot, tobi
 tobi_status tobi_series_lists(tobi_run *run, tobi_error *err);
 void tobi_series_free(tobi_run *run);
 
-/* record_tractions.c: pressure and shear on the surface of each body, in pieces. */
+/* record/tractions.c: pressure and shear on the surface of each body, in pieces. */
 tobi_status tobi_tractions_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_tractions_free(tobi_snapshot *snapshot);
 
-/* record_frame.c: the picture of an output, which has its particles and surfaces already. */
+/* record/frames.c: the picture of an output, which has its particles and surfaces already. */
 /* The views of run->output, with what they name. */
 tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_drawing_free(struct tobi_drawing *drawing);
 
-/* record_surface.c: the surface of fluids and solids of an output, which has its particles already. */
+/* record/surface.c: the surface of fluids and solids of an output, which has its particles already. */
 /* Reads output.surface_fields. */
 tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err);
 tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_record_write_surface(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_record_free_surface(struct tobi_record_surface *surface);
 
-/* record_writer.c: the thread. */
+/* record/writer.c: the thread. */
 tobi_status tobi_writer_start(tobi_run *run, tobi_error *err);
 /* A snapshot to write, owned by the writer after TOBI_OK. Waits while it has two. */
 tobi_status tobi_writer_put(struct tobi_writer *writer, tobi_snapshot *snapshot, tobi_error *err);
@@ -211,12 +211,12 @@ int tobi_writer_pending(struct tobi_writer *writer);
 /* Writes what can be written and ends the thread; NULL is fine. */
 void tobi_writer_free(struct tobi_writer *writer);
 
-/* record_state.c: checkpoints. */
+/* record/state.c: checkpoints. */
 tobi_status tobi_state_save(tobi_run *run, tobi_error *err);
 /* Loads the newest whole checkpoint; *found = false if there is none at all. */
 tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err);
 
-/* record_summary.c */
+/* record/summary.c */
 tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err);
 
 /* record.c */

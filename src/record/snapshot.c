@@ -4,7 +4,7 @@
    bits. Triangles and skins are not copied: they never change while a run lasts. Drawback: per particle one
    field more than the files hold is in memory while it is converted. */
 #include "geom/texture.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <stdlib.h>
 #include <string.h>

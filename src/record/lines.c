@@ -1,5 +1,5 @@
 /* lines.csv: of each line of the scene tension and distance of its ends, as often as the probes are read. */
-#include "world/record.h"
+#include "record/record.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
    only what no step changes: names, triangles, counts, parameters. Drawback: a full disk is told a few
    steps late. */
 #include "exec/exec.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <pthread.h>
 #include <signal.h>

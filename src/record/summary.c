@@ -1,6 +1,6 @@
 /* summary.json: the totals of a run, over all its sessions. */
 #include "base/file.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <jansson.h>
 #include <math.h>

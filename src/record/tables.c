@@ -1,8 +1,8 @@
-/* history.csv and bodies.csv (probes.csv: record_probes.c): the columns are lists (record_columns.h), so
+/* history.csv and bodies.csv (probes.csv: record_probes.c): the columns are lists (record/columns.h), so
    that header, row and
    what is said of them cannot disagree. */
-#include "world/record.h"
-#include "world/record_columns.h"
+#include "record/record.h"
+#include "record/columns.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
    triangles (2-D: lines) with their pressure and shear. Drawback: pieces share no corner, so that a file has
    three points a triangle. */
 #include "sph/surface.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
    and folders runs on the thread of the writer, and looks at snapshots. */
 #include "geom/texture.h"
 #include "io/exchange.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <ctype.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "base/plain.h"
 #include "base/file.h"
 #include "base/param.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <errno.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* probes.csv: a row after each step in which a sensor is due, its cell empty where it is not. The low pass of
    a sensor sees each step, whatever its rate; its state and the extremes so far are kept in checkpoints.
    Drawback: a sensor with a filter is measured in every step. */
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <jansson.h>
 #include <math.h>

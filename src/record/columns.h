@@ -1,6 +1,6 @@
 /* The columns of history.csv, bodies.csv and probes.csv: name, unit, value, meaning. One line makes the
    header, the row, `tobiuo describe history` and docs/tables.md, so that they cannot disagree.
-   Drawback: values are expressions, which mean something only in record_tables.c. */
+   Drawback: values are expressions, which mean something only in record/tables.c. */
 #pragma once
 
 /* H(name, unit, kind, value, meaning): history.csv. `i` is the last step's info, `s` the sums since the last

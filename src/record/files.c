@@ -5,7 +5,7 @@
    because it may come from a stranger. Drawback: that is looked at when the run starts, so that a
    directory in which somebody else works at the same time is not safe. */
 #define _GNU_SOURCE
-#include "world/record.h"
+#include "record/record.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -4,7 +4,7 @@
    noise in their lower bits, so that little depends on the scene. Drawback: fields that stand still, or
    are 0, take less than is told: bodies that hardly move half. */
 #include "base/param.h"
-#include "world/record.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <math.h>
 

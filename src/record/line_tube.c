@@ -1,5 +1,5 @@
 /* Rings around points of the line, each across it. Drawback: the ends are open. */
-#include "world/line_tube.h"
+#include "record/line_tube.h"
 #include "geom/vec3.h"
 #include <math.h>
 

@@ -9,7 +9,7 @@
 #define _GNU_SOURCE 1
 #include "base/plain.h"
 #include "base/file.h"
-#include "world/record.h"
+#include "record/record.h"
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>

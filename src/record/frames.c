@@ -4,8 +4,8 @@
 #include "mpm/particle_fields.h"
 #include "tobiuo/picture.h"
 #include "base/param.h"
-#include "world/line_tube.h"
-#include "world/record.h"
+#include "record/line_tube.h"
+#include "record/record.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdlib.h>
