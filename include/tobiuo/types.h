@@ -115,6 +115,7 @@ typedef struct tobi_isph_def {
     int    solver;                    /* tobi_krylov                                                  */
     int    restart;                   /* directions that gmres keeps                                  */
     int    preconditioner;            /* tobi_preconditioner                                          */
+    int    time_order;                /* of a step, 1 or 2                                            */
     double support;                   /* support radius in spacings, 2 to 4; 0 = automatic            */
     double tolerance;                 /* 1, true relative residual of the pressure equation           */
     double volume_gain;               /* 1, share of the error of volume in the source of pressure    */

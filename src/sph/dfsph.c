@@ -452,7 +452,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     sph_set_body_velocities(s, &clock);
     set_reference(s, m);
     TOBI_TRY(find_neighbors(s, m, &clock, err));
-    TOBI_TRY(sph_undo_keep(&m->undo, s, err));
+    TOBI_TRY(sph_undo_keep(&m->undo, s, 0, err));
     TOBI_TRY(classify_vessel(s, m, &clock, err));
     TOBI_TRY(relax_lattice(s, m, &clock, err));
     sph_openings_mark(s, &m->view);

@@ -31,6 +31,7 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     def.support = d->support;
     def.volume_gain = d->volume_gain;
     def.shifting = d->shifting;
+    def.time_order = 1;
     if (tobi_couple_any(s))
         return tobi_fail(err, TOBI_INVALID, "eisph knows bodies that are held or driven; those that move by "
                          "forces need \"method\": \"isph\"");

@@ -31,6 +31,12 @@
 /* Lack of volume that the source takes out at most, and in full vessels, where it fills cavities. */
 #define ISPH_STRETCH_MAX 0.05
 #define ISPH_CAVITY_MAX 0.5
+/* Error of volume that full vessels leave to the shift: what disorder makes, and the source would turn into
+   motion. */
+#define ISPH_VOLUME_LEFT 0.02
+/* Size of n, eq. (10b), from which the shift begins to lose its part along n, and has lost it. */
+#define ISPH_LACK_BEGIN 0.3
+#define ISPH_LACK_FULL 0.8
 /* Shift: pairs nearer than CORE spacings go apart by PUSH of the overlap each; SHIFT_MAX in spacings. */
 #define ISPH_CORE 0.8f
 #define ISPH_PUSH 0.25f
@@ -49,6 +55,8 @@ TOBI_FN int isph_held(const isph_view *v, int64_t i) { return v->held && v->held
 
 TOBI_FN double isph_larger(double a, double b) { return a > b ? a : b; }
 TOBI_FN double isph_clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+TOBI_FN double isph_length(const double x[3]) { return sqrt(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]); }
 
 TOBI_FN void isph_apply(const isph_tensor *t, const double x[3], double out[3])
 {
@@ -227,7 +235,8 @@ TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergen
     const int bulk = !(v->gate[i] > 0);
     const double least = !bulk ? 0 : v->open ? -ISPH_STRETCH_MAX : -ISPH_CAVITY_MAX;
     const double error = v->volume_sum*(v->concentration[i] - 1.0) - v->volume_change*v->dt*divergence,
-                 e = isph_larger(error, least);
+                 left = v->open ? 0 : ISPH_VOLUME_LEFT,
+                 e = isph_larger(error - isph_clamp(error, -left, left), least);
     return v->density*v->volume_gain*e/(v->dt*v->motion_dt);
 }
 
@@ -235,6 +244,7 @@ TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergen
    pressure. totals: excess, source. */
 typedef struct isph_rows_acc {
     lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, difference, divergence;
+    lane px, py, pz;                 /* Pa/m: of liquid at rest, away from a free surface           */
     float bodies;                    /* of self, by bodies */
 } isph_rows_acc;
 
@@ -266,8 +276,13 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     a->bxy = lane_set(b.xy); a->byz = lane_set(b.yz); a->bzx = lane_set(b.zx);
     a->scale = lane_set(v->own_scale ? 2*v->scale[i] : v->scale[i]);
     a->sum = a->self = a->difference = a->divergence = lane_set(0);
+    const int soft = isph_soft_last(v, i) >= 0;      /* its points have a pressure difference of their own */
+    const float rest = soft ? 0 : (float)((1 - v->gate[i])*v->density);
+    float g[3];
+    isph_gravity_at(v, i, g);
+    a->px = lane_set(rest*g[0]); a->py = lane_set(rest*g[1]); a->pz = lane_set(rest*g[2]);
     a->bodies = 0;
-    if (isph_soft_last(v, i) >= 0) isph_rows_soft(v, i, a);
+    if (soft) isph_rows_soft(v, i, a);
 }
 
 /* Into the entries of the list: images add to those of their pairs. */
@@ -292,7 +307,8 @@ TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors 
     const lane x = c->bxx*n->dx + c->bxy*n->dy + c->bzx*n->dz, y = c->bxy*n->dx + c->byy*n->dy + c->byz*n->dz,
                z = c->bzx*n->dx + c->byz*n->dy + c->bzz*n->dz;
     c->divergence += f*((u[0] - c->ux)*x + (u[1] - c->uy)*y + (u[2] - c->uz)*z);
-    c->difference += a*isph_pressure_difference(v, m, kind);
+    const lane rest = c->px*n->dx + c->py*n->dy + c->pz*n->dz;
+    c->difference += a*(isph_pressure_difference(v, m, kind) + rest);
     c->sum += a;
     if (kind == ISPH_SIDE && m->k < 0) c->self += a;
     if (kind == ISPH_BODY)
@@ -324,6 +340,7 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     const double excess = isph_excess(v, loss, t.x, v->gate[i]);
     const double diagonal = t.x - t.y - a->bodies + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
+    if (v->second_order) v->source[i] += 0.5*v->density*v->invariant[i];
     v->excess[i] = excess;
     v->inverse_diagonal[i] = diagonal > 0 ? 1/diagonal : 0;
     v->solution[i] = v->keep*v->pressure[i];
@@ -433,8 +450,8 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
     for (int c = 0; c < v->dimension; c++) (&v->velocity[i].x)[c] -= (float)(v->dt/v->density*g[c]);
 }
 
-/* The shift of positions, eq. (10), as an acceleration in accel, and the change of velocity that goes with
-   it. totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
+/* The shift of positions, eq. (10), as an acceleration over `way` in accel, and the change of velocity that
+   goes with it. totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
 typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9]; } isph_shift_acc;
 
 /* Points of soft solids push by their core, and mirror velocities. */
@@ -486,13 +503,13 @@ TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors
     for (int b = 0; b < 3; b++) a->normal[b] += c[3]*c[b];
 }
 
-/* Takes the part of x along n out. */
-TOBI_FN void isph_remove_normal(double x[3], const double n[3])
+/* Takes that share of the part of x along n out. */
+TOBI_FN void isph_remove_normal(double x[3], const double n[3], double share)
 {
     const double n2 = n[0]*n[0] + n[1]*n[1] + n[2]*n[2];
     if (!(n2 > 1e-24)) return;
     const double along = (x[0]*n[0] + x[1]*n[1] + x[2]*n[2])/n2;
-    for (int a = 0; a < 3; a++) x[a] -= along*n[a];
+    for (int a = 0; a < 3; a++) x[a] -= share*along*n[a];
 }
 
 /* |div v| of the gradient g. */
@@ -517,7 +534,9 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     }
     isph_add_divergence(v, i, g, totals);
     if (v->gate[i] > 0 && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
-    else if (v->gate[i] > 0) isph_remove_normal(x, n);
+    else if (v->gate[i] > 0) isph_remove_normal(x, n, 1);
+    else if (v->open)
+        isph_remove_normal(x, n, 1 - isph_fade(isph_length(n), ISPH_LACK_BEGIN, ISPH_LACK_FULL));
     for (int a = 0; a < 3; a++) {
         x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;
         size += x[a]*x[a];
@@ -528,7 +547,7 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     for (int a = 0; a < 3; a++) {
         const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2];
         (&v->shift_velocity[i].x)[a] = (float)(part*change);
-        (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->dt*v->dt));
+        (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->way*v->way));
     }
 }
 

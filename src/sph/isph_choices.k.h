@@ -99,7 +99,7 @@ TOBI_FN void isph_xsph_pair(const isph_view *v, int64_t i, const tobi_neighbors 
 TOBI_FN void isph_xsph_finish(const isph_view *v, int64_t i, isph_xsph_acc *a, double *totals)
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0));
-    const float k = (float)(v->xsph*v->weight/v->dt);
+    const float k = (float)(v->xsph*v->weight*v->dt/(v->way*v->way));
     (void)totals;
     v->accel[i].x += k*s.x;
     v->accel[i].y += k*s.y;

@@ -43,6 +43,7 @@ static tobi_status reserve_rows(isph_solver *m, const tobi_particles *p, tobi_er
     ARRAYS(X)
 #undef X
     m->view.shift_velocity = (tobi_float4 *)m->work; /* free between the solves */
+    m->view.invariant = (float *)m->scratch;         /* the same */
     m->rows = p->capacity;
     return TOBI_OK;
 }

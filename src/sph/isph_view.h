@@ -41,6 +41,8 @@ typedef struct isph_view {
     float gravity_dt;                /* s: dt while velocities hold the step's gravity, else 0      */
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
+    double way;                      /* s: of the motion after the pressure: dt, or dt/2            */
+    int second_order;                /* 1: the list is that of the middle of the step               */
     double volume_gain, shifting;    /* parameters                                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */
     double mean, carry, gain;        /* Pa/m2, 1, 1: of a sweep, eisph.k.h                           */
@@ -59,7 +61,7 @@ typedef struct isph_view {
     const uint8_t *fluid;
     const tobi_float4 *held;         /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none   */
     /* particle arrays */
-    const tobi_double3 *position;
+    tobi_double3 *position;
     tobi_record *record;             /* w: scale while rows are made, then the pressure, Pa         */
     tobi_float4 *velocity, *accel;
     float *pressure;                 /* Pa                                                          */
@@ -83,6 +85,7 @@ typedef struct isph_view {
     float *scale;                    /* 1: kappa                                                    */
     float *concentration;            /* 1: kernel sum, 1 on the lattice                             */
     tobi_float4 *concentration_gradient; /* 1/m: sum of V grad W; w: eq. (10b)                      */
+    float *invariant;                /* 1/s2: tr (grad v grad v), in steps of second order          */
     /* the matrix */
     float *entry;                    /* 1/m2: a of each entry of the list                           */
     double *excess, *inverse_diagonal;     /* 1/m2, m2                                              */

@@ -136,6 +136,9 @@ static const tobi_param isph_rows[] = {
              "is rough." },
     { .key = "xsph", REAL, AT(tobi_isph_def, xsph), RANGE(0, 1), .unit = "1", .text = "off",
       .doc = "XSPH: share of the neighbours' mean velocity in the velocity that moves a particle." },
+    { .key = "time_order", INT, AT(tobi_isph_def, time_order), .def = { 2 }, RANGE(1, 2), .unit = "1",
+      .doc = "Order of a step in time (RK_order): 2 solves for the pressure at the middle of the way, at "
+             "about the cost of 1. Where bodies or solids move, or liquid comes and goes, the order is 1." },
     { 0 }
 };
 

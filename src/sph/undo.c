@@ -1,5 +1,6 @@
 /* A step changes velocities and pressures long before it is sure to end: the solves lie between. So both are
-   copied, and in the first step, which may settle the lattice around bodies, every field of the state. What a
+   copied, and every field of the state in the first step, which may settle the lattice around bodies, and
+   before positions go half of their way. What a
    step finds anew each time is not kept. Drawback: 20 bytes per particle, copied in each step, for callers
    who may stop one. */
 #include "sph/state.h"
@@ -41,7 +42,7 @@ static int changes(const tobi_system *s, const char *field)
     return s->step == 0 || strcmp(field, "velocity") == 0 || strcmp(field, "pressure") == 0;
 }
 
-tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
+tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, int all, tobi_error *err)
 {
     for (int k = 0; u->rows < s->particles.count && k < SPH_UNDO_FIELDS; k++) {
         tobi_array_free(u->field[k]);
@@ -51,7 +52,7 @@ tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err)
     for (int k = 0; s->sim->stop && k < SPH_UNDO_FIELDS; k++) {
         void *data;
         const tobi_field *f = tobi_particles_state(&s->particles, k, &data);
-        if (!f || !changes(s, f->name)) {
+        if (!f || !(all || changes(s, f->name))) {
             tobi_array_free(u->field[k]);
             u->field[k] = NULL;
             continue;

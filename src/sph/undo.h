@@ -19,8 +19,9 @@ typedef struct sph_undo {
 /* Before anything changes. memory: n doubles of the method. Without a tobi_stop_fn nothing is kept. */
 tobi_status sph_undo_begin(sph_undo *u, const tobi_system *s, const double *memory, int n,
                            tobi_error *err);
-/* After the first sort of the step, which changes the order of particles and nothing else. */
-tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, tobi_error *err);
-/* Takes the step back; not after positions have advanced. */
+/* After the first sort of the step, which changes the order of particles and nothing else. all: every
+   field of the state, for steps that move particles before they are sure to end. */
+tobi_status sph_undo_keep(sph_undo *u, tobi_system *s, int all, tobi_error *err);
+/* Takes the step back; not after positions have advanced, unless all was kept. */
 void sph_undo_restore(const sph_undo *u, tobi_system *s, double *memory, int n);
 void sph_undo_free(sph_undo *u);

@@ -44,7 +44,8 @@ static void oracle_isph_divergence(check *c, int64_t i, const sums *s)
 static void oracle_isph_xsph(check *c, int64_t i, const sums *s)
 {
     for (int a = 0; a < view.dimension; a++)
-        compare(c, ((&view.accel[i].x)[a] - (a == 0 ? s->divergence : 0))*view.dt, view.xsph*s->mean[a], 1);
+        compare(c, ((&view.accel[i].x)[a] - (a == 0 ? s->divergence : 0))*view.way*view.way/view.dt,
+                view.xsph*s->mean[a], 1);
 }
 
 /* The form less the gradient: 2 sum of V F (u_j - u_i + x_ij . grad u_i). */

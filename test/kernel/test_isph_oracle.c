@@ -22,7 +22,8 @@ static tobi_smoothing_constants scaled;
 /* The arrays of the view that kernels write, or that this test fills. */
 #define ARRAYS(X)                                                                                   \
     X(pressure) X(trace) X(gate) X(scale) X(concentration) X(body_share) X(excess) X(inverse_diagonal)    \
-    X(source) X(solution) X(out) X(inverse) X(concentration_gradient) X(shift_velocity) X(accel) X(velocity)
+    X(source) X(solution) X(out) X(inverse) X(concentration_gradient) X(shift_velocity) X(accel) X(velocity) \
+    X(invariant)
 
 /* In cases with a body its face is where the lower side along x was; that is FAR supports further down. */
 enum { FAR = 10 };
@@ -73,7 +74,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .spacing = pool.d,
                        .h = pool.h, .volume = c->volume, .weight = c->weight, .slope = c->slope,
                        .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
-                       .dt = 1e-3, .motion_dt = 2e-3,
+                       .dt = 1e-3, .motion_dt = 2e-3, .way = 5e-4, .second_order = 1,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
                        .keep = 0.9, .mean = 3, .carry = 0.4, .gain = 0.7,
                        .volume_sum = 1, .by_count = 1, .lattice_count = dimension == 3 ? 56 : 20,
@@ -132,7 +133,7 @@ static void run(tobi_kernel k, double *totals)
 /* Every image of every particle that i can see, in 3^dim boxes; code of its own. */
 typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
-    double moment[6], concentration, gradient_c[3], product, divergence, difference, row,
+    double moment[6], concentration, gradient_c[3], product, divergence, difference, rest, row,
            gradient[3], force[3], core[3], normal[3], slope[9], count, cone, mean[3], all[3], plain[3];
 } sums;
 static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
@@ -176,6 +177,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
     add_choices(i, m, u, f, !image, s);
     s->product += a*(view.in[i] - view.in[m->j]);
     s->difference += a*lift;
+    for (int k = 0; k < view.dimension; k++) s->rest += a*view.density*view.gravity[k]*x[k];
     s->row += a;
     for (int k = 0; k < 3; k++) {
         const double jump = u[k] - (&view.velocity[i].x)[k], p = view.pressure[m->j] + lift,
@@ -284,8 +286,10 @@ static double excess_of(int64_t i, const sums *s)
 
 static double source_of(int64_t i, const sums *s)
 {
-    const double e = fmax(s->concentration - 1, gate_of(i, s) > 0 ? 0 : view.open ? -0.05 : -0.5);
-    return s->difference - view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
+    const double error = s->concentration - 1, left = view.open ? 0 : fmax(fmin(error, 0.02), -0.02);
+    const double e = fmax(error - left, gate_of(i, s) > 0 ? 0 : view.open ? -0.05 : -0.5);
+    return s->difference + (1 - gate_of(i, s))*s->rest + 0.5*view.density*view.invariant[i] -
+           view.density/view.dt*s->divergence + view.density*0.1*e/(view.dt*view.motion_dt);
 }
 
 static void oracle_isph_rows(check *c, int64_t i, const sums *s)
@@ -335,7 +339,8 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
     for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
-        if (surface && full >= 0.6 && n2 > 1e-24) x[a] -= at/n2*s->normal[a];
+        const double lost = surface ? full >= 0.6 : view.open ? clip((sqrt(n2) - 0.3)/0.5) : 0;
+        if (n2 > 1e-24) x[a] -= lost*at/n2*s->normal[a];
         x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
         size += x[a]*x[a];
     }
@@ -344,7 +349,7 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
     for (int a = 0; a < 3; a++) {
         double change = 0;
         for (int b = 0; b < 3; b++) change += s->slope[3*a + b]*along[b];
-        compare(c, (&view.accel[i].x)[a]*view.dt*view.dt, keep*x[a], d);
+        compare(c, (&view.accel[i].x)[a]*view.way*view.way, keep*x[a], d);
         compare(c, (&view.shift_velocity[i].x)[a], view.open && full < 0.75 ? 0 : keep*change, 1);
     }
 }
@@ -388,6 +393,7 @@ static void oracle_isph_add_answer(check *c, int64_t i, const sums *s)
 }
 
 #include "kernel/isph_choices_oracle.h"
+#include "kernel/isph_time_oracle.h"
 
 typedef struct entry {
     const char *name;
