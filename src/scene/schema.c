@@ -293,7 +293,7 @@ static json_t *make_table(const tobi_param_table *table)
     return schema;
 }
 
-/* Methods that move solids need some, or bodies; the others need fluids. */
+/* Methods that move solids need some, or bodies; the others need fluids, which fill regions or come in. */
 static void require_matter(json_t *schema)
 {
     json_t *names = json_array();
@@ -308,9 +308,10 @@ static void require_matter(json_t *schema)
                         json_pack("{s:{s:O,s:O},s:[{s:[s],s:{s:O}},{s:[s],s:{s:O}}]}", "properties", "fluids",
                                   none, "probes", none, "anyOf", "required", "solids", "properties", "solids",
                                   some, "required", "bodies", "properties", "bodies", some));
+    json_t *filled = json_pack("{s:{s:{s:{s:[s]}}}}", "properties", "fluids", "items", "required", "fill");
     json_object_set_new(schema, "else",
-                        json_pack("{s:[s],s:{s:O,s:O}}", "required", "fluids", "properties", "fluids", some,
-                                  "planes", none));
+                        json_pack("{s:[s],s:{s:O,s:O},s:[{s:[s]},o]}", "required", "fluids", "properties",
+                                  "fluids", some, "planes", none, "anyOf", "required", "inlets", filled));
     json_decref(none);
     json_decref(some);
 }

@@ -60,7 +60,7 @@ static void every_member_has_a_row(void **state)
     assert_int_equal(count_uncovered(&tobi_output_table), name + further + 4*hole);
     assert_int_equal(count_uncovered(&tobi_view_table), 0);
     assert_int_equal(count_uncovered(&tobi_mlsmpm_table), hole);
-    assert_int_equal(count_uncovered(&tobi_solid_table), 2*hole);
+    assert_int_equal(count_uncovered(&tobi_solid_table), 3*hole);
     assert_int_equal(count_uncovered(&tobi_plane_table), hole);
     assert_int_equal(count_uncovered(&tobi_inlet_table), hole);
     assert_int_equal(count_uncovered(&tobi_outlet_table), 0);
