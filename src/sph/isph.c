@@ -308,5 +308,7 @@ const tobi_method tobi_isph = {
     .create = create,
     .max_dt = isph_choose_dt,
     .begin = isph_begin,
+    .beside_solids = "swings in the water of isph at its usual steps; take dfsph, or a time_step_max of "
+                     "1e-3 s",
     ISPH_VERBS
 };

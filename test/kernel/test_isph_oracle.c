@@ -335,11 +335,11 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    const int surface = gate_of(i, s) > 0;
+    const int surface = gate_of(i, s) > 0, fades = view.open && !(view.last_link && view.last_link[i] >= 0);
     for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
-        const double lost = surface ? full >= 0.6 : view.open ? clip((sqrt(n2) - 0.3)/0.5) : 0;
+        const double lost = surface ? full >= 0.6 : fades ? clip((sqrt(n2) - 0.3)/0.5) : 0;
         if (n2 > 1e-24) x[a] -= lost*at/n2*s->normal[a];
         x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
         size += x[a]*x[a];

@@ -182,6 +182,42 @@ static void refuse(tobi_world *w, const tobi_line_def *def, tobi_status status, 
     if (!strstr(err.text, words)) fail_msg("'%s' is not in '%s'", words, err.text);
 }
 
+static tobi_status wobble(void *user, double t, int64_t count, const double (*rest)[3], double (*out)[3],
+                          tobi_error *err)
+{
+    (void)user, (void)t, (void)err;
+    memcpy(out, rest, (size_t)count*sizeof *out);
+    return TOBI_OK;
+}
+
+/* A line to a body that deforms, and one after the start. */
+static void refuse_more(const tobi_world_def *w, tobi_body_def *b, const tobi_line_def *right)
+{
+    tobi_error err;
+    tobi_world *world;
+    tobi_line_def d = *right;
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    fill.box_max[0] = fill.box_max[1] = 1, fill.box_max[2] = 0.1;
+    assert_int_equal(tobi_world_create(w, NULL, &world, &err), TOBI_OK);
+    assert_int_equal(tobi_world_add_fluid(world, &fluid, &fill, 1, &err), TOBI_OK);
+    for (int k = 0; k < 2; k++) {
+        b->name = k ? "eel" : "boat";
+        b->dynamics = k ? TOBI_PRESCRIBED : TOBI_FREE;
+        b->motion = k ? wobble : NULL;
+        b->motion_rigid = 0;
+        for (int a = 0; a < 3; a++) b->box_min[a] = 0.2 + 0.4*k, b->box_max[a] = 0.4 + 0.4*k;
+        assert_int_equal(tobi_world_add_body(world, b, &err), TOBI_OK);
+    }
+    d.to_body = "eel";
+    refuse(world, &d, TOBI_UNSUPPORTED, "line 'l': body 'eel' deforms; a line goes to a rigid one");
+    assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+    d.to_body = NULL;
+    refuse(world, &d, TOBI_INVALID, "a started world takes no more lines");
+    tobi_world_destroy(world);
+    b->motion = NULL;
+}
+
 static void wrong_lines_are_refused(void **state)
 {
     (void)state;
@@ -227,6 +263,7 @@ static void wrong_lines_are_refused(void **state)
     for (int k = 1; k < TOBI_LINE_LIMIT; k++) assert_int_equal(tobi_world_add_line(world, &d, &err), TOBI_OK);
     refuse(world, &d, TOBI_UNSUPPORTED, "more than 256 lines");
     tobi_world_destroy(world);
+    refuse_more(&w, &b, &right);
     for (int a = 0; a < 3; a++) w.gravity[a] = 0;
     assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
     b.name = "boat", b.dynamics = TOBI_FREE;
