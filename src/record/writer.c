@@ -11,6 +11,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { QUEUE = 2 };
 
@@ -25,12 +26,25 @@ struct tobi_writer {
     tobi_error error;
 };
 
+/* Whether somebody has deleted a folder since it was looked for. */
+static bool is_folder_gone(const tobi_run *run)
+{
+    char *path = tobi_record_path(run->dir, "fluid");
+    const bool gone = path && access(path, F_OK) != 0;
+    free(path);
+    return gone;
+}
+
 /* A row of history.csv comes last: it says that everything of this output is on disk. */
 static tobi_status write_files(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     TOBI_TRY(tobi_record_keep_dir(run, err));
-    TOBI_TRY(tobi_series_write(run, snapshot, err));
-    return tobi_tables_write(run, snapshot, err);
+    tobi_status status = tobi_series_write(run, snapshot, err);
+    if (status == TOBI_IO && is_folder_gone(run)) {
+        TOBI_TRY(tobi_record_keep_dir(run, err));
+        status = tobi_series_write(run, snapshot, err);
+    }
+    return status == TOBI_OK ? tobi_tables_write(run, snapshot, err) : status;
 }
 
 static void *work(void *user)
