@@ -200,7 +200,7 @@ tobi_status sph_soft_find(tobi_system *s, tobi_error *err)
     soft->speed = sqrt(t[6]);
     TOBI_TRY(list_points(s, err));
     tobi_loop(s->sim->exec.threads, q->points, 64, fill_links, s);
-    memset(q->known, 0, (size_t)q->points*sizeof *q->known);
+    if (q->points > 0) memset(q->known, 0, (size_t)q->points*sizeof *q->known);
     if (sph_of(s)->mirrors) tobi_loop(s->sim->exec.threads, q->points, 0, begin_mirrors, s);
     chain_links(s);
     return TOBI_OK;
