@@ -86,6 +86,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     measure_depth(s, m);
     m->solver.sweeps = (isph_sweeps){ 0, d->iteration };
     v->keep = 1;
+    v->fades = 0;                        /* its late pressure lets the surface settle instead */
     if (m->memory.started == 0) return TOBI_OK;
     m->solver.sweeps.count = count_sweeps(s, m);
     v->keep = 1 - FORGET*v->volume_gain*v->dt/v->motion_dt;

@@ -89,7 +89,7 @@ static tobi_status find_neighbors(tobi_system *s, isph *m, double *clock, tobi_e
     TOBI_TRY(sph_classify_vessel(s, &m->view, m->kernel, &m->memory.vessel, clock, err));
     sph_bind_view(s, &m->view, m->memory.vessel);
     m->solver.view.held = NULL;
-    m->solver.view.open = m->memory.vessel != SPH_VESSEL_FULL;
+    m->solver.view.open = m->solver.view.fades = m->memory.vessel != SPH_VESSEL_FULL;
     m->solver.view.motion_dt = fmax(m->motion_dt, s->dt);
     m->solver.view.shifting = m->def.shifting*share_of_shift(s, m);
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, clock, err));

@@ -535,7 +535,7 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     isph_add_divergence(v, i, g, totals);
     if (v->gate[i] > 0 && full < ISPH_DROP) x[0] = x[1] = x[2] = 0;
     else if (v->gate[i] > 0) isph_remove_normal(x, n, 1);
-    else if (v->open && !(v->last_link && v->last_link[i] >= 0))
+    else if (v->fades && !(v->last_link && v->last_link[i] >= 0))
         isph_remove_normal(x, n, 1 - isph_fade(isph_length(n), ISPH_LACK_BEGIN, ISPH_LACK_FULL));
     for (int a = 0; a < 3; a++) {
         x[a] = a < v->dimension ? x[a] + lane_sum(s->core[a]) : 0;

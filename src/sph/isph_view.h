@@ -42,6 +42,7 @@ typedef struct isph_view {
     double density;                  /* kg/m3                                                       */
     double dt, motion_dt;            /* s; motion_dt: the step that motion alone allows             */
     double way;                      /* s: of the motion after the pressure: dt, or dt/2            */
+    int fades;                       /* 1: the shift loses its part along n below a surface         */
     int second_order;                /* 1: the list is that of the middle of the step               */
     double volume_gain, shifting;    /* parameters                                                  */
     double keep;                     /* 1: share of the last pressure that a solve starts from       */

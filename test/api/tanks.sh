@@ -42,7 +42,7 @@ expect 1 "the water reaches the post" new kamra --water-length 0.7
 expect 1 "the post is 0, 1 or 2" new kamra --post 0.5
 expect 1 "the box does not fit" new wave_impact --box-at 3.2
 expect 1 "the box is wider" new wave_impact --box-width 2
-expect 1 "waves higher than 0.78 depths break" new wave_tank --wave-height 0.3
+expect 1 "--wave-height is more than 0.78 of --depth: such waves break" new wave_tank --wave-height 0.3
 expect 1 "the piston stands beyond the tank" new wave_tank --maker-at 5
 expect 1 "the glass is full before" new hose --depth 0.1
 expect 1 "the hose is wider than the glass" new hose --diameter 0.1

@@ -71,7 +71,7 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     bodies = body;
     tobi_smoothing_init(&scaled, shape, dimension, pool.d, 2.5);
     kernel = sph_kernels_for(pool.exec.isa, shape);
-    view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .spacing = pool.d,
+    view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed, .spacing = pool.d,
                        .h = pool.h, .volume = c->volume, .weight = c->weight, .slope = c->slope,
                        .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
                        .dt = 1e-3, .motion_dt = 2e-3, .way = 5e-4, .second_order = 1,
@@ -335,7 +335,7 @@ static void oracle_isph_shift(check *c, int64_t i, const sums *s)
 {
     const double full = 1 - loss_of(s), d = view.spacing;
     double x[3], along[3], size = 0, n2 = 0, at = 0;
-    const int surface = gate_of(i, s) > 0, fades = view.open && !(view.last_link && view.last_link[i] >= 0);
+    const int surface = gate_of(i, s) > 0, fades = view.fades && !(view.last_link && view.last_link[i] >= 0);
     for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
     for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
     for (int a = 0; a < 3; a++) {
