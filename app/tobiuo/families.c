@@ -299,7 +299,8 @@ static const char *object_wave(const family_choice *c)
 {
     const double depth = chosen(c, "depth");
     if (depth > chosen(c, "height")) return above;
-    if (chosen(c, "wave-height") > 0.78*depth) return "--wave-height is more than 0.78 of --depth: such waves break";
+    if (chosen(c, "wave-height") > 0.78*depth)
+        return "--wave-height is more than 0.78 of --depth: such waves break";
     return chosen(c, "maker-at") >= chosen(c, "length") ? "the piston stands beyond the tank" : NULL;
 }
 

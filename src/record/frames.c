@@ -53,7 +53,6 @@ void tobi_drawing_free(tobi_drawing *d)
 /* A view and what it names; key: of the scene, for messages. */
 static tobi_status add_view(tobi_run *run, const tobi_view_def *def, const char *key, tobi_error *err)
 {
-    const tobi_simulation *sim = &run->world->sim;
     tobi_record_view *view = &run->view[run->view_count++];
     char name[64];
     *view = (tobi_record_view){ .def = *def, .follow = -1 };
@@ -62,8 +61,7 @@ static tobi_status add_view(tobi_run *run, const tobi_view_def *def, const char 
     if (def->field)
         TOBI_TRY(tobi_record_find_field(run, name, def->field, strlen(def->field), &view->field, err));
     if (!def->follow) return TOBI_OK;
-    for (int b = 0; b < sim->body_count; b++)
-        if (strcmp(sim->bodies[b].name, def->follow) == 0) view->follow = b;
+    view->follow = tobi_world_find_body(run->world, def->follow);
     return view->follow >= 0 ? TOBI_OK
         : tobi_fail(err, TOBI_INVALID, "%s.picture.follow: there is no body '%s'", key, def->follow);
 }

@@ -1,6 +1,5 @@
 /* lines.csv: of each line of the scene tension and distance of its ends, as often as the probes are read. */
 #include "record/record.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,9 +16,9 @@ tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err)
         for (int v = 0; v < 2; v++, count++) {
             snprintf(names[count], NAME, "%s_%s", tobi_world_line(run->world, k, NULL),
                      v ? "distance" : "tension");
-            columns[count].name = names[count];
+            columns[count] = (tobi_csv_column){ names[count], v ? "m" : "N" };
         }
-    if (status == TOBI_OK) columns[0].name = "time";
+    if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };
     if (status == TOBI_OK)
         status = tobi_table_open(run, "lines.csv", continued, columns, count, &run->lines, err);
     free(columns);
@@ -29,8 +28,8 @@ tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err)
 
 tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err)
 {
-    double every = run->output.probe_interval, now = tobi_world_time(run->world);
-    if (!run->lines || (every > 0 && floor(now/every) <= floor(before/every))) return TOBI_OK;
+    const double now = tobi_world_time(run->world);
+    if (!run->lines || !tobi_record_is_due(run->output.probe_interval, before, now)) return TOBI_OK;
     if (tobi_csv_is_gone(run->lines)) TOBI_TRY(tobi_record_keep_dir(run, err));
     tobi_csv_add_real(run->lines, now);
     for (int k = 0; k < tobi_world_line_count(run->world); k++) {

@@ -92,15 +92,14 @@ static void note_extremes(tobi_sensor_state *f, double time)
 
 /* --- rows ---------------------------------------------------------------------------------- */
 
-/* Whether a multiple of `every` lies in (before, now]. */
-static bool is_due(double every, double before, double now)
+bool tobi_record_is_due(double every, double before, double now)
 {
     return !(every > 0) || floor(now/every) > floor(before/every);
 }
 
 static bool probe_is_due(const tobi_run *run, const tobi_probe_def *def, double before, double now)
 {
-    return is_due(def->rate > 0 ? 1/def->rate : run->output.probe_interval, before, now);
+    return tobi_record_is_due(def->rate > 0 ? 1/def->rate : run->output.probe_interval, before, now);
 }
 
 static void add_cells(tobi_run *run, int count, tobi_sensor_state *state, bool due)

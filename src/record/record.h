@@ -135,6 +135,8 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err);
 /* The rows of an output: made, and written. */
 tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+/* record/probes.c: whether a multiple of `every`, s, lies in (before, now]; 0: it does in each step. */
+bool tobi_record_is_due(double every, double before, double now);
 /* record/lines.c: lines.csv, as often as probes.csv. */
 tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);

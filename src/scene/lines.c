@@ -22,26 +22,18 @@ tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const 
     return TOBI_OK;
 }
 
-static const tobi_body_def *find_body(const tobi_scene *scene, const char *name)
-{
-    for (int b = 0; b < scene->body_count; b++)
-        if (scene->bodies[b].def.name && strcmp(scene->bodies[b].def.name, name) == 0)
-            return &scene->bodies[b].def;
-    return NULL;
-}
-
 static void check_ends(const tobi_scene *scene, tobi_source *source, const tobi_line_def *line,
                        const tobi_place *entry)
 {
     tobi_place body = { entry, "body", 0 }, to_body = { entry, "to_body", 0 };
-    const tobi_body_def *held = line->body ? find_body(scene, line->body) : NULL;
+    const tobi_body_def *held = line->body ? tobi_scene_find_body(scene, line->body) : NULL;
     if (line->body && !held)
         tobi_source_mistake(source, &body, "\"%s\" is no body of the scene", line->body);
     if (held && held->dynamics == TOBI_PRESCRIBED)
         tobi_source_mistake(source, &body, "\"%s\" is prescribed; a line holds a free or controlled body, "
                             "and may go to a prescribed one", line->body);
     if (!line->to_body) return;
-    if (!find_body(scene, line->to_body))
+    if (!tobi_scene_find_body(scene, line->to_body))
         tobi_source_mistake(source, &to_body, "\"%s\" is no body of the scene", line->to_body);
     else if (line->body && strcmp(line->body, line->to_body) == 0)
         tobi_source_mistake(source, &to_body, "is the body at the other end too");

@@ -102,12 +102,8 @@ static void check_view(const tobi_scene *scene, tobi_source *source, const tobi_
         memcmp(view->position, view->look_at, sizeof view->look_at) == 0)
         tobi_source_mistake(source, &target, "is the camera's own position");
     if (view->field) check_names(scene, source, &field, view->field);
-    if (!view->follow) return;
-    for (int b = 0; b < scene->body_count; b++) {
-        const char *name = scene->bodies[b].def.name;
-        if (name && strcmp(name, view->follow) == 0) return;
-    }
-    tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);
+    if (view->follow && !tobi_scene_find_body(scene, view->follow))
+        tobi_source_mistake(source, &follow, "\"%s\" is no body of the scene", view->follow);
 }
 
 static void check_views(const tobi_scene *scene, tobi_source *source, const tobi_place *output)

@@ -29,6 +29,14 @@ json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_pl
     return NULL;
 }
 
+const tobi_body_def *tobi_scene_find_body(const tobi_scene *scene, const char *name)
+{
+    for (int b = 0; b < scene->body_count; b++)
+        if (scene->bodies[b].def.name && strcmp(scene->bodies[b].def.name, name) == 0)
+            return &scene->bodies[b].def;
+    return NULL;
+}
+
 /* The regions of an entry of fluids or solids, `owner` is "fluid" or "solid". */
 static tobi_status read_fills(const tobi_binder *binder, json_t *value, const tobi_place *place,
                               const char *owner, int needed, tobi_scene_fill **fills, int *count)

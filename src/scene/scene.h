@@ -80,6 +80,8 @@ char *tobi_scene_find_directory(const char *path);
 /* scene.c: whether solids stand beside fluids, which have another method. */
 #define TOBI_METHOD_OF_SOLIDS "mlsmpm"
 int tobi_scene_has_both(const tobi_scene *scene);
+/* scene.c: the body of this name, NULL: there is none. */
+const tobi_body_def *tobi_scene_find_body(const tobi_scene *scene, const char *name);
 /* scene.c: the list of objects at the key of `place`, a part of `owner`. NULL if there is none; mistakes are
    reported. */
 json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_place *place,

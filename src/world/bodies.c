@@ -39,6 +39,13 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
     return status;
 }
 
+int tobi_world_find_body(const tobi_world *w, const char *name)
+{
+    for (int k = 0; k < w->sim.body_count; k++)
+        if (strcmp(w->sim.bodies[k].name, name) == 0) return k;
+    return -1;
+}
+
 void tobi_world_cap_step(tobi_world *w)
 {
     if (!w->dynamics) return;

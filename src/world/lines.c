@@ -9,17 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int find_body(const tobi_world *w, const char *name)
-{
-    for (int k = 0; name && k < w->sim.body_count; k++)
-        if (strcmp(w->sim.bodies[k].name, name) == 0) return k;
-    return -1;
-}
-
 static tobi_status check_bodies(const tobi_world *w, const tobi_line_def *def, tobi_line *l, tobi_error *err)
 {
-    l->body = find_body(w, def->body);
-    l->to_body = def->to_body ? find_body(w, def->to_body) : -1;
+    l->body = tobi_world_find_body(w, def->body);
+    l->to_body = def->to_body ? tobi_world_find_body(w, def->to_body) : -1;
     if (l->body < 0)
         return tobi_fail(err, TOBI_INVALID, "line '%s': there is no body '%s'", def->name, def->body);
     if (def->to_body && l->to_body < 0)

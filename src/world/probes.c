@@ -60,14 +60,11 @@ static tobi_status check_rate(const tobi_world *w, const tobi_probe_def *def, to
 
 static tobi_status find_body(const tobi_world *w, const tobi_probe_def *def, int *body, tobi_error *err)
 {
-    *body = -1;
+    *body = def->body ? tobi_world_find_body(w, def->body) : -1;
     if (!def->body) return TOBI_OK;
-    for (int b = 0; b < w->sim.body_count && *body < 0; b++)
-        if (strcmp(w->sim.bodies[b].name, def->body) == 0) *body = b;
     if (*body < 0)
         return tobi_fail(err, TOBI_NOT_FOUND, "probe '%s' sits on the body '%s', which is not there",
-                         def->name,
-                         def->body);
+                         def->name, def->body);
     if (def->kind == TOBI_PROBE_LEVEL)
         return tobi_fail(err, TOBI_INVALID, "probe '%s': a level stands still; use a run-up on a body",
                          def->name);

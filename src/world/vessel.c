@@ -419,8 +419,8 @@ static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const 
     f->up_axis = -1;
     f->dimension = w->system[0].box.dimension;
     f->d = w->sim.def.spacing;
-    for (int k = 0; k < w->sim.body_count; k++)
-        if (strcmp(w->sim.bodies[k].name, r->vessel) == 0) f->b = &w->sim.bodies[k];
+    const int body = tobi_world_find_body(w, r->vessel);
+    if (body >= 0) f->b = &w->sim.bodies[body];
     if (!f->b || !f->b->vessel)
         return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills '%s', which is no %s", whose, r->number,
                          r->vessel, f->b ? "vessel" : "body");

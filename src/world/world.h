@@ -60,6 +60,8 @@ void tobi_world_free_system(tobi_system *s);
 /* The system of the solids, or of the fluids; NULL if there is none. */
 tobi_system *tobi_world_solids(const tobi_world *w);
 tobi_system *tobi_world_fluids(const tobi_world *w);
+/* The number of the body of this name, -1: there is none. */
+int tobi_world_find_body(const tobi_world *w, const char *name);
 /* Materials come in the order of systems: the number of the first of a system. */
 int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
 

@@ -71,8 +71,9 @@ static void open_pool(int dimension, int closed, int smoothing, int body)
     bodies = body;
     tobi_smoothing_init(&scaled, shape, dimension, pool.d, 2.5);
     kernel = sph_kernels_for(pool.exec.isa, shape);
-    view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed, .spacing = pool.d,
-                       .h = pool.h, .volume = c->volume, .weight = c->weight, .slope = c->slope,
+    view = (isph_view){.count = count, .dimension = dimension, .open = !closed, .fades = !closed,
+                       .spacing = pool.d, .h = pool.h, .volume = c->volume, .weight = c->weight,
+                       .slope = c->slope,
                        .shape = shape, .full = 2*c->rate, .inverse_h = (float)(1/pool.h), .density = 1000,
                        .dt = 1e-3, .motion_dt = 2e-3, .way = 5e-4, .second_order = 1,
                        .surface_row = 1.2, .surface_force = 1.1, .volume_gain = 0.1, .shifting = 0.5,
