@@ -204,6 +204,20 @@ static void to_quaternion(const double f[3][3], double q[4])
     q[1 + k] = (m[k][i] + m[i][k])/s;
 }
 
+tobi_status tobi_body_place_within(tobi_body *b, double t, double way, double more, tobi_error *err)
+{
+    double frame[3][3];
+    if (!b->motion) return TOBI_OK;
+    TOBI_TRY(place_frame(b, t + way, b->rigid.position, frame, err));
+    vec3_sub(b->rigid.position, b->rigid.position, b->lower);
+    to_quaternion((const double (*)[3])frame, b->rigid.orientation);
+    if (!b->deforms) return TOBI_OK;
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        vec3_add_scaled(b->vertex[i], b->vertex[i], more, b->vertex_velocity[i]);
+    tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
+    return TOBI_OK;
+}
+
 /* Angular velocity that turns frame `from` into `to` in dt: half the sum of axis cross products. */
 static void turn_rate(const double from[3][3], const double to[3][3], double dt, double omega[3])
 {

@@ -132,6 +132,9 @@ tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const
 void tobi_body_follow_absence(tobi_body *b, double t);
 /* Whether it is away, by its vertices. */
 void tobi_body_find_absence(tobi_body *b);
+/* For a substep: puts a body with a motion where it is `way` s after t, as a rigid body; one that deforms is
+   moved by `more` s along the mean velocities of the step. `next` stays. */
+tobi_status tobi_body_place_within(tobi_body *b, double t, double way, double more, tobi_error *err);
 /* Gives the quadrature points of a body with a motion the velocities that tobi_body_predict found for its
    vertices. */
 void tobi_body_set_point_velocities(tobi_body *b);

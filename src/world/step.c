@@ -1,6 +1,6 @@
 /* The step of the world. Bodies and the clock are moved here and nowhere else. The first system sets the
    length; one whose stable step is shorter takes substeps, under the constant forces of a liquid on solids.
-   Drawback: where there are bodies the shortest stable step holds for all. */
+   Drawback: where bodies move by forces the shortest stable step holds for all. */
 #include "world/step.h"
 #include "world/acceleration.h"
 #include "world/bodies.h"
@@ -35,7 +35,8 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     double stable[TOBI_SYSTEM_LIMIT] = { 0 }, dt;
     for (int k = 0; k < w->system_count; k++) stable[k] = w->system[k].method->max_dt(&w->system[k]);
     dt = stable[0];
-    for (int k = 1; k < w->system_count && s->body_count > 0; k++) dt = fmin(dt, stable[k]);
+    if (tobi_body_any_free(s->bodies, s->body_count))
+        for (int k = 1; k < w->system_count; k++) dt = fmin(dt, stable[k]);
     s->dt = tobi_simulation_fit_dt(dt, max_dt);
     for (int k = 0; k < w->system_count; k++) {
         substeps[k] = k > 0 ? (int64_t)fmax(ceil(s->dt/stable[k]*(1 - 1e-9)), 1) : 1;
@@ -86,10 +87,27 @@ static tobi_status move_bodies(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Bodies with a motion, `way` s after the begin of the step, `more` of it since they were last placed. */
+static tobi_status place_bodies(tobi_simulation *s, double way, double more, tobi_error *err)
+{
+    for (int k = 0; k < s->body_count; k++)
+        if (s->bodies[k].rigid.kind == TOBI_PRESCRIBED)
+            TOBI_TRY(tobi_body_place_within(&s->bodies[k], s->time, way, more, err));
+    return TOBI_OK;
+}
+
+static tobi_status take_substeps(tobi_world *w, tobi_system *s, int64_t count, tobi_error *err)
+{
+    for (int64_t n = 0; n < count; n++) {
+        if (n > 0) TOBI_TRY(place_bodies(&w->sim, (double)n*s->dt, s->dt, err));
+        TOBI_TRY(step_system(s, err));
+    }
+    return count > 1 ? place_bodies(&w->sim, 0, -(double)(count - 1)*s->dt, err) : TOBI_OK;
+}
+
 static tobi_status step_systems(tobi_world *w, const int64_t substeps[TOBI_SYSTEM_LIMIT], tobi_error *err)
 {
-    for (int k = 0; k < w->system_count; k++)
-        for (int64_t n = 0; n < substeps[k]; n++) TOBI_TRY(step_system(&w->system[k], err));
+    for (int k = 0; k < w->system_count; k++) TOBI_TRY(take_substeps(w, &w->system[k], substeps[k], err));
     return TOBI_OK;
 }
 

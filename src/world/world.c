@@ -133,9 +133,9 @@ const char *tobi_world_note(const tobi_world *w, int note)
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
-    if (b->absent[0] > 0 && w->system[0].method->solids)
+    if (b->absent[0] > 0 && tobi_world_solids(w))
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': bodies of %s cannot be absent", b->name,
-                         w->system[0].method->name);
+                         tobi_world_solids(w)->method->name);
     const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)
@@ -155,7 +155,7 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     tobi_system *s = &w->system[0];
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
-    if (def->blade && !w->system[0].method->solids)
+    if (def->blade && !tobi_world_solids(w))
         return tobi_fail(err, TOBI_UNSUPPORTED,
                          "body '%s' is a blade, which the method %s does not know; "
                          "blades cut solids of mlsmpm",
@@ -214,10 +214,6 @@ static tobi_status check_systems(tobi_world *w, tobi_error *err)
     if (w->system[0].fluid_count == 0)
         return tobi_fail(err, TOBI_INVALID, "%s has no fluid; the method of solids alone is %s",
                          w->system[0].method->name, w->system[1].method->name);
-    if (w->sim.body_count > 0)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "bodies beside fluids of %s and solids of %s: allowed are "
-                         "bodies with the one or the other", w->system[0].method->name,
-                         w->system[1].method->name);
     w->sim.soft.solids = &w->system[1];
     return TOBI_OK;
 }

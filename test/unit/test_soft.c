@@ -43,6 +43,16 @@ static tobi_world *make_world(const char *method, int pool, int threads, double 
 static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
 enum { METHODS = 4 };
 
+/* Along z, at *user m/s. */
+static tobi_status rise(void *user, double t, int64_t count, const double (*rest)[3], double (*out)[3],
+                        tobi_error *why)
+{
+    (void)why;
+    memcpy(out, rest, (size_t)count*sizeof *out);
+    for (int64_t i = 0; i < count; i++) out[i][2] += t**(const double *)user;
+    return TOBI_OK;
+}
+
 /* Momentum of a system, kg m/s. */
 static void measure(tobi_world *w, int system, double out[3])
 {
@@ -93,6 +103,69 @@ static void the_same_bits(void **state)
         tobi_world_destroy(later);
     }
     remove("soft.h5");
+}
+
+/* A box beside the jelly: free, or driven along z at a speed, as a motion. */
+static void add_box(tobi_world *w, const double low[3], const double high[3], double *speed)
+{
+    tobi_body_def box = tobi_default_body_def();
+    memcpy(box.box_min, low, sizeof box.box_min);
+    memcpy(box.box_max, high, sizeof box.box_max);
+    box.name = "box";
+    box.density = 600;
+    box.dynamics = speed ? TOBI_PRESCRIBED : TOBI_FREE;
+    box.motion = speed ? rise : NULL;
+    box.motion_user = speed;
+    OK(tobi_world_add_body(w, &box, &err));
+}
+
+/* Water flies against a jelly, which flies against a box. */
+static void momentum_with_a_body(void **state)
+{
+    (void)state;
+    const double low[3] = { 0.06, 0.06, 0.175 }, high[3] = { 0.11, 0.11, 0.2 };
+    for (int k = 0; k < 2; k++) {
+        tobi_world *w = make_world(methods[k], 0, 1, 700);
+        double before[2][3], after[2][3], lost = 0;
+        add_box(w, low, high, NULL);
+        OK(tobi_world_start(w, &err));
+        for (int s = 0; s < 2; s++) measure(w, s, before[s]);
+        OK(tobi_world_advance(w, 0.06, NULL, &err));
+        for (int s = 0; s < 2; s++) measure(w, s, after[s]);
+        const tobi_rigid *r = &w->sim.bodies[0].rigid;
+        if (!(r->mass*r->velocity[2] > 0.02*before[0][2]))
+            fail_msg("%s: the box has %g of %g", methods[k], r->mass*r->velocity[2], before[0][2]);
+        for (int a = 0; a < 3; a++) {
+            lost = r->mass*r->velocity[a] - before[0][a] - before[1][a] + after[0][a] + after[1][a];
+            if (fabs(lost) > 2e-6*before[0][2]) fail_msg("%s, %c: %g lost", methods[k], "xyz"[a], lost);
+        }
+        tobi_world_destroy(w);
+    }
+}
+
+/* A pool with a jelly, and a box that floats, or dives down through both. */
+static void bits_with_a_body(void **state)
+{
+    (void)state;
+    double down = -0.8;
+    const double low[3] = { 0.09, 0.06, 0.175 }, high[3] = { 0.15, 0.11, 0.195 };
+    for (int k = 0; k < 2*METHODS - 1; k++) {        /* eisph has no free bodies */
+        const char *method = methods[k/2];
+        tobi_world *one = make_world(method, 1, 1, 700), *three = make_world(method, 1, 3, 700),
+                   *later = make_world(method, 1, 2, 700), *all[] = { one, three, later };
+        for (int w = 0; w < 3; w++) add_box(all[w], low, high, k%2 || k == 2*METHODS - 2 ? &down : NULL);
+        OK(tobi_world_advance(one, 0.05, NULL, &err));
+        OK(tobi_world_advance(three, 0.05, NULL, &err));
+        if (tobi_world_hash(one) != tobi_world_hash(three)) fail_msg("%s: threads differ", method);
+        OK(tobi_world_save(one, "soft_body.h5", &err));
+        OK(tobi_world_load(later, "soft_body.h5", &err));
+        OK(tobi_world_advance(one, 0.08, NULL, &err));
+        OK(tobi_world_advance(later, 0.08, NULL, &err));
+        if (tobi_world_hash(one) != tobi_world_hash(later)) fail_msg("%s: a restart differs", method);
+        assert_true(one->system[0].info.particles_lost == 0);
+        for (int w = 0; w < 3; w++) tobi_world_destroy(all[w]);
+    }
+    remove("soft_body.h5");
 }
 
 /* Water glides under a jelly: kg m/s that the jelly takes along. */
@@ -235,6 +308,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_one_loses_the_other_gains),
         cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(momentum_with_a_body),
+        cmocka_unit_test(bits_with_a_body),
         cmocka_unit_test(water_slips_or_sticks),
         cmocka_unit_test(water_is_cut_out),
         cmocka_unit_test(parameters_of_solids),
