@@ -159,7 +159,7 @@ static int set_meshes(drawing *d)
         const tobi_moment_surface *s = &m->surfaces[k];
         d->meshes[k] = (tobi_picture_mesh){ s->vertex_count, (const double (*)[3])s->vertices,
                                             s->triangle_count,
-                                            (const int32_t (*)[3])s->triangles, { 0 } };
+                                            (const int32_t (*)[3])s->triangles, { 0 }, 0, 0 };
         memcpy(d->meshes[k].color, colors[k % 4], sizeof colors[0]);
     }
     d->p.meshes = d->meshes;

@@ -50,6 +50,17 @@ static int read_colors(const json_t *list, float colors[MATERIALS][3], float non
     return count;
 }
 
+static void read_bodies(const json_t *bodies, stage *s)
+{
+    const json_t *one;
+    s->bodies = read_colors(bodies, s->body, -1);
+    for (size_t k = 0; k < MATERIALS && (one = json_array_get(bodies, k)); k++) {
+        const json_t *opacity = json_object_get(one, "opacity");
+        s->transparency[k] = json_is_number(opacity) ? (float)(1 - json_number_value(opacity)) : 0;
+        s->hollow[k] = json_is_true(json_object_get(one, "vessel"));
+    }
+}
+
 static window_def make_window(const tobi_scene *scene, const char *dir, const char *title)
 {
     const tobi_world_def *w = tobi_scene_world_def(scene);
@@ -70,7 +81,7 @@ static window_def make_window(const tobi_scene *scene, const char *dir, const ch
     const json_t *solids = json_object_get(json, "solids");
     d.stage.opaque = json_array_size(solids) > 0 && json_array_size(json_object_get(json, "fluids")) == 0;
     d.stage.materials = read_colors(solids, d.stage.material, 0.6f);
-    d.stage.bodies = read_colors(json_object_get(json, "bodies"), d.stage.body, -1);
+    read_bodies(json_object_get(json, "bodies"), &d.stage);
     json_decref(json);
     free(text);
     return d;

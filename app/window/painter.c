@@ -101,8 +101,6 @@ typedef struct props {
     uint8_t *opaque;
     float palette[COLOURS][3];
     tobi_picture_mesh *meshes;
-    int32_t (**triangles)[3];
-    int mesh_count;
 } props;
 
 /* Half the speed of a fall through the domain, as pictures of a run have it. */
@@ -120,7 +118,6 @@ static void add_particles(const stage *s, const tobi_moment *m, const look *l, p
     const tobi_moment_field *field = material ? material : find_field(m, plain ? "velocity" : l->field);
     int64_t n = 0;
     for (int64_t i = 0; i < m->count; i++) {
-        if (is_clipped(l, m->positions[i])) continue;
         memcpy(p->positions[n], m->positions[i], sizeof *p->positions);
         p->values[n] = (float)field_value(field, i);
         p->opaque[n++] = (uint8_t)s->opaque;
@@ -142,31 +139,23 @@ static void add_particles(const stage *s, const tobi_moment *m, const look *l, p
     }
 }
 
-/* Triangles that are hidden by the clip plane with all three corners are left out. */
-static void add_meshes(const stage *s, const tobi_moment *m, const look *l, props *p, tobi_picture *f)
+static void add_meshes(const stage *s, const tobi_moment *m, props *p, tobi_picture *f)
 {
     static const float colors[4][3] = { { 0.93f, 0.62f, 0.28f }, { 0.80f, 0.33f, 0.36f }, { 0.55f, 0.70f,
             0.35f },
                                         { 0.62f, 0.50f, 0.74f } };
     for (int b = 0; b < m->surface_count; b++) {
         const tobi_moment_surface *from = &m->surfaces[b];
-        int32_t (*kept)[3] = malloc(((size_t)from->triangle_count + 1)*sizeof *kept);
-        int64_t n = 0;
-        for (int64_t t = 0; kept && t < from->triangle_count; t++) {
-            int hidden = 1;
-            for (int k = 0; k < 3; k++) hidden &= is_clipped(l, from->vertices[from->triangles[t][k]]);
-            if (!hidden) memcpy(kept[n++], from->triangles[t], sizeof *kept);
-        }
-        p->triangles[b] = kept;
+        const int known = b < s->bodies;
         p->meshes[b] = (tobi_picture_mesh){ .vertex_count = from->vertex_count,
-            .vertices = (const double (*)[3])from->vertices, .triangle_count = n,
-            .triangles = (const int32_t (*)[3])kept };
-        memcpy(p->meshes[b].color, b < s->bodies && s->body[b][0] >= 0 ? s->body[b] : colors[b%4],
+            .vertices = (const double (*)[3])from->vertices, .triangle_count = from->triangle_count,
+            .triangles = (const int32_t (*)[3])from->triangles,
+            .transparency = known ? s->transparency[b] : 0, .hollow = known && s->hollow[b] };
+        memcpy(p->meshes[b].color, known && s->body[b][0] >= 0 ? s->body[b] : colors[b%4],
                sizeof p->meshes[b].color);
-        p->mesh_count++;
     }
     f->meshes = p->meshes;
-    f->mesh_count = p->mesh_count;
+    f->mesh_count = m->surface_count;
 }
 
 static void set_view(const stage *s, const look *l, tobi_picture *f)
@@ -185,6 +174,10 @@ static void set_view(const stage *s, const look *l, tobi_picture *f)
     camera_eye(&l->camera, f->eye);
     memcpy(f->target, l->camera.target, sizeof f->target);
     f->field_of_view = l->camera.angle;
+    f->clip = l->clip_axis >= 0;
+    if (!f->clip) return;
+    f->clip_normal[l->clip_axis] = l->clip_below ? -1 : 1;
+    f->clip_point[l->clip_axis] = l->clip;
 }
 
 static double clock_seconds(void)
@@ -199,16 +192,15 @@ static void paint(const stage *s, const tobi_moment *m, painting *out)
     const double begun = clock_seconds();
     const size_t n = (size_t)m->count + 1, bodies = (size_t)m->surface_count + 1;
     props p = { .positions = malloc(n*sizeof *p.positions), .values = malloc(n*sizeof *p.values),
-                .opaque = malloc(n), .meshes = calloc(bodies, sizeof *p.meshes),
-                .triangles = calloc(bodies, sizeof *p.triangles) };
+                .opaque = malloc(n), .meshes = calloc(bodies, sizeof *p.meshes) };
     tobi_picture f;
     tobi_error err = { .text = "out of memory" };
     out->rgb = malloc((size_t)out->look.width*(size_t)out->look.height*3);
     set_view(s, &out->look, &f);
-    int good = out->rgb && p.positions && p.values && p.opaque && p.meshes && p.triangles;
+    int good = out->rgb && p.positions && p.values && p.opaque && p.meshes;
     if (good) {
         add_particles(s, m, &out->look, &p, &f);
-        add_meshes(s, m, &out->look, &p, &f);
+        add_meshes(s, m, &p, &f);
         good = tobi_picture_draw(&f, out->rgb, &err) == TOBI_OK;
     }
     if (!good) {
@@ -216,12 +208,10 @@ static void paint(const stage *s, const tobi_moment *m, painting *out)
         free(out->rgb);
         out->rgb = NULL;
     }
-    for (int b = 0; b < p.mesh_count; b++) free(p.triangles[b]);
     free(p.positions);
     free(p.values);
     free(p.opaque);
     free(p.meshes);
-    free(p.triangles);
     out->seconds = clock_seconds() - begun;
 }
 

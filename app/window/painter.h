@@ -19,6 +19,8 @@ typedef struct stage {
     double low[3], high[3], up[3], spacing;
     int materials, bodies;              /* colours, from 0; of others the usual                     */
     float material[MATERIALS][3], body[MATERIALS][3];
+    float transparency[MATERIALS];      /* of bodies                                                */
+    int hollow[MATERIALS];              /* 1: a vessel                                              */
 } stage;
 
 /* How a moment is looked at. */

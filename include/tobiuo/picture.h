@@ -21,6 +21,8 @@ typedef struct tobi_picture_mesh {
     int64_t triangle_count;
     const int32_t (*triangles)[3];
     float color[3];                    /* sRGB, 0 to 1                 */
+    float transparency;                /* 0 to 1; above 0 like glass   */
+    int hollow;                        /* not 0: a clip plane opens it, else its cut is filled */
 } tobi_picture_mesh;
 
 /* How particles look: water and solids; surfaces in the colours of values, opaque; balls in those colours. */
@@ -48,7 +50,7 @@ typedef struct tobi_picture {
     double radius;                     /* m, half the particle spacing                                  */
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
     int look;                          /* TOBI_LOOK_*, 3-D only                                         */
-    int clip;                          /* not 0: particles beyond a plane are not drawn                 */
+    int clip;                          /* not 0: what is beyond a plane is not drawn                    */
     double clip_point[3], clip_normal[3];        /* m; from what is drawn to what is not                */
     double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */
     const double (*velocities)[3];     /* m/s, drawn as arrows; NULL = none                             */

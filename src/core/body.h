@@ -53,6 +53,7 @@ typedef struct tobi_body {
     double spacing;                  /* m, of the body's own particles                         */
     double color[3];                 /* RGB, 0 to 255, or -1; for pictures                     */
     int visible;
+    double opacity;                  /* of its surface, for pictures                           */
     tobi_motion_fn motion;           /* NULL = fixed                                           */
     void *motion_user;
     int motion_set;                  /* 1: not that of its definition any more                 */

@@ -307,6 +307,8 @@ static tobi_status list_meshes(const tobi_run *run, const tobi_snapshot *snapsho
                                 .triangles = (const int32_t (*)[3])body->mesh.triangles };
         memcpy(m->color, body_colors[b % COLOR_COUNT], sizeof m->color);
         for (int k = 0; k < 3 && body->color[0] >= 0; k++) m->color[k] = (float)(body->color[k] / 255.0);
+        m->transparency = (float)(1 - body->opacity);
+        m->hollow = body->vessel;
     }
     for (int k = 0; k < lines; k++)
         d->meshes[d->mesh_count++] = tobi_line_draw(&run->world->lines[k],

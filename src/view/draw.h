@@ -65,6 +65,7 @@ typedef struct geometry {
     int64_t vertices, vertex_room;
     int32_t (*face)[3];          /* anticlockwise seen from outside                                */
     int64_t faces, face_room;
+    int64_t filled;              /* the first so many faces are of bodies whose cut is filled      */
     ball   *balls;
     int64_t ball_count, ball_room;
 } geometry;
@@ -75,10 +76,19 @@ typedef struct tile_kernels {
     tobi_range opaque_tiles;
     tobi_range water_tiles;
     tobi_range drop_tiles;
+    tobi_range glass_tiles;
     tobi_range sum_nodes;        /* of isosurface.c                                                */
     tobi_range sum_colors;
 } tile_kernels;
 extern const tile_kernels tile_kernels_v2, tile_kernels_v3, tile_kernels_v4;
+
+/* What is shown of view space: normal . p <= offset, for each plane. */
+typedef struct cut {
+    int   count;                 /* 0 to 2                                                         */
+    vec   normal[2];
+    float offset[2];             /* m                                                              */
+    int   faced;                 /* 1 or 2: the plane that the eye is beyond; 0 = none             */
+} cut;
 
 typedef struct canvas {
     int     width, height;       /* pixels                                                         */
@@ -86,6 +96,7 @@ typedef struct canvas {
     int     threads;
     const tile_kernels *kernels;
     camera  camera;
+    cut     cut;
     vec     light, sky_up;       /* unit vectors in view space: to the key light, against gravity  */
     shadow  shadow;
     vec    *color;               /* of pixels                                                      */
@@ -153,7 +164,16 @@ bool view_reserve(geometry *g, int64_t vertices, int64_t faces, int64_t balls);
 void view_geometry_free(geometry *g);
 /* Places all vertices on the canvas; faces that reach behind the eye are cut there. */
 tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *err);
-bool view_add_mesh(geometry *g, const camera *c, const tobi_picture_mesh *m);
+/* fills: its cut is filled; depth: optical, of glass, else 1. */
+bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, bool fills, float depth);
+
+/* cut.c */
+enum { CUT_CORNERS = 8 };        /* of a triangle that two planes have cut: more than it can have */
+void view_find_cut(canvas *c, const tobi_picture *f);
+/* Adds what the planes leave of a triangle; there is room for CUT_CORNERS vertices and faces. */
+void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const vec normal[3], vec color);
+/* m beyond the plane, or beyond `half` a slice; -INFINITY without a plane. */
+double view_beyond(const tobi_picture *f, const double p[3], double half);
 
 /* tiles.c: which faces and balls touch which square of the canvas, so that each square is one thread's. */
 enum { TILE = 32, MOST_SAMPLES = 4, MOST_SIDE = TILE*MOST_SAMPLES };     /* pixels; samples */
@@ -171,8 +191,12 @@ typedef struct painting {
     const geometry *g;
     const tiles *t;
     vec    *out;                 /* pixels; water reads the canvas's where light is bent           */
+    const geometry *water;       /* of glass: what may be before or behind it, or NULL             */
+    const tiles *water_tiles;
+    bool    over;                /* of glass: only what is before the water, else only behind it   */
 } painting;
 tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out, tobi_error *err);
+tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, tobi_error *err);
 
 /* isosurface.c */
 typedef struct surface_request {
@@ -237,11 +261,7 @@ bool view_draw_arrows(canvas *c, const tobi_picture *f);
 /* On this side of the clip plane, or in the slice. */
 static inline bool view_is_shown(const tobi_picture *f, int64_t i)
 {
-    if (!f->clip) return true;
-    const double *p = f->positions[i], *n = f->clip_normal, *q = f->clip_point;
-    const double off = (p[0] - q[0])*n[0] + (p[1] - q[1])*n[1] + (p[2] - q[2])*n[2];
-    const double length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
-    return f->slice > 0 ? fabs(off) <= 0.5*f->slice*length : off <= 0;
+    return !f->clip || view_beyond(f, f->positions[i], 0.5*f->slice) <= 0;
 }
 
 /* png.c: width x height x channels bytes, sRGB; of 4 channels the last is alpha. */

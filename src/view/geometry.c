@@ -65,26 +65,28 @@ static vec *make_normals(const tobi_picture_mesh *m, const vec *p)
     return normal;
 }
 
-bool view_add_mesh(geometry *g, const camera *c, const tobi_picture_mesh *m)
+bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, bool fills, float depth)
 {
     const float smooth = 0.8f;      /* cosine between a corner's mean normal and the triangle's */
+    const int64_t room = c->cut.count ? CUT_CORNERS : 3;
+    cut cut = c->cut;
+    if (cut.faced && fills) {       /* the other plane is looked at when it is drawn */
+        cut.normal[0] = cut.normal[cut.faced - 1], cut.offset[0] = cut.offset[cut.faced - 1];
+        cut.count = 1;
+    }
     vec *p = malloc(((size_t)m->vertex_count + 1)*sizeof *p), *normal = NULL, color = linear_color(m->color);
-    for (int64_t i = 0; p && i < m->vertex_count; i++) p[i] = view_point(c, m->vertices[i]);
+    for (int64_t i = 0; p && i < m->vertex_count; i++) p[i] = view_point(&c->camera, m->vertices[i]);
     if (p) normal = make_normals(m, p);
-    const bool enough = normal && view_reserve(g, 3*m->triangle_count, m->triangle_count, 0);
+    const bool enough = normal && view_reserve(g, room*m->triangle_count, room*m->triangle_count, 0);
     for (int64_t t = 0; enough && t < m->triangle_count; t++) {
         const int32_t *v = m->triangles[t];
-        const vec sum = vec_add(vec_add(p[v[0]], p[v[1]]), p[v[2]]);
+        const vec place[3] = { p[v[0]], p[v[1]], p[v[2]] };
+        const vec sum = vec_add(vec_add(place[0], place[1]), place[2]);
         if (!(fabsf(sum.x) + fabsf(sum.y) + fabsf(sum.z) < INFINITY)) continue;
-        vec face = vec_unit(vec_cross(vec_sub(p[v[1]], p[v[0]]), vec_sub(p[v[2]], p[v[0]])));
-        for (int k = 0; k < 3; k++) {
-            const int64_t i = g->vertices++;
-            g->place[i] = p[v[k]];
-            g->normal[i] = vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face;
-            g->color[i] = color;
-            g->face[g->faces][k] = (int32_t)i;
-        }
-        g->faces++;
+        vec face = vec_unit(vec_cross(vec_sub(place[1], place[0]), vec_sub(place[2], place[0]))), n[3];
+        for (int k = 0; k < 3; k++)
+            n[k] = vec_scale(depth, vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face);
+        view_add_triangle(g, &cut, place, n, color);
     }
     free(p);
     free(normal);
@@ -136,7 +138,7 @@ static bool is_cut(const geometry *g, int64_t f, float near)
 
 tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *err)
 {
-    int64_t cut = 0, faces = g->faces, kept = 0;
+    int64_t cut = 0, faces = g->faces, filled = g->filled, kept = 0;
     for (int64_t f = 0; f < faces && c->near > -INFINITY; f++) cut += is_cut(g, f, c->near);
     if (cut && !view_reserve(g, 2*cut, cut, 0)) return tobi_fail(err, TOBI_NO_MEMORY,
                                                                  "no memory for a picture");
@@ -146,11 +148,12 @@ tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *
             if (is_cut(g, f, c->near)) cut_face(g, f, c->near, &gone);
             if (gone) g->face[f][0] = -1;
         }
-        for (int64_t f = 0; f < g->faces; f++)
-            if (g->face[f][0] >= 0) {
-                for (int k = 0; k < 3; k++) g->face[kept][k] = g->face[f][k];
-                kept++;
-            }
+        for (int64_t f = 0; f < g->faces; f++) {
+            if (f == filled) g->filled = kept;
+            if (g->face[f][0] < 0) continue;
+            for (int k = 0; k < 3; k++) g->face[kept][k] = g->face[f][k];
+            kept++;
+        }
         g->faces = kept;
     }
     const projection p = { g, c };

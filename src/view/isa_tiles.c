@@ -1,8 +1,7 @@
 /* The loops of a picture over samples of tiles and nodes of blocks, compiled once per instruction set. A
    tile is drawn by one thread, item by item, then its pixels are lit: each once where its samples see one
    surface, else for each surface. Drawback: light is computed pixel by pixel, not eight at once. */
-#include "view/raster.h"
-#include "view/shade.h"
+#include "view/glass.h"
 #include <string.h>
 
 #define JOIN_(a, b) a##_##b
@@ -20,12 +19,46 @@ static square tile_square(const canvas *c, const tiles *t, int64_t k)
                      .side = TILE*c->samples, .step = 1/(float)c->samples };
 }
 
+/* The nearness of a plane of the cut at a point of the canvas. */
+static float cut_nearness(const canvas *c, int plane, float x, float y)
+{
+    const vec n = c->cut.normal[plane];
+    const float across = (x - c->camera.center_x)/c->camera.focal;
+    const float up = (c->camera.center_y - y)/c->camera.focal;
+    return (n.x*across + n.y*up + n.z)/c->cut.offset[plane];
+}
+
+/* Where the eye looks through a cut into a body, and sees a back face: the plane instead. Bodies that are
+   filled were cut in the plane before the eye alone; what is beyond the other is left out here. */
+static void fill_cuts(const canvas *c, const geometry *g, const square *q, layer *l)
+{
+    const int plane = c->cut.faced - 1;
+    for (int y = 0, k = 0; y < q->side; y++)
+        for (int x = 0; x < q->side; x++, k++) {
+            face_setup f;
+            if (l->item[k] < 0) continue;
+            const int32_t *v = g->face[l->item[k]];
+            const float px = q->left + ((float)x + 0.5f)*q->step, py = q->top + ((float)y + 0.5f)*q->step;
+            if (set_up_face(&f, &g->at[v[0]], &g->at[v[1]], &g->at[v[2]]) && f.facing < 0) {
+                const float near = cut_nearness(c, plane, px, py);
+                l->nearness[k] = near > l->nearness[k] ? near : l->nearness[k];
+            } else if (c->cut.count > 1 && l->nearness[k] < cut_nearness(c, 1 - plane, px, py)) {
+                l->nearness[k] = -INFINITY, l->item[k] = -1;
+            }
+        }
+}
+
 static void draw_items(const painting *p, int64_t tile, const square *q, layer *l)
 {
     const canvas *c = p->c;
     const geometry *g = p->g;
+    bool filled = g->filled == 0 || !c->cut.faced;
     for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++) {
         const int32_t item = p->t->item[i];
+        if (!filled && item >= g->filled) {
+            fill_cuts(c, g, q, l);
+            filled = true;
+        }
         if (item < g->faces) {
             face_setup f;
             if (set_up_face(&f, &g->at[g->face[item][0]], &g->at[g->face[item][1]], &g->at[g->face[item][2]]))
@@ -34,6 +67,18 @@ static void draw_items(const painting *p, int64_t tile, const square *q, layer *
             fill_ball(&c->camera, &g->balls[item - g->faces], q, item, l->nearness, l->item);
         }
     }
+    if (!filled) fill_cuts(c, g, q, l);
+}
+
+/* The point of the plane for one of a back face that fill_cuts has seen. */
+static void move_to_cut(const canvas *c, batch *b, int i)
+{
+    const vec n = c->cut.normal[c->cut.faced - 1];
+    const float to = n.x*b->x[i] + n.y*b->y[i] + n.z*b->z[i], t = c->cut.offset[c->cut.faced - 1]/to;
+    if (!(t > 0 && t <= 1)) return;
+    b->x[i] *= t, b->y[i] *= t, b->z[i] *= t;
+    b->nx[i] = n.x, b->ny[i] = n.y, b->nz[i] = n.z;
+    b->r[i] *= 0.8f, b->g[i] *= 0.8f, b->b[i] *= 0.8f;      /* a cut is a little darker */
 }
 
 /* Adds an item's point at a place of the canvas to a batch. */
@@ -60,7 +105,7 @@ static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item
     float s0 = (r->x - q->x)*(y - q->y) - (r->y - q->y)*(x - q->x);
     float s1 = (p->x - r->x)*(y - r->y) - (p->y - r->y)*(x - r->x);
     float s2 = (q->x - p->x)*(y - p->y) - (q->y - p->y)*(x - p->x);
-    const float sign = s0 + s1 + s2 < 0 ? -1.0f : 1.0f;
+    const float sign = s0 + s1 + s2 < 0 ? -1.0f : 1.0f;      /* 1: a back face */
     s0 = above(sign*s0), s1 = above(sign*s1), s2 = above(sign*s2);
     const float area = s0 + s1 + s2, w0 = s0*p->nearness, w1 = s1*q->nearness, w2 = s2*r->nearness;
     float z, scale;
@@ -80,6 +125,7 @@ static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item
     b->r[i] = s0*color[v[0]].x + s1*color[v[1]].x + s2*color[v[2]].x;
     b->g[i] = s0*color[v[0]].y + s1*color[v[1]].y + s2*color[v[2]].y;
     b->b[i] = s0*color[v[0]].z + s1*color[v[1]].z + s2*color[v[2]].z;
+    if (item < g->filled && c->cut.faced && sign > 0) move_to_cut(c, b, i);
 }
 
 /* Of a pixel: its different surfaces, each with its number of samples and the sum of their places. */
@@ -305,6 +351,75 @@ static void depth_tiles(const void *view, int64_t begin, int64_t end)
     }
 }
 
+/* How near the water is at the middles of the tile's pixels; -INFINITY: there is none. */
+static void find_front(const painting *p, int64_t tile, layer *l)
+{
+    const square q = { (float)((int)(tile%p->t->across)*TILE), (float)((int)(tile/p->t->across)*TILE), TILE,
+                       1 };
+    const geometry *g = p->water;
+    clear_layer(l, &q);
+    if (!g || p->c->submerged) return;
+    for (int64_t i = p->water_tiles->first[tile]; i < p->water_tiles->first[tile + 1]; i++) {
+        const int32_t item = p->water_tiles->item[i], *v = g->face[item];
+        face_setup f;
+        if (set_up_face(&f, &g->at[v[0]], &g->at[v[1]], &g->at[v[2]]) && f.facing > 0)
+            fill_face(&f, &q, item, l->nearness, l->item);
+    }
+}
+
+/* A face of glass: its points to the batch, those on the asked side of the water and before what is opaque. */
+static void add_glass(const painting *p, int32_t item, const square *q, const float *front, glass_layer *l,
+                      batch *b)
+{
+    const canvas *c = p->c;
+    const int32_t *v = p->g->face[item];
+    face_setup f;
+    int x0, y0, x1, y1, across, down;
+    if (!set_up_face(&f, &p->g->at[v[0]], &p->g->at[v[1]], &p->g->at[v[2]])) return;
+    if (!sample_range(f.left - 1, f.right + 1, q->left, q, &x0, &x1) ||
+        !sample_range(f.top - 1, f.bottom + 1, q->top, q, &y0, &y1)) return;
+    tile_pixels(c, q, &across, &down);
+    for (int y = y0; y <= y1 && y < down; y++)
+        for (int x = x0; x <= x1 && x < across; x++) {
+            const int k = y*TILE + x;
+            const float px = q->left + (float)x, py = q->top + (float)y;
+            const float cover = cover_pixel(&f, px, py, c->samples);
+            if (!(cover > 0)) continue;
+            const float near = nearness_at(&f, px + 0.5f, py + 0.5f), z = depth_of(&c->camera, near);
+            const bool over = near > front[k] && !c->submerged;
+            if (over != p->over || z >= c->depth[(int64_t)py*c->width + (int64_t)px]) continue;
+            b->pixel[b->count] = k;
+            b->weight[b->count] = cover;
+            add_point(c, p->g, b, item, px + 0.5f, py + 0.5f);
+            if (is_full(b)) shade_glass(c, l, b);
+        }
+}
+
+static void glass_tiles(const void *view, int64_t begin, int64_t end)
+{
+    const painting *p = view;
+    layer front;
+    glass_layer l;
+    batch b = { .count = 0 };
+    for (int64_t tile = begin; tile < end; tile++) {
+        const square q = { (float)((int)(tile%p->t->across)*TILE), (float)((int)(tile/p->t->across)*TILE),
+                           TILE, 1 };
+        int across, down;
+        if (p->t->first[tile] == p->t->first[tile + 1]) continue;
+        memset(&l, 0, sizeof l);
+        find_front(p, tile, &front);
+        for (int64_t i = p->t->first[tile]; i < p->t->first[tile + 1]; i++)
+            add_glass(p, p->t->item[i], &q, front.nearness, &l, &b);
+        shade_glass(p->c, &l, &b);
+        tile_pixels(p->c, &q, &across, &down);
+        for (int y = 0; y < down; y++)
+            for (int x = 0; x < across; x++) {
+                const int64_t k = ((int64_t)q.top + y)*p->c->width + (int64_t)q.left + x;
+                if (l.depth[y*TILE + x] > 0) p->out[k] = see_through(&l, y*TILE + x, p->out[k]);
+            }
+    }
+}
+
 static void sum_block(const node_view *v, int64_t b)
 {
     float *node = v->node + b*BLOCK_NODES;
@@ -376,5 +491,5 @@ static void sum_colors(const void *view, int64_t begin, int64_t end)
 }
 
 const tile_kernels JOIN(tile_kernels, TOBI_ISA) = { depth_tiles, opaque_tiles, water_tiles, drop_tiles,
-                                                    sum_nodes,
+                                                    glass_tiles, sum_nodes,
                                                     sum_colors };

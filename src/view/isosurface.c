@@ -140,6 +140,23 @@ static float share_inside(float s)
     return 0.5f + 0.5f*part/0.40634921f;
 }
 
+/* Beyond a clip plane sums fall through the level in it, as in a wall. */
+static void limit_to_plane(const grid *s, int64_t b)
+{
+    const tobi_picture *f = s->f;
+    float *node = s->node + b*BLOCK_NODES;
+    const double half = fmax(0.5*f->slice, s->edge);      /* the grid sees nothing thinner */
+    for (int z = 0; z < BLOCK_EDGE; z++)
+        for (int y = 0; y < BLOCK_EDGE; y++)
+            for (int x = 0; x < BLOCK_EDGE; x++, node++) {
+                const double p[3] = { s->low[0] + s->edge*(BLOCK_EDGE*s->block[b][0] + x),
+                                      s->low[1] + s->edge*(BLOCK_EDGE*s->block[b][1] + y),
+                                      s->low[2] + s->edge*(BLOCK_EDGE*s->block[b][2] + z) };
+                const float most = s->level - 0.5f*(float)(view_beyond(f, p, half)/s->edge);
+                *node = *node < most ? *node : most;
+            }
+}
+
 /* Sums of the block: 1 inside whatever wall is near; beyond a wall they fall through the level in it. */
 static void limit_block(const grid *s, int64_t b)
 {
@@ -164,7 +181,11 @@ static void limit_block(const grid *s, int64_t b)
 
 static void limit_blocks(const void *view, int64_t begin, int64_t end)
 {
-    for (int64_t b = begin; b < end; b++) limit_block(view, b);
+    const grid *s = view;
+    for (int64_t b = begin; b < end; b++) {
+        limit_block(s, b);
+        if (s->f->clip) limit_to_plane(s, b);
+    }
 }
 
 /* The nodes of a block and the next ones. */
@@ -375,7 +396,7 @@ static bool add_drops(const grid *s, const surface_request *r, geometry *g)
     if (!view_reserve(g, 0, 0, r->count)) return false;
     for (int64_t i = 0; i < r->count; i++) {
         const double *p = r->f->positions[r->row[i]];
-        if (!(fabs(p[0]) + fabs(p[1]) + fabs(p[2]) < 1e15*r->drop)) continue;
+        if (!(fabs(p[0]) + fabs(p[1]) + fabs(p[2]) < 1e15*r->drop) || !view_is_shown(r->f, r->row[i])) continue;
         float place[3] = { 0, 0, 0 };
         const bool inside = s->place && s->place[i][0] >= 0;
         for (int k = 0; k < 3 && inside; k++)      /* half a cell from walls, beyond which there is nothing */
@@ -458,7 +479,7 @@ tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, cons
                              bool *around,
                              tobi_error *err)
 {
-    grid s = { .c = c, .level = r->level };
+    grid s = { .c = c, .f = r->f, .level = r->level };
     double low[3], high[3];
     vec *colors = NULL;
     bool enough = true;

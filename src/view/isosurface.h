@@ -9,6 +9,7 @@ enum { ROUNDS = 4, APRON = BLOCK_EDGE + 1, BLOCKS_AT_MOST = 1 << 22 };
 
 typedef struct grid {
     const canvas *c;
+    const tobi_picture *f;
     double edge, low[3];                 /* m, of a cell; m, of the first node                   */
     float  wall[3][2];                   /* cells from the first node, of the domain             */
     float  reach;                        /* cells                                                */

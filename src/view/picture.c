@@ -106,7 +106,7 @@ const tile_kernels *tile_kernels_for(int isa)
 typedef struct scene {
     const tobi_picture *f;
     canvas c;
-    geometry solids, water, drops;
+    geometry solids, water, drops, glass;
     vec *color;                  /* of particles; NULL: water in its own colour */
     int32_t *row;                /* of particles                                */
     double low, high;            /* values of the colour map's ends             */
@@ -143,6 +143,7 @@ static void free_scene(scene *s)
     view_geometry_free(&s->solids);
     view_geometry_free(&s->water);
     view_geometry_free(&s->drops);
+    view_geometry_free(&s->glass);
     free(s->color);
     free(s->row);
 }
@@ -182,8 +183,8 @@ static surface_request choose(scene *s, bool opaque)
                                                                                               0.095f,
                                                                                                   0.180f } };
     for (int64_t i = 0; i < f->particle_count; i++)
-        if (view_is_shown(f, i) && (f->look || (f->opaque
-                                                && f->opaque[i])) == opaque) s->row[r.count++] = (int32_t)i;
+        if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius      /* what its surface needs */
+            && (f->look || (f->opaque && f->opaque[i])) == opaque) s->row[r.count++] = (int32_t)i;
     return r;
 }
 
@@ -242,11 +243,28 @@ static tobi_status add_particles(scene *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Those whose cut is filled come first. */
+static tobi_status add_bodies(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    for (int hollow = 0; hollow < 2; hollow++) {
+        for (int i = 0; i < f->mesh_count; i++) {
+            const tobi_picture_mesh *m = &f->meshes[i];
+            const bool clear = m->transparency > 0;
+            const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
+            if ((m->hollow != 0) == hollow &&
+                !view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, !hollow && !clear, depth))
+                return no_memory(f, err);
+        }
+        if (!hollow) s->solids.filled = s->solids.faces;
+    }
+    return view_project(&s->glass, &s->c.camera, f->threads, err);
+}
+
 static tobi_status add_surfaces(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
-    for (int i = 0; i < f->mesh_count; i++)
-        if (!view_add_mesh(&s->solids, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
+    TOBI_TRY(add_bodies(s, err));
     if (f->look == TOBI_LOOK_PARTICLES) {
         TOBI_TRY(add_particles(s, err));
         return view_project(&s->solids, &s->c.camera, f->threads, err);
@@ -276,8 +294,7 @@ static tobi_status add_discs(scene *s, tobi_error *err)
                                                 vec_scale(k ? 0.8f : 1, color) };
         }
     }
-    for (int i = 0; i < f->mesh_count; i++)
-        if (!view_add_mesh(g, &s->c.camera, &f->meshes[i])) return no_memory(f, err);
+    TOBI_TRY(add_bodies(s, err));
     return view_project(g, &s->c.camera, f->threads, err);
 }
 
@@ -322,6 +339,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     const tobi_picture *f = s->f;
     canvas *c = &s->c;
     TOBI_TRY(view_aim(c, path, f, err));
+    view_find_cut(c, f);
     TOBI_TRY(f->dimension == 3 ? add_surfaces(s, err) : add_discs(s, err));
     if (has_water(s)) TOBI_TRY(make_water_planes(s, err));
     end_stage(s, STAGE_SURFACE);
@@ -331,10 +349,13 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     view_draw_floor(c, f);
     TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, c->color, err));
     view_draw_box(c, f, false);
+    const geometry *water = s->water.faces > 0 ? &s->water : NULL;
+    if (s->glass.faces > 0 && (water || c->submerged)) TOBI_TRY(view_paint_glass(c, &s->glass, water, false, err));
     end_stage(s, STAGE_SOLIDS);
     if (has_water(s)) TOBI_TRY(draw_water(s, err));
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
+    if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, err));
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
     if (f->axes) view_draw_axes(c, f);
     if (f->title) view_draw_title(c, f->title);

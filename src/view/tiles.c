@@ -88,8 +88,21 @@ tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out
 {
     tiles t;
     TOBI_TRY(view_tiles_build(&t, c, g, err));
-    const painting view = { c, g, &t, out };
+    const painting view = { .c = c, .g = g, .t = &t, .out = out };
     tobi_loop(c->threads, (int64_t)t.across*t.down, 1, kernel, &view);
     view_tiles_free(&t);
     return TOBI_OK;
+}
+
+tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, tobi_error *err)
+{
+    tiles own = { 0 }, other = { 0 };
+    tobi_status status = view_tiles_build(&own, c, g, err);
+    if (status == TOBI_OK && water) status = view_tiles_build(&other, c, water, err);
+    const painting view = { c, g, &own, c->color, water, &other, over };
+    if (status == TOBI_OK)
+        tobi_loop(c->threads, (int64_t)own.across*own.down, 1, c->kernels->glass_tiles, &view);
+    view_tiles_free(&own);
+    view_tiles_free(&other);
+    return status;
 }

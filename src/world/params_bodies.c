@@ -76,6 +76,8 @@ static const tobi_param body_rows[] = {
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",
       .doc = "Colour in pictures, red, green and blue; automatic goes by the number of the body." },
+    { .key = "opacity", REAL, AT(tobi_body_def, opacity), .def = { 1 }, RANGE(0, 1), .unit = "1",
+      .doc = "Share of the light that its surface keeps away in pictures; below 1 it looks like glass." },
     { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
       .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
              "program." },

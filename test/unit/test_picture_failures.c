@@ -64,7 +64,7 @@ static void every_allocation_may_fail(void **state)
     static const double corner[4][3] = { { 0.2, 0.2, 0.1 }, { 0.4, 0.2, 0.1 }, { 0.2, 0.4, 0.1 },
                                          { 0.2, 0.2, 0.8 } };
     static const int32_t side[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } };
-    const tobi_picture_mesh mesh = { 4, corner, 4, side, { 0.9f, 0.1f, 0.1f } };
+    const tobi_picture_mesh mesh = { 4, corner, 4, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
     tobi_picture p = tobi_default_picture();
     fill();
     p.width = W, p.height = H, p.threads = 1;

@@ -32,7 +32,7 @@ static const int32_t side[12][3] = {
     { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 }
 };
-static const tobi_picture_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+static const tobi_picture_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
 
 /* A unit box, half full of water, cube through the surface. */
 static tobi_picture make_frame(void)
@@ -123,6 +123,62 @@ static void things_are_where_they_belong(void **state)
     assert_int_equal(memcmp(pixel(all, 3, 3), pixel(empty, 3, 3), 3), 0);
     assert_int_equal(memcmp(pixel(all, W - 4, H - 4), pixel(empty, W - 4, H - 4), 3), 0);
     free(all), free(drained), free(empty), free(water_only);
+}
+
+/* A cube of glass: what is behind shows through, in the water and above it. */
+static void glass_lets_light_through(void **state)
+{
+    (void)state;
+    tobi_picture f = make_frame();
+    tobi_picture_mesh m = red_cube;
+    unsigned char *opaque = draw(&f);
+    f.mesh_count = 0;
+    unsigned char *none = draw(&f);
+    m.transparency = 0.7f;
+    f.meshes = &m, f.mesh_count = 1, f.threads = 1;
+    unsigned char *glass = draw(&f);
+    f.threads = 3;
+    unsigned char *again = draw(&f);
+    assert_int_equal(memcmp(glass, again, 3*W*H), 0);
+    for (int k = 0; k < 2; k++) {
+        const int y = H/2 + (k ? 26 : -18), red = redness(pixel(glass, W/2, y));
+        assert_true(red > redness(pixel(none, W/2, y)) + 5 && red < redness(pixel(opaque, W/2, y)) - 10);
+    }
+    assert_int_equal(memcmp(pixel(none, 3, 3), pixel(glass, 3, 3), 3), 0);
+    m.transparency = 1, f.mesh_count = 1, f.particle_count = 0;
+    free(draw(&f));
+    free(opaque), free(none), free(glass), free(again);
+}
+
+/* The eye looks along y at the middle of the cube. What is before a plane across that is gone, and the cut is
+   filled, unless the cube is hollow. */
+static void a_plane_cuts_bodies(void **state)
+{
+    (void)state;
+    tobi_picture f = make_frame();
+    tobi_picture_mesh m = red_cube;
+    f.particle_count = 0, f.meshes = &m;
+    unsigned char *whole = draw(&f);
+    f.clip = 1, f.clip_normal[1] = -2, f.clip_point[1] = 0.5;
+    unsigned char *filled = draw(&f);
+    m.hollow = 1;
+    unsigned char *open = draw(&f);
+    f.clip_point[1] = 0.99;
+    unsigned char *gone = draw(&f);
+    f.clip_point[1] = 0.5, f.slice = 0.1, m.hollow = 0;
+    unsigned char *slice = draw(&f);
+    int more = 0, less = 0;
+    for (int i = 0; i < W*H; i++) {
+        const int before = redness(whole + 3*i) > 40, after = redness(filled + 3*i) > 40;
+        more += after && !before, less += before && !after;
+        if (redness(slice + 3*i) > 60) assert_true(before);
+    }
+    assert_int_equal(more, 0);            /* the back of the cube is within what its front covers */
+    assert_true(less > 50);
+    const unsigned char *p = pixel(filled, W/2, H/2), *q = pixel(open, W/2, H/2);
+    assert_true(redness(p) > 40 && redness(pixel(slice, W/2, H/2)) > 40 && memcmp(p, q, 3) != 0);
+    assert_true(redness(pixel(gone, W/2, H/2)) < 20);
+    free(whole), free(filled), free(open), free(gone), free(slice);
 }
 
 /* The left half of the block is a green solid, the right half water: only the solid hides the cube. */
@@ -285,7 +341,7 @@ static void place_does_not_matter(void **state)
         for (int i = 0; i < N; i++) moved[i][k] = position[i][k] + far_away[k];
         for (int i = 0; i < 8; i++) moved_cube[i][k] = cube[i][k] + far_away[k];
     }
-    tobi_picture_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f } };
+    tobi_picture_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
     f.positions = moved, f.meshes = &m;
     unsigned char *there = draw(&f);
     double difference = mean_difference(here, there);
@@ -334,7 +390,7 @@ static void strange_input_is_drawn(void **state)
     double wild_cube[8][3];
     memcpy(wild_cube, cube, sizeof cube);
     wild_cube[0][0] = NAN, wild_cube[1][1] = 1e300, wild_cube[2][2] = -INFINITY, wild_cube[3][0] = 1e8;
-    tobi_picture_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN } };
+    tobi_picture_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN }, 0, 0 };
     f.meshes = &m;
     free(draw(&f));
     f = make_frame();
@@ -377,7 +433,7 @@ static void wrong_arguments_are_refused(void **state)
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), memcpy(f.eye, f.target, sizeof f.eye);
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
-    tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 } };
+    tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 }, 0, 0 };
     f = make_frame(), f.meshes = &m;
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "uses vertex 7 of 7"));
@@ -443,7 +499,8 @@ int main(void)
             cmocka_unit_test(threads_and_instructions_do_not_matter),
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
-        cmocka_unit_test(background_is_transparent),
+        cmocka_unit_test(background_is_transparent), cmocka_unit_test(glass_lets_light_through),
+        cmocka_unit_test(a_plane_cuts_bodies),
             cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
