@@ -380,8 +380,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     b->blade = def->blade;
     b->edge_resistance = def->edge_resistance;
     b->contact_cosine = cos(def->contact_angle*acos(-1)/180);
-    b->visible = def->visible;
-    b->opacity = def->opacity;
+    b->visible = def->visible, b->opacity = def->opacity;
     memcpy(b->color, def->color, sizeof b->color);
     b->spacing = def->spacing > 0 ? def->spacing : 2*point_spacing;
     b->motion = def->motion;

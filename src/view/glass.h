@@ -1,6 +1,6 @@
-/* Bodies that let light through: each of their surfaces keeps a share of it away, and mirrors the sky where it
-   is seen at an angle. Layers add up in any order: optical depths, and colours weighted with them. Drawback:
-   which of two layers is nearer does not show. */
+/* Bodies that let light through: each of their surfaces keeps a share of it away, and mirrors the sky where
+   it is seen at an angle. Layers add up in any order: optical depths, and colours weighted with them.
+   Drawback: which of two layers is nearer does not show. */
 #pragma once
 #include "view/raster.h"
 #include "view/shade.h"

@@ -367,7 +367,7 @@ static void find_front(const painting *p, int64_t tile, layer *l)
     }
 }
 
-/* A face of glass: its points to the batch, those on the asked side of the water and before what is opaque. */
+/* A face of glass: its points to the batch, on the asked side of the water and before what is opaque. */
 static void add_glass(const painting *p, int32_t item, const square *q, const float *front, glass_layer *l,
                       batch *b)
 {

@@ -396,7 +396,8 @@ static bool add_drops(const grid *s, const surface_request *r, geometry *g)
     if (!view_reserve(g, 0, 0, r->count)) return false;
     for (int64_t i = 0; i < r->count; i++) {
         const double *p = r->f->positions[r->row[i]];
-        if (!(fabs(p[0]) + fabs(p[1]) + fabs(p[2]) < 1e15*r->drop) || !view_is_shown(r->f, r->row[i])) continue;
+        if (!(fabs(p[0]) + fabs(p[1]) + fabs(p[2]) < 1e15*r->drop)) continue;
+        if (!view_is_shown(r->f, r->row[i])) continue;
         float place[3] = { 0, 0, 0 };
         const bool inside = s->place && s->place[i][0] >= 0;
         for (int k = 0; k < 3 && inside; k++)      /* half a cell from walls, beyond which there is nothing */

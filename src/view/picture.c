@@ -350,7 +350,8 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     TOBI_TRY(view_paint(c, &s->solids, c->kernels->opaque_tiles, c->color, err));
     view_draw_box(c, f, false);
     const geometry *water = s->water.faces > 0 ? &s->water : NULL;
-    if (s->glass.faces > 0 && (water || c->submerged)) TOBI_TRY(view_paint_glass(c, &s->glass, water, false, err));
+    if (s->glass.faces > 0 && (water || c->submerged))
+        TOBI_TRY(view_paint_glass(c, &s->glass, water, false, err));
     end_stage(s, STAGE_SOLIDS);
     if (has_water(s)) TOBI_TRY(draw_water(s, err));
     end_stage(s, STAGE_WATER);

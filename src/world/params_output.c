@@ -71,7 +71,7 @@ const tobi_param_table tobi_probe_table = {
       .doc = "Name of the body that the camera moves with; camera.position and look_at are those at the " \
              "start." }, \
     { .key = "picture.clip_point", VEC3, AT(type, in clip_point), PLACE, .unit = "m", \
-      .doc = "A point of the plane that cuts off water, solids and bodies, if picture.clip_normal is given." }, \
+      .doc = "A point of the plane that cuts off water, solids and bodies, if there is a clip_normal." }, \
     { .key = "picture.clip_normal", VEC3, AT(type, in clip_normal), DIRECTION, .unit = "1", \
       .doc = "Direction from the plane to what is not shown; 0 is no plane." }, \
     { .key = "picture.slice", REAL, AT(type, in slice), RANGE(0, 1e7), .unit = "m", \
