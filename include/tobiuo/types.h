@@ -299,6 +299,12 @@ typedef struct tobi_body_def {
     double edge_start[3], edge_end[3];  /* m, of a straight edge as the body starts; both 0 = found
                                    in the mesh. In 2-D the edge is the point edge_start              */
     const char *locked;         /* "x,y,z,turn_x,turn_y,turn_z,shift,turn", any of them, or NULL     */
+    double hinge_point[3], hinge_axis[3];   /* m, direction: it turns about a fixed axis; axis 0 = no  */
+    double hinge_lower, hinge_upper;        /* degrees from the start, stops; both 0 = none           */
+    double hinge_stiffness, hinge_damping;  /* N m/rad, N m s/rad                                     */
+    double guide_axis[3];                   /* direction: it slides along a fixed axis; 0 = no        */
+    double guide_lower, guide_upper;        /* m from the start, stops; both 0 = none                 */
+    double guide_stiffness, guide_damping;  /* N/m, N s/m                                             */
     tobi_control_fn control;    /* of a controlled body                                              */
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */
 } tobi_body_def;

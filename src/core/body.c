@@ -459,6 +459,14 @@ void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin
 {
     tobi_rigid *r = &b->rigid;
     double turn[3];
+    if (r->joint.kind) {
+        const int hinge = r->joint.kind == TOBI_JOINT_HINGE;
+        tobi_joint_place(r, vec3_dot(r->joint.axis, hinge ? spin : velocity)*dt +
+                            vec3_dot(r->joint.axis, hinge ? r->turn : r->push));
+        r->joint.driven = 1;
+        place_next(b);
+        return;
+    }
     tobi_rigid_drift_freely(r, dt);
     for (int a = 0; a < 3; a++) {
         r->next_position[a] += (velocity[a] - r->velocity[a])*dt;

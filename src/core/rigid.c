@@ -185,7 +185,9 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     memcpy(r->next_position, centre, sizeof r->position);
     TOBI_TRY(set_inertia(r, def, rest, dimension, err));
     TOBI_TRY(set_locks(r, def, dimension, err));
-    if (r->kind == TOBI_PRESCRIBED) return TOBI_OK;
+    double lower[3];
+    vec3_sub(lower, rest->centre, centre);
+    if (r->kind == TOBI_PRESCRIBED) return tobi_joint_init(r, def, lower, dimension, err);
     r->air_resistance = def->air_resistance;
     r->control = def->control;
     r->control_user = def->control_user;
@@ -195,7 +197,7 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     memcpy(r->velocity, def->velocity, sizeof r->velocity);
     multiply(r->inertia, def->angular_velocity, r->momentum);
     tobi_rigid_apply_locks(r);
-    return TOBI_OK;
+    return tobi_joint_init(r, def, lower, dimension, err);
 }
 
 /* --- drift ---------------------------------------------------------------------------------- */
@@ -249,6 +251,11 @@ void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
 {
     double *q = r->next_orientation, w[3];
     int turns = bits_of(r) & ALL_TURNS;
+    if (r->joint.kind) {
+        tobi_joint_place(r, dt*tobi_joint_rate(r) +
+                            vec3_dot(r->joint.axis, r->joint.kind == TOBI_JOINT_HINGE ? r->turn : r->push));
+        return;
+    }
     vec3_add_scaled(r->next_position, r->position, dt, r->velocity);
     vec3_add_scaled(r->next_position, r->next_position, 1, r->push);
     memcpy(q, r->orientation, sizeof r->orientation);
@@ -268,7 +275,11 @@ void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
 /* Coasts by the mean of the velocities before and after the kick (R.15). */
 void tobi_rigid_drift(tobi_rigid *r, double dt)
 {
-    double keep = exp(-r->air_resistance*dt);
+    double keep = tobi_rigid_keep(r, dt);
+    if (r->joint.kind) {
+        tobi_joint_drift(r, dt);
+        return;
+    }
     tobi_rigid mean = *r;
     for (int a = 0; a < 3; a++) {
         mean.velocity[a] = 0.5*(r->velocity[a] + keep*(r->velocity[a] + dt*r->pull[a]));
@@ -288,8 +299,8 @@ void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
     double m[3][3];
     memset(turn, 0, 9*sizeof(double));
     for (int a = 0; a < 3; a++)
-        shift[a] = r->kind == TOBI_PRESCRIBED || (bits >> a & 1) ? 0 : 1/r->mass;
-    if (r->kind == TOBI_PRESCRIBED || turns == ALL_TURNS) return;
+        shift[a] = r->kind == TOBI_PRESCRIBED || r->joint.kind || (bits >> a & 1) ? 0 : 1/r->mass;
+    if (r->kind == TOBI_PRESCRIBED || r->joint.kind || turns == ALL_TURNS) return;
     tobi_quaternion_matrix(r->orientation, m);
     const double *body = turns ? r->inertia : r->inverse;
     for (int a = 0; a < 3; a++)
@@ -301,10 +312,31 @@ void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
             turn[a][b] = a == b && !(turns >> (3 + a) & 1) ? 1/turn[a][b] : 0;
 }
 
+double tobi_rigid_keep(const tobi_rigid *r, double dt)
+{
+    const double joint = r->joint.damping > 0 ? r->joint.damping/r->joint.mass : 0;
+    return exp(-(r->air_resistance + joint)*dt);
+}
+
+void tobi_rigid_answer(const tobi_rigid *r, const double f[6], double out[6])
+{
+    for (int a = 0; a < 3; a++) {
+        out[a] = r->mobility[a]*f[a];
+        out[3 + a] = vec3_dot(r->turn_mobility[a], f + 3);
+    }
+    if (!r->joint.kind) return;
+    const double *s = r->joint_mobility, along = vec3_dot(s, f) + vec3_dot(s + 3, f + 3);
+    for (int a = 0; a < 6; a++) out[a] += along*s[a];
+}
+
 void tobi_rigid_apply_locks(tobi_rigid *r)
 {
     int bits = bits_of(r);
     double shift[3], turn[3][3];
+    if (r->joint.kind) {
+        tobi_joint_set_rate(r, tobi_joint_rate(r));
+        return;
+    }
     for (int a = 0; a < 3; a++) {
         if (bits >> a & 1) r->velocity[a] = 0;
         if (bits >> (3 + a) & 1) r->momentum[a] = 0;

@@ -6,6 +6,7 @@
 #pragma once
 #include "base/error.h"
 #include "core/acceleration.h"
+#include "core/joint.h"
 #include "geom/massprops.h"
 #include "tobiuo/types.h"
 
@@ -19,6 +20,7 @@ typedef struct tobi_rigid {
     double force[3], torque[3];      /* N, N m: constant, in world axes                                 */
     tobi_control_fn control;         /* of a controlled body                                            */
     void *control_user;
+    tobi_joint joint;
 
     /* The state: TOBI_RIGID_DOUBLES doubles from here on, all that a restart needs. */
     double position[3];              /* m, centre of mass from the domain's lower corner                */
@@ -46,6 +48,7 @@ typedef struct tobi_rigid {
     double driven[6];                             /* m/s, rad/s: by tobi_body_set_velocity, last        */
     double predicted[3], predicted_spin[3];         /* m/s, rad/s: at the end of the step                 */
     double mobility[3], turn_mobility[3][3];      /* 1/kg, 1/(kg m2): velocities per impulse            */
+    double joint_mobility[6];                     /* s of the joint, M^-1 = s s^T                       */
 } tobi_rigid;
 
 #define TOBI_RIGID_STATE(r) ((r)->position)
@@ -70,8 +73,13 @@ void tobi_rigid_drift(tobi_rigid *r, double dt);
 void tobi_rigid_drift_freely(tobi_rigid *r, double dt);
 
 /* Inverse of mass times the unit matrix, as a diagonal, and of inertia in world axes at the present
-   orientation; locked degrees of freedom give 0. */
+   orientation; locked degrees of freedom give 0. Those of a body with a joint are 0, tobi_joint_freedom has
+   its own. */
 void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3]);
+/* What is kept of a velocity over dt by air and the damper of a joint, 1. */
+double tobi_rigid_keep(const tobi_rigid *r, double dt);
+/* Velocities by an impulse f, N s and N m s about the centre, by the mobility that a liquid works with. */
+void tobi_rigid_answer(const tobi_rigid *r, const double f[6], double out[6]);
 /* Drops what locked degrees of freedom do not allow; brings angular_velocity up to date. */
 void tobi_rigid_apply_locks(tobi_rigid *r);
 /* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */

@@ -194,15 +194,25 @@ static void sum_contacts(tobi_contacts *c, int width, double dt, double *total, 
         for (int n = 0; n < width; n++) total[n] += c->partial[q*SUMS + n];
 }
 
+/* M^-1 as a whole, joints included. */
+static void find_inverse(const tobi_rigid *r, double inverse[6][6])
+{
+    double shift[3], turn[3][3], joint[6];
+    tobi_rigid_inverse(r, shift, turn);
+    tobi_joint_freedom(r, joint);
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++) inverse[i][k] = joint[i]*joint[k];
+    for (int i = 0; i < 3; i++) {
+        inverse[i][i] += shift[i];
+        for (int k = 0; k < 3; k++) inverse[3 + i][3 + k] += turn[i][k];
+    }
+}
+
 /* The predicted velocities after the impulses of this sweep, solved with them: V = V0 + M^-1 (r - K V). */
 static void predict(tobi_contacts *c, const tobi_rigid *r, double dt, tobi_exec *x)
 {
-    double shift[3], turn[3][3], inverse[6][6] = {{0}}, total[SUMS], a[6][6], b[6];
-    tobi_rigid_inverse(r, shift, turn);
-    for (int i = 0; i < 3; i++) {
-        inverse[i][i] = shift[i];
-        for (int k = 0; k < 3; k++) inverse[3 + i][3 + k] = turn[i][k];
-    }
+    double inverse[6][6], total[SUMS], a[6][6], b[6];
+    find_inverse(r, inverse);
     sum_contacts(c, SUMS, dt, total, x);
     memcpy(b, c->velocity, sizeof c->velocity);
     memcpy(b + 3, c->spin, sizeof c->spin);
@@ -259,12 +269,12 @@ double tobi_contact_sweep(tobi_contacts *c, tobi_body *b, const tobi_contact_ste
     const double moved = most > 0 ? sqrt(most/larger(largest, 1e-300)) : 0;
     if (!moves) return moved;
     /* What the impulses really were. */
-    double shift[3], turn[3][3];
-    tobi_rigid_inverse(r, shift, turn);
+    double inverse[6][6];
+    find_inverse(r, inverse);
     sum_contacts(c, 6, step->dt, total, x);
     for (int a = 0; a < 3; a++) {
-        c->velocity[a] = velocity[a] - shift[a]*total[a];
-        c->spin[a] = spin[a] - vec3_dot(turn[a], total + 3);
+        c->velocity[a] = velocity[a] - vec3_dot(inverse[a], total) - vec3_dot(inverse[a] + 3, total + 3);
+        c->spin[a] = spin[a] - vec3_dot(inverse[3 + a], total) - vec3_dot(inverse[3 + a] + 3, total + 3);
     }
     return moved;
 }

@@ -110,6 +110,7 @@ double tobi_rigid_step_limit(const tobi_dynamics_state *d)
         double turn = sqrt(SAGITTA*d->thinnest/d->shapes[k].facets.reach);
         limit = fmin(limit, fmin(turn, 0.5)/(vec3_length(r->angular_velocity) + 1e-9));
         if (g > 0) limit = fmin(limit, 0.25*sqrt(d->shapes[k].thickness/g));
+        limit = fmin(limit, tobi_joint_step_limit(r));
     }
     return fmin(limit, tobi_lines_step_limit(d->world.lines, d->world.line_count, d->bodies));
 }
@@ -153,6 +154,9 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
     if (hold < 0)
         return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', which is no axis; "
                          "allowed are x, y, z, turn_x, turn_y, turn_z, shift and turn", b->name, unknown);
+    if (hold && r->joint.kind)
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s'; nothing can be held "
+                         "of a body on a hinge or guide", b->name, out.hold);
     int turns = (hold | r->locked) >> 3;
     if (turns == 1 || turns == 2 || turns == 4)
         return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program holds '%s', the turn about one "
@@ -170,24 +174,41 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
     return TOBI_OK;
 }
 
+/* Of a body with a joint: along its one coordinate. */
+static void kick_joint(const tobi_dynamics_state *d, tobi_body *b, double dt, const double impulse[6])
+{
+    const double none[6] = { 0 };
+    double damped[6];
+    tobi_line_load damping = { 0 };
+    tobi_lines_add(d->world.lines, d->world.line_count, (int)(b - d->bodies), TOBI_LINES_DAMPING, &damping);
+    memcpy(damped, damping.force, sizeof damping.force);
+    memcpy(damped + 3, damping.torque, sizeof damping.torque);
+    tobi_joint_kick(&b->rigid, dt, impulse, damped);
+    tobi_joint_stop(&b->rigid, dt, PLASTIC, none);
+}
+
 /* Velocities after all forces but contact (R.5). Air resistance acts on what the other forces made. */
 static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double dt, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
-    double force[3], torque[3], keep = exp(-r->air_resistance*dt), span = r->span > 0 ? r->span : dt;
+    double force[3], torque[3], keep = tobi_rigid_keep(r, dt), span = r->span > 0 ? r->span : dt;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
     if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     tobi_line_load now = { 0 }, mean = { 0 };
+    double impulse[6];
     const int body = (int)(b - d->bodies);
     tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_NOW, &now);
     tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_MEAN, &mean);
+    for (int a = 0; a < 3; a++) impulse[a] = r->impulse[a], impulse[3 + a] = r->twist[a];
     for (int a = 0; a < 3; a++) {
         double dv = dt*(d->world.gravity[a] + (force[a] + mean.force[a])/r->mass) + r->impulse[a]/r->mass;
-        r->velocity[a] = keep*(r->velocity[a] + dv);
-        r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + r->twist[a]);
+        if (!r->joint.kind) {
+            r->velocity[a] = keep*(r->velocity[a] + dv);
+            r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + r->twist[a]);
+        }
         r->contact_force[a] = r->impulse[a]/span;
         r->contact_torque[a] = r->twist[a]/span;
         r->impulse[a] = r->twist[a] = 0;
@@ -195,7 +216,8 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
         r->pull_torque[a] = torque[a] + now.torque[a];
     }
     r->span = 0;
-    tobi_rigid_apply_locks(r);
+    if (r->joint.kind) kick_joint(d, b, dt, impulse);
+    else tobi_rigid_apply_locks(r);
     return TOBI_OK;
 }
 
@@ -334,10 +356,11 @@ static void keep_impulses(tobi_dynamics_state *d)
    adds; sign: 1 for the body a, -1 for b. */
 static void predict(const tobi_rigid *r, const tobi_touch *c, int sign, double dt, double sum[2])
 {
-    double arm[3], lever[3], shift[3], turn[3][3];
+    double arm[3], lever[3], shift[3], turn[3][3], joint[6];
     vec3_sub(arm, c->point, r->position);
     vec3_cross(lever, arm, c->normal);
     tobi_rigid_inverse(r, shift, turn);
+    tobi_joint_freedom(r, joint);
     for (int a = 0; a < 3; a++) {
         sum[0] += sign*(c->normal[a]*(dt*r->velocity[a] + r->push[a]) +
                         lever[a]*(dt*r->angular_velocity[a] + r->turn[a]));
@@ -345,6 +368,9 @@ static void predict(const tobi_rigid *r, const tobi_touch *c, int sign, double d
         sum[1] += sign*0.5*dt*dt*((shift[a] > 0)*c->normal[a]*r->pull[a] +
                                   lever[a]*vec3_dot(turn[a], r->pull_torque));
     }
+    if (r->joint.kind)
+        sum[1] += sign*0.5*dt*dt*(vec3_dot(joint, c->normal) + vec3_dot(joint + 3, lever))*
+                  sqrt(r->joint.mass)*tobi_joint_pull(r);
 }
 
 static int drop_pull(tobi_rigid *r)
@@ -389,6 +415,17 @@ static void keep_contact_force(tobi_body *b)
     }
 }
 
+/* After contact, which saw a body that rests at a stop as fixed. */
+static void stop_joint(tobi_body *b, double dt)
+{
+    double impulse[6];
+    for (int a = 0; a < 3; a++) {
+        impulse[a] = dt*b->info.contact_force[a];
+        impulse[3 + a] = dt*b->info.contact_torque[a];
+    }
+    tobi_joint_stop(&b->rigid, dt, PLASTIC, impulse);
+}
+
 tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_error *err)
 {
     double g = vec3_length(d->world.gravity);
@@ -408,6 +445,7 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
         tobi_body *b = &d->bodies[k];
         const tobi_rigid *r = &b->rigid;
         if (r->kind == TOBI_PRESCRIBED) continue;
+        if (r->joint.kind) stop_joint(b, dt);
         keep_contact_force(b);
         if (!isfinite(vec3_dot(r->velocity, r->velocity) + vec3_dot(r->momentum, r->momentum)))
             return tobi_fail(err, TOBI_DIVERGED, "the simulation diverged at t = %.9g s: body '%s' has a "

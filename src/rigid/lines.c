@@ -143,10 +143,9 @@ void tobi_lines_add(const tobi_line *lines, int count, int body, tobi_line_when 
         for (int end = 0; end < 2; end++) {
             const tobi_line *l = &lines[k];
             if ((end ? l->to_body : l->body) != body) continue;
-            add(load, when == TOBI_LINES_NOW ? 1 : 0.5, &l->now[end]);
-            if (when == TOBI_LINES_NOW) continue;
-            add(load, 0.5, &l->before[end]);
-            add(load, 1, &l->damped[end]);
+            if (when != TOBI_LINES_DAMPING) add(load, when == TOBI_LINES_NOW ? 1 : 0.5, &l->now[end]);
+            if (when == TOBI_LINES_MEAN) add(load, 0.5, &l->before[end]);
+            if (when != TOBI_LINES_NOW) add(load, 1, &l->damped[end]);
         }
 }
 

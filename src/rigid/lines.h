@@ -25,9 +25,9 @@ typedef struct tobi_line {
 
 /* Loads at the present poses and velocities; those of the last call become `before`. */
 void tobi_line_update(tobi_line *line, const tobi_body *bodies);
-/* Adds what the lines do to one body: now, which the next drift takes, or in the mean over a step, which a
-   kick takes (velocity Verlet: the energy of a spring neither grows nor fades). */
-typedef enum tobi_line_when { TOBI_LINES_NOW, TOBI_LINES_MEAN } tobi_line_when;
+/* Adds what the lines do to one body: now, which the next drift takes, in the mean over a step, which a
+   kick takes (velocity Verlet: the energy of a spring neither grows nor fades), or by damping alone. */
+typedef enum tobi_line_when { TOBI_LINES_NOW, TOBI_LINES_MEAN, TOBI_LINES_DAMPING } tobi_line_when;
 void tobi_lines_add(const tobi_line *lines, int count, int body, tobi_line_when when,
                     tobi_line_load *load);
 /* s: a third of a radian of the fastest oscillation that the lines make with the bodies; INFINITY: none. */

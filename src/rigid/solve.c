@@ -17,6 +17,7 @@ struct tobi_solve_body {
     double speed[6];                 /* m/s, rad/s                                             */
     double push[6];                  /* m, rad: displacement so far                            */
     double shift[3], turn[3][3];     /* inverse mass and inertia, 0 where locked               */
+    double joint[6];                 /* of a body with a joint, M^-1 = s s^T; else 0           */
 };
 
 struct tobi_solve_row {
@@ -25,6 +26,7 @@ struct tobi_solve_row {
     double axis[3][3];               /* the normal and two tangents                            */
     double lever_a[3][3], lever_b[3][3];       /* arm x axis                                   */
     double spin_a[3][3], spin_b[3][3];         /* change of angular velocity per N s           */
+    double along_a[3], along_b[3];   /* change along a joint per N s, in units of its s        */
     double mass[3];                  /* kg, effective along the axes; 0 = nothing can move     */
     double sum[3];                   /* N s so far                                             */
     double was[3], way[3];           /* N s: before this sweep, and the direction of search    */
@@ -64,14 +66,16 @@ static void make_tangents(double axis[3][3])
 }
 
 /* The response of one side to an impulse of 1 N s along an axis, m/s along that axis. */
-static double respond(const tobi_solve_body *m, const double axis[3], const double lever[3], double spin[3])
+static double respond(const tobi_solve_body *m, const double axis[3], const double lever[3], double spin[3],
+                      double *along)
 {
     double sum = 0;
+    *along = vec3_dot(m->joint, axis) + vec3_dot(m->joint + 3, lever);
     for (int i = 0; i < 3; i++) {
         spin[i] = vec3_dot(m->turn[i], lever);
         sum += axis[i]*axis[i]*m->shift[i];
     }
-    return sum + vec3_dot(spin, lever);
+    return sum + vec3_dot(spin, lever) + *along**along;
 }
 
 /* Of a six-vector, velocities or displacements: how fast the surfaces part along an axis. */
@@ -96,6 +100,8 @@ static inline void drive(const tobi_solve_row *r, int k, double impulse, double 
         b[i] -= p*r->b->shift[i];
         b[3 + i] -= impulse*r->spin_b[k][i];
     }
+    for (int i = 0; i < 6 && r->along_a[k] != 0; i++) a[i] += impulse*r->along_a[k]*r->a->joint[i];
+    for (int i = 0; i < 6 && r->along_b[k] != 0; i++) b[i] -= impulse*r->along_b[k]*r->b->joint[i];
 }
 
 static inline void push(tobi_solve_row *r, int k, double impulse)
@@ -104,7 +110,11 @@ static inline void push(tobi_solve_row *r, int k, double impulse)
     drive(r, k, impulse, r->a->speed, r->b->speed);
 }
 
-static int is_fixed(const tobi_solve_body *b) { return b->shift[0] + b->shift[1] + b->shift[2] == 0; }
+static int is_fixed(const tobi_solve_body *b)
+{
+    return b->shift[0] + b->shift[1] + b->shift[2] == 0 &&
+           vec3_dot(b->joint, b->joint) + vec3_dot(b->joint + 3, b->joint + 3) == 0;
+}
 
 /* Speed apart that a contact must reach (R.7): to bounce if it arrives in this step, or to close its gap
    and no more. */
@@ -133,8 +143,8 @@ static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi
     for (int k = 0; k < 3; k++) {
         vec3_cross(r->lever_a[k], arm_a, r->axis[k]);
         vec3_cross(r->lever_b[k], arm_b, r->axis[k]);
-        double sum = respond(r->a, r->axis[k], r->lever_a[k], r->spin_a[k]) +
-                     respond(r->b, r->axis[k], r->lever_b[k], r->spin_b[k]);
+        double sum = respond(r->a, r->axis[k], r->lever_a[k], r->spin_a[k], &r->along_a[k]) +
+                     respond(r->b, r->axis[k], r->lever_b[k], r->spin_b[k], &r->along_b[k]);
         r->mass[k] = sum > 0 ? 1/sum : 0;
     }
 }
@@ -270,6 +280,7 @@ static void take_bodies(tobi_solver *s, const tobi_body *bodies, int count)
         memcpy(b->speed, bodies[k].rigid.velocity, 3*sizeof(double));
         memcpy(b->speed + 3, bodies[k].rigid.angular_velocity, 3*sizeof(double));
         tobi_rigid_inverse(&bodies[k].rigid, b->shift, b->turn);
+        tobi_joint_freedom(&bodies[k].rigid, b->joint);
     }
 }
 
@@ -280,6 +291,7 @@ static void give_bodies(const tobi_solver *s, tobi_body *bodies, int count)
         tobi_rigid *r = &bodies[k].rigid;
         if (r->kind == TOBI_PRESCRIBED) continue;
         memcpy(r->velocity, b->speed, sizeof r->velocity);
+        if (r->joint.kind) memcpy(r->angular_velocity, b->speed + 3, sizeof r->angular_velocity);
         memcpy(r->push, b->push, sizeof r->push);
         memcpy(r->turn, b->push + 3, sizeof r->turn);
         tobi_rigid_apply_locks(r);

@@ -288,6 +288,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         tobi_check_file(source, &mesh, body->def.mesh);
         check_shape(scene, source, i, &entry);
         check_dynamics(scene, source, i, &entry);
+        tobi_joints_check(scene, source, i, &entry);
         if (is_zero(body->def.rotation_axis))
             tobi_source_mistake(source, &axis, "is zero, must have a direction");
     }

@@ -67,12 +67,16 @@ static void drop_shapes(const tobi_body_def *def, json_t *object)
     if (!box) json_object_del(object, "box");
 }
 
+static int is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
 static json_t *write_body(const tobi_scene *scene, const tobi_scene_body *body)
 {
     json_t *object = tobi_write_def(&tobi_body_table, &body->def);
     int failed = 0;
     tobi_unused_drop(scene, &tobi_body_table, &body->def, object);
     drop_shapes(&body->def, object);
+    if (is_zero(body->def.hinge_axis)) json_object_del(object, "hinge");
+    if (is_zero(body->def.guide_axis)) json_object_del(object, "guide");
     if (body->motion_def[0].table)
         failed = json_object_set_new(object, "motion", tobi_motion_write(body->motion_def));
     if (body->control)

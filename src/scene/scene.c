@@ -128,6 +128,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
         tobi_scene_body *body = &scene->bodies[scene->body_count++];
         body->def = tobi_default_body_def();
         body->bound = tobi_bind(binder, &tobi_body_table, value, &entry, also, &body->def);
+        tobi_joints_complete(value, binder->dimension, &body->def);
         json_t *moves = json_object_get(value, "motion"), *controls = json_object_get(value, "control");
         if (controls) {
             tobi_place control = { &entry, "control", 0 };

@@ -92,6 +92,10 @@ tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const 
 void tobi_lines_check(const tobi_scene *scene, tobi_source *source);
 json_t *tobi_lines_write_json(const tobi_scene *scene);      /* NULL: no memory */
 
+/* joints.c: the hinge of a 2-D body has its axis along z; what is wrong with hinge and guide of a body. */
+void tobi_joints_complete(const json_t *body, int dimension, tobi_body_def *def);
+void tobi_joints_check(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry);
+
 /* output.c: the key output of the scene, which is `of`. */
 tobi_status tobi_output_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
 void tobi_output_check(const tobi_scene *scene, tobi_source *source);

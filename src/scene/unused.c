@@ -34,7 +34,9 @@ static const struct {
                                               "tension" },
 #define MOVED(key) { "body", key, FORCES, UNMOVED }
     MOVED("velocity"), MOVED("angular_velocity"), MOVED("force"), MOVED("torque"), MOVED("air_resistance"),
-    MOVED("locked"),
+    MOVED("locked"), MOVED("hinge.point"), MOVED("hinge.axis"), MOVED("hinge.lower"), MOVED("hinge.upper"),
+    MOVED("hinge.stiffness"), MOVED("hinge.damping"), MOVED("guide.axis"), MOVED("guide.lower"),
+    MOVED("guide.upper"), MOVED("guide.stiffness"), MOVED("guide.damping"),
 #undef MOVED
 #define EDGE(key) { "body", key, BLADE, "is for a blade, which this body is not" }
     EDGE("edge_resistance"), EDGE("edge_angle"), EDGE("edge_start"), EDGE("edge_end"),

@@ -18,12 +18,38 @@ int tobi_couple_any(const tobi_system *s)
     return 0;
 }
 
+/* The same of a body with a joint: by what acts on its one coordinate. */
+static void predict_joint(const tobi_system *s, tobi_rigid *r, const double f[6])
+{
+    const double keep = tobi_rigid_keep(r, s->dt);
+    double load[6], change[6];
+    for (int a = 0; a < 3; a++) {
+        load[a] = r->mass*s->sim->def.gravity[a] + r->force[a];
+        load[3 + a] = r->torque[a];
+    }
+    for (int a = 0; a < 6; a++) load[a] += r->inertial[a] + r->held[a] + f[a];
+    tobi_joint_add_spring(r, load);
+    tobi_joint_freedom(r, r->joint_mobility);
+    memset(r->mobility, 0, sizeof r->mobility);
+    memset(r->turn_mobility, 0, sizeof r->turn_mobility);
+    tobi_rigid_answer(r, load, change);
+    for (int a = 0; a < 3; a++) {
+        r->predicted[a] = keep*(r->velocity[a] + s->dt*change[a]);
+        r->predicted_spin[a] = keep*(r->angular_velocity[a] + s->dt*change[3 + a]);
+    }
+    for (int a = 0; a < 6; a++) r->joint_mobility[a] *= sqrt(keep);
+}
+
 /* Velocities at the end of the step, by force and torque f of the particles: (R.5) without control, and with
    what contact has held for two steps; the rest of contact the next step knows from its first velocities. */
 static void predict(const tobi_system *s, tobi_body *b, const double f[6])
 {
     tobi_rigid *r = &b->rigid;
-    double shift[3], turn[3][3], momentum[3], keep = exp(-r->air_resistance*s->dt);
+    double shift[3], turn[3][3], momentum[3], keep = tobi_rigid_keep(r, s->dt);
+    if (r->joint.kind) {
+        predict_joint(s, r, f);
+        return;
+    }
     tobi_rigid_inverse(r, shift, turn);
     for (int a = 0; a < 3; a++) {
         double force = r->mass*s->sim->def.gravity[a] + r->force[a] + r->inertial[a] + r->held[a] + f[a];
@@ -52,11 +78,7 @@ void tobi_couple_answer(tobi_system *s, int k, const double f[6])
     const tobi_rigid *r = &s->sim->bodies[k].rigid;
     double *answer = sph_of(s)->links.answer[k];
     memset(answer, 0, 6*sizeof *answer);
-    if (!moves(&s->sim->bodies[k])) return;
-    for (int a = 0; a < 3; a++) {
-        answer[a] = r->mobility[a]*f[a];
-        answer[3 + a] = vec3_dot(r->turn_mobility[a], f + 3);
-    }
+    if (moves(&s->sim->bodies[k])) tobi_rigid_answer(r, f, answer);
 }
 
 static tobi_couple_view see_entries(const tobi_system *s)
@@ -197,15 +219,19 @@ double tobi_couple_compliance(const tobi_system *s)
     double most = 0;
     for (int k = 0; k < s->sim->body_count; k++) {
         const tobi_body *b = &s->sim->bodies[k];
-        double sum[6][6], x[6][6] = {{0}}, shift[3], turn[3][3];
+        double sum[6][6], x[6][6] = {{0}}, shift[3], turn[3][3], joint[6];
         if (!moves(b)) continue;
         sum_surface(b, sum);
         tobi_rigid_inverse(&b->rigid, shift, turn);
         for (int a = 0; a < 3; a++)
             for (int j = 0; j < 6; j++) {
-                x[a][j] = sum[a][j]/b->rigid.mass;
+                x[a][j] = b->rigid.joint.kind ? 0 : sum[a][j]/b->rigid.mass;
                 for (int c = 0; c < 3; c++) x[3 + a][j] += turn[a][c]*sum[3 + c][j];
             }
+        tobi_joint_freedom(&b->rigid, joint);
+        for (int i = 0; i < 6 && b->rigid.joint.kind; i++)
+            for (int j = 0; j < 6; j++)
+                for (int c = 0; c < 6; c++) x[i][j] += joint[i]*joint[c]*sum[c][j];
         most = fmax(most, largest_eigenvalue(x));
     }
     return most;

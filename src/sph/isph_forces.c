@@ -269,12 +269,12 @@ static void multiply(const double x[6][6], double y[6])
 static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
 {
     double x[6][6];
-    for (int j = 0; j < 6; j++)
-        for (int i = 0; i < 3; i++) {
-            const double turn[3] = { b->added_mass[3][j], b->added_mass[4][j], b->added_mass[5][j] };
-            x[i][j] = r->mobility[i]*b->added_mass[i][j] + (i == j);
-            x[3 + i][j] = vec3_dot(r->turn_mobility[i], turn) + (3 + i == j);
-        }
+    for (int j = 0; j < 6; j++) {
+        double column[6], moved[6];
+        for (int i = 0; i < 6; i++) column[i] = b->added_mass[i][j];
+        tobi_rigid_answer(r, column, moved);
+        for (int i = 0; i < 6; i++) x[i][j] = moved[i] + (i == j);
+    }
     invert(x, b->added_mass_factor);
 }
 

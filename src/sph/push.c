@@ -104,9 +104,12 @@ static int find_caught(const pusher *p, int64_t i, touch *t, double *along)
 static void count_push(const pusher *p, int64_t i, const double normal[3], const double twist[3], double *t)
 {
     const tobi_system *s = p->s;
-    double shift[3], turn[3][3], answer = 0;
+    double shift[3], turn[3][3], joint[6], answer = 0;
     tobi_rigid_inverse(&p->b->rigid, shift, turn);
+    tobi_joint_freedom(&p->b->rigid, joint);
     for (int a = 0; a < 3; a++) answer += shift[a]*normal[a]*normal[a] + twist[a]*dot(turn[a], twist);
+    const double along = dot(joint, normal) + dot(joint + 3, twist);
+    answer += along*along;
     answer *= s->smoothing.volume*s->fluid[s->particles.fluid[i]].density;
     t[0] += 1;
     t[6] = fmax(t[6], answer);

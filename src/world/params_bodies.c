@@ -122,6 +122,28 @@ static const tobi_param body_rows[] = {
     { .key = "locked", TEXT, AT(tobi_body_def, locked), .unit = "text",
       .doc = "Axes along which (x, y, z or shift for all) or about which (turn_x, turn_y, turn_z or turn) a "
              "free or controlled body does not move, with commas between: \"x,y,turn\"." },
+    { .key = "hinge.point", VEC3, AT(tobi_body_def, hinge_point), PLACE, .unit = "m",
+      .doc = "A point on the fixed axis that a free or controlled body turns about." },
+    { .key = "hinge.axis", VEC3, AT(tobi_body_def, hinge_axis), DIRECTION, .unit = "1",
+      .doc = "Direction of that axis; in 2-D it is along z." },
+    { .key = "hinge.lower", REAL, AT(tobi_body_def, hinge_lower), RANGE(-180, 180), .unit = "degrees",
+      .doc = "Stop: the least angle from the start, by the right-hand rule. Both stops 0: there are none." },
+    { .key = "hinge.upper", REAL, AT(tobi_body_def, hinge_upper), RANGE(-180, 180), .unit = "degrees",
+      .doc = "Stop: the largest angle. The body bounces off a stop by its restitution." },
+    { .key = "hinge.stiffness", REAL, AT(tobi_body_def, hinge_stiffness), RANGE(0, 1e15), .unit = "N m/rad",
+      .doc = "Of a spring that pulls the hinge back to where it starts." },
+    { .key = "hinge.damping", REAL, AT(tobi_body_def, hinge_damping), RANGE(0, 1e15), .unit = "N m s/rad",
+      .doc = "Of a damper at the hinge." },
+    { .key = "guide.axis", VEC3, AT(tobi_body_def, guide_axis), DIRECTION, .unit = "1",
+      .doc = "Direction of the fixed axis that a free or controlled body slides along; it does not turn." },
+    { .key = "guide.lower", REAL, AT(tobi_body_def, guide_lower), PLACE, .unit = "m",
+      .doc = "Stop: the least way from the start. Both stops 0: there are none." },
+    { .key = "guide.upper", REAL, AT(tobi_body_def, guide_upper), PLACE, .unit = "m",
+      .doc = "Stop: the largest way." },
+    { .key = "guide.stiffness", REAL, AT(tobi_body_def, guide_stiffness), RANGE(0, 1e15), .unit = "N/m",
+      .doc = "Of a spring that pulls the body back to where it starts." },
+    { .key = "guide.damping", REAL, AT(tobi_body_def, guide_damping), RANGE(0, 1e15), .unit = "N s/m",
+      .doc = "Of a damper along the guide." },
     { 0 }
 };
 
