@@ -22,7 +22,8 @@ static void check_axis(tobi_source *source, const tobi_place *joint, const json_
 static void check_stops(tobi_source *source, const tobi_place *joint, double lower, double upper)
 {
     tobi_place low = { joint, "lower", 0 }, high = { joint, "upper", 0 };
-    if (lower > 0) tobi_source_mistake(source, &low, "is %.10g, must be 0 or below: the body starts at 0", lower);
+    if (lower > 0)
+        tobi_source_mistake(source, &low, "is %.10g, must be 0 or below: the body starts at 0", lower);
     if (upper < 0)
         tobi_source_mistake(source, &high, "is %.10g, must be 0 or above: the body starts at 0", upper);
 }
