@@ -12,7 +12,8 @@ void tobi_joints_complete(const json_t *body, int dimension, tobi_body_def *def)
     if (dimension == 2 && hinge && !json_object_get(hinge, "axis")) def->hinge_axis[2] = 1;
 }
 
-static void check_axis(tobi_source *source, const tobi_place *joint, const json_t *given, const double axis[3])
+static void check_axis(tobi_source *source, const tobi_place *joint, const json_t *given,
+                       const double axis[3])
 {
     tobi_place place = { joint, "axis", 0 };
     if (!json_object_get(given, "axis")) tobi_source_mistake(source, joint, "must have an axis");
