@@ -329,7 +329,9 @@ typedef struct tobi_inlet_def {
     double width, height;       /* m; in 2-D width alone                                             */
     double radius;              /* m                                                                 */
     double speed;               /* m/s, mean over the patch, or                                      */
-    double flow_rate;           /* m3/s (2-D: m2/s)                                                  */
+    double flow_rate;           /* m3/s (2-D: m2/s), or                                              */
+    const char *file;           /* CSV: time (s) and speed (m/s) or flow_rate (m3/s); NULL = none. It has
+                                   no start, stop and ramp                                           */
     int    profile;             /* tobi_profile                                                      */
     double start, stop;         /* s; stop 0 = to the end                                            */
     double ramp;                /* s, in which the speed rises from 0 to its own                     */

@@ -33,8 +33,24 @@ int tobi_opening_find(const tobi_opening *o, int count, const double x[3])
     return -1;
 }
 
+double tobi_opening_way_at(const tobi_opening *o, double t)
+{
+    const tobi_flow_row *r = o->rows;
+    int64_t low = 0, high = o->row_count - 1;
+    if (t <= r[0].time) return r[0].way + (t - r[0].time)*r[0].speed;
+    if (t >= r[high].time) return r[high].way + (t - r[high].time)*r[high].speed;
+    while (high - low > 1) {
+        const int64_t middle = (low + high)/2;
+        if (r[middle].time <= t) low = middle;
+        else high = middle;
+    }
+    const double s = t - r[low].time, h = r[high].time - r[low].time;
+    return r[low].way + s*(r[low].speed + 0.5*(r[high].speed - r[low].speed)*s/h);
+}
+
 double tobi_opening_way(const tobi_opening *o, double t)
 {
+    if (o->rows) return t > 0 ? tobi_opening_way_at(o, t) : 0;
     const double since = (o->stop > 0 ? fmin(t, o->stop) : t) - o->start;
     if (!(since > 0)) return 0;
     return since < o->ramp ? 0.5*o->speed*since*since/o->ramp : o->speed*(since - 0.5*o->ramp);

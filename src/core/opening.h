@@ -13,6 +13,12 @@ typedef struct tobi_inlet_column {
     double phase;                    /* steps that it is ahead of others                            */
 } tobi_inlet_column;
 
+/* A row of a flow in time; linear between rows, constant before and after. */
+typedef struct tobi_flow_row {
+    double time, speed;              /* s; m/s, mean over the patch                                 */
+    double way;                      /* m, that the mean flow has gone since time 0                 */
+} tobi_flow_row;
+
 /* Places are those of the box: from the domain's lower corner. */
 typedef struct tobi_opening {
     char name[64];
@@ -27,6 +33,8 @@ typedef struct tobi_opening {
     double speed;                    /* m/s, mean over the patch                                    */
     double scale;                    /* 1: makes the mean over all columns exact                    */
     double start, stop, ramp;        /* s; stop 0 = never                                           */
+    tobi_flow_row *rows;             /* owned: speed is the largest; NULL = a constant flow         */
+    int64_t row_count;
     double step;                     /* m, between particles of a column                            */
     tobi_inlet_column *columns;            /* owned                                                       */
     int64_t column_count;
@@ -42,6 +50,8 @@ void tobi_opening_locate(const tobi_opening *o, const double x[3], double at[3])
 int tobi_opening_faces(const tobi_opening *o, const double at[3]);
 /* Number of the opening in whose buffer a place lies, -1 = none. Buffers of outlets have no end. */
 int tobi_opening_find(const tobi_opening *o, int count, const double x[3]);
+/* The integral of the rows of an inlet that has some: the way at any time, also before 0, m. */
+double tobi_opening_way_at(const tobi_opening *o, double t);
 /* How far the mean flow of an inlet has gone from time 0 to t, m. */
 double tobi_opening_way(const tobi_opening *o, double t);
 /* Mean speed of an inlet from t to t + dt, m/s. */

@@ -17,15 +17,17 @@
 enum { MOST_ROWS = 20000000, MOST_COLUMNS = 64, FILE_LIMIT = 1 << 30 /* bytes */ };
 
 typedef enum column {
-    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, COLUMNS
+    TIME, X, Y, Z, QW, QX, QY, QZ, AX, AY, AZ, ANGLE, ROLL, PITCH, YAW, SPEED, RATE, COLUMNS
 } column;
 
 static const char *const column_names[COLUMNS] = {"time", "x",  "y",  "z",     "qw",   "qx",    "qy", "qz",
-                                                  "ax",   "ay", "az", "angle", "roll", "pitch", "yaw"};
+                                                  "ax",   "ay", "az", "angle", "roll", "pitch", "yaw",
+                                                  "speed", "flow_rate"};
 
 /* The units that a column's name may bring along, as in "x [m]". */
 static const char *const length_units[] = {"m", NULL}, *const time_units[] = {"s", NULL};
 static const char *const pull_units[] = {"m/s2", NULL};
+static const char *const speed_units[] = {"m/s", NULL}, *const rate_units[] = {"m3/s", "m2/s", NULL};
 static const char *const plain_units[] = {"1", NULL}, *const angle_units[] = {"degrees", "deg", NULL};
 
 typedef struct keyframe {
@@ -39,7 +41,7 @@ struct tobi_keyframes {
 };
 
 typedef struct reader {
-    const char *what, *path;            /* "keyframes" or "gravity"                    */
+    const char *what, *path;            /* "keyframes", "gravity" or "flow"            */
     int64_t line;
     int meaning[MOST_COLUMNS];          /* column of each field of a line              */
     int fields;
@@ -94,6 +96,17 @@ static char *next_field(char **rest)
 }
 
 static int is_gravity(const reader *r) { return strcmp(r->what, "gravity") == 0; }
+static int is_flow(const reader *r) { return strcmp(r->what, "flow") == 0; }
+
+static tobi_status check_flow_columns(const reader *r, tobi_error *err)
+{
+    int others = 0;
+    for (int c = X; c < SPEED; c++) others += r->given[c];
+    if (others || r->given[SPEED] + r->given[RATE] != 1)
+        return fail_here(r, err, "a flow has the columns time (s) and one of speed (m/s) and flow_rate "
+                         "(m3/s)", "");
+    return TOBI_OK;
+}
 
 static tobi_status check_columns(const reader *r, tobi_error *err)
 {
@@ -101,6 +114,7 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
     int quaternion = g[QW] + g[QX] + g[QY] + g[QZ], axis = g[AX] + g[AY] + g[AZ] + g[ANGLE];
     int angles = g[ROLL] + g[PITCH] + g[YAW];
     if (!g[TIME]) return fail_here(r, err, "there is no column \"time\"", "");
+    if (is_flow(r)) return check_flow_columns(r, err);
     if (is_gravity(r) && quaternion + axis + angles)
         return fail_here(r, err, "gravity does not turn: allowed are time (s), x, y and z (m/s2)", "");
     if ((quaternion && quaternion < 4) || (axis && axis < 4))
@@ -116,6 +130,7 @@ static tobi_status check_columns(const reader *r, tobi_error *err)
 static const char *const *column_units(const reader *r, column c)
 {
     if (c == TIME) return time_units;
+    if (c >= SPEED) return c == SPEED ? speed_units : rate_units;
     if (c <= Z) return is_gravity(r) ? pull_units : length_units;
     return c < ANGLE ? plain_units : angle_units;
 }
@@ -152,7 +167,7 @@ static tobi_status read_header(reader *r, char *line, tobi_error *err)
         char *unit = split_unit(field);
         if (!*field) return fail_here(r, err, "an empty column name (a comma too many?)", "");
         int found = strcasecmp(field, "t") == 0 ? TIME : COLUMNS;
-        for (int c = 0; c < COLUMNS && found == COLUMNS; c++)
+        for (int c = 0; c < (is_flow(r) ? COLUMNS : SPEED) && found == COLUMNS; c++)
             if (strcasecmp(field, column_names[c]) == 0) found = c;
         if (found == COLUMNS)
             return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: there is no column \"%s\"; allowed "
@@ -246,6 +261,9 @@ static tobi_status add_row(tobi_keyframes *f, int64_t *room, const reader *r, ch
     TOBI_TRY(read_numbers(r, line, value, err));
     row.time = value[TIME];
     memcpy(row.shift, value + X, sizeof row.shift);
+    if (is_flow(r)) row.shift[0] = value[SPEED] + value[RATE];
+    if (is_flow(r) && row.shift[0] < 0)
+        return fail_here(r, err, "the flow is below 0: an inlet lets nothing out", "");
     TOBI_TRY(read_turn(r, value, row.turn, err));
     if (f->count && !(row.time > f->rows[f->count - 1].time))
         return tobi_fail(err, TOBI_INVALID, "%s %s:%lld: time %.10g s does not come after %.10g s of "
@@ -405,6 +423,22 @@ tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_key
     TOBI_TRY(load(&r, out, err));
     for (int a = 0; a < 3; a++) given[a] = r.given[X + a];
     return TOBI_OK;
+}
+
+tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyframes **out, tobi_error *err)
+{
+    reader r = {.what = "flow", .path = path};
+    TOBI_TRY(load(&r, out, err));
+    *is_rate = r.given[RATE];
+    return TOBI_OK;
+}
+
+int64_t tobi_keyframes_count(const tobi_keyframes *f) { return f->count; }
+
+double tobi_keyframes_row(const tobi_keyframes *f, int64_t row, double shift[3])
+{
+    memcpy(shift, f->rows[row].shift, sizeof f->rows[row].shift);
+    return f->rows[row].time;
 }
 
 void tobi_keyframes_free(tobi_keyframes *f)

@@ -29,6 +29,12 @@ tobi_status tobi_keyframes_load(const char *path, tobi_keyframes **out, tobi_err
    which of x, y, z there are. */
 tobi_status tobi_keyframes_load_gravity(const char *path, int given[3], tobi_keyframes **out,
                                         tobi_error *err);
+/* The same for an inlet: columns time (s) and one of speed (m/s) and flow_rate (m3/s), neither below 0, whose
+   value is the "shift" along x. is_rate: which it is. */
+tobi_status tobi_keyframes_load_flow(const char *path, int *is_rate, tobi_keyframes **out, tobi_error *err);
+/* Rows, and the time (s) and shift of one. */
+int64_t tobi_keyframes_count(const tobi_keyframes *frames);
+double tobi_keyframes_row(const tobi_keyframes *frames, int64_t row, double shift[3]);
 void tobi_keyframes_free(tobi_keyframes *frames);
 
 /* Shift (m) and rotation matrix at time t (s). */

@@ -39,6 +39,8 @@ static tobi_status read_list(const tobi_binder *binder, json_t *root, const open
         void *def = out + i*l->table->size;
         tobi_param_defaults(l->table, def);
         tobi_bind(binder, l->table, json_array_get(list, i), &entry, NULL, def);
+        tobi_place file = { &entry, "file", 0 };
+        if (l == &inlets) tobi_check_file(binder->source, &file, ((const tobi_inlet_def *)def)->file);
         *count = (int)i + 1;
     }
     *defs = out;

@@ -200,9 +200,13 @@ static tobi_status set_speed(tobi_opening *o, const tobi_world *w, const tobi_in
     const int dimension = w->system[0].box.dimension;
     const double most = w->sim.def.speed_limit > 0 ? w->sim.def.speed_limit : TOBI_SPEED_LIMIT;
     char text[200];
-    if ((def->speed > 0) == (def->flow_rate > 0))
-        return refuse(o, "needs a speed or a flow_rate, one of them", err);
-    o->speed = def->speed > 0 ? def->speed : def->flow_rate/find_area(o, dimension);
+    if ((def->speed > 0) + (def->flow_rate > 0) + (def->file != NULL) != 1)
+        return refuse(o, "needs a speed, a flow_rate or a file, one of them", err);
+    if (def->file && (def->start > 0 || def->stop > 0 || def->ramp > 0))
+        return refuse(o, "has a file, which has times of its own: start, stop and ramp are not for it", err);
+    if (def->file) TOBI_TRY(tobi_opening_load_flow(o, def->file, find_area(o, dimension), err));
+    else o->speed = def->speed > 0 ? def->speed : def->flow_rate/find_area(o, dimension);
+    if (!(o->speed > 0)) return refuse(o, "has a file in which nothing flows", err);
     const double peak = o->speed*(o->parabolic ? o->radius > 0 ? 2 : dimension == 2 ? 1.5 : 2.25 : 1);
     if (peak <= most) return TOBI_OK;
     snprintf(text, sizeof text, "needs %.4g m/s at its fastest place for that flow; the limit is %.4g m/s: a "
@@ -210,23 +214,36 @@ static tobi_status set_speed(tobi_opening *o, const tobi_world *w, const tobi_in
     return refuse(o, text, err);
 }
 
+static tobi_status make_inlet(const tobi_world *w, const tobi_inlet_def *def, tobi_opening *o,
+                              tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    *o = (tobi_opening){ .parabolic = def->profile == TOBI_PROFILE_PARABOLIC, .start = def->start,
+                         .stop = def->stop, .ramp = def->ramp };
+    set_name(o, def->name, def->centre, &s->box);
+    TOBI_TRY(set_axes(o, def->normal, def->along, s->box.dimension, err));
+    TOBI_TRY(set_patch(o, def->width, def->height, def->radius, s->box.dimension, err));
+    TOBI_TRY(set_fluid(o, w, def->fluid, err));
+    TOBI_TRY(set_speed(o, w, def, err));
+    if (def->stop > 0 && def->stop <= def->start) return refuse(o, "stops before it starts", err);
+    return make_columns(o, &s->smoothing, err);
+}
+
+static void free_opening(tobi_opening *o)
+{
+    free(o->columns);
+    free(o->rows);
+}
+
 tobi_status tobi_world_add_inlet(tobi_world *w, const tobi_inlet_def *def, tobi_error *err)
 {
+    tobi_opening o;
     TOBI_NEED_WORLD(w);
     TOBI_NEED(def, "the definition");
     TOBI_TRY(tobi_param_check(&tobi_inlet_table, def, err));
-    const tobi_system *s = &w->system[0];
-    tobi_opening o = { .parabolic = def->profile == TOBI_PROFILE_PARABOLIC, .start = def->start,
-                       .stop = def->stop, .ramp = def->ramp };
-    set_name(&o, def->name, def->centre, &s->box);
-    TOBI_TRY(set_axes(&o, def->normal, def->along, s->box.dimension, err));
-    TOBI_TRY(set_patch(&o, def->width, def->height, def->radius, s->box.dimension, err));
-    TOBI_TRY(set_fluid(&o, w, def->fluid, err));
-    TOBI_TRY(set_speed(&o, w, def, err));
-    if (def->stop > 0 && def->stop <= def->start) return refuse(&o, "stops before it starts", err);
-    TOBI_TRY(make_columns(&o, &s->smoothing, err));
-    const tobi_status status = add(w, &o, TOBI_INLET_LIMIT, err);
-    if (status != TOBI_OK) free(o.columns);
+    tobi_status status = make_inlet(w, def, &o, err);
+    if (status == TOBI_OK) status = add(w, &o, TOBI_INLET_LIMIT, err);
+    if (status != TOBI_OK) free_opening(&o);
     return status;
 }
 
@@ -245,7 +262,7 @@ tobi_status tobi_world_add_outlet(tobi_world *w, const tobi_outlet_def *def, tob
 
 void tobi_openings_free(tobi_world *w)
 {
-    for (int k = 0; k < w->sim.opening_count; k++) free(w->sim.openings[k].columns);
+    for (int k = 0; k < w->sim.opening_count; k++) free_opening(&w->sim.openings[k]);
     free(w->sim.openings);
     free(w->leaving);
     free(w->leaving_block);

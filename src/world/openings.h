@@ -15,6 +15,10 @@ tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
 double tobi_openings_peak(const tobi_simulation *s);
 void tobi_openings_free(tobi_world *w);
 
+/* flow_table.c: reads the flow in time of an inlet with that area (m2; in 2-D m) into rows, which the opening
+   owns, and its largest speed. TOBI_INVALID, TOBI_NOT_FOUND in words. */
+tobi_status tobi_opening_load_flow(tobi_opening *o, const char *path, double area, tobi_error *err);
+
 /* What survives a restart: a number per opening. */
 void tobi_openings_get(const tobi_world *w, double way[TOBI_OPENING_LIMIT]);
 void tobi_openings_set(tobi_world *w, const double way[TOBI_OPENING_LIMIT]);
