@@ -1,5 +1,5 @@
-/* The flow of an inlet by a table: rows with the way that the flow has gone, so that what comes in is a function
-   of time alone. Drawback: between rows it is linear, not a smooth curve, which could fall below 0. */
+/* The flow of an inlet by a table: rows with the way that the flow has gone, so that what comes in is a
+   function of time alone. Drawback: between rows it is linear, as a smooth curve could fall below 0. */
 #include "world/openings.h"
 #include "base/error.h"
 #include "rigid/keyframes.h"
@@ -9,9 +9,11 @@
 /* The integral, 0 at time 0. */
 static void find_ways(tobi_opening *o)
 {
-    for (int64_t k = 1; k < o->row_count; k++)
-        o->rows[k].way = o->rows[k - 1].way +
-                         0.5*(o->rows[k].time - o->rows[k - 1].time)*(o->rows[k].speed + o->rows[k - 1].speed);
+    for (int64_t k = 1; k < o->row_count; k++) {
+        const tobi_flow_row *before = &o->rows[k - 1];
+        tobi_flow_row *now = &o->rows[k];
+        now->way = before->way + 0.5*(now->time - before->time)*(now->speed + before->speed);
+    }
     const double start = tobi_opening_way_at(o, 0);
     for (int64_t k = 0; k < o->row_count; k++) o->rows[k].way -= start;
 }

@@ -67,27 +67,26 @@ static uint64_t run(const char *method, int threads, int halfway)
     return hash;
 }
 
-/* Writes a table and tells its path. */
-static const char *write_flow(const char *text)
+/* Writes a table to a new file, whose name is in `path` then. */
+static void write_flow(char path[64], const char *text)
 {
-    static char path[] = "/tmp/tobiuo_flow_test.csv";
-    FILE *f = fopen(path, "w");
+    snprintf(path, 64, "%s", "/tmp/tobiuo_openings_XXXXXX");
+    FILE *f = fdopen(mkstemp(path), "w");
     assert_non_null(f);
     fputs(text, f);
     fclose(f);
-    return path;
 }
 
-/* A flow that rises, stops and comes again: what is in is the integral of the rows, for every method, any number
-   of threads and after a restart. */
+/* A flow that rises, stops and comes again: what is in is the integral of the rows, for every method, any
+   number of threads and after a restart. */
 static uint64_t run_table(const char *method, int threads, int halfway)
 {
     tobi_world *w;
     tobi_error err = { 0 };
     tobi_step_info first, last;
-    char file[] = "/tmp/tobiuo_openings_XXXXXX", in[300];
-    snprintf(in, sizeof in, IN "\"file\": \"%s\" }",
-             write_flow("time [s], flow_rate [m2/s]\n0.05, 0\n0.1, 0.2\n0.15, 0\n0.2, 0\n0.25, 0.1\n"));
+    char file[] = "/tmp/tobiuo_openings_XXXXXX", in[300], table[64];
+    write_flow(table, "time [s], flow_rate [m2/s]\n0.05, 0\n0.1, 0.2\n0.15, 0\n0.2, 0\n0.25, 0.1\n");
+    snprintf(in, sizeof in, IN "\"file\": \"%s\" }", table);
     must(make(method, threads, in, OUT, "", &w, &err), &err);
     first = *tobi_world_info(w);
     must(tobi_world_advance(w, 0.12, NULL, &err), &err);
@@ -106,6 +105,7 @@ static uint64_t run_table(const char *method, int threads, int halfway)
     assert_float_equal(last.mass_in, 1000*(0.5*0.1*0.2 + 0.5*0.05*0.1 + 0.05*0.1), 10*0.4);
     const uint64_t hash = tobi_world_hash(w);
     tobi_world_destroy(w);
+    unlink(table);
     return hash;
 }
 
@@ -222,9 +222,11 @@ static void test_wrong_tables(void **state)
         { "time, flow_rate [l/s]\n0, 1\n", "", "column flow_rate is in [l/s]; allowed is [m3/s]" },
     };
     for (size_t k = 0; k < sizeof wrong/sizeof *wrong; k++) {
-        char in[300];
-        snprintf(in, sizeof in, IN "\"file\": \"%s\"%s }", write_flow(wrong[k].table), wrong[k].more);
+        char in[300], table[64];
+        write_flow(table, wrong[k].table);
+        snprintf(in, sizeof in, IN "\"file\": \"%s\"%s }", table, wrong[k].more);
         refuse(in, "", "", wrong[k].words);
+        unlink(table);
     }
     refuse(IN "\"file\": \"no_such.csv\" }", "", "", "no_such.csv");
 }
