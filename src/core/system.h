@@ -113,8 +113,6 @@ typedef struct tobi_method {
     /* The longest step that a solid's material, or the sound of TOBI_LIQUIDS, allows at a speed, m/s, in s;
        NULL: only the motion tells. */
     double (*stable_dt)(const tobi_system *s, int solid, double speed);
-    /* What a user must know of solids beside its liquid, a sentence that a note ends with; NULL: nothing. */
-    const char *beside_solids;
     /* Points of its solids for a liquid, into s->sim->soft; NULL: it has none. */
     tobi_status (*points)(tobi_system *s, tobi_error *err);
     /* The nodes of its grid; the caller frees them, also after a failure. NULL: it has none. */

@@ -84,12 +84,7 @@ int tobi_overlap_meets(const tobi_overlap *o, const double x[3])
 
 tobi_status tobi_overlap_note_solids(tobi_world *w, tobi_error *err)
 {
-    const tobi_system *solids = w->sim.soft.solids, *fluids = tobi_world_fluids(w);
-    for (int k = 0; solids && fluids->method->beside_solids && k < solids->solid_count; k++) {
-        char text[200];
-        snprintf(text, sizeof text, "%s\n", fluids->method->beside_solids);
-        TOBI_TRY(tobi_world_add_notes(w, "solid", solids->solids[k].name, text, err));
-    }
+    const tobi_system *solids = w->sim.soft.solids;
     for (int k = 0; solids && k < w->region_count; k++) {
         const tobi_region *r = &w->regions[k];
         const double d = solids->smoothing.spacing;

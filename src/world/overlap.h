@@ -8,7 +8,7 @@ typedef struct tobi_overlap tobi_overlap;
 tobi_status tobi_overlap_create(const tobi_system *solids, tobi_overlap **out, tobi_error *err);
 /* 1 if a particle of a fluid at x, m from the lower corner, would lie in a solid. NULL: no solids. */
 int tobi_overlap_meets(const tobi_overlap *o, const double x[3]);
-/* Notes what the fluid's method says of solids beside it, and the boxes and spheres of solids that are
+/* Notes the boxes and spheres of solids that are
    thinner than the fluid can tell from a hole. */
 struct tobi_world;
 tobi_status tobi_overlap_note_solids(struct tobi_world *w, tobi_error *err);

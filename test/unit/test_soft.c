@@ -241,15 +241,6 @@ static void water_is_cut_out(void **state)
     }
     assert_int_equal(told, 3);
     tobi_world_destroy(world);
-    w.method = "isph";
-    OK(tobi_world_create(&w, NULL, &world, &err));
-    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
-    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
-    OK(tobi_world_start(world, &err));
-    for (int k = 0; tobi_world_note(world, k); k++)
-        told += strstr(tobi_world_note(world, k), "solid 'sheet': swings in the water of isph") != NULL;
-    assert_int_equal(told, 4);
-    tobi_world_destroy(world);
     for (int a = 0; a < 3; a++) water.box_min[a] = 0.06, water.box_max[a] = 0.09;
     OK(tobi_world_create(&w, NULL, &world, &err));
     OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
