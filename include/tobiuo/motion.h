@@ -83,6 +83,9 @@ typedef struct tobi_wave_maker_def {
     int    spectrum;              /* tobi_spectrum                                                   */
     double peakedness;            /* 1, gamma of JONSWAP                                             */
     int    seed, components;      /* of the phases; how many regular waves                           */
+    int    absorb;                /* 1: a piston that goes along with waves that come back; it may make
+                                     none itself                                                     */
+    double absorb_period;         /* s, of the waves that it absorbs best; 0 = its own, or long ones  */
     double start, ramp;           /* s: at rest until then; displacements rise as (1 - cos)/2, but of
                                      a solitary wave                                                 */
 } tobi_wave_maker_def;

@@ -143,6 +143,8 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
         return TOBI_OK;
     }
     TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
+    if (vec3_dot(b->shift, b->shift) > 0)
+        for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, b->shift);
     for (int64_t i = 0; i < n; i++)
         if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
             return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "

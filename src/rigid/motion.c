@@ -214,7 +214,8 @@ tobi_status tobi_motion_wave_maker(const tobi_wave_maker_def *def, tobi_motion *
     TOBI_NEED(def, "the definition");
     const double numbers[] = { def->depth, def->gravity, def->height, def->period, def->phase,
                                def->solitary_height, def->significant_height, def->peak_period,
-                               def->peakedness, def->hinge_height, def->start, def->ramp };
+                               def->peakedness, def->hinge_height, def->start, def->ramp,
+                               def->absorb_period };
     TOBI_TRY(check_finite("every number of a wave maker", numbers, sizeof numbers/sizeof *numbers, err));
     TOBI_TRY(check_finite("hinge", def->hinge, 3, err));
     TOBI_TRY(set_direction("direction", def->direction, along, err));
@@ -262,6 +263,19 @@ int tobi_motion_is_piston(const tobi_motion *motion)
     int is = motion->kind == KIND_PISTON;
     for (int k = 0; k < motion->parts; k++) is |= tobi_motion_is_piston(motion->part[k]);
     return is;
+}
+
+const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3])
+{
+    const tobi_waves *found = NULL;
+    tobi_absorption how;
+    if (motion->kind == KIND_PISTON && tobi_waves_absorption(motion->waves, &how)) {
+        memcpy(direction, motion->vector, sizeof motion->vector);
+        return motion->waves;
+    }
+    for (int k = 0; k < motion->parts && !found; k++)
+        found = tobi_motion_absorber(motion->part[k], direction);
+    return found;
 }
 
 /* Rodrigues' formula as a matrix; axis is a unit vector. The angle is brought to (-360, 360) first,

@@ -16,14 +16,18 @@ static const double GORING_REACH = 3.8;
 /* Of the peak frequency: the band that irregular waves have. */
 static const double BAND_LOW = 0.5, BAND_HIGH = 3;
 enum { EVANESCENT = 30 };
+/* Of absorption. Depths in front of the piston: local waves have faded there to a half. Periods in which
+   the piston comes back, and over which the mean level is taken; for long waves both by depths. */
+static const double GAUGE = 0.25, BACK = 5, MEAN = 3, BACK_DEPTHS = 60;
 
-typedef struct wave { double omega, phase, stroke, level, local; } wave;
+typedef struct wave { double omega, k, phase, stroke, level; } wave;
 
 struct tobi_waves {
     tobi_wave_maker_def def;
-    wave *wave;                 /* owned: stroke: m, half of it; level, local: m, beside and behind it    */
+    wave *wave;                 /* owned: stroke: m, half of it; level: m, their amplitude                 */
     int count;
     double second;              /* m, of the second order                                                 */
+    double bound;               /* m, amplitude of the second harmonic of regular waves (Stokes)           */
     double kappa, speed, span;  /* solitary: 1/m, m/s, s                                                   */
 };
 
@@ -54,9 +58,9 @@ double tobi_waves_per_stroke(double k, double depth, double hinge)
     return 4*sinh(kh)*shape_integral(k, depth, hinge)*c/(sinh(2*kh) + 2*kh);
 }
 
-/* The level at a piston of the local waves over its displacement: sum of 4 sin^2/(sin 2kh + 2kh) over the
-   roots of omega^2 = -g k tan kh. */
-static double local_level(double gravity, double depth, double omega)
+/* The level so far in front of a piston of the local waves over its displacement: sum of
+   4 sin^2/(sin 2kh + 2kh) exp(-kx) over the roots of omega^2 = -g k tan kh. */
+static double local_level(double gravity, double depth, double omega, double distance)
 {
     const double deep = omega*omega*depth/gravity;
     double sum = 0;
@@ -68,7 +72,7 @@ static double local_level(double gravity, double depth, double omega)
             else high = kh;
         }
         const double kh = 0.5*(low + high);
-        sum += 4*sin(kh)*sin(kh)/(sin(2*kh) + 2*kh);
+        sum += 4*sin(kh)*sin(kh)/(sin(2*kh) + 2*kh)*exp(-kh*distance/depth);
     }
     return sum;
 }
@@ -110,6 +114,9 @@ static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
     if (!(d->depth > 0) || !(d->gravity > 0))
         return tobi_fail(err, TOBI_INVALID, "a wave maker needs the depth of the water and gravity, both "
                          "greater than 0; given are %g m and %g m/s2", d->depth, d->gravity);
+    if (d->absorb && d->flap)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "a flap does not absorb; a piston does");
+    if (d->absorb && kinds == 0) return TOBI_OK;
     if (kinds != 1)
         return tobi_fail(err, TOBI_INVALID, "a wave maker makes one kind of waves: regular, solitary or "
                          "irregular, by its height; given are %d", kinds);
@@ -139,9 +146,8 @@ static tobi_status check(const tobi_wave_maker_def *d, tobi_error *err)
 static wave make_wave(const tobi_wave_maker_def *d, double amplitude, double period, double phase)
 {
     const double k = tobi_waves_number(d->gravity, d->depth, period), omega = 2*PI/period;
-    wave w = { .omega = omega, .phase = phase, .level = amplitude };
+    wave w = { .omega = omega, .k = k, .phase = phase, .level = amplitude };
     w.stroke = amplitude/tobi_waves_per_stroke(k, d->depth, d->flap ? d->hinge_height : INFINITY);
-    w.local = d->flap ? 0 : w.stroke*local_level(d->gravity, d->depth, omega);
     return w;
 }
 
@@ -151,6 +157,13 @@ static double second_order(const tobi_wave_maker_def *d)
     const double k = tobi_waves_number(d->gravity, d->depth, d->period), kh = k*d->depth, s = sinh(kh);
     return d->height*d->height/(32*d->depth)*
            (3*cosh(kh)/(s*s*s) - 2/tobi_waves_per_stroke(k, d->depth, INFINITY));
+}
+
+/* H^2 k/16 cosh kh (2 + cosh 2kh)/sinh^3 kh. */
+static double bound_harmonic(const tobi_wave_maker_def *d)
+{
+    const double k = tobi_waves_number(d->gravity, d->depth, d->period), kh = k*d->depth, s = sinh(kh);
+    return d->height*d->height*k/16*cosh(kh)*(2 + cosh(2*kh))/(s*s*s);
 }
 
 static uint64_t shuffle(uint64_t *state)        /* splitmix64, Steele et al. 2014 */
@@ -203,8 +216,8 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
     *out = NULL;
     TOBI_TRY(check(def, err));
     tobi_waves *w = calloc(1, sizeof *w);
-    const int count = def->significant_height > 0 ? def->components : 1;
-    if (w) w->wave = calloc((size_t)count, sizeof *w->wave);
+    const int count = def->significant_height > 0 ? def->components : def->height > 0;
+    if (w) w->wave = calloc((size_t)count + 1, sizeof *w->wave);
     if (!w || !w->wave) {
         free(w);
         return tobi_fail(err, TOBI_NO_MEMORY, "no memory for waves");
@@ -213,7 +226,8 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
     w->count = count;
     if (def->solitary_height > 0) make_solitary(w);
     else if (def->significant_height > 0) make_irregular(w);
-    else w->wave[0] = make_wave(def, 0.5*def->height, def->period, def->phase*(PI/180));
+    else if (count) w->wave[0] = make_wave(def, 0.5*def->height, def->period, def->phase*(PI/180));
+    if (def->height > 0) w->bound = bound_harmonic(def);
     if (def->height > 0 && def->order == 2) w->second = second_order(def);
     *out = w;
     return TOBI_OK;
@@ -260,17 +274,47 @@ double tobi_waves_displacement(const tobi_waves *w, double t)
     return rise(w, t)*sum;
 }
 
-double tobi_waves_level(const tobi_waves *w, double t)
+double tobi_waves_level(const tobi_waves *w, double t, double distance)
 {
-    if (w->def.solitary_height > 0) {
-        const double at = t - w->def.start - 0.5*w->span;
-        const double c = cosh(w->kappa*(w->speed*at - solitary_place(w, at)));
-        return fabs(at) <= 0.5*w->span ? w->def.solitary_height/(c*c) : 0;
+    const tobi_wave_maker_def *d = &w->def;
+    if (d->solitary_height > 0) {
+        const double at = t - d->start - 0.5*w->span, x = solitary_place(w, at) + distance;
+        const double c = cosh(w->kappa*(w->speed*at - x));
+        return fabs(at) <= 0.5*w->span || distance > 0 ? d->solitary_height/(c*c) : 0;
     }
     double sum = 0;
     for (int n = 0; n < w->count; n++) {
-        const double angle = w->wave[n].omega*t + w->wave[n].phase;
-        sum += w->wave[n].level*cos(angle) + w->wave[n].local*sin(angle);
+        const wave *one = &w->wave[n];
+        const double angle = one->omega*t + one->phase, local =
+            d->flap ? 0 : one->stroke*local_level(d->gravity, d->depth, one->omega, distance);
+        sum += one->level*cos(angle - one->k*distance) + local*sin(angle);
+        if (w->bound != 0) sum += w->bound*cos(2*(angle - one->k*distance));
     }
     return rise(w, t)*sum;
+}
+
+/* --- absorption -------------------------------------------------------------------------------- */
+
+int tobi_waves_absorption(const tobi_waves *w, tobi_absorption *out)
+{
+    const tobi_wave_maker_def *d = &w->def;
+    const double own = d->height > 0 ? d->period : d->significant_height > 0 ? d->peak_period : 0;
+    const double period = d->absorb_period > 0 ? d->absorb_period : own, h = d->depth;
+    *out = (tobi_absorption){ .distance = GAUGE*h };
+    if (!d->absorb) return 0;
+    if (!(period > 0)) {
+        const double speed = sqrt(d->gravity*h);
+        out->gain = speed/h;
+        out->lag = out->distance/speed;
+        out->leak = out->mean = BACK_DEPTHS*h/speed;
+        return 1;
+    }
+    const double k = tobi_waves_number(d->gravity, h, period), omega = 2*PI/period;
+    const double height = tobi_waves_per_stroke(k, h, INFINITY);
+    out->gain = omega/height;
+    out->leak = BACK*period;
+    out->mean = MEAN*period;
+    const double ahead = (1/out->leak + 1/out->mean)/omega;           /* rad, by both */
+    out->lag = (local_level(d->gravity, h, omega, out->distance)/height + k*out->distance + ahead)/omega;
+    return 1;
 }

@@ -11,8 +11,23 @@ tobi_status tobi_waves_create(const tobi_wave_maker_def *def, tobi_waves **out, 
 void tobi_waves_free(tobi_waves *waves);
 /* m: how far the maker is from rest at the height of still water. */
 double tobi_waves_displacement(const tobi_waves *waves, double t);
-/* m: the level at the front of a piston by the same theory, local waves included. */
-double tobi_waves_level(const tobi_waves *waves, double t);
+/* m: the level by the same theory, so far in front of a piston, local waves and the bound second harmonic of
+   regular waves included. */
+double tobi_waves_level(const tobi_waves *waves, double t, double distance);
+
+/* How a piston absorbs waves that come back: T u' = -u - gain (e - mean), with the error e of the level (m,
+   measured less its own waves') so far in front of it; the way decays in leak. After Schaeffer and Klopman
+   2000 in the first order: gain = omega over the height per stroke, sqrt(g/h) for long waves. T, the lag,
+   makes up for the way of the waves from the gauge to the piston, for the local waves, for mean and leak. */
+typedef struct tobi_absorption {
+    double gain, lag, leak;      /* 1/s, s, s                                                 */
+    double mean;                 /* s, over which the mean of the error is taken, that is left out    */
+    double distance;             /* m, of the gauge from the front                            */
+} tobi_absorption;
+/* 0 if it does not absorb. */
+int tobi_waves_absorption(const tobi_waves *waves, tobi_absorption *out);
+/* The piston of a motion or of one of its parts that absorbs, and where its waves go (unit vector); NULL. */
+const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3]);
 
 /* 1: the motion is a piston, or one of its parts is. */
 int tobi_motion_is_piston(const tobi_motion *motion);

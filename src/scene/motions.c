@@ -131,6 +131,12 @@ static const tobi_param piston_rows[] = {
     MAKER,
     { .key = "regular.order", INT, WAVE order), .def = { 1 }, RANGE(1, 2), .unit = "1",
       .doc = "2 adds what takes away the free second harmonic (Madsen 1971)." },
+    { .key = "absorb", BOOL, WAVE absorb),
+      .doc = "Whether the piston absorbs waves that come back, by the level a quarter of the depth in front "
+             "of it. Such a piston may make no waves itself." },
+    { .key = "absorb_period", REAL, WAVE absorb_period), DURATION, .unit = "s", .text = "its own",
+      .doc = "Period of the waves that it absorbs best: that of its own waves, or long ones if it makes "
+             "none." },
     { .key = "solitary.height", REAL, WAVE solitary_height), HEIGHTS,
       .doc = "Height of one solitary wave above the still water, by Goring 1978." },
     { 0 }
@@ -160,7 +166,8 @@ static const tobi_param_table tables[] = {
     { "roll", "motion.roll: to and fro about an axis along x.", sizeof(tobi_degree_def), turn_rows },
     { "pitch", "motion.pitch: to and fro about an axis along y.", sizeof(tobi_degree_def), turn_rows },
     { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows },
-    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves.",
+    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves. It "
+      "may absorb others.",
       sizeof(tobi_wave_maker_def), piston_rows },
     { "flap", "motion.flap: a wave maker that turns about a hinge; regular or irregular waves.",
       sizeof(tobi_wave_maker_def), flap_rows }

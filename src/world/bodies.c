@@ -1,5 +1,6 @@
 /* Prepares bodies for contact and describes the world to rigid/. Drawback: domains are boxes, so that
    a vessel is a body. */
+#include "world/absorb.h"
 #include "world/bodies.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"
@@ -111,8 +112,19 @@ static tobi_status put_body(tobi_body *b, int k, tobi_store *f, tobi_error *err)
     return b->motion ? put_place(b, k, f, err) : TOBI_OK;
 }
 
+static tobi_status put_absorber(const tobi_world *w, int k, tobi_store *f, tobi_error *err)
+{
+    const double *state = tobi_absorb_state(w, k);
+    char name[32];
+    tobi_world_name_body(k, "_absorb", name);
+    return state ? tobi_store_put(f, name, TOBI_F64, TOBI_ABSORB_DOUBLES, 1, state, err) : TOBI_OK;
+}
+
 tobi_status tobi_world_put_bodies(tobi_world *w, tobi_store *f, tobi_error *err)
 {
-    for (int k = 0; k < w->sim.body_count; k++) TOBI_TRY(put_body(&w->sim.bodies[k], k, f, err));
+    for (int k = 0; k < w->sim.body_count; k++) {
+        TOBI_TRY(put_body(&w->sim.bodies[k], k, f, err));
+        TOBI_TRY(put_absorber(w, k, f, err));
+    }
     return w->dynamics ? put_contacts(w, f, err) : TOBI_OK;
 }

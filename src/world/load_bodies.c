@@ -3,6 +3,7 @@
    fail, and it may not be the one they were moved by. Drawback: the vertices are stored. */
 #include "base/error.h"
 #include "rigid/dynamics.h"
+#include "world/absorb.h"
 #include "world/bodies.h"
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,7 @@ struct tobi_loaded_body {
     double (*edge_share)[3];         /* [piece_count] of a blade, owned until taken               */
     tobi_edge_foot *edge_foot;
     int64_t piece_count;
+    double absorb[TOBI_ABSORB_DOUBLES];      /* of a piston that absorbs                         */
 };
 
 static tobi_status read_state(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
@@ -83,6 +85,20 @@ static tobi_status read_place(const tobi_body *b, int k, tobi_store *f, tobi_loa
     return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's place of body '%s' is no number", b->name);
 }
 
+static tobi_status read_absorber(const tobi_world *w, int k, tobi_store *f, tobi_loaded_body *l,
+                                 tobi_error *err)
+{
+    char name[32];
+    int good = 1;
+    if (!tobi_absorb_state(w, k)) return TOBI_OK;
+    tobi_world_name_body(k, "_absorb", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, TOBI_ABSORB_DOUBLES, 1, l->absorb, err));
+    for (int n = 0; n < TOBI_ABSORB_DOUBLES; n++) good &= isfinite(l->absorb[n]) != 0;
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's way of the piston '%s' is no number",
+                     w->sim.bodies[k].name);
+}
+
 static tobi_status read_contacts(tobi_store *f, tobi_loaded_bodies *l, tobi_error *err)
 {
     int64_t n = 0;
@@ -103,6 +119,7 @@ tobi_status tobi_world_read_bodies(tobi_world *w, tobi_store *f, tobi_loaded_bod
         TOBI_TRY(read_state(b, k, f, &l->body[k], err));
         if (b->blade) TOBI_TRY(read_edge(b, k, f, &l->body[k], err));
         if (b->motion) TOBI_TRY(read_place(b, k, f, &l->body[k], err));
+        TOBI_TRY(read_absorber(w, k, f, &l->body[k], err));
     }
     return w->dynamics ? read_contacts(f, l, err) : TOBI_OK;
 }
@@ -141,7 +158,12 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
 tobi_status tobi_world_take_bodies(tobi_world *w, tobi_loaded_bodies *l, tobi_error *err)
 {
     if (w->dynamics) TOBI_TRY(tobi_rigid_set_warm(w->dynamics, l->contact_count, l->contacts, err));
-    for (int k = 0; k < l->count; k++) take_body(&w->sim.bodies[k], &l->body[k]);
+    for (int k = 0; k < l->count; k++) {
+        double *absorb = tobi_absorb_state(w, k);
+        take_body(&w->sim.bodies[k], &l->body[k]);
+        if (absorb) memcpy(absorb, l->body[k].absorb, sizeof l->body[k].absorb);
+    }
+    tobi_absorb_restore(w);
     if (w->dynamics) tobi_rigid_update_lines(w->dynamics);
     return TOBI_OK;
 }

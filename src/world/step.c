@@ -2,6 +2,7 @@
    length; one whose stable step is shorter takes substeps, under the constant forces of a liquid on solids.
    Drawback: where bodies move by forces the shortest stable step holds for all. */
 #include "world/step.h"
+#include "world/absorb.h"
 #include "world/acceleration.h"
 #include "world/bodies.h"
 #include "world/limits.h"
@@ -215,6 +216,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     TOBI_TRY(tobi_world_sample_drive(w, err));
     TOBI_TRY(choose_dt(w, max_dt, substeps, err));
     TOBI_TRY(tobi_world_drive(w, err));
+    tobi_absorb_predict(w);
     TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;
     TOBI_TRY(step_systems(w, substeps, err));
@@ -224,6 +226,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     s->step++;
     TOBI_TRY(tobi_world_kick_bodies(w, err));
     TOBI_TRY(tobi_openings_pass(w, err));
+    tobi_absorb_finish(w);
     tobi_step_sum_up(w);
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(check_runaway(&w->system[k], err));
     return TOBI_OK;

@@ -1,5 +1,6 @@
 /* A world: definitions become a simulation, the method steps it. */
 #include "world/world.h"
+#include "world/absorb.h"
 #include "world/acceleration.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"
@@ -74,6 +75,7 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->system_count; k++) tobi_world_free_system(&w->system[k]);
     tobi_rigid_free(w->dynamics);
     tobi_world_free_drive(w);
+    tobi_absorb_free(w);
     for (int k = 0; k < w->sim.body_count; k++) tobi_body_free(&w->sim.bodies[k]);
     for (int k = 0; k < w->region_count; k++) {
         tobi_mesh_free(&w->regions[k].shape);
@@ -256,6 +258,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_fit_systems(w, err));
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_start_system(w, &w->system[k], err));
     TOBI_TRY(start_bodies(w, err));
+    TOBI_TRY(tobi_absorb_start(w, err));
     tobi_step_sum_up(w);
     w->started = 1;
     const tobi_status status = tobi_world_note_pieces(w, err);

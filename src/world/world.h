@@ -20,6 +20,7 @@ struct tobi_world {
     int system_count;
     struct tobi_drive *drive;      /* owned: gravity in time and the frame; NULL if there is neither */
     struct tobi_dynamics_state *dynamics;   /* NULL if no body is free or controlled        */
+    struct tobi_absorbers *absorbers;       /* owned: pistons that absorb, from the start on */
     double step_cap;               /* s, the user's cap of the time step; bodies may lower it    */
     tobi_region *regions;
     int region_count;
