@@ -166,8 +166,7 @@ static const tobi_param_table tables[] = {
     { "roll", "motion.roll: to and fro about an axis along x.", sizeof(tobi_degree_def), turn_rows },
     { "pitch", "motion.pitch: to and fro about an axis along y.", sizeof(tobi_degree_def), turn_rows },
     { "yaw", "motion.yaw: to and fro about an axis along z.", sizeof(tobi_degree_def), turn_rows },
-    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves. It "
-      "may absorb others.",
+    { "piston", "motion.piston: a wave maker that shifts; one of regular, solitary and irregular waves.",
       sizeof(tobi_wave_maker_def), piston_rows },
     { "flap", "motion.flap: a wave maker that turns about a hinge; regular or irregular waves.",
       sizeof(tobi_wave_maker_def), flap_rows }
