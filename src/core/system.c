@@ -53,6 +53,27 @@ tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, to
     return TOBI_OK;
 }
 
+double tobi_system_density_ratio(const tobi_system *s)
+{
+    double least = INFINITY, most = 0;
+    for (int f = 0; f < s->fluid_count; f++) {
+        least = fmin(least, s->fluid[f].density);
+        most = fmax(most, s->fluid[f].density);
+    }
+    return most > 0 ? most/least : 1;
+}
+
+int tobi_system_is_mixed(const tobi_system *s)
+{
+    for (int a = 1; a < s->fluid_count; a++) {
+        const tobi_fluid *f = &s->fluid[a];
+        if (f->density != s->fluid[0].density || f->viscosity != s->fluid[0].viscosity) return 1;
+        for (int b = 0; b < a; b++)
+            if (f->interface_tension[b] > 0) return 1;
+    }
+    return 0;
+}
+
 double tobi_system_speed_scale(const tobi_system *s)
 {
     double fall = 0, capillary = 0;

@@ -10,6 +10,7 @@ enum { TOBI_RESTORED_ROW = 9, TOBI_MEMORY_LIMIT = 64 };
 typedef struct tobi_fluid {
     char name[64];
     double density, viscosity, tension;
+    double interface_tension[TOBI_FLUID_LIMIT];      /* N/m, towards each other fluid */
     double color[3];                /* RGB, 0 to 255, or -1; for pictures                    */
     int visible;
 } tobi_fluid;
@@ -75,6 +76,8 @@ typedef struct tobi_method {
     /* The bits of the optional fields that this system needs. full: liquid fills the domain. NULL: 0. */
     unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
+    double density_ratio;                                        /* largest over least of its fluids */
+    int mixes_with_bodies;                                       /* 1: of several densities, beside bodies */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */
     void (*smoothing)(const void *def, int driven, int *shape, double *support);
@@ -139,6 +142,10 @@ typedef struct tobi_method {
     void (*free)(void *state);
 } tobi_method;
 
+/* Whether its fluids differ in density or viscosity, or an interface has tension. */
+int tobi_system_is_mixed(const tobi_system *s);
+/* Largest over least density of its fluids; 1 for one. */
+double tobi_system_density_ratio(const tobi_system *s);
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);

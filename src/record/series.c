@@ -70,6 +70,9 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
     for (int k = 0; k < s->body_count && count == 7; k++)
         if (s->bodies[k].blade) count = 9;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
+    const tobi_system *fluids = tobi_world_fluids(run->world);
+    if (count == 5 && fluids && tobi_system_is_mixed(fluids))
+        TOBI_TRY(add_field(run, "material", strlen("material"), err));
     const char *texture = "texture_coordinates";
     return tobi_world_has_textures(run->world) ? add_field(run, texture, strlen(texture), err) : TOBI_OK;
 }

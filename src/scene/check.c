@@ -129,25 +129,30 @@ static void check_matter(const tobi_scene *scene, tobi_source *source)
                             method.name);
 }
 
-/* The methods carry one material: tobi_world_add_fluid would say the same, but not where. */
-static void check_material(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+typedef struct spot { tobi_source *source; const tobi_place *entry; int told; } spot;
+
+static void tell_entry(void *user, const char *key, const tobi_error *why)
 {
-    const tobi_scene_fluid *first = &scene->fluids[0], *fluid = &scene->fluids[entry->index];
-    tobi_method_info method;
-    const struct { const char *key, *unit; double value, other; } values[] = {
-        { "density", "kg/m3", fluid->def.density, first->def.density },
-        { "viscosity", "Pa s", fluid->def.viscosity, first->def.viscosity },
-        { "surface_tension", "N/m", fluid->def.surface_tension, first->def.surface_tension },
-    };
-    if (!tobi_method_describe(scene->world.method, &method) || method.solids ||
-        fluid->bound.good != fluid->bound.given || first->bound.good != first->bound.given) return;
-    for (size_t k = 0; k < sizeof values/sizeof *values; k++) {
-        tobi_place place = { entry, values[k].key, 0 };
-        if (values[k].value == values[k].other) continue;
-        tobi_source_mistake(source, &place, "is %.10g %s and that of fluids[0] is %.10g %s; %s carries one "
-                            "material, so all fluids have the same %s", values[k].value, values[k].unit,
-                            values[k].other, values[k].unit, method.name, values[k].key);
-        return;                        /* others may follow from it, as in translated scenes */
+    spot *at = user;
+    tobi_place place = { at->entry, key, 0 };
+    tobi_source_mistake_at_key(at->source, &place, "%s", why->text);
+    at->told = 1;
+}
+
+/* What the method refuses of a fluid beside those before it: the first breach, others may follow from it. */
+static void check_mixture(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
+{
+    const tobi_scene_fluid *fluid = &scene->fluids[entry->index];
+    const unsigned company = (is_empty(scene, "bodies") ? 0 : TOBI_WITH_BODIES) |
+                             (is_empty(scene, "solids") ? 0 : TOBI_WITH_SOLIDS) |
+                             (is_empty(scene, "inlets") ? 0 : TOBI_WITH_OPENINGS) |
+                             (is_empty(scene, "outlets") ? 0 : TOBI_WITH_OPENINGS);
+    spot at = { source, entry, 0 };
+    const tobi_rules rules = { .tell = tell_entry, .user = &at };
+    for (size_t k = 0; k < entry->index && !at.told; k++) {
+        const tobi_scene_fluid *other = &scene->fluids[k];
+        if (fluid->bound.good == fluid->bound.given && other->bound.good == other->bound.given)
+            tobi_rules_fluid(&rules, &scene->world, &fluid->def, &other->def, company);
     }
 }
 
@@ -157,7 +162,7 @@ static void check_fluids(const tobi_scene *scene, tobi_source *source)
     for (int i = 0; i < scene->fluid_count && !tobi_report_full(source->report); i++) {
         tobi_place entry = { &fluids, NULL, (size_t)i };
         check_name(scene, source, &entry, FLUIDS);
-        check_material(scene, source, &entry);
+        if (i > 0) check_mixture(scene, source, &entry);
         tobi_check_fills(scene, source, &entry, scene->fluids[i].fills, scene->fluids[i].fill_count);
     }
 }
@@ -182,21 +187,12 @@ static void check_solid(const tobi_scene *scene, tobi_source *source, const tobi
     }
 }
 
-typedef struct spot { tobi_source *source; const tobi_place *entry; } spot;
-
-static void tell_solid(void *user, const char *key, const tobi_error *why)
-{
-    const spot *at = user;
-    tobi_place place = { at->entry, key, 0 };
-    tobi_source_mistake_at_key(at->source, &place, "%s", why->text);
-}
-
 /* What must fit the cells, as strength and fracture energy: where all numbers are known. */
 static void check_cells(const tobi_scene *scene, tobi_source *source, const tobi_place *entry)
 {
     const tobi_scene_solid *solid = &scene->solids[entry->index];
-    spot at = { source, entry };
-    const tobi_rules rules = { .tell = tell_solid, .user = &at };
+    spot at = { source, entry, 0 };
+    const tobi_rules rules = { .tell = tell_entry, .user = &at };
     if (solid->bound.good != solid->bound.given ||
         !tobi_bind_has(&tobi_world_table, scene->world_bound.good, "spacing")) return;
     tobi_rules_solid(&rules, &scene->world, scene->method_def, &solid->def);

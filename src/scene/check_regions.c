@@ -151,6 +151,7 @@ static int do_overlap(const tobi_world_def *w, const region *a, const region *b)
 {
     double apart = 0, reach = a->radius + b->radius;
     if (strcmp(a->list, b->list) != 0) return 0;     /* fluids are cut out of solids */
+    if (a->owner != b->owner && strcmp(a->list, "fluids") == 0) return 0;   /* the later takes the place */
     for (int k = 0; k < w->dimension; k++) {
         if (fmin(a->upper[k], b->upper[k]) - fmax(a->lower[k], b->lower[k]) <= slack(w, k)) return 0;
         /* From a sphere's centre to the other's nearest point: its centre, or its box. */

@@ -218,7 +218,7 @@ static int look_at(look *l, int32_t i, int body)
 {
     tobi_boundary_entry *e = l->entry;
     tobi_bvh_hit hit;
-    sph_gravity_at(l->s, l->x, l->gravity);
+    sph_gravity_at(l->s, l->x, l->s->particles.fluid[i], l->gravity);
     memset(e, 0, sizeof *e);
     *l->link = (tobi_boundary_link){.particle = i, .body = (int16_t)body};
     e->triangle = -1;

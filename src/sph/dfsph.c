@@ -34,6 +34,10 @@ static const double PRESSURE_SMOOTHING = 0.02;
 /* Share of all pressure that may pull at a free surface before the rest is solved for again. */
 static const double PULL_TOLERANCE = 1e-3;
 
+/* Mean pressure of full vessels with several densities, over what their difference weighs in the whole depth.
+   Less lets particles crowd; more makes their lattice stiff. */
+static const double BASE = 0.25;
+
 /* Spacings: the shortest support at which particle shifting closes cavities instead of stirring. */
 static const double SHIFTING_SUPPORT = 2.5;
 
@@ -123,7 +127,8 @@ static double choose_dt(tobi_system *s)
     dfsph *m = s->state;
     double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->sim->body_speed);
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    double head = fmin(m->memory.head, 1.5*s->start_head + s->sim->body_speed*s->sim->body_speed +
+    const double depth = s->start_head*tobi_system_density_ratio(s);
+    double head = fmin(m->memory.head, 1.5*depth + s->sim->body_speed*s->sim->body_speed +
                                            4*s->fluid[0].tension/(s->fluid[0].density*d));
     m->motion_dt = fmin(sph_gravity_dt(s),
                         s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
@@ -136,6 +141,20 @@ static double choose_dt(tobi_system *s)
         m->memory.dt = dt;
     }
     return dt;
+}
+
+/* Pa: the mean pressure of a full vessel. Particles under negative pressure crowd: fluids of several
+   densities, which feel what is left of gravity, stay above 0. */
+static double base_pressure(const tobi_system *s)
+{
+    double depth = 0, least = INFINITY, most = 0;
+    for (int a = 0; a < s->box.dimension; a++)
+        depth += fabs(s->sim->def.gravity[a] - s->gravity[a])*s->box.size[a];
+    for (int f = 0; f < s->fluid_count; f++) {
+        least = fmin(least, s->fluid[f].density);
+        most = fmax(most, s->fluid[f].density);
+    }
+    return most > least ? BASE*(most - least)*depth : 0;
 }
 
 /* Without a free surface the constant pressure is left out: takes the mean from residual or product. */
@@ -237,7 +256,8 @@ static void solve_pressure(tobi_system *s, dfsph *m, const double *start, linear
     m->view.coarse = q->grid ? tobi_multigrid_values(&m->grid) : (tobi_grid_values){0};
     do iterate(s, m, q, t); while (clamp_pressure(s, m, q, t));
     launch(s, m, k->sph_correct_pressure, t);
-    center(s, m, q, k->sph_center_pressure, t[1], NULL);
+    const double base = q->grid ? base_pressure(s)*(double)s->particles.count : 0;
+    center(s, m, q, k->sph_center_pressure, t[1] - base, NULL);
     q->head = 2*t[0]/(double)s->particles.count;
 }
 
@@ -532,6 +552,8 @@ static void free_state(void *state)
 const tobi_method tobi_dfsph = {
     .name = "dfsph",
     .doc = "Divergence-free SPH for water: incompressible, free surface, walls and moving bodies.",
+    .density_ratio = 10,
+    .mixes_with_bodies = 1,
     .params = &tobi_dfsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

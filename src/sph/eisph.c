@@ -96,6 +96,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
 const tobi_method tobi_eisph = {
     .name = "eisph",
     .doc = "Incompressible SPH with an explicit update of the pressure: a few sweeps in place of a solve.",
+    .density_ratio = 10,
     .params = &tobi_eisph_table,
     .smoothing = choose_smoothing,
     .create = create,

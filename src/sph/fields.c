@@ -10,13 +10,14 @@ const tobi_field_list sph_field_list = { fields, sizeof fields/sizeof *fields, s
 
 const tobi_output sph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
-    { NULL, 0, NULL, 0 } };
+    { "material", 1, "1", 0 }, { NULL, 0, NULL, 0 } };
 
 unsigned sph_needs(const tobi_system *s, int full)
 {
     unsigned needs = s->sim->body_count > 0 || full ? SPH_NEED_WETTED : 0;
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].tension > 0) needs |= SPH_NEED_TENSION;
+    if (tobi_system_is_mixed(s)) needs |= SPH_NEED_PHASES;
     if (s->sim->opening_count > 0) needs |= SPH_NEED_OPENINGS;
     return needs;
 }

@@ -2,8 +2,8 @@
 #pragma once
 #include "core/particles.h"
 
-/* Scenes with surface tension; liquids with bodies in them; inlets and outlets. */
-enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4 };
+/* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids. */
+enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8 };
 
 /* Stages of a step: boundaries and density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
@@ -41,6 +41,10 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "normal of the surface; w = weight") \
     X(float,       TOBI_F32, 1, capillary,    TOBI_SCRATCH, SPH_NEED_TENSION, "Pa", \
       "surface tension times curvature") \
+    X(tobi_float4, TOBI_F32, 4, phase,        TOBI_SCRATCH, SPH_NEED_PHASES, "1", \
+      "kg/m3, Pa s, m, 1: density, viscosity, distance from the interface, fluid") \
+    X(tobi_float4, TOBI_F32, 4, interface,    TOBI_SCRATCH, SPH_NEED_PHASES, "1", \
+      "normal of the interface, out of the fluid; w = curvature, 1/m") \
     X(uint8_t,     TOBI_U8,  1, surface,      TOBI_SCRATCH, 0, "1",    "1 at a free surface") \
     X(tobi_float4, TOBI_F32, 4, held,         TOBI_SCRATCH, SPH_NEED_OPENINGS, "m/s", \
       "velocity in a buffer; w: 1 + number of an inlet, < 0 of an outlet, 0: none") \

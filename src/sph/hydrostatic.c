@@ -1,7 +1,8 @@
 /* Pressure that no solve knows: of still water below its level, and of vessels without a free surface, where
    gravity along axes with walls makes nothing else. It is taken from what the particles feel (s->gravity),
-   which pressures that pull would have to hold, and added exactly where pressures and forces leave. Drawback:
-   fluids of one density only. */
+   which pressures that pull would have to hold, and added exactly where pressures and forces leave. Of
+   several fluids it is that of the first, and the others feel the rest. Drawback: still water is of one
+   density only. */
 #include "sph/hydrostatic.h"
 #include "sph/state.h"
 
@@ -11,11 +12,14 @@ void sph_remove_gravity(tobi_system *s)
         if (!s->box.periodic[a]) s->gravity[a] = 0;
 }
 
-void sph_gravity_at(const tobi_system *s, const double x[3], double gravity[3])
+void sph_gravity_at(const tobi_system *s, const double x[3], int fluid, double gravity[3])
 {
     const tobi_reference *w = &sph_of(s)->reference;
     const double held = tobi_reference_share(w, x)*w->push/s->fluid[0].density;
+    const double rest = 1 - s->fluid[0].density/s->fluid[fluid].density;     /* as sph_add_buoyancy */
     for (int a = 0; a < 3; a++) gravity[a] = s->gravity[a] - held*w->down[a];
+    for (int a = 0; a < s->box.dimension && rest != 0; a++)
+        gravity[a] += rest*(s->sim->def.gravity[a] - s->gravity[a]);
     if (!s->sim->acceleration.acts) return;
     double more[3];
     tobi_acceleration_at(&s->sim->acceleration, x, more);

@@ -3,7 +3,7 @@
 #include "core/system.h"
 
 /* Gravity at x less what still water holds of it, and what acts besides, m/s2; mirrors of isph: all of it. */
-void sph_gravity_at(const tobi_system *s, const double x[3], double gravity[3]);
+void sph_gravity_at(const tobi_system *s, const double x[3], int fluid, double gravity[3]);
 /* Takes gravity along axes with walls from what the particles of a full vessel feel. */
 void sph_remove_gravity(tobi_system *s);
 /* That pressure at x (m, from the lower corner), Pa: 0 at the middle of the box, and 0 in other vessels. */

@@ -6,6 +6,7 @@
 #include "sph/isph_choices.k.h"
 #include "sph/isph_loop.h"
 #include "sph/isph_time.k.h"
+#include "sph/phases.k.h"
 #include "sph/pressure.k.h"
 #include "sph/sph.k.h"
 #include "sph/tait.k.h"
@@ -29,6 +30,8 @@
     PAIR_OF(K, cubic, TOBI_SHAPE_CUBIC)                                                             \
     PAIR_OF(K, other, v->shape)
 #define FOR(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, sph_view, run_##K)
+#define PHASES PAIR
+#define PHASE FOR
 #define COUPLE(K, SUMS, MAXIMA, DOC) TOBI_FOR_LOOP(K, tobi_couple_view, run_##K)
 #define IMAGE(K, SUMS, MAXIMA, DOC)                                                                 \
     ISPH_LOOP(K, TOBI_SHAPE_WENDLAND, run_##K##_wendland)                                           \
@@ -40,6 +43,8 @@
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef PHASES
+#undef PHASE
 #undef IMAGE
 #undef RARE
 #undef ISPH
@@ -49,6 +54,8 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #define PAIR(K, SUMS, MAXIMA, DOC) .K = {run_##K##_wendland, SUMS, MAXIMA},
 #define FOR(K, SUMS, MAXIMA, DOC) .K = {run_##K, SUMS, MAXIMA},
 #define COUPLE FOR
+#define PHASES PAIR
+#define PHASE FOR
 #define IMAGE PAIR
 #define RARE FOR
 #define ISPH FOR
@@ -66,6 +73,8 @@ const sph_kernels JOIN(sph_kernels, TOBI_ISA)[SPH_TABLES] = {
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef PHASES
+#undef PHASE
 #undef IMAGE
 #undef RARE
 #undef ISPH

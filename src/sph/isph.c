@@ -11,6 +11,7 @@
 #include "sph/isph_verbs.h"
 #include "sph/kernels.h"
 #include "sph/openings.h"
+#include "sph/phases.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,7 @@ tobi_status isph_create_state(tobi_system *s, const tobi_isph_def *def, tobi_err
     isph_solver_begin(&m->solver, s, &m->def);
     m->solver.coupled = tobi_couple_any(s);
     m->solver.view.kinematic = m->view.kinematic;
+    if (sph_phases_have_tension(s)) m->solver.view.interface_tension = m->view.interface_tension;
     return TOBI_OK;
 }
 
@@ -185,6 +187,7 @@ void isph_forces(tobi_system *s)
     double clock = tobi_clock();
     sph_view without = m->view;
     const int corrected = m->def.viscosity_form != TOBI_VISCOSITY_PLAIN;
+    if (corrected) sph_phases_find(s, &m->view, m->kernel);
     if (corrected) launch(s, m, m->kernel->isph_viscosity, NULL);
     for (int a = 0; a < 3; a++) without.gravity[a] = 0;
     without.acceleration.acts = 0;
@@ -314,6 +317,7 @@ void isph_free_state(void *state)
 const tobi_method tobi_isph = {
     .name = "isph",
     .doc = "Incompressible SPH: one Poisson equation per step, for forces and pressures.",
+    .density_ratio = 1000,
     .params = &tobi_isph_table,
     .smoothing = choose_smoothing,
     .create = create,

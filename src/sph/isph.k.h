@@ -2,6 +2,7 @@
    double. */
 #pragma once
 #include "sph/isph_images.k.h"
+#include "sph/isph_phases.k.h"
 #include "sph/isph_soft.k.h"
 
 /* Of the relative loss of neighbours, 1 - tr M/dim: where the gate begins to open, and is open. */
@@ -245,6 +246,7 @@ TOBI_FN double isph_volume_source(const isph_view *v, int64_t i, double divergen
 typedef struct isph_rows_acc {
     lane ux, uy, uz, scale, bxx, byy, bzz, bxy, byz, bzx, sum, self, difference, divergence;
     lane px, py, pz;                 /* Pa/m: of liquid at rest, away from a free surface           */
+    lane whole;                      /* of several fluids: the sum as of one                        */
     float bodies;                    /* of self, by bodies */
 } isph_rows_acc;
 
@@ -282,6 +284,7 @@ TOBI_FN void isph_rows_start(const isph_view *v, int64_t i, isph_rows_acc *a)
     isph_gravity_at(v, i, g);
     a->px = lane_set(rest*g[0]); a->py = lane_set(rest*g[1]); a->pz = lane_set(rest*g[2]);
     a->bodies = 0;
+    a->whole = lane_set(0);
     if (soft) isph_rows_soft(v, i, a);
 }
 
@@ -300,15 +303,21 @@ TOBI_FN void isph_rows_enter(const isph_view *v, const isph_image *m, lane a, co
 TOBI_FN void isph_rows_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                             isph_rows_acc *c, const int shape, const int kind)
 {
-    const lane f = isph_falloff(v, n, m, shape, kind), a = (float)v->slope*f*(c->scale + n->w);
-    lane u[3];
-    (void)i;
+    const lane f = isph_falloff(v, n, m, shape, kind);
+    lane u[3], a = (float)v->slope*f*(c->scale + n->w);
     isph_velocity(v, n, m, kind, u);
     const lane x = c->bxx*n->dx + c->bxy*n->dy + c->bzx*n->dz, y = c->bxy*n->dx + c->byy*n->dy + c->byz*n->dz,
                z = c->bzx*n->dx + c->byz*n->dy + c->bzz*n->dz;
     c->divergence += f*((u[0] - c->ux)*x + (u[1] - c->uy)*y + (u[2] - c->uz)*z);
-    const lane rest = c->px*n->dx + c->py*n->dy + c->pz*n->dz;
-    c->difference += a*(isph_pressure_difference(v, m, kind) + rest);
+    lane rest = c->px*n->dx + c->py*n->dy + c->pz*n->dz, image = isph_pressure_difference(v, m, kind);
+    if (v->phase) {
+        const isph_pair_phase phase = isph_see_phase(v, i, n);
+        c->whole += a;
+        a = a/phase.face;
+        image = image*phase.other + phase.jump;
+        rest = rest*phase.face;
+    }
+    c->difference += a*(image + rest);
     c->sum += a;
     if (kind == ISPH_SIDE && m->k < 0) c->self += a;
     if (kind == ISPH_BODY)
@@ -337,7 +346,8 @@ TOBI_FN void isph_rows_finish(const isph_view *v, int64_t i, isph_rows_acc *a, d
     }
     const tobi_float4 t = lane_sum4(a->sum, a->self, a->difference, a->divergence);
     const double loss = 1 - v->trace[i]/v->dimension;
-    const double excess = isph_excess(v, loss, t.x, v->gate[i]);
+    const double whole = v->phase ? lane_sum(a->whole) : t.x;
+    const double excess = isph_excess(v, loss, whole, v->gate[i])/isph_density_of(v, i);
     const double diagonal = t.x - t.y - a->bodies + excess;
     v->source[i] = isph_volume_source(v, i, -v->slope*t.w) + t.z + v->density/v->dt*v->slope*t.w;
     if (v->second_order) v->source[i] += 0.5*v->density*v->invariant[i];
@@ -422,9 +432,13 @@ TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projectio
 TOBI_FN void isph_projection_pair(const isph_view *v, int64_t i, const tobi_neighbors *n, const isph_image *m,
                             isph_projection_acc *a, const int shape, const int kind)
 {
-    const lane f = isph_falloff(v, n, m, shape, kind), other = n->w + isph_pressure_difference(v, m, kind),
-               q = f*(other - a->p);
-    (void)i;
+    const lane f = isph_falloff(v, n, m, shape, kind), image = isph_pressure_difference(v, m, kind);
+    lane other = n->w + image, q = f*(other - a->p);
+    if (v->phase) {
+        const isph_pair_phase phase = isph_see_phase(v, i, n);
+        other = n->w + image*phase.other;
+        q = f*(other + phase.jump - a->p)/phase.face;
+    }
     a->x += q*n->dx; a->y += q*n->dy; a->z += q*n->dz;
     if (kind != ISPH_SIDE) return;
     const lane both = f*(other + a->p);
@@ -435,12 +449,13 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
 {
     const tobi_float4 s = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                       w = lane_sum4(a->fx, a->fy, a->fz, lane_set(0));
-    const double mean = 2*v->gate[i]*v->surface_force*v->pressure[i], k = -v->slope;
+    const double own = v->pressure[i]/isph_density_of(v, i), mean = 2*v->gate[i]*v->surface_force*own,
+                 k = -v->slope;
     double x[3] = {k*s.x, k*s.y, k*s.z};
     double g[3];
     if (v->own_pressure > 0)
         for (int c = 0; c < 3; c++)
-            x[c] += v->own_pressure*(1 - v->gate[i])*v->pressure[i]*(&v->concentration_gradient[i].x)[c];
+            x[c] += v->own_pressure*(1 - v->gate[i])*own*(&v->concentration_gradient[i].x)[c];
     isph_apply(&v->inverse[i], x, g);
     if (v->as_summed)
         for (int c = 0; c < 3; c++) g[c] = x[c];

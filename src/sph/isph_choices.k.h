@@ -233,7 +233,8 @@ TOBI_FN int isph_viscosity_full(const isph_view *v, int64_t i, const isph_viscos
    free surface. */
 TOBI_FN void isph_viscosity_finish(const isph_view *v, int64_t i, isph_viscosity_acc *a, double *totals)
 {
-    const double share = (1 - v->gate[i])*v->dt*v->kinematic[v->fluid[i]];
+    const int meets = v->phase && v->phase[i].z < (float)v->h;     /* sums below know one viscosity only */
+    const double share = meets ? 0 : (1 - v->gate[i])*v->dt*v->kinematic[v->fluid[i]];
     double g[9], out[3] = {0, 0, 0};
     (void)totals;
     for (int x = 0; x < 3; x++) {

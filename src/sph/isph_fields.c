@@ -10,6 +10,7 @@
 
 const tobi_output isph_outputs[] = {
     { "acceleration", 3, "m/s2", 1 }, { "vorticity", 3, "1/s", 1 }, { "surface", 1, "1", 0 },
+    { "material", 1, "1", 0 },
     { "viscous_acceleration", 3, "m/s2", 1 }, { "pressure_acceleration", 3, "m/s2", 1 },
     { "divergence", 1, "1/s", 1 }, { "predicted_divergence", 1, "1/s", 1 },
     { "pressure_source", 1, "Pa/m2", 1 },

@@ -141,6 +141,9 @@ tobi_status isph_solver_bind(isph_solver *m, tobi_system *s, tobi_error *err)
     v->velocity = p->velocity;
     v->accel = f->accel;
     v->fluid = p->fluid;
+    v->phase = f->phase;
+    v->interface = f->interface;
+    v->fluid_count = s->fluid_count;
     v->pressure = f->pressure;
     v->list = s->cells.list;
     v->list_start = s->cells.list_start;

@@ -6,6 +6,7 @@
 #include "exec/pairs.h"
 #include "sph/couple.k.h"
 #include "sph/soft.k.h"
+#include "sph/view.h"
 
 /* Symmetric. */
 typedef struct isph_tensor { float xx, yy, zz, xy, yz, zx; } isph_tensor;
@@ -60,6 +61,10 @@ typedef struct isph_view {
     int full_viscosity;              /* 1: by the tensor of Fatehi and Manzari                      */
     const float *kinematic;          /* m2/s, by fluid                                              */
     const uint8_t *fluid;
+    /* several fluids, sph/phases.k.h; NULL with one, and the last without tension */
+    int fluid_count;
+    const tobi_float4 *phase, *interface;
+    const float (*interface_tension)[TOBI_MAX_FLUIDS];     /* N/m                                       */
     const tobi_float4 *held;         /* w > 0: in an inlet, < 0: in an outlet; NULL: there is none   */
     /* particle arrays */
     tobi_double3 *position;

@@ -7,6 +7,8 @@ typedef struct sph_kernels {
 #define PAIR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #define FOR(K, SUMS, MAXIMA, DOC) tobi_kernel K;
 #define COUPLE FOR
+#define PHASES PAIR
+#define PHASE FOR
 #define IMAGE PAIR
 #define RARE FOR
 #define ISPH FOR
@@ -14,6 +16,8 @@ typedef struct sph_kernels {
 #undef PAIR
 #undef FOR
 #undef COUPLE
+#undef PHASES
+#undef PHASE
 #undef IMAGE
 #undef RARE
 #undef ISPH

@@ -333,7 +333,7 @@ TOBI_FN void sph_shift_finish(const sph_view *v, int64_t i, sph_shift_acc *a, do
     tobi_float4 w = v->wall[i], out = sph_pressure_accel_value(v, i, &a->accel),
                 sum = lane_sum4(a->x, a->y, a->z, lane_set(0)),
                 core = lane_sum4(a->cx, a->cy, a->cz, lane_set(0));
-    float b = 2*v->inverse_density[v->fluid[i]]*v->background, c = v->push*v->inverse_dt*v->inverse_dt;
+    float b = 2*v->inverse_density[0]*v->background, c = v->push*v->inverse_dt*v->inverse_dt;
     (void)totals;
     out.x += b*(v->slope*sum.x - w.x) + c*core.x;
     out.y += b*(v->slope*sum.y - w.y) + c*core.y;

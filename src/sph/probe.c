@@ -82,8 +82,9 @@ static void carry(membrane *m, int64_t i, const double r[3], const double gravit
     const tobi_smoothing_constants *c = &m->s->smoothing;
     const double weight = c->volume*tobi_smoothing_w(c->shape, c->dimension, c->h,
                                                      sqrt(r[0]*r[0] + r[1]*r[1] + r[2]*r[2]));
+    const double rho = m->s->fluid[m->s->particles.fluid[i]].density;
     double p = sph_fields_of(&m->s->particles)->pressure[i];
-    for (int a = 0; a < c->dimension; a++) p -= m->s->fluid[0].density*gravity[a]*r[a];
+    for (int a = 0; a < c->dimension; a++) p -= rho*gravity[a]*r[a];
     m->traction += weight*p;
     m->weight += weight;
 }
@@ -96,7 +97,7 @@ static void press(void *user, int64_t i, const double r[3])
     const tobi_double3 *q = &m->s->particles.position[i];
     const double at[3] = { q->x, q->y, q->z };
     double gravity[3];
-    sph_gravity_at(m->s, at, gravity);
+    sph_gravity_at(m->s, at, m->s->particles.fluid[i], gravity);
     for (int a = 0; a < 3; a++) {
         depth += r[a]*m->normal[a];
         along += gravity[a]*m->normal[a];

@@ -212,12 +212,20 @@ TOBI_FN float sph_wetness(const sph_view *v, int64_t i)
     return p >= full ? 1 : p > 0 ? p/full : 0;
 }
 
+/* A full vessel takes from gravity what holds the first of several fluids: the others feel the rest. */
+TOBI_FN void sph_add_buoyancy(const sph_view *v, int64_t i, float g[3])
+{
+    const float rest = 1 - v->inverse_density[v->fluid[i]]/v->inverse_density[0];
+    for (int c = 0; c < 3; c++) g[c] += rest*v->removed_gravity[c];
+}
+
 /* Gravity less what still water holds, and what acts besides, m/s2. */
 TOBI_FN void sph_gravity(const sph_view *v, int64_t i, float g[3])
 {
     double taken = tobi_reference_share(&v->reference, &v->position[i].x)*v->reference.push*
                    v->inverse_density[v->fluid[i]];
     for (int c = 0; c < 3; c++) g[c] = v->gravity[c] - (float)(taken*v->reference.down[c]);
+    if (v->phase) sph_add_buoyancy(v, i, g);
     if (!v->acceleration.acts) return;
     double more[3];
     tobi_acceleration_at(&v->acceleration, &v->position[i].x, more);

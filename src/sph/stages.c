@@ -4,6 +4,7 @@
 #include "sph/stages.h"
 #include "sph/boundary.h"
 #include "sph/openings.h"
+#include "sph/phases.h"
 #include <math.h>
 #include <string.h>
 
@@ -75,7 +76,8 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
     v->surface = f->surface;
     v->full = vessel == SPH_VESSEL_FULL;
     /* bodies let go act larger with (7c) beside them than with (7b), decision 28 */
-    v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count);
+    v->exact = v->full && v->stretch && !tobi_body_any_free(s->sim->bodies, s->sim->body_count) &&
+               tobi_system_density_ratio(s) == 1;
     bind_stage(v, f);
     v->held = sph_of(s)->marked ? f->held : NULL;
     v->last_link = s->sim->body_count > 0 ? f->last_link : NULL;
@@ -100,6 +102,7 @@ void sph_bind_view(const tobi_system *s, sph_view *v, double vessel)
         v->kinematic[f] = (float)(s->fluid[f].viscosity/s->fluid[f].density);
         v->tension[f] = (float)s->fluid[f].tension;
     }
+    sph_phases_bind(s, v);
     v->band_depth = (float)band_depth(c);
     v->contact_cosine = (float)cos(s->sim->def.contact_angle*acos(-1)/180);
     v->acceleration = s->sim->acceleration;
@@ -130,7 +133,7 @@ double sph_tension_dt(const tobi_system *s)
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].tension > 0)
             dt = fmin(dt, 0.4*sqrt(s->fluid[f].density*d*d*d/(2*acos(-1)*s->fluid[f].tension)));
-    return dt;
+    return fmin(dt, sph_phases_dt(s));
 }
 
 void sph_use_dt(const tobi_system *s, sph_view *v)
@@ -237,16 +240,26 @@ static void apply_filter(tobi_system *s, sph_view *v, const sph_kernels *k)
     v->filter = 0;
 }
 
+/* All but the filter of full vessels. */
+static void kick(tobi_system *s, sph_view *v, const sph_kernels *k)
+{
+    sph_phases_rub(s, v, k);
+    launch(s, v, k->sph_laplacian, NULL);
+    launch(s, v, k->sph_kick, NULL);
+    sph_phases_kick(s, v, k);
+    if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
+    sph_soft_add_forces(s);
+    apply_tension(s, v, k);
+    sph_phases_find(s, v, k);
+    if (!sph_of(s)->mirrors) sph_phases_pull(s, v, k);
+}
+
 void sph_apply_forces(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock)
 {
     sph_stage(s, v, SPH_FORCES);
     if (v->exact) launch(s, v, k->sph_target_divergence, NULL);
     if (v->exact) apply_filter(s, v, k);
-    launch(s, v, k->sph_laplacian, NULL);
-    launch(s, v, k->sph_kick, NULL);
-    if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
-    sph_soft_add_forces(s);
-    apply_tension(s, v, k);
+    kick(s, v, k);
     sph_openings_hold(s);
     tobi_stage_end(&s->sim->stages, "forces", clock);
 }
@@ -300,11 +313,7 @@ static void derive_acceleration(tobi_system *s, sph_view *v, const sph_kernels *
     memcpy(f->saved_velocity, p->velocity, (size_t)p->count*sizeof *f->saved_velocity);
     s->dt = v->dt = 1;
     v->filter = 0;
-    launch(s, v, k->sph_laplacian, NULL);
-    launch(s, v, k->sph_kick, NULL);
-    if (s->sim->body_count > 0) tobi_boundary_add_forces(s);
-    sph_soft_add_forces(s);
-    apply_tension(s, v, k);
+    kick(s, v, k);
     s->dt = step;
     v->dt = dt;
     for (int64_t i = 0; i < p->count; i++) {

@@ -35,8 +35,9 @@ static void press(look *l, int64_t i, double w, double depth)
 /* Of isph: as at rest from the particle to the place, a mean. */
 static void carry(look *l, int64_t i, const double r[3], double w, double depth)
 {
+    const double rho = l->s->fluid[l->s->particles.fluid[i]].density;
     double p = sph_fields_of(&l->s->particles)->pressure[i];
-    for (int a = 0; a < l->s->box.dimension; a++) p -= l->s->fluid[0].density*l->gravity[a]*r[a];
+    for (int a = 0; a < l->s->box.dimension; a++) p -= rho*l->gravity[a]*r[a];
     l->pressure += w*p;
     l->weight += w;
     l->away += w*depth;
@@ -65,6 +66,7 @@ static void see(void *user, int64_t i, const double r[3])
     const double r2 = vec3_dot(r, r), depth = vec3_dot(r, l->place->normal);
     if (!(r2 < c->h*c->h) || !(depth > 0)) return;
     const double w = c->volume*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(r2));
+    sph_gravity_at(l->s, l->place->x, l->s->particles.fluid[i], l->gravity);
     if (sph_of(l->s)->mirrors) carry(l, i, r, w*c->weight_correction, depth);
     else press(l, i, w*c->plane_scale, depth);
     if (l->b->friction == TOBI_NO_SLIP) rub(l, i, w*c->plane_scale, depth);
@@ -98,7 +100,6 @@ void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place 
     *pressure = 0;
     memset(shear, 0, 3*sizeof *shear);
     if (s->step == 0) return;       /* no pressure has been found yet */
-    sph_gravity_at(s, place->x, l.gravity);
     const sph_range cells = sph_cells_around(s, place->x, s->smoothing.h);
     sph_visit(s, place->x, &cells, see, &l);
     *pressure = l.pressure;

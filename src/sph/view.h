@@ -28,6 +28,7 @@ typedef struct sph_view {
     float *TOBI_RESTRICT precondition, *TOBI_RESTRICT residual, *TOBI_RESTRICT product, *TOBI_RESTRICT delta;
     float *TOBI_RESTRICT target_divergence;   /* it and moment: with `exact`                          */
     tobi_float4 *TOBI_RESTRICT moment;
+    tobi_float4 *TOBI_RESTRICT phase, *TOBI_RESTRICT interface;   /* NULL with one fluid, phases.k.h */
     float *TOBI_RESTRICT capillary;           /* it and normal: NULL without surface tension */
     float *TOBI_RESTRICT pressure;            /* of the solve at hand; NULL for walls: none */
     uint8_t *TOBI_RESTRICT surface;
@@ -54,6 +55,8 @@ typedef struct sph_view {
     float inverse_density[TOBI_MAX_FLUIDS];   /* m3/kg   */
     float kinematic[TOBI_MAX_FLUIDS];         /* m2/s    */
     float tension[TOBI_MAX_FLUIDS];           /* N/m     */
+    float interface_tension[TOBI_MAX_FLUIDS][TOBI_MAX_FLUIDS];    /* N/m, symmetric, 0 on the diagonal */
+    int fluid_count;
     float band_depth;                         /* m, mean depth of the band below the surface */
     float contact_cosine;                     /* of the angle of contact at planes   */
     /* walls */

@@ -46,7 +46,9 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
 
 static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)
 {
-    return sqrt(d->exponent*d->stiffness/s->fluid[0].density);
+    double least = s->fluid[0].density;
+    for (int f = 1; f < s->fluid_count; f++) least = fmin(least, s->fluid[f].density);
+    return sqrt(d->exponent*d->stiffness/least);
 }
 
 static double limit_dt(const tobi_system *s, int solid, double speed)
@@ -265,6 +267,8 @@ static void free_state(void *state)
 const tobi_method tobi_wcsph = {
     .name = "wcsph",
     .doc = "Weakly compressible SPH: pressure by the Tait equation, short steps, no solver.",
+    .density_ratio = 2,
+    .mixes_with_bodies = 1,
     .params = &tobi_wcsph_table,
     .fields = &sph_field_list,
     .outputs = sph_outputs,

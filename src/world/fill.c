@@ -72,19 +72,25 @@ static int behind_plane(const tobi_system *s, const double x[3])
     return 0;
 }
 
-static void add_particle(tobi_system *s, const tobi_region *r, const double x[3])
+/* Particle i at x becomes one of the region. */
+static void give(tobi_system *s, const tobi_region *r, int64_t i, const double x[3])
 {
     tobi_particles *p = &s->particles;
-    int64_t i = tobi_particles_add(p);
     double arm[3], v[3];
     for (int a = 0; a < 3; a++) arm[a] = x[a] + s->box.lower[a] - 0.5*(r->lower[a] + r->upper[a]);
     for (int a = 0; a < 3; a++) {
         int b = (a + 1)%3, c = (a + 2)%3;
         v[a] = r->velocity[a] + r->spin[b]*arm[c] - r->spin[c]*arm[b];
     }
-    p->position[i] = (tobi_double3){x[0], x[1], x[2]};
     p->velocity[i] = (tobi_float4){(float)v[0], (float)v[1], s->box.dimension == 3 ? (float)v[2] : 0, 0};
     p->fluid[i] = (uint8_t)r->owner;
+}
+
+static void add_particle(tobi_system *s, const tobi_region *r, const double x[3])
+{
+    const int64_t i = tobi_particles_add(&s->particles);
+    s->particles.position[i] = (tobi_double3){x[0], x[1], x[2]};
+    give(s, r, i, x);
 }
 
 /* What the region's flow adds to the velocities of its particles. */
@@ -217,12 +223,37 @@ static tobi_status scatter(const tobi_system *s, const tobi_region *r, const tob
                              count, points, s->sim->exec.threads, err);
 }
 
+/* A fluid that starts inside an earlier one takes its place: particles in the region are its own then, on the
+   lattice that they have, and none is added near them. *taken: all places so far, NULL: none was met. */
+static tobi_status take_over(tobi_system *s, const tobi_region *r, const tobi_bvh *tree, tobi_overlap **taken,
+                             tobi_error *err)
+{
+    const tobi_particles *p = &s->particles;
+    int64_t met = 0;
+    *taken = NULL;
+    for (int64_t i = 0; i < p->count && s->fluid_count > 1; i++) {
+        const double at[3] = { p->position[i].x, p->position[i].y, p->position[i].z };
+        double x[3];
+        int out = 0;
+        for (int a = 0; a < 3; a++) {
+            x[a] = at[a] + s->box.lower[a];
+            if (a < s->box.dimension) out |= x[a] < r->lower[a] || x[a] > r->upper[a];
+        }
+        if (out || p->fluid[i] == r->owner || !inside_region(r, tree, x, s->box.dimension)) continue;
+        give(s, r, i, at);
+        met++;
+    }
+    return met > 0 ? tobi_overlap_create(s, taken, err) : TOBI_OK;
+}
+
 /* Places the points of a region and keeps those in the domain, outside of bodies and before planes. */
 static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, double (*points)[3],
                         tobi_error *err)
 {
     const int64_t first = s->particles.count, count = place_lattice(s, r, tree, points);
+    tobi_overlap *taken;
     if (scattered(s, r)) TOBI_TRY(scatter(s, r, tree, count, points, err));
+    TOBI_TRY(take_over(s, r, tree, &taken, err));
     for (int64_t i = 0; i < count; i++) {
         double *x = points[i];
         int out = 0;
@@ -231,12 +262,14 @@ static tobi_status fill(tobi_system *s, tobi_region *r, const tobi_bvh *tree, do
             if (a < s->box.dimension) out |= x[a] < 0 || x[a] >= s->box.size[a];
         }
         r->outside += out;
+        if (tobi_overlap_meets(taken, x)) continue;
         if (out || tobi_openings_cover(s->sim, x)) continue;
         if (inside_body(s, r, x)) r->covered++;
         else if (behind_plane(s, x)) r->behind++;
         else if (tobi_overlap_meets(s->sim->soft.start, x)) r->soaked++;
         else add_particle(s, r, x);
     }
+    tobi_overlap_free(taken);
     r->placed = s->particles.count - first;
     TOBI_TRY(add_flow(s, r, first, err));
     start_solids(s, r, tree, first, count);

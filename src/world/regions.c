@@ -1,6 +1,7 @@
 /* What fills the world at the start: fluids and solids with their regions. */
 #include "base/error.h"
 #include "base/param.h"
+#include "world/mixture.h"
 #include "world/world.h"
 #include <math.h>
 #include <stdio.h>
@@ -106,23 +107,6 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
     return TOBI_OK;
 }
 
-/* All fluids must be of one material. */
-static tobi_status check_material(const tobi_world *w, const tobi_fluid_def *def, tobi_error *err)
-{
-    const tobi_fluid *first = &w->system[0].fluid[0];
-    const char *what = NULL;
-    double value = 0, other = 0;
-#define COMPARE(name_, a_, b_) if (!what && (a_) != (b_)) what = name_, value = (a_), other = (b_)
-    COMPARE("a density in kg/m3", def->density, first->density);
-    COMPARE("a viscosity in Pa s", def->viscosity, first->viscosity);
-    COMPARE("a surface tension in N/m", def->surface_tension, first->tension);
-#undef COMPARE
-    if (!what) return TOBI_OK;
-    return tobi_fail(err, TOBI_UNSUPPORTED, "fluid '%s' differs from '%s': %s of %.10g, there %.10g; %s "
-                     "carries one material, allowed are several fluids with the same values",
-                     def->name ? def->name : "", first->name, what, value, other, w->system[0].method->name);
-}
-
 /* All regions are checked before any of them is read. */
 static tobi_status check_fills(const tobi_fill_def *fills, int count, tobi_error *err)
 {
@@ -145,9 +129,9 @@ tobi_status tobi_world_add_fluid(tobi_world *w, const tobi_fluid_def *def,
     if (w->system[0].method->solids)
         return tobi_fail(err, TOBI_UNSUPPORTED, "%s takes solids, not fluids; a solid of model liquid is one",
                          w->system[0].method->name);
-    if (s->fluid_count > 0) TOBI_TRY(check_material(w, def, err));
     if (s->fluid_count == TOBI_FLUID_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d fluids", TOBI_FLUID_LIMIT);
+    TOBI_TRY(tobi_mixture_add(w, def, err));
     TOBI_TRY(note_support(w, def, err));
     double volume;
     TOBI_TRY(add_regions(w, s, "fluid", def->name, fills, fill_count, &volume, err));
@@ -215,11 +199,14 @@ static tobi_status check_blades(const tobi_world *w, tobi_error *err)
 enum { COVERED, BEHIND, SOAKED, OUTSIDE, LOSSES };
 
 /* A solid or fluid without a particle is left out of the run altogether, which nobody asks for. */
-static tobi_status check_placed(const char *kind, const char *name, int64_t placed,
+static tobi_status check_placed(const char *kind, const char *name, int64_t placed, int64_t taken,
                                 const int64_t lost[LOSSES], tobi_error *err)
 {
     const long long all = lost[COVERED] + lost[BEHIND] + lost[SOAKED] + lost[OUTSIDE];
     if (placed > 0) return TOBI_OK;
+    if (taken > 0)
+        return tobi_fail(err, TOBI_INVALID, "no particles are left in %s '%s': later entries of fluids start "
+                         "in all of its regions and take its place; write it after them", kind, name);
     if (all == 0)
         return tobi_fail(err, TOBI_INVALID,
                          "no particles at all in %s '%s': its regions are smaller than the distance of "
@@ -246,6 +233,14 @@ static tobi_status note_losses(tobi_world *w, const char *kind, const char *name
     return TOBI_OK;
 }
 
+/* What regions placed may have become another fluid since. */
+static int64_t count_fluid(const tobi_particles *p, int fluid)
+{
+    int64_t count = 0;
+    for (int64_t i = 0; i < p->count; i++) count += p->fluid[i] == fluid;
+    return count;
+}
+
 static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *err)
 {
     const int solids = s->solid_count > 0, owners = solids ? s->solid_count : s->fluid_count;
@@ -263,7 +258,8 @@ static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *
             placed += r->placed;
             regions++;
         }
-        if (regions > 0) TOBI_TRY(check_placed(kind, name, placed, lost, err));
+        const int64_t held = solids ? placed : count_fluid(&s->particles, k);
+        if (regions > 0) TOBI_TRY(check_placed(kind, name, held, placed, lost, err));
         TOBI_TRY(note_losses(w, kind, name, lost, err));
     }
     return TOBI_OK;

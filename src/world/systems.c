@@ -48,7 +48,8 @@ static int is_full_vessel(const tobi_world *w, const tobi_system *s)
 /* Whether a body or a side moves in a full vessel. */
 static int is_stirred_vessel(const tobi_world *w, const tobi_system *s)
 {
-    int driven = w->sim.wall_speed > 0 || tobi_body_any_free(w->sim.bodies, w->sim.body_count);
+    int driven = w->sim.wall_speed > 0 || tobi_system_is_mixed(s) ||
+                 tobi_body_any_free(w->sim.bodies, w->sim.body_count);
     for (int k = 0; k < w->sim.body_count; k++) driven |= w->sim.bodies[k].motion != NULL;
     return driven && is_full_vessel(w, s);
 }

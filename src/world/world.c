@@ -1,4 +1,5 @@
 /* A world: definitions become a simulation, the method steps it. */
+#include "world/mixture.h"
 #include "world/world.h"
 #include "world/absorb.h"
 #include "world/acceleration.h"
@@ -248,6 +249,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
                          "no particles at all: the scene needs a region of a fluid or solid, or a body");
     TOBI_TRY(check_memory(fluid, bytes, err));
     TOBI_TRY(check_systems(w, err));
+    TOBI_TRY(tobi_mixture_start(w, err));
     TOBI_TRY(tobi_world_start_drive(w, err));
     TOBI_TRY(fill_systems(w, err));
     TOBI_TRY(tobi_fit_note(w, err));

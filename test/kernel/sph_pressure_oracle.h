@@ -37,7 +37,7 @@ static void oracle_shift(const oracle *o, const row *in, row *out, double *t)
 {
     (void)t;
     for (int i = 0; i < o->count; i++) {
-        double rho = o->rho0[o->fluid[i]], b = 2*o->background;
+        double rho = o->rho0[0], b = 2*o->background;      /* all fluids shift alike */
         pressure_accel(o, in, i, &out[i][ACC]);
         for (int c = 0; c < 3; c++) out[i][ACC + c] -= b*in[i][WALL + c]/rho;
         EACH_NEIGHBOUR(o, in, i, j, x, r) {

@@ -407,6 +407,8 @@ static const entry kernels[] = {
 #define PAIR(K, SUMS, MAXIMA, DOC)        /* see test_sph_oracle.c */
 #define FOR PAIR
 #define COUPLE PAIR
+#define PHASES PAIR
+#define PHASE PAIR
 #define IMAGE(K, SUMS, MAXIMA, DOC) {#K, offsetof(sph_kernels, K), oracle_##K},
 #define RARE IMAGE
 #define ISPH IMAGE

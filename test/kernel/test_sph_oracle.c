@@ -56,6 +56,8 @@ static const entry kernels[] = {
 #define COUPLE(K, SUMS, MAXIMA, DOC)      /* see test_couple.c */
 #define IMAGE(K, SUMS, MAXIMA, DOC)       /* see test_isph_oracle.c */
 #define RARE IMAGE
+#define PHASES IMAGE                      /* see test_phases_oracle.c */
+#define PHASE IMAGE
 #define ISPH IMAGE
 #include "sph/kernels.def"
 #undef PAIR
@@ -63,6 +65,8 @@ static const entry kernels[] = {
 #undef COUPLE
 #undef IMAGE
 #undef RARE
+#undef PHASES
+#undef PHASE
 #undef ISPH
 };
 enum { KERNELS = sizeof kernels/sizeof *kernels };

@@ -383,9 +383,9 @@ static void blocks_of_another_material(void **state)
     EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
            "\"particleRadius\": 0.1 },\n"
            "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [0.4, 1, 1] },\n"
-           "  { \"start\": [0.6, 0, 0], \"end\": [1, 1, 1], \"density\": 800 } ] }",
-           "old.json:4:56: FluidBlocks[1].density (here fluids[1].density): is 800 kg/m3 and that of "
-           "fluids[0] is 1000 kg/m3; dfsph carries one material");
+           "  { \"start\": [0.6, 0, 0], \"end\": [1, 1, 1], \"density\": 80 } ] }",
+           "old.json:4:56: FluidBlocks[1].density (here fluids[1].density): is 80 kg/m3 and that of "
+           "fluid 'fluid_0' is 1000 kg/m3: 1 : 12.5; dfsph computes fluids up to 1 : 10");
 }
 
 static void mistakes_of_bodies(void **state)

@@ -168,10 +168,10 @@ static void duplicates(void **state)
         "{ \"domain\": { \"min\": [0,0,0], \"max\": [1,1,1] }, \"spacing\": 0.1, \"end_time\": 1,\n"
         "\"fluids\": [ { \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0], \"max\": "
         "[1,1,0.5] } } ] },\n"
-        "{ \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0.4], \"max\": [1,1,1] } } ] } "
-        "] }",
+        "{ \"name\": \"a\", \"fill\": [ { \"box\": { \"min\": [0,0,0.4], \"max\": [1,1,1] } },\n"
+        "{ \"box\": { \"min\": [0,0,0.9], \"max\": [1,1,1] } } ] } ] }",
         { "s.json:3:11: fluids[1].name: ", "\"a\" is already the name of fluids[0]" },
-        { "s.json:3:26: fluids[1].fill[0]: ", "overlaps the box fluids[0].fill[0]" });
+        { "s.json:4:1: fluids[1].fill[1]: ", "overlaps the box fluids[1].fill[0]" });
 }
 
 static void domain_and_regions(void **state)

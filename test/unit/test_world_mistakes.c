@@ -118,10 +118,10 @@ static void fluids(void **state)
     tobi_world_destroy(world);
 
     world = make_world(&def, 1);
-    fluid.density = 800;
+    fluid.density = 80;
     fluid.name = "oil";
     REFUSED(tobi_world_add_fluid(world, &fluid, NULL, 0, &err), TOBI_UNSUPPORTED,
-            "fluid 'oil' differs from 'fluid': a density in kg/m3 of 800, there 1000; ");
+            "fluid 'oil': density is 80 kg/m3 and that of fluid 'fluid' is 1000 kg/m3: 1 : 12.5; dfsph ");
     fluid.density = 1000;
     REFUSED((world->system[0].fluid_count = TOBI_FLUID_LIMIT,
              tobi_world_add_fluid(world, &fluid, NULL, 0, &err)), TOBI_UNSUPPORTED, "more than 8 fluids");
