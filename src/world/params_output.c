@@ -97,8 +97,8 @@ static const tobi_param output_rows[] = {
       .text = "usual",
       .doc = "Fields to write for every particle. usual, alone or among others, stands for velocity, "
              "pressure, density, object_id and particle_id, for mlsmpm von_mises and material too, for "
-             "fluids that differ material, where there is a blade piece and cut_side, and texture_coordinates "
-             "if a solid's mesh has them." },
+             "fluids that differ material, where there is a blade piece and cut_side, and "
+             "texture_coordinates if a solid's mesh has them." },
     { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
       .doc = "Write the moving surface of each body as VTP and STL." },
     { .key = "tractions", BOOL, AT(tobi_output_def, tractions),
