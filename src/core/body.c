@@ -33,8 +33,10 @@ static tobi_status allocate(tobi_body *b, tobi_error *err)
     b->area = calloc(n + 1, sizeof *b->area);
     b->weight = calloc(n + 1, sizeof *b->weight);
     b->wet = calloc(n + 1, sizeof *b->wet);
+    b->covered = calloc(n + 1, sizeof *b->covered);
     b->point_of = calloc(n + 1, sizeof *b->point_of);
-    if (!failed && b->piece_area && b->area && b->weight && b->wet && b->point_of) return TOBI_OK;
+    failed |= !b->piece_area || !b->area || !b->weight || !b->wet || !b->covered || !b->point_of;
+    if (!failed) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %zu surface points", b->name, n);
 }
 
@@ -439,6 +441,7 @@ void tobi_body_free(tobi_body *b)
     free(b->point_before);
     free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
     free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight); free(b->wet);
+    free(b->covered);
     free(b->particle_rest); free(b->particle);
     free(b->rest_vertex);
     free(b->edge);

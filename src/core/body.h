@@ -29,8 +29,10 @@ typedef struct tobi_edge_foot {
 typedef struct tobi_body_load { double pressure[6], friction[6], edge[3]; } tobi_body_load;
 enum { TOBI_SYSTEM_LIMIT = 2 };
 
-/* What a point of a body's surface knows of the water: none; particles see it; particles do not fit in. */
+/* What a point of a body's surface knows of the water: none; particles see it; it faces a side or another
+   body so near that not all of what presses it are particles. */
 enum { TOBI_DRY, TOBI_WET, TOBI_WET_GAP };
+#define TOBI_COVERED 16777216.0
 
 typedef struct tobi_body {
     char name[64];
@@ -80,6 +82,8 @@ typedef struct tobi_body {
     double (*point)[3], (*normal)[3], (*point_velocity)[3];
     double (*point_before)[3];       /* velocities by vertex_before, by tobi_body_set_previous_velocities */
     uint8_t *wet;                    /* [points] TOBI_WET_*                                    */
+    uint32_t *covered;               /* [points] share of a half space of water that particles cover, in
+                                        units of 1/TOBI_COVERED                                */
     double *area, *weight;           /* |sum of area vectors|, sum of areas                    */
 
     double (*particle_rest)[3];      /* body particles, rest pose, world coordinates           */

@@ -102,6 +102,7 @@ static void prepare_bodies(const void *view, int64_t begin, int64_t end, double 
         const tobi_body *b = &s->sim->bodies[k];
         fill_bins(&sph_of(s)->links, (int)k, b);
         memset(b->wet, 0, (size_t)b->point_count);
+        memset(b->covered, 0, (size_t)b->point_count*sizeof *b->covered);
     }
 }
 
@@ -193,7 +194,10 @@ static int add_point(void *user, int32_t k)
     if (!(s > 0) || hidden(l, k)) return 0;
     __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
     const double *n = b->normal[k], *v = b->point_velocity[k], *g = l->gravity;
-    double aw = b->area[k]*c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
+    const double w = c->plane_scale*tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(dot(r, r)));
+    const double aw = b->area[k]*w;
+    /* whole numbers: the same sum in any order */
+    __atomic_fetch_add(&b->covered[k], (uint32_t)(2*c->volume*w*TOBI_COVERED), __ATOMIC_RELAXED);
     double sigma = plane_value(l->s, c->plane.sigma, s);
     double reach = sigma > 0 ? plane_value(l->s, c->plane.lambda, s)/sigma : 0;
     double arm[3], gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);

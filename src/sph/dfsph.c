@@ -522,6 +522,7 @@ static tobi_status refresh(tobi_system *s, tobi_error *err)
     TOBI_TRY(classify_vessel(s, m, &clock, err));
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     m->diagonal = sph_measure_density(s, &m->view, m->kernel, 0, &clock);
+    (void)sph_reference_low(s);
     return TOBI_OK;
 }
 

@@ -34,11 +34,15 @@ double sph_hydrostatic(const tobi_system *s, const double x[3])
     return (sum == 0 ? 0 : s->fluid[0].density*sum) + tobi_reference_pressure(&sph_of(s)->reference, x);
 }
 
-/* Where particles do not fit in, nothing but still water presses: all of it. */
-static double reference_pressure(const tobi_reference *w, const double *x, int wet)
+double sph_still_pressure(const tobi_system *s, const tobi_body *b, int64_t point, const double *x)
 {
-    if (wet != TOBI_WET_GAP) return tobi_reference_pressure(w, x);
-    return w->push*fmax(tobi_reference_depth(w, x) - w->level, 0);
+    const tobi_reference *w = &sph_of(s)->reference;
+    const double still = tobi_reference_pressure(w, x);
+    if (b->wet[point] == TOBI_DRY || !(w->push > 0)) return 0;
+    if (b->wet[point] == TOBI_WET) return still;
+    const double deep = tobi_reference_depth(w, x) - sph_of(s)->middle + 0.5*s->smoothing.spacing;
+    const double all = w->push*fmax(deep, 0);
+    return still + fmax(1 - b->covered[point]/TOBI_COVERED, 0)*(all - still);
 }
 
 /* Force and torque of still water on a body, where it is wet. */
@@ -46,7 +50,7 @@ static void sum_reference(const tobi_system *s, const tobi_body *b, double f[6])
 {
     for (int64_t k = 0; k < b->point_count; k++) {
         if (!b->wet[k]) continue;
-        double p = -b->area[k]*reference_pressure(&sph_of(s)->reference, b->point[k], b->wet[k]), arm[3];
+        double p = -b->area[k]*sph_still_pressure(s, b, k, b->point[k]), arm[3];
         const double *n = b->normal[k];
         for (int a = 0; a < 3; a++) arm[a] = b->point[k][a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {

@@ -44,6 +44,16 @@ static void count_drops(const void *view, int64_t begin, int64_t end)
         if (n[k]) __atomic_fetch_add(&c->n[k], n[k], __ATOMIC_RELAXED);
 }
 
+/* The depth in the middle of all that are counted, m. */
+static double find_middle(const int64_t n[DROPS], double scale)
+{
+    int64_t all = 0, upper = 0;
+    int k = 0;
+    for (int i = 0; i < DROPS; i++) all += n[i];
+    for (; k < DROPS - 1 && 2*(upper += n[k]) < all; k++);
+    return (k + 0.5)/scale;
+}
+
 double sph_reference_low(tobi_system *s)
 {
     sph_state *state = sph_of(s);
@@ -52,6 +62,7 @@ double sph_reference_low(tobi_system *s)
     const counting view = { sph_fields_of(&s->particles)->surface_depth, scale, n };
     if (!(state->lowest > 0)) return 0;
     tobi_loop(s->sim->exec.threads, count, 0, count_drops, &view);
+    state->middle = find_middle(n, scale);
     double few = 1 + 0.02*(s->box.dimension == 3 ? cbrt((double)count*(double)count) : sqrt((double)count));
     int k = DROPS - 1;
     for (int64_t deeper = n[k]; k > 0 && (double)deeper <= few; deeper += n[k]) k--;

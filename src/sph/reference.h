@@ -7,7 +7,8 @@
    fluids of several densities have none. */
 void sph_reference_set(tobi_system *s, double low);
 /* Drop of the free surface, m, but for the few deepest of its particles, which disorder may have made; 0
-   where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. */
+   where it has no more. After sph_measure_density, which leaves the depths in particles.surface_depth. Leaves
+   their median in the state. */
 double sph_reference_low(tobi_system *s);
 /* *level, the drop of the last step, becomes that of the step at hand, by the surface of the last, `low`:
    down with it, by `speed` (m/s, of the fastest particle or body) at most, up slowly. *before: the reference

@@ -13,6 +13,7 @@ typedef struct sph_state {
     double reference_volume;        /* m3 of fluid times the share of gravity so held                   */
     double open;                    /* particles at a surface beyond doubt, in full vessels as well     */
     double lowest;                  /* m, depth of the lowest particle at a free surface                */
+    double middle;                  /* m, median depth of the free surface, of the step at hand         */
     int marked;                     /* 1: the `held` of particles is that of the present rows       */
     int mirrors;                    /* 1: walls are mirrors (isph), 0: integrals of the kernel          */
 } sph_state;

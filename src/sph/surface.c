@@ -82,17 +82,6 @@ static double accelerate(const look *l)
     return vec3_dot(change, l->place->normal)/l->s->dt;
 }
 
-/* What still water presses, where no particle has it. */
-static double still_pressure(const tobi_system *s, const tobi_body *b, const sph_place *place)
-{
-    const int wet = b->wet[place->point];
-    const tobi_reference *w = &sph_of(s)->reference;
-    const double all = sph_hydrostatic(s, place->x), still = tobi_reference_pressure(w, place->x);
-    if (!(w->push > 0) || wet == TOBI_WET) return all;
-    if (wet == TOBI_DRY) return all - still;
-    return all - still + w->push*fmax(tobi_reference_depth(w, place->x) - w->level, 0);
-}
-
 void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place *place, double *pressure,
                       double shear[3])
 {
@@ -105,6 +94,7 @@ void sph_surface_look(const tobi_system *s, const tobi_body *b, const sph_place 
     *pressure = l.pressure;
     if (sph_of(s)->mirrors)
         *pressure = l.weight > DRY ? (l.pressure + s->fluid[0].density*l.away*accelerate(&l))/l.weight : 0;
-    *pressure += still_pressure(s, b, place);
+    *pressure += sph_hydrostatic(s, place->x) - tobi_reference_pressure(&sph_of(s)->reference, place->x) +
+                 sph_still_pressure(s, b, place->point, place->x);
     memcpy(shear, l.shear, sizeof l.shear);
 }

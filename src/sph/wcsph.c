@@ -240,6 +240,7 @@ static tobi_status refresh(tobi_system *s, tobi_error *err)
     TOBI_TRY(find_neighbors(s, m, &clock, err));
     TOBI_TRY(sph_find_boundaries(s, &m->view, m->kernel, &clock, err));
     sph_measure_density(s, &m->view, m->kernel, 0, &clock);
+    (void)find_surface(s);
     return TOBI_OK;
 }
 
