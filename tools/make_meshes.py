@@ -17,6 +17,7 @@ shapes and keys (metres):
                                                          origin is the middle of its back, or x away from it
   wire      radius=0.0005 length=0.2 sides=16            axis y, centred
   carrot    radius=0.016 tip=0.007 length=0.15 sides=32  axis x, thinner towards +x, centred
+  eel       length=1 depth=0.04 pieces=100               for 2-D: a prism along z, nose at the origin, tail at +x
   glass     bottom=0.026 top=0.032 height=0.1 sides=40   axis z, stands on z = 0; the inner surface alone, open
 
 Every mesh but the apple and the glass is one closed surface; triangles counter-clockwise seen from outside.
@@ -231,6 +232,27 @@ def carrot(radius=0.016, tip=0.007, length=0.15, sides=32):
     return mesh
 
 
+def eel(length=1.0, depth=0.04, pieces=100):
+    """Half widths of Kern & Koumoutsakos (2006); linear from the head to the tail."""
+    head, tail, thin, mesh, pieces = 0.04, 0.95, 0.01, Mesh(), int(pieces)
+
+    def half_width(s):
+        if s < head:
+            return math.sqrt(max(2 * head * s - s * s, 0))
+        return head - (head - thin) * (s - head) / (tail - head) if s < tail else thin * (1 - s) / (1 - tail)
+
+    stations = [head * (1 - math.cos(0.5 * math.pi * k / 8)) for k in range(8)]
+    stations += [head + (1 - head) * k / pieces for k in range(pieces + 1)]
+    ring = [[[mesh.vertex(length * s, side * length * half_width(s), z) for z in (-depth / 2, depth / 2)]
+             for side in (-1, 1)] for s in stations]
+    for (right, left), (right2, left2) in zip(ring, ring[1:]):
+        mesh.quad(right[0], right2[0], right2[1], right[1])
+        mesh.quad(left[0], left[1], left2[1], left2[0])
+        mesh.quad(right[0], left[0], left2[0], right2[0])
+        mesh.quad(right[1], right2[1], left2[1], left[1])
+    return mesh
+
+
 # --- the flying fish --------------------------------------------------------------------------------
 # Lengths in millimetres here. Rings of points at stations along x make the body and the tail fin; the
 # wings grow out of the quads of the body's flat side strip, so that everything is one surface.
@@ -408,7 +430,7 @@ def glass(bottom=0.026, top=0.032, height=0.1, sides=40, layers=12, rings=5):
 
 SHAPES = {"fish": fish, "box": box, "sphere": sphere, "cylinder": cylinder, "torus": torus, "wedge": wedge,
           "apple": apple, "blade": blade, "wire": wire, "carrot": carrot,
-          "glass": glass}
+          "glass": glass, "eel": eel}
 
 # file below scenes: shape, its keys, title
 OF_SCENES = {
@@ -421,6 +443,7 @@ OF_SCENES = {
                                      "wedge, 100 x 100 x 30 mm"),
     "cheese_wire/meshes/wire.obj": ("wire", {}, "wire, 200 mm, 1 mm across"),
     "carrot/meshes/carrot.obj": ("carrot", {}, "carrot, 0.15 m"),
+    "eel/meshes/eel.obj": ("eel", {}, "eel for 2-D scenes, 1 m"),
     "hose_glass/meshes/glass.obj": ("glass", {}, "inner surface of a glass, 0.1 m high"),
 }
 

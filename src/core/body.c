@@ -120,24 +120,30 @@ static void divide_by_weight(const tobi_body *b, double (*out)[3])
         for (int a = 0; a < 3; a++) out[k][a] = b->weight[k] > 0 ? out[k][a]/b->weight[k] : 0;
 }
 
-/* Points of a body that moves by forces, in a pose. */
-static void pose_points(const tobi_body *b, const double position[3], const double orientation[4], int64_t n,
-                        const double (*rest)[3], double (*out)[3])
+/* Points of a body that moves by forces, in a pose; out may be rest. */
+static void pose_points(const tobi_body *b, const double centre[3], const double position[3],
+                        const double orientation[4], int64_t n, const double (*rest)[3], double (*out)[3])
 {
     double m[3][3];
     tobi_quaternion_matrix(orientation, m);
     for (int64_t i = 0; i < n; i++) {
         double arm[3];
-        vec3_sub(arm, rest[i], b->rest.centre);
+        vec3_sub(arm, rest[i], centre);
         for (int a = 0; a < 3; a++) out[i][a] = b->lower[a] + (position[a] + vec3_dot(m[a], arm));
     }
+}
+
+void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3])
+{
+    pose_points(b, b->swimmer->centre, b->rigid.position, b->rigid.orientation, n, (const double (*)[3])at,
+                at);
 }
 
 static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                             double (*out)[3], tobi_error *err)
 {
-    if (b->rigid.kind != TOBI_PRESCRIBED) {
-        pose_points(b, b->rigid.position, b->rigid.orientation, n, rest, out);
+    if (b->rigid.kind != TOBI_PRESCRIBED && !b->swimmer) {
+        pose_points(b, b->rest.centre, b->rigid.position, b->rigid.orientation, n, rest, out);
         return TOBI_OK;
     }
     if (!b->motion) {
@@ -152,6 +158,7 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
             return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
                              "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
                              out[i][2], t);
+    if (b->swimmer) tobi_body_pose_shape(b, n, out);
     return TOBI_OK;
 }
 
@@ -233,6 +240,15 @@ static void turn_rate(const double from[3][3], const double to[3][3], double dt,
         }
 }
 
+/* Of a body that moves by forces, by its orientation. */
+static void turn_frame(tobi_body *b)
+{
+    double m[3][3];
+    tobi_quaternion_matrix(b->rigid.orientation, m);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];
+}
+
 static void update_surface(tobi_body *b)
 {
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
@@ -261,41 +277,13 @@ static void mirror_motion(tobi_body *b)
     memcpy(b->rigid.angular_velocity, b->info.angular_velocity, sizeof b->rigid.angular_velocity);
 }
 
-void tobi_body_clear_loads(tobi_body *b) { memset(b->load, 0, sizeof b->load); }
-
-void tobi_body_sum_loads(tobi_body *b)
-{
-    tobi_body_load sum = b->load[0];
-    for (int k = 1; k < TOBI_SYSTEM_LIMIT; k++) {
-        for (int a = 0; a < 6; a++) {
-            sum.pressure[a] += b->load[k].pressure[a];
-            sum.friction[a] += b->load[k].friction[a];
-        }
-        vec3_add_scaled(sum.edge, sum.edge, 1, b->load[k].edge);
-    }
-    memcpy(b->info.pressure_force, sum.pressure, sizeof b->info.pressure_force);
-    memcpy(b->info.pressure_torque, sum.pressure + 3, sizeof b->info.pressure_torque);
-    memcpy(b->info.viscous_force, sum.friction, sizeof b->info.viscous_force);
-    memcpy(b->info.viscous_torque, sum.friction + 3, sizeof b->info.viscous_torque);
-    memcpy(b->info.edge_force, sum.edge, sizeof b->info.edge_force);
-}
-
-void tobi_body_report(tobi_body *b)
-{
-    const tobi_rigid *r = &b->rigid;
-    vec3_add_scaled(b->centre, b->lower, 1, r->position);
-    memcpy(b->info.position, b->centre, sizeof b->centre);
-    memcpy(b->info.orientation, r->orientation, sizeof b->info.orientation);
-    memcpy(b->info.velocity, r->velocity, sizeof b->info.velocity);
-    memcpy(b->info.angular_velocity, r->angular_velocity, sizeof b->info.angular_velocity);
-}
-
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
 {
     TOBI_TRY(move_vertices(b, t, b->vertex, err));
     update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
     if (b->rigid.kind != TOBI_PRESCRIBED) {
+        if (b->swimmer) turn_frame(b);
         tobi_body_report(b);
         return TOBI_OK;
     }
@@ -373,6 +361,15 @@ static tobi_status load_mesh(tobi_body *b, const tobi_body_def *def, const tobi_
     return tobi_mesh_refine(&b->mesh, 3*b->spacing, err);
 }
 
+static void tell_size(tobi_body *b, int dimension)
+{
+    b->info.volume = b->rest.volume;
+    b->info.mass = b->rigid.mass;
+    memcpy(b->info.inertia, b->rigid.inertia, sizeof b->info.inertia);
+    b->info.particles = b->particle_count;
+    b->info.sampled_volume = (double)b->particle_count*pow(b->spacing, dimension);
+}
+
 tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_box *box,
                              double point_spacing, tobi_error *err)
 {
@@ -403,6 +400,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         status = tobi_sample_volume(&b->mesh, NULL, b->spacing, dimension, &b->particle_rest,
                                     &b->particle_count, err);
     if (status == TOBI_OK) status = allocate(b, err);
+    if (status == TOBI_OK) status = tobi_swimmer_create(b, dimension, err);
     if (status == TOBI_OK) status = move_vertices(b, 0, b->vertex, err);
     if (status == TOBI_OK)
         status = tobi_bvh_build(b->mesh.vertex_count, (const double(*)[3])b->vertex,
@@ -416,11 +414,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         tobi_body_free(b);
         return status;
     }
-    b->info.volume = b->rest.volume;
-    b->info.mass = b->rigid.mass;
-    memcpy(b->info.inertia, b->rigid.inertia, sizeof b->info.inertia);
-    b->info.particles = b->particle_count;
-    b->info.sampled_volume = (double)b->particle_count*pow(b->spacing, dimension);
+    tell_size(b, dimension);
     return TOBI_OK;
 }
 
@@ -434,6 +428,7 @@ int tobi_body_any_free(const tobi_body *bodies, int count)
 void tobi_body_free(tobi_body *b)
 {
     tobi_mesh_free(&b->mesh);
+    tobi_swimmer_free(b->swimmer);
     tobi_bvh_free(b->bvh);
     tobi_quadrature_free(&b->surface);
     free(b->vertex); free(b->next); free(b->vertex_velocity);
@@ -455,8 +450,9 @@ void tobi_body_free(tobi_body *b)
 static void place_next(tobi_body *b)
 {
     const tobi_rigid *r = &b->rigid;
-    pose_points(b, r->next_position, r->next_orientation, b->mesh.vertex_count,
-                (const double (*)[3])b->mesh.vertices, b->next);
+    const double (*shape)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->shape : b->mesh.vertices);
+    pose_points(b, b->swimmer ? b->swimmer->next_centre : b->rest.centre, r->next_position,
+                r->next_orientation, b->mesh.vertex_count, shape, b->next);
     for (int64_t i = 0; i < b->mesh.vertex_count; i++) vec3_sub(b->next[i], b->next[i], b->lower);
 }
 
@@ -492,6 +488,11 @@ static void drive_points(const tobi_rigid *r, const double velocity[3], const do
     }
 }
 
+static void add_flow(int64_t n, const double (*flow)[3], double (*out)[3])
+{
+    for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, flow[i]);
+}
+
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3])
 {
     memcpy(b->rigid.driven, velocity, 3*sizeof *velocity);
@@ -499,18 +500,35 @@ void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double
     drive_points(&b->rigid, velocity, spin, b->mesh.vertex_count, (const double (*)[3])b->vertex,
                  b->vertex_velocity);
     drive_points(&b->rigid, velocity, spin, b->point_count, (const double (*)[3])b->point, b->point_velocity);
+    if (!b->swimmer) return;
+    add_flow(b->mesh.vertex_count, (const double (*)[3])b->swimmer->flow, b->vertex_velocity);
+    add_flow(b->point_count, (const double (*)[3])b->swimmer->point_flow, b->point_velocity);
 }
 
 void tobi_body_update_surface(tobi_body *b) { update_surface(b); }
 
+static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (*point)[3])
+{
+    tobi_quadrature_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex,
+                                b->piece_velocity);
+    gather_points(b, (const double (*)[3])b->piece_velocity, point);
+    divide_by_weight(b, point);
+}
+
 /* The drift of a free body, and the velocities its vertices have now. */
-static void predict_free(tobi_body *b, double dt)
+static tobi_status predict_free(tobi_body *b, double t, double dt, tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
+    if (b->swimmer) {
+        TOBI_TRY(tobi_swimmer_predict(b, t, dt, err));
+        interpolate_points(b, (const double (*)[3])b->swimmer->flow, b->swimmer->point_flow);
+    }
     tobi_rigid_drift(r, dt);
     place_next(b);
     drive_points(r, r->velocity, r->angular_velocity, b->mesh.vertex_count, (const double (*)[3])b->vertex,
                  b->vertex_velocity);
+    if (b->swimmer) add_flow(b->mesh.vertex_count, (const double (*)[3])b->swimmer->flow, b->vertex_velocity);
+    return TOBI_OK;
 }
 
 tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, tobi_error *err)
@@ -522,7 +540,7 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
     }
     int prescribed = b->rigid.kind == TOBI_PRESCRIBED;
     if (prescribed) TOBI_TRY(move_vertices(b, t + dt, b->next, err));
-    else predict_free(b, dt);
+    else TOBI_TRY(predict_free(b, t, dt, err));
     double fastest = 0;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++) {
         for (int a = 0; a < 3 && prescribed; a++)
@@ -535,14 +553,6 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
                          "t = %.9g s; allowed are up to %g m/s", b->name, fastest, t, TOBI_SPEED_LIMIT);
     *speed = fmax(*speed, fastest);
     return TOBI_OK;
-}
-
-static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (*point)[3])
-{
-    tobi_quadrature_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex,
-                                b->piece_velocity);
-    gather_points(b, (const double (*)[3])b->piece_velocity, point);
-    divide_by_weight(b, point);
 }
 
 void tobi_body_set_point_velocities(tobi_body *b)
@@ -565,16 +575,17 @@ static void swap_vertices(tobi_body *b)
 static void advance_free(tobi_body *b)
 {
     tobi_rigid *r = &b->rigid;
-    double m[3][3];
     memcpy(r->position, r->next_position, sizeof r->position);
     memcpy(r->orientation, r->next_orientation, sizeof r->orientation);
     memset(r->push, 0, sizeof r->push);
     memset(r->turn, 0, sizeof r->turn);
     tobi_rigid_apply_locks(r);
-    tobi_quaternion_matrix(r->orientation, m);
-    for (int k = 0; k < 3; k++)
-        for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];
+    turn_frame(b);
     swap_vertices(b);
+    if (b->swimmer) {
+        tobi_swimmer_advance(b);
+        update_surface(b);
+    }
     tobi_body_report(b);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "core/cells.h"
 #include "core/rigid.h"
+#include "core/swimmer.h"
 #include "geom/bvh.h"
 #include "geom/massprops.h"
 #include "geom/mesh.h"
@@ -69,7 +70,8 @@ typedef struct tobi_body {
     double (*vertex)[3];             /* now                                                    */
     double (*next)[3];               /* at the end of the step                                 */
     double (*vertex_velocity)[3];    /* mean over the step                                     */
-    double (*vertex_before)[3];      /* of a body with a motion, in the step before; first 0   */
+    double (*vertex_before)[3];      /* of a body with a motion, in the step before; first 0; of a
+                                        swimmer its flow                                       */
     tobi_bvh *bvh;                   /* of `vertex`; of a rigid body, as the quadrature points, only
                                         where tobi_body_place or tobi_body_update_surface last put
                                         it: contact uses rest_bvh */
@@ -94,6 +96,7 @@ typedef struct tobi_body {
     double frame[3][3];              /* rows: where the rest axes point now, at the centre     */
     tobi_rigid rigid;                /* pose and velocities, of bodies of every kind           */
     int deforms;                     /* its motion is not rigid: `rigid` is an approximation   */
+    tobi_swimmer *swimmer;           /* of a body that deforms and moves by forces, owned; else NULL */
     double (*rest_vertex)[3];        /* vertices about the centre of mass, in rest axes        */
     tobi_bvh *rest_bvh;              /* of rest_vertex; NULL before tobi_body_build_rest       */
     tobi_body_load load[TOBI_SYSTEM_LIMIT];      /* of this step: each system adds to its own  */
@@ -117,6 +120,9 @@ tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err);
 /* Puts a body with a motion where a checkpoint has it: vertices, and the centre and frame of tobi_body. */
 typedef struct tobi_body_at { double centre[3], frame[3][3]; } tobi_body_at;
 void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_at *place);
+/* From where the motion of a swimmer has n points at the body's present time to where they are in the
+   world. */
+void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3]);
 /* Moves the body's own particles to time t, for output. */
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err);
 /* Evaluates the motion at t + dt: `next` and the mean velocities of the step, (next - vertex)/dt in

@@ -56,8 +56,8 @@ static void multiply(const double m[9], const double v[3], double out[3])
     for (int a = 0; a < 3; a++) out[a] = m[3*a]*v[0] + m[3*a + 1]*v[1] + m[3*a + 2]*v[2];
 }
 
-/* The cofactors of a matrix over its determinant; 0 if that is not positive. */
-static int invert(const double m[9], double out[9])
+/* The cofactors of a matrix over its determinant. */
+int tobi_rigid_invert(const double m[9], double out[9])
 {
     double c[9];
     for (int i = 0; i < 3; i++)
@@ -95,7 +95,7 @@ static int is_of_mass(const double m[9])
     double half = 0.5*(m[0] + m[4] + m[8]), second[9], unused[9];
     for (int k = 0; k < 9; k++) second[k] = (k%4 ? 0 : half*(1 + 1e-6)) - m[k];
     double minor = second[0]*second[4] - second[1]*second[3];
-    return second[0] > 0 && minor > 0 && invert(second, unused);
+    return second[0] > 0 && minor > 0 && tobi_rigid_invert(second, unused);
 }
 
 /* A mesh gives an inertia that a body can have; numbers of the scene may not. */
@@ -117,7 +117,7 @@ static tobi_status set_inertia(tobi_rigid *r, const tobi_body_def *def, const to
     const double *m = r->inertia;
     double minor = m[0]*m[4] - m[1]*m[3];
     if (dimension == 2 && m[8] > 0) return TOBI_OK;
-    if (dimension == 3 && m[0] > 0 && minor > 0 && invert(m, r->inverse)) {
+    if (dimension == 3 && m[0] > 0 && minor > 0 && tobi_rigid_invert(m, r->inverse)) {
         if (!given || is_of_mass(m)) return TOBI_OK;
         return tobi_fail(err, TOBI_INVALID,
                          "body '%s': no body has the inertia (%g, %g, %g) kg m2 with products (%g, %g, %g): "
@@ -146,6 +146,24 @@ static tobi_status set_locks(tobi_rigid *r, const tobi_body_def *def, int dimens
     return TOBI_OK;
 }
 
+/* A motion of a body that moves by forces changes its shape, and nothing else of it is given. */
+static tobi_status check_swimmer(const tobi_body_def *def, const char *name, tobi_error *err)
+{
+    if (!def->motion) return TOBI_OK;
+    if (def->motion_rigid)
+        return tobi_fail(err, TOBI_INVALID,
+                         "body '%s' is %s and has a rigid motion; the motion of a body that moves by forces "
+                         "changes its shape: a script with deform, see docs/swimmers.md", name,
+                         def->dynamics == TOBI_FREE ? "free" : "controlled");
+    if (vec3_dot(def->inertia, def->inertia) > 0)
+        return tobi_fail(err, TOBI_INVALID, "body '%s' changes its shape, so that its inertia follows from "
+                         "the shape; give mass or density instead of inertia", name);
+    if (def->vessel || def->blade)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces; a %s does "
+                         "not", name, def->vessel ? "vessel" : "blade");
+    return TOBI_OK;
+}
+
 static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
 {
     const char *name = def->name ? def->name : "";
@@ -160,10 +178,7 @@ static tobi_status check_moving(const tobi_body_def *def, tobi_error *err)
         if (!def->control) return TOBI_OK;
         return tobi_fail(err, TOBI_INVALID, "body '%s' has a control program but is not controlled", name);
     }
-    if (def->motion)
-        return tobi_fail(err, TOBI_INVALID,
-                         "body '%s' is %s and has a motion; a motion is for prescribed bodies", name,
-                         def->dynamics == TOBI_FREE ? "free" : "controlled");
+    TOBI_TRY(check_swimmer(def, name, err));
     if (def->dynamics == TOBI_CONTROLLED && !def->control)
         return tobi_fail(err, TOBI_INVALID, "body '%s' is controlled but has no control program", name);
     if (def->dynamics == TOBI_FREE && def->control)
@@ -177,6 +192,7 @@ tobi_status tobi_rigid_init(tobi_rigid *r, const tobi_body_def *def, const tobi_
     memset(r, 0, sizeof *r);
     TOBI_TRY(check_moving(def, err));
     r->kind = def->dynamics;
+    r->deforms = r->kind != TOBI_PRESCRIBED && def->motion != NULL;
     r->restitution = def->restitution;
     r->friction = def->friction_coefficient;
     r->mass = def->mass > 0 ? def->mass : def->density*rest->volume;
@@ -220,7 +236,7 @@ static int find_middle(const double inverse[9], const double L[3], double dt, do
             vec3_cross(v, m, je);
             for (int a = 0; a < 3; a++) j[3*a + c] = e[a] - 0.5*dt*(u[a] + v[a]);
         }
-        if (!invert(j, ji)) return 0;
+        if (!tobi_rigid_invert(j, ji)) return 0;
         multiply(ji, f, step);
         for (int a = 0; a < 3; a++) m[a] -= step[a];
         if (vec3_length(step) <= 4e-16*size) return 1;
@@ -247,6 +263,55 @@ static void turn_free(const tobi_rigid *r, double q[4], double dt, int depth)
     normalize(q);
 }
 
+/* The same for a swimmer: the rotation A with sum m y0 x A y1 = dt L, which is the discrete equation of Moser
+   & Veselov (Commun. Math. Phys. 139, 1991) for a shape that changes (R.17), by Newton's method. */
+static void turn_shape(const tobi_rigid *r, double q[4], double dt)
+{
+    double m[3][3], L[3], way[4] = { 1, 0, 0, 0 };
+    const double size = fabs(r->moments[0][0]) + fabs(r->moments[1][1]) + fabs(r->moments[2][2]);
+    tobi_quaternion_matrix(q, m);
+    for (int a = 0; a < 3; a++)
+        L[a] = m[0][a]*r->momentum[0] + m[1][a]*r->momentum[1] + m[2][a]*r->momentum[2];
+    for (int k = 0; k < 50; k++) {
+        double A[3][3], now[3][3], slope[9], inverse[9], f[3], step[3];
+        tobi_quaternion_matrix(way, A);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) now[i][j] = vec3_dot(r->moments[i], A[j]);
+        const double trace = now[0][0] + now[1][1] + now[2][2];
+        for (int i = 0; i < 3; i++) {
+            f[i] = dt*L[i] - (now[(i + 1)%3][(i + 2)%3] - now[(i + 2)%3][(i + 1)%3]);
+            for (int j = 0; j < 3; j++) slope[3*i + j] = (i == j ? trace : 0) - now[j][i];
+        }
+        if (vec3_length(f) <= 1e-17*size || !tobi_rigid_invert(slope, inverse)) break;
+        multiply(inverse, f, step);
+        const double most = vec3_length(step);
+        for (int a = 0; a < 3 && most > 0.5; a++) step[a] *= 0.5/most;
+        tobi_quaternion_turn(way, step);
+        if (most <= 1e-16) break;
+    }
+    tobi_quaternion_product(q, way, q);
+    normalize(q);
+}
+
+/* About the world's axis k alone: g sin(angle + shift) = dt L. */
+static void turn_shape_about(const tobi_rigid *r, int k, double q[4], double dt)
+{
+    const int i = (k + 1)%3, j = (k + 2)%3;
+    double m[3][3], now[3][3] = { { 0 } };
+    tobi_quaternion_matrix(q, m);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            for (int c = 0; c < 3; c++)
+                for (int d = 0; d < 3; d++) now[a][b] += m[a][c]*r->moments[c][d]*m[b][d];
+    const double along = now[i][i] + now[j][j], across = now[i][j] - now[j][i], g = hypot(along, across);
+    if (!(g > 0)) return;
+    const double half = 0.5*(asin(fmin(fmax(dt*r->momentum[k]/g, -1), 1)) - atan2(across, along));
+    double turn[4] = { cos(half), 0, 0, 0 };
+    turn[1 + k] = sin(half);
+    tobi_quaternion_product(turn, q, q);
+    normalize(q);
+}
+
 void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
 {
     double *q = r->next_orientation, w[3];
@@ -259,8 +324,11 @@ void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
     vec3_add_scaled(r->next_position, r->position, dt, r->velocity);
     vec3_add_scaled(r->next_position, r->next_position, 1, r->push);
     memcpy(q, r->orientation, sizeof r->orientation);
-    if (turns == 0 && vec3_dot(r->momentum, r->momentum) > 0) turn_free(r, q, dt, 0);
-    if (turns != 0 && turns != ALL_TURNS)
+    if (turns == 0 && r->deforms) turn_shape(r, q, dt);
+    else if (turns == 0 && vec3_dot(r->momentum, r->momentum) > 0) turn_free(r, q, dt, 0);
+    for (int a = 0; a < 3 && r->deforms && turns != 0; a++)
+        if (turns == (ALL_TURNS & ~(8 << a))) turn_shape_about(r, a, q, dt);
+    if (turns != 0 && turns != ALL_TURNS && !r->deforms)
         for (int a = 0; a < 3; a++)
             if (r->angular_velocity[a] != 0) {
                 double half = 0.5*dt*r->angular_velocity[a], turn[4] = { cos(half), 0, 0, 0 };

@@ -42,6 +42,9 @@ typedef struct tobi_rigid {
     double next_position[3];         /* at the end of the step that is being made                       */
     double next_orientation[4];
     double inertial[6];              /* N, N m about the centre: of what acts besides gravity           */
+    int deforms;                     /* 1: a swimmer, which drifts by `moments`                         */
+    double moments[3][3];            /* kg m2, rest axes: sum of m y0 y1^T, places about the centre at both
+                                        ends of the step                                                */
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
 
     /* Within the step of a liquid, sph/boundary.h: */
@@ -88,6 +91,8 @@ double tobi_rigid_kinetic_energy(const tobi_rigid *r);
 /* Finds `inertial`: force and torque of the field over the body's mass, at its present velocities. */
 void tobi_rigid_feel(tobi_rigid *r, const tobi_acceleration *field);
 
+/* The inverse of a 3 x 3 matrix; 0 if its determinant is not positive. */
+int tobi_rigid_invert(const double m[9], double out[9]);
 void tobi_quaternion_matrix(const double q[4], double m[3][3]);
 /* From a's rest axes to b's: x in a is turn x + shift in b, shift in m. */
 void tobi_rigid_between(const tobi_rigid *a, const tobi_rigid *b, double turn[3][3], double shift[3]);

@@ -257,15 +257,16 @@ static void check_shape(const tobi_scene *scene, tobi_source *source, int body, 
         tobi_source_mistake(source, &place, "must have a %s", size);
 }
 
-/* A body moves by a motion, or by forces. */
+/* A body moves by a motion, or by forces; then a motion may change its shape. */
 static void check_dynamics(const tobi_scene *scene, tobi_source *source, int i, const tobi_place *entry)
 {
     const tobi_body_def *def = &scene->bodies[i].def;
     json_t *value = json_array_get(json_object_get(scene->root, "bodies"), (size_t)i);
     tobi_place motion = { entry, "motion", 0 }, control = { entry, "control", 0 };
     int controls = json_object_get(value, "control") != NULL, moves = def->dynamics != TOBI_PRESCRIBED;
-    if (moves && json_object_get(value, "motion"))
-        tobi_source_mistake(source, &motion, "is for prescribed bodies, this one is %s",
+    if (moves && def->motion && def->motion_rigid)
+        tobi_source_mistake(source, &motion, "is rigid, and this body is %s; a motion of a body that moves "
+                            "by forces changes its shape: a script with deform",
                             def->dynamics == TOBI_FREE ? "free" : "controlled");
     if (controls && def->dynamics != TOBI_CONTROLLED)
         tobi_source_mistake(source, &control, "is for a body whose dynamics is \"controlled\"");

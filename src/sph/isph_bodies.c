@@ -58,9 +58,11 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     const tobi_body *b = &s->sim->bodies[link->body];
     double before[3];
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
+    double flow[3] = { 0 };
     if (b->rigid.kind != TOBI_PRESCRIBED) turn(b, e, b->rigid.before, before);
     else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
-    for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a];
+    if (b->swimmer) interpolate(b, e, (const double (*)[3])b->vertex_before, flow);
+    for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a] - flow[a];
     return m;
 }
 

@@ -97,13 +97,14 @@ static void add_push(const tobi_body *b, int64_t k, double push, double f[6])
     for (int a = 0; a < 6; a++) f[a] += push*lever[a];
 }
 
-/* m/s2: of a point of a driven body along its normal. */
+/* m/s2: of a point of a driven body along its normal; of a swimmer by its flow alone. */
 static double normal_acceleration(const body_points *q, int64_t k)
 {
     const tobi_body *b = body_of(q);
     double sum = 0;
-    if (b->rigid.kind != TOBI_PRESCRIBED || !b->motion) return 0;
-    for (int a = 0; a < 3; a++) sum += b->normal[k][a]*(b->point_velocity[k][a] - b->point_before[k][a]);
+    const double (*now)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->point_flow : b->point_velocity);
+    if (!b->motion) return 0;
+    for (int a = 0; a < 3; a++) sum += b->normal[k][a]*(now[k][a] - b->point_before[k][a]);
     return sum/q->v->dt;
 }
 

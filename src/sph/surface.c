@@ -77,8 +77,9 @@ static double accelerate(const look *l)
 {
     const int64_t k = l->place->point;
     double change[3];
-    if (l->b->rigid.kind != TOBI_PRESCRIBED || !l->b->motion) return 0;
-    vec3_sub(change, l->b->point_velocity[k], l->b->point_before[k]);
+    const tobi_swimmer *w = l->b->swimmer;
+    if (!l->b->motion) return 0;
+    vec3_sub(change, w ? w->point_flow[k] : l->b->point_velocity[k], l->b->point_before[k]);
     return vec3_dot(change, l->place->normal)/l->s->dt;
 }
 

@@ -80,6 +80,19 @@ static tobi_status put_contacts(const tobi_world *w, tobi_store *f, tobi_error *
     return status;
 }
 
+static tobi_status put_shape(const tobi_body *b, int k, tobi_store *f, tobi_error *err)
+{
+    const int64_t n = b->swimmer->count + 1;
+    double (*rows)[3] = malloc((size_t)n*sizeof *rows);
+    char name[32];
+    if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the shape of '%s'", b->name);
+    tobi_swimmer_save(b->swimmer, rows);
+    tobi_world_name_body(k, "_shape", name);
+    const tobi_status status = tobi_store_put(f, name, TOBI_F64, n, 3, rows, err);
+    free(rows);
+    return status;
+}
+
 /* See load_bodies.c. */
 static tobi_status put_place(const tobi_body *b, int k, tobi_store *f, tobi_error *err)
 {
@@ -91,6 +104,7 @@ static tobi_status put_place(const tobi_body *b, int k, tobi_store *f, tobi_erro
     TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->mesh.vertex_count, 3, b->vertex, err));
     tobi_world_name_body(k, "_before", name);
     TOBI_TRY(tobi_store_put(f, name, TOBI_F64, b->mesh.vertex_count, 3, b->vertex_before, err));
+    if (b->swimmer) TOBI_TRY(put_shape(b, k, f, err));
     tobi_world_name_body(k, "_place", name);
     return tobi_store_put(f, name, TOBI_F64, 4, 3, &place, err);
 }

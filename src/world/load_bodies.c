@@ -15,6 +15,7 @@ struct tobi_loaded_body {
     double load[7];                  /* N, N m: its constant force and torque; 1: its motion was set */
     tobi_body_info info;
     double (*vertex)[3], (*before)[3];   /* of a body with a motion, owned                        */
+    double (*shape)[3];              /* of a swimmer, owned: tobi_swimmer_save                    */
     tobi_body_at place;
     double (*edge_share)[3];         /* [piece_count] of a blade, owned until taken               */
     tobi_edge_foot *edge_foot;
@@ -99,6 +100,22 @@ static tobi_status read_absorber(const tobi_world *w, int k, tobi_store *f, tobi
                      w->sim.bodies[k].name);
 }
 
+static tobi_status read_shape(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
+{
+    const int64_t count = b->swimmer->count + 1;
+    char name[32];
+    double inertia[9], inverse[9];
+    l->shape = malloc((size_t)count*sizeof *l->shape);
+    if (!l->shape) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the shape of '%s'", b->name);
+    tobi_world_name_body(k, "_shape", name);
+    TOBI_TRY(tobi_store_get(f, name, TOBI_F64, count, 3, l->shape, err));
+    int good = tobi_swimmer_inertia(b->swimmer, (const double (*)[3])l->shape, inertia, inverse);
+    for (int64_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) good &= isfinite(l->shape[i][a]) != 0;
+    if (good) return TOBI_OK;
+    return tobi_fail(err, TOBI_DAMAGED, "the checkpoint's shape of body '%s' is that of no body", b->name);
+}
+
 static tobi_status read_contacts(tobi_store *f, tobi_loaded_bodies *l, tobi_error *err)
 {
     int64_t n = 0;
@@ -120,6 +137,7 @@ tobi_status tobi_world_read_bodies(tobi_world *w, tobi_store *f, tobi_loaded_bod
         if (b->blade) TOBI_TRY(read_edge(b, k, f, &l->body[k], err));
         if (b->motion) TOBI_TRY(read_place(b, k, f, &l->body[k], err));
         TOBI_TRY(read_absorber(w, k, f, &l->body[k], err));
+        if (b->swimmer) TOBI_TRY(read_shape(b, k, f, &l->body[k], err));
     }
     return w->dynamics ? read_contacts(f, l, err) : TOBI_OK;
 }
@@ -144,6 +162,9 @@ static void take_body(tobi_body *b, tobi_loaded_body *l)
     rigid.phase = fmin(fmax(rigid.phase, -1e9), 1e9);
     rigid.hold = (int)fmin(fmax(rigid.hold, 0), 63) & 63;
     b->rigid = rigid;
+    if (b->swimmer) tobi_swimmer_restore(b, (const double (*)[3])l->shape);
+    memcpy(rigid.inertia, b->rigid.inertia, sizeof rigid.inertia);
+    memcpy(rigid.inverse, b->rigid.inverse, sizeof rigid.inverse);
     if (b->motion) {
         tobi_body_restore(b, (const double (*)[3])l->vertex, &l->place);
         memcpy(b->vertex_before, l->before, (size_t)b->mesh.vertex_count*sizeof *l->before);
@@ -173,6 +194,7 @@ void tobi_loaded_bodies_free(tobi_loaded_bodies *l)
     for (int k = 0; l->body && k < l->count; k++) {
         free(l->body[k].vertex);
         free(l->body[k].before);
+        free(l->body[k].shape);
         free(l->body[k].edge_share);
         free(l->body[k].edge_foot);
     }

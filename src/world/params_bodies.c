@@ -80,7 +80,7 @@ static const tobi_param body_rows[] = {
       .doc = "Share of the light that its surface keeps away in pictures; below 1 it looks like glass." },
     { .key = "dynamics", CHOICE("prescribed|free|controlled", 3), AT(tobi_body_def, dynamics),
       .doc = "What moves the body: its motion, if it has one; the forces on it; or these and its control "
-             "program." },
+             "program. With forces a motion changes the shape alone: docs/swimmers.md." },
     { .key = "mass", REAL, AT(tobi_body_def, mass), MASS, .unit = "kg", .text = "by density",
       .doc = "Mass, per metre of depth in 2-D; by density takes density times the volume of the mesh." },
     { .key = "inertia", VEC3, AT(tobi_body_def, inertia), RANGE(0, 1e30), .unit = "kg m2", .text = "mesh",

@@ -186,7 +186,8 @@ static void test_mistakes(void **state)
     refuse(&def, "about one axis is locked");
     def = free_def();
     def.motion = no_motion;
-    refuse(&def, "has a motion");
+    def.motion_rigid = 1;
+    refuse(&def, "has a rigid motion");
     def = free_def();
     def.control = no_control;
     refuse(&def, "is not controlled");

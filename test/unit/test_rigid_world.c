@@ -255,7 +255,7 @@ static void test_scene_mistakes(void **state)
     write_file("place.lua", "function place() return 0, 0, 0 end");
     expect_line("\"dynamics\": \"fre\"", "mlsmpm", at, "did you mean \"free\"?");
     expect_line("\"dynamics\": \"free\", \"motion\": { \"translation\": { \"velocity\": [1, 0, 0] } }",
-                "mlsmpm", "bodies[0].motion: ", "is for prescribed bodies, this one is free");
+                "mlsmpm", "bodies[0].motion: ", "is rigid, and this body is free");
     expect_line("\"dynamics\": \"controlled\"", "mlsmpm", control, "has a control program");
     expect_line("\"dynamics\": \"free\", \"control\": { \"script\": \"good.lua\" }", "mlsmpm", control,
                 "whose dynamics is \"controlled\"");

@@ -1,0 +1,34 @@
+/* What the systems press a body with, and what of that and of its pose is told. Drawback: a body keeps room
+   for every system, though most scenes have one. */
+#include "core/body.h"
+#include "geom/vec3.h"
+#include <string.h>
+
+void tobi_body_clear_loads(tobi_body *b) { memset(b->load, 0, sizeof b->load); }
+
+void tobi_body_sum_loads(tobi_body *b)
+{
+    tobi_body_load sum = b->load[0];
+    for (int k = 1; k < TOBI_SYSTEM_LIMIT; k++) {
+        for (int a = 0; a < 6; a++) {
+            sum.pressure[a] += b->load[k].pressure[a];
+            sum.friction[a] += b->load[k].friction[a];
+        }
+        vec3_add_scaled(sum.edge, sum.edge, 1, b->load[k].edge);
+    }
+    memcpy(b->info.pressure_force, sum.pressure, sizeof b->info.pressure_force);
+    memcpy(b->info.pressure_torque, sum.pressure + 3, sizeof b->info.pressure_torque);
+    memcpy(b->info.viscous_force, sum.friction, sizeof b->info.viscous_force);
+    memcpy(b->info.viscous_torque, sum.friction + 3, sizeof b->info.viscous_torque);
+    memcpy(b->info.edge_force, sum.edge, sizeof b->info.edge_force);
+}
+
+void tobi_body_report(tobi_body *b)
+{
+    const tobi_rigid *r = &b->rigid;
+    vec3_add_scaled(b->centre, b->lower, 1, r->position);
+    memcpy(b->info.position, b->centre, sizeof b->centre);
+    memcpy(b->info.orientation, r->orientation, sizeof b->info.orientation);
+    memcpy(b->info.velocity, r->velocity, sizeof b->info.velocity);
+    memcpy(b->info.angular_velocity, r->angular_velocity, sizeof b->info.angular_velocity);
+}
