@@ -12,6 +12,8 @@
 
 /* Of the volume at rest: a shape with less is squeezed to nothing. */
 static const double LEAST = 1e-2;
+/* Of the sum of the moments of inertia at rest: less is what rounding leaves. */
+static const double LEAST_INERTIA = 1e-9;
 
 void tobi_swimmer_free(tobi_swimmer *w)
 {
@@ -83,8 +85,8 @@ int tobi_swimmer_inertia(const tobi_swimmer *w, const double (*at)[3], double in
     for (int a = 0; a < 3; a++)
         for (int c = 0; c < 3; c++)
             inertia[3*a + c] = (a == c ? trace : 0) - (a < c ? m[a][c] : m[c][a]);
-    if (w->dimension == 2) return inertia[8] > 0;
-    return inertia[0] > 0 && inertia[0]*inertia[4] > inertia[1]*inertia[1] &&
+    if (w->dimension == 2) return inertia[8] > w->least_inertia;
+    return inertia[0] > w->least_inertia && inertia[0]*inertia[4] > inertia[1]*inertia[1] &&
            tobi_rigid_invert(inertia, inverse);
 }
 
@@ -141,6 +143,8 @@ tobi_status tobi_swimmer_create(tobi_body *b, int dimension, tobi_error *err)
     }
     tobi_mass_points_free(&p);
     TOBI_TRY(status);
+    const double *rest = b->rigid.inertia;
+    b->swimmer->least_inertia = LEAST_INERTIA*(rest[0] + rest[4] + rest[8]);
     double angular[3];
     memcpy(angular, b->rigid.angular_velocity, sizeof angular);
     TOBI_TRY(take_shape(b, 0, err));

@@ -19,6 +19,7 @@ typedef struct tobi_swimmer {
     double (*flow)[3];               /* [vertices] m/s, world axes, mean over the step: what is left of
                                         the velocity without momentum and angular momentum         */
     double (*point_flow)[3];         /* [quadrature points] the same                               */
+    double least_inertia;            /* kg m2: less is that of no body                             */
     int dimension;
 } tobi_swimmer;
 

@@ -62,6 +62,15 @@ static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Water stays as fast as a swimmer made it when the swimmer glides. */
+static void remember_swimmers(tobi_world *w)
+{
+    int any = 0;
+    for (int k = 0; k < w->sim.body_count; k++) any |= w->sim.bodies[k].swimmer != NULL;
+    for (int k = 0; k < w->system_count && any; k++)
+        w->system[k].start_speed = fmax(w->system[k].start_speed, w->sim.body_speed);
+}
+
 /* One step or substep of a system. */
 static tobi_status step_system(tobi_system *s, tobi_error *err)
 {
@@ -219,6 +228,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     tobi_absorb_predict(w);
     TOBI_TRY(predict_bodies(s, err));
     s->changed = 1;
+    remember_swimmers(w);
     TOBI_TRY(step_systems(w, substeps, err));
     if (s->soft.solids) s->body_speed = fmax(s->body_speed, s->soft.speed);
     TOBI_TRY(move_bodies(w, err));

@@ -258,6 +258,21 @@ static tobi_status vanish(void *user, double t, int64_t n, const double (*rest)[
     return TOBI_OK;
 }
 
+/* The surface stays, the inside is drawn to a point. */
+static tobi_status implode(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                           tobi_error *err)
+{
+    static const double half[3] = { 1, 0.15, 0.25 };
+    (void)user;
+    (void)err;
+    for (int64_t i = 0; i < n; i++) {
+        int inside = 1;
+        for (int a = 0; a < 3; a++) inside &= fabs(rest[i][a] - 5) < half[a] - 1e-9;
+        for (int a = 0; a < 3; a++) out[i][a] = inside && t > 0.5 ? 5 : rest[i][a];
+    }
+    return TOBI_OK;
+}
+
 static void run_until(tobi_motion_fn motion, double end, tobi_status expected, const char *words)
 {
     tobi_body_def def = rig_def();
@@ -286,6 +301,7 @@ static void test_shapes_refused(void **state)
     (void)state;
     run_until(flatten, 1e-6, TOBI_INVALID, "squeezes it at t = 1 s, to 1e-06 of its volume");
     run_until(flatten, -1, TOBI_INVALID, "turns it inside out");
+    run_until(implode, 0, TOBI_INVALID, "which no body has");
     run_until(vanish, 0, TOBI_INVALID, "its motion puts a point at");
 }
 
