@@ -1,6 +1,6 @@
-/* Swimmers in water, by all methods that know bodies moved by forces: a run equals a run with a restart and one
-   with more threads, bit by bit; what the swimmer gains the water loses; checkpoints and motions that do not fit
-   are refused. */
+/* Swimmers in water, by all methods that know bodies moved by forces: a run equals a run with a restart and
+   one with more threads, bit by bit; what the swimmer gains the water loses; checkpoints and motions that do
+   not fit are refused. */
 #include "calls.h"
 #include "core/body.h"
 #include "world/world.h"
