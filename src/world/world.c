@@ -139,10 +139,6 @@ static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_erro
     if (b->absent[0] > 0 && tobi_world_solids(w))
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': bodies of %s cannot be absent", b->name,
                          tobi_world_solids(w)->method->name);
-    if (b->swimmer && tobi_world_solids(w))
-        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces, which %s "
-                         "does not know; fluids of dfsph, isph and wcsph do", b->name,
-                         tobi_world_solids(w)->method->name);
     const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)

@@ -318,7 +318,8 @@ static void refuse(tobi_body_def def, const char *words)
     def.name = "eel";
     def.motion_user = (void *)&end;
     for (int a = 0; a < 3; a++) def.box_min[a] = 4, def.box_max[a] = 6;
-    const tobi_status status = tobi_world_add_body(w, &def, &err);
+    tobi_status status = tobi_world_add_body(w, &def, &err);
+    if (status == TOBI_OK) status = tobi_world_start(w, &err);
     if (status == TOBI_OK || !strstr(err.text, words))
         fail_msg("%d: '%s' without '%s'", status, err.text, words);
     tobi_world_destroy(w);
