@@ -302,20 +302,6 @@ void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_
     memcpy(b->frame, place->frame, sizeof b->frame);
 }
 
-tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err)
-{
-    if (b->rest_bvh) return TOBI_OK;
-    if (!b->rest_vertex) b->rest_vertex = malloc((size_t)(b->mesh.vertex_count + 1)*sizeof *b->rest_vertex);
-    if (!b->rest_vertex)
-        return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for its rest pose", b->name);
-    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
-        vec3_sub(b->rest_vertex[i], b->mesh.vertices[i], b->rest.centre);
-    TOBI_TRY(tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->rest_vertex, b->mesh.triangle_count,
-                            (const int32_t (*)[3])b->mesh.triangles, &b->rest_bvh, err));
-    if (b->mesh.overlapping) tobi_bvh_use_winding(b->rest_bvh);
-    return TOBI_OK;
-}
-
 tobi_status tobi_body_place_particles(tobi_body *b, double t, tobi_error *err)
 {
     return evaluate(b, t, b->particle_count, (const double (*)[3])b->particle_rest, b->particle, err);
@@ -416,13 +402,6 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     }
     tell_size(b, dimension);
     return TOBI_OK;
-}
-
-int tobi_body_any_free(const tobi_body *bodies, int count)
-{
-    for (int k = 0; k < count; k++)
-        if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
-    return 0;
 }
 
 void tobi_body_free(tobi_body *b)

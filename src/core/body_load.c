@@ -32,3 +32,10 @@ void tobi_body_report(tobi_body *b)
     memcpy(b->info.velocity, r->velocity, sizeof b->info.velocity);
     memcpy(b->info.angular_velocity, r->angular_velocity, sizeof b->info.angular_velocity);
 }
+
+int tobi_body_any_free(const tobi_body *bodies, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (bodies[k].rigid.kind != TOBI_PRESCRIBED) return 1;
+    return 0;
+}

@@ -2,7 +2,9 @@
    cuts it. Drawback: facets of round bodies follow the spacing: a coarser scene has coarser bodies. */
 #include "core/body.h"
 #include "geom/shapes.h"
+#include "geom/vec3.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { BOX, SPHERE, CYLINDER, CAPSULE, PLATE };
@@ -82,4 +84,18 @@ tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dime
     if (def->mesh) return tobi_mesh_read(def->mesh, &b->mesh, err);
     if (kind == BOX) return make_box(b, def, dimension, err);
     return kind == PLATE ? make_plate(b, def, dimension, err) : make_round(b, def, kind, dimension, err);
+}
+
+tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err)
+{
+    if (b->rest_bvh) return TOBI_OK;
+    if (!b->rest_vertex) b->rest_vertex = malloc((size_t)(b->mesh.vertex_count + 1)*sizeof *b->rest_vertex);
+    if (!b->rest_vertex)
+        return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for its rest pose", b->name);
+    for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+        vec3_sub(b->rest_vertex[i], b->mesh.vertices[i], b->rest.centre);
+    TOBI_TRY(tobi_bvh_build(b->mesh.vertex_count, (const double (*)[3])b->rest_vertex, b->mesh.triangle_count,
+                            (const int32_t (*)[3])b->mesh.triangles, &b->rest_bvh, err));
+    if (b->mesh.overlapping) tobi_bvh_use_winding(b->rest_bvh);
+    return TOBI_OK;
 }
