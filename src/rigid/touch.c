@@ -484,6 +484,28 @@ void tobi_touch_bodies(const tobi_body *a, const tobi_shape *sa, const tobi_body
         for (int i = 0; i < 3; i++) out->at[k].normal[i] *= -1;
 }
 
+/* Of a swimmer: its vertices as they are now. They touch nothing but planes. */
+static void touch_vertices(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane,
+                           int number, double margin, tobi_touch_list *out)
+{
+    const double height = tobi_plane_height(plane, a->rigid.position);
+    const int64_t first = out->count;
+    for (int64_t k = 0; k < a->mesh.vertex_count; k++) {
+        double arm[3];
+        vec3_sub(arm, a->vertex[k], a->rigid.position);
+        const double gap = height + vec3_dot(plane->normal, arm);
+        tobi_touch *c = gap > margin ? NULL : tobi_touch_add(out);
+        if (!c) continue;
+        c->key = key_of(SIDE, number, (int32_t)k);
+        c->gap = gap;
+        c->slop = SLOP*sa->thickness;
+        c->friction = plane->friction;
+        vec3_add_scaled(c->point, a->vertex[k], -0.5*gap, plane->normal);
+        memcpy(c->normal, plane->normal, sizeof c->normal);
+    }
+    tobi_touch_thin(out, first);
+}
+
 void tobi_touch_plane(const tobi_body *a, const tobi_shape *sa, const tobi_fixed_plane *plane, int number,
                       double margin, tobi_touch_list *out)
 {
@@ -491,6 +513,10 @@ void tobi_touch_plane(const tobi_body *a, const tobi_shape *sa, const tobi_fixed
     const tobi_facets *f = &sa->facets;
     const double *n = plane->normal;
     int64_t first = out->count;
+    if (a->swimmer) {
+        touch_vertices(a, sa, plane, number, margin, out);
+        return;
+    }
     double m[3][3], height = tobi_plane_height(plane, r->position);
     if (height > f->reach + margin) return;
     tobi_quaternion_matrix(r->orientation, m);

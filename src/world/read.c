@@ -1,5 +1,6 @@
 /* Reading a world: fields in id order, surfaces, the state hash. */
 #include "base/error.h"
+#include "geom/vec3.h"
 #include "world/step.h"
 #include "world/world.h"
 #include <math.h>
@@ -137,11 +138,52 @@ static void read_texture(const tobi_world *w, const tobi_system *s, int64_t i, d
     for (int c = 0; c < 2; c++) out[c] = w->texture ? w->texture[s->particles.id[i]][c] : 0;
 }
 
+/* The mean shift and turn that particles make by `way` about `centre`. */
+static void find_rigid_part(const tobi_body *b, const double (*way)[3], double shift[3], double turn[3])
+{
+    double moment[3] = { 0 }, inertia[9] = { 0 }, inverse[9], arm[3], lever[3];
+    const int64_t n = b->particle_count;
+    memset(shift, 0, 3*sizeof *shift);
+    memset(turn, 0, 3*sizeof *turn);
+    for (int64_t i = 0; i < n; i++) {
+        vec3_add_scaled(shift, shift, 1.0/(double)n, way[i]);
+        vec3_sub(arm, b->particle[i], b->centre);
+        vec3_cross(lever, arm, way[i]);
+        vec3_add_scaled(moment, moment, 1, lever);
+        for (int k = 0; k < 9; k++)
+            inertia[k] += (k%4 ? 0 : vec3_dot(arm, arm)) - arm[k/3]*arm[k%3];
+    }
+    if (!tobi_rigid_invert(inertia, inverse)) return;
+    for (int a = 0; a < 3; a++) turn[a] = vec3_dot(inverse + 3*a, moment);
+}
+
+/* Of a swimmer: the change of its shape, less what of it is a shift and a turn, and the rigid velocities. */
+static tobi_status read_swimmer_velocity(tobi_body *b, double t, double (*out)[3], tobi_error *err)
+{
+    const double span = 1e-5;
+    double shift[3], turn[3];
+    TOBI_TRY(tobi_body_place_particles(b, t + span, err));
+    memcpy(out, b->particle, (size_t)b->particle_count*sizeof *out);
+    TOBI_TRY(tobi_body_place_particles(b, t, err));
+    for (int64_t i = 0; i < b->particle_count; i++) vec3_sub(out[i], out[i], b->particle[i]);
+    find_rigid_part(b, (const double (*)[3])out, shift, turn);
+    for (int64_t i = 0; i < b->particle_count; i++) {
+        double arm[3], spin[3], turning[3];
+        vec3_sub(arm, b->particle[i], b->centre);
+        vec3_add_scaled(spin, b->rigid.angular_velocity, -1/span, turn);
+        vec3_cross(turning, spin, arm);
+        for (int a = 0; a < 3; a++)
+            out[i][a] = (out[i][a] - shift[a])/span + b->rigid.velocity[a] + turning[a];
+    }
+    return TOBI_OK;
+}
+
 /* Velocities of a body's particles: central difference of its motion in double; no motion is asked for times
    before 0. */
 static tobi_status read_body_velocity(tobi_body *b, double t, double (*out)[3], tobi_error *err)
 {
     const double half = 1e-5, before = fmax(t - half, 0);
+    if (b->swimmer) return read_swimmer_velocity(b, t, out, err);
     if (!b->motion) {
         memset(out, 0, (size_t)b->particle_count*sizeof *out);
         return TOBI_OK;

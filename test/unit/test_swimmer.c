@@ -203,6 +203,26 @@ static void test_skater(void **state)
     }
 }
 
+/* A body that wriggles on the floor stays above it: its vertices touch. */
+static void test_floor(void **state)
+{
+    double how[3] = { 0.05, 0.2, 0 }, lowest = 0;
+    rig g;
+    (void)state;
+    rig_open(&g, 10, (double[3]){ 0, 0, -9.81 });
+    tobi_body *b = add_eel(&g, how, NONE);
+    b->rigid.position[2] = 0.3;
+    OK(tobi_body_place(b, 0, &err));
+    rig_start(&g);
+    for (int k = 0; k < 400; k++) {
+        rig_step(&g, 0.005);
+        for (int64_t i = 0; i < b->mesh.vertex_count; i++) lowest = fmin(lowest, b->vertex[i][2]);
+    }
+    print_message("lowest vertex %.2g m, centre at %.3g m\n", lowest, b->rigid.position[2]);
+    assert_true(lowest > -0.05 && b->rigid.position[2] > 0.1 && b->rigid.position[2] < 0.4);
+    rig_close(&g);
+}
+
 /* Mass points integrate over a body that is not convex as its exact integrals do, in both dimensions. */
 static void test_mass_points(void **state)
 {
@@ -348,7 +368,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mass_points), cmocka_unit_test(test_no_drift), cmocka_unit_test(test_spin),
-        cmocka_unit_test(test_skater), cmocka_unit_test(test_shapes_refused),
+        cmocka_unit_test(test_skater), cmocka_unit_test(test_floor),
+        cmocka_unit_test(test_shapes_refused),
         cmocka_unit_test(test_bodies_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
