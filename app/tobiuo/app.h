@@ -2,6 +2,7 @@
    code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 130 after Ctrl-C.
  */
 #pragma once
+#include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 #include <argp.h>
@@ -92,6 +93,10 @@ void overrides_free(overrides *o);
 char *scene_path(const char *path);
 /* The same, but setting.json goes first. */
 char *import_path(const char *path);
+/* looks.c: what pictures need of the world of a scene, or of that of the run in dir with overrides; 0, or an
+   exit code after a complaint. Both are the caller's then. */
+int find_looks(tobi_scene *scene, tobi_looks *looks);
+int load_looks(const char *dir, const overrides *set, tobi_scene **scene, tobi_looks *looks);
 /* The scene at such a path with the overrides, which are freed; NULL after a complaint. */
 tobi_scene *load_scene(const char *path, overrides *set);
 

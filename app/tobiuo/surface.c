@@ -294,38 +294,31 @@ static int write_files(const surface_options *o, const tobi_results *results, in
     return code;
 }
 
-/* Spacing and domain, from the scene that the run has left. */
+/* Spacing and domain. */
 static int read_scene(const surface_options *o, input *in, double up[3])
 {
     tobi_scene *scene = NULL;
-    tobi_report *mistakes = NULL;
-    tobi_error err = { 0 };
-    char *path = make_path(o->dir, "resolved.json");
-    if (access(path, F_OK) != 0) {
-        free(path);
-        return complain_run(o->dir, "there are no results of a run (no resolved.json)");
-    }
-    const tobi_status status = tobi_scene_load(path, NULL, &scene, &mistakes, &err);
-    free(path);
-    if (status != TOBI_OK) return complain_scene(mistakes, &err);
-    tobi_report_free(mistakes);
-    const tobi_world_def *w = tobi_scene_world_def(scene);
-    const int dimension = w->dimension;
+    tobi_looks looks = { 0 };
+    const overrides none = { 0 };
+    const int code = load_looks(o->dir, &none, &scene, &looks), dimension = looks.dimension;
     double weight = 0;
-    in->def = tobi_default_surface();
-    in->def.spacing = w->spacing;
-    in->def.cell = o->cell;
-    in->def.smoothing = o->smooth;
-    in->def.threads = o->threads;
-    for (int a = 0; a < 3; a++) {
-        in->def.box_min[a] = w->domain_min[a], in->def.box_max[a] = w->domain_max[a];
+    if (code == 0) {
+        in->def = tobi_default_surface();
+        in->def.spacing = looks.spacing;
+        in->def.cell = o->cell;
+        in->def.smoothing = o->smooth;
+        in->def.threads = o->threads;
+    }
+    for (int a = 0; code == 0 && a < 3; a++) {
+        in->def.box_min[a] = looks.box_min[a], in->def.box_max[a] = looks.box_max[a];
         in->def.flat_min[a] = in->def.flat_max[a] = 1;
-        up[a] = -w->gravity[a];
+        up[a] = -looks.gravity[a];
         weight += up[a]*up[a];
     }
     if (!(weight > 0)) up[2] = 1;
+    tobi_looks_free(&looks);
     tobi_scene_free(scene);
-    return dimension == 3 ? 0 : complain("%s is a run in 2-D, which has no surface", o->dir);
+    return code != 0 || dimension == 3 ? code : complain("%s is a run in 2-D, which has no surface", o->dir);
 }
 
 const struct argp surface_argp = { .options = options, .parser = parse, .args_doc = "DIR",

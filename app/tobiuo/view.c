@@ -37,53 +37,17 @@ static error_t parse(int key, char *value, struct argp_state *state)
     return 0;
 }
 
-/* Colours of a list of things; those without a colour are -1. Returns how many there are. */
-static int read_colors(const json_t *list, float colors[MATERIALS][3], float none)
+static window_def make_window(const tobi_scene *scene, const tobi_looks *looks, const char *dir,
+                              const char *title)
 {
-    const json_t *one;
-    int count = 0;
-    for (size_t k = 0; k < MATERIALS && (one = json_array_get(list, k)); k++, count++)
-        for (size_t c = 0; c < 3; c++) {
-            const json_t *value = json_array_get(json_object_get(one, "color"), c);
-            colors[k][c] = json_is_number(value) ? (float)json_number_value(value)/255 : none;
-        }
-    return count;
-}
-
-static void read_bodies(const json_t *bodies, stage *s)
-{
-    const json_t *one;
-    s->bodies = read_colors(bodies, s->body, -1);
-    for (size_t k = 0; k < MATERIALS && (one = json_array_get(bodies, k)); k++) {
-        const json_t *opacity = json_object_get(one, "opacity");
-        s->transparency[k] = json_is_number(opacity) ? (float)(1 - json_number_value(opacity)) : 0;
-        s->hollow[k] = json_is_true(json_object_get(one, "vessel"));
-    }
-}
-
-static window_def make_window(const tobi_scene *scene, const char *dir, const char *title)
-{
-    const tobi_world_def *w = tobi_scene_world_def(scene);
     const tobi_output_def *out = tobi_scene_output_def(scene);
-    window_def d = { .title = title, .dir = dir };
-    d.stage.dimension = w->dimension;
-    d.stage.spacing = w->spacing;
+    window_def d = { .title = title, .dir = dir, .looks = *looks };
     for (int k = 0; k < 3; k++) {
-        d.stage.low[k] = w->domain_min[k];
-        d.stage.high[k] = w->domain_max[k];
-        d.stage.up[k] = -w->gravity[k];
+        d.up[k] = -looks->gravity[k];
         d.eye[k] = out->view.position[k];
         d.target[k] = out->view.look_at[k];
     }
-    d.angle = w->dimension == 3 ? out->view.angle : 0;
-    char *text = tobi_scene_resolved(scene);
-    json_t *json = text ? json_loads(text, 0, NULL) : NULL;
-    const json_t *solids = json_object_get(json, "solids");
-    d.stage.opaque = json_array_size(solids) > 0 && json_array_size(json_object_get(json, "fluids")) == 0;
-    d.stage.materials = read_colors(solids, d.stage.material, 0.6f);
-    read_bodies(json_object_get(json, "bodies"), &d.stage);
-    json_decref(json);
-    free(text);
+    d.angle = looks->dimension == 3 ? out->view.angle : 0;
     return d;
 }
 
@@ -116,17 +80,26 @@ int drive_with_window(tobi_world *world, tobi_run *run, const drive_options *o, 
     if (!s.live) return complain("out of memory");
     with.between = between;
     with.user = s.live;
-    window_def d = make_window(scene, o->dir, tobi_scene_name(scene));
+    tobi_looks looks;
+    tobi_error err = { 0 };
+    if (tobi_world_looks(world, &looks, &err) != TOBI_OK) {
+        live_free(s.live);
+        complain("there is no window: %s", err.text);
+        return drive(world, run, o);
+    }
+    window_def d = make_window(scene, &looks, o->dir, tobi_scene_name(scene));
     d.live = s.live;
     d.keys = keys;
     if (pthread_create(&thread, NULL, take_steps, &s) != 0) {
         live_free(s.live);
+        tobi_looks_free(&looks);
         complain("there is no window: no thread for it");
         return drive(world, run, o);
     }
     if (window_show(&d) != 0) live_leave(s.live, LIVE_GOES_ON);
     pthread_join(thread, NULL);
     live_free(s.live);
+    tobi_looks_free(&looks);
     return s.code;
 }
 
@@ -144,14 +117,20 @@ int tobiuo_view(int argc, char **argv)
         free(path);
         return complain_run(o.dir, "there is no run to look at (no resolved.json)");
     }
-    tobi_scene *scene = load_scene(path, &none);
     free(path);
-    if (!scene) return EXIT_ERROR;
-    window_def d = make_window(scene, o.dir, o.dir);
+    tobi_scene *scene = NULL;
+    tobi_looks looks = { 0 };
+    int code = load_looks(o.dir, &none, &scene, &looks);
+    if (code != 0) {
+        tobi_scene_free(scene);
+        return code;
+    }
+    window_def d = make_window(scene, &looks, o.dir, o.dir);
     d.keys = o.keys;
     d.width = o.width;
     d.height = o.height;
-    const int code = window_show(&d) == 0 ? 0 : EXIT_ERROR;
+    code = window_show(&d) == 0 ? 0 : EXIT_ERROR;
+    tobi_looks_free(&looks);
     tobi_scene_free(scene);
     return code;
 }

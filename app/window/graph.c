@@ -76,7 +76,7 @@ static int read_body(viewer *v, graph *g, int number)
     }
     const char *name = t.cells[row*(size_t)t.columns + (size_t)names];
     snprintf(g->title, sizeof g->title, "force on %.100s, N", name);
-    g->curves = v->def.stage.dimension;
+    g->curves = v->def.looks.dimension;
     g->label[0] = "x";
     g->label[1] = "y";
     g->label[2] = "z";

@@ -94,8 +94,8 @@ static void do_help(viewer *v) { v->help = !v->help; }
 
 static void do_home(viewer *v)
 {
-    camera_home(&v->look.camera, v->def.stage.dimension, v->def.stage.low, v->def.stage.high, v->def.stage.up,
-                v->def.eye, v->def.target, v->def.angle);
+    camera_home(&v->look.camera, v->def.looks.dimension, v->def.looks.box_min, v->def.looks.box_max,
+                v->def.up, v->def.eye, v->def.target, v->def.angle);
     v->dirty = 1;
 }
 
@@ -122,10 +122,11 @@ static void do_range(viewer *v)
 
 static void do_clip(viewer *v)
 {
-    const int most = v->def.stage.dimension;
+    const int most = v->def.looks.dimension;
     v->look.clip_axis = v->look.clip_axis + 1 < most ? v->look.clip_axis + 1 : -1;
     if (v->look.clip_axis >= 0)
-        v->look.clip = 0.5*(v->def.stage.low[v->look.clip_axis] + v->def.stage.high[v->look.clip_axis]);
+        v->look.clip = 0.5*(v->def.looks.box_min[v->look.clip_axis]
+                            + v->def.looks.box_max[v->look.clip_axis]);
     v->dirty = 1;
 }
 
@@ -139,7 +140,7 @@ static void move_clip(viewer *v, double share)
 {
     const int a = v->look.clip_axis;
     if (a < 0) return;
-    v->look.clip += share*(v->def.stage.high[a] - v->def.stage.low[a]);
+    v->look.clip += share*(v->def.looks.box_max[a] - v->def.looks.box_min[a]);
     v->dirty = 1;
 }
 static void do_clip_back(viewer *v) { move_clip(v, -0.025); }
@@ -180,7 +181,7 @@ static void do_shot(viewer *v) { v->wants_shot = 1; }
 
 static void orbit(viewer *v, double yaw, double pitch)
 {
-    if (v->def.stage.dimension == 2) camera_pan(&v->look.camera, 400*yaw, 400*pitch, v->height);
+    if (v->def.looks.dimension == 2) camera_pan(&v->look.camera, 400*yaw, 400*pitch, v->height);
     else camera_orbit(&v->look.camera, yaw, pitch);
     v->dirty = 1;
 }
@@ -245,8 +246,8 @@ static int64_t find_particle(const viewer *v, double x, double y)
         if (is_clipped(&v->look, m->positions[i])) continue;
         if (!camera_project(&v->look.camera, v->width, v->height, m->positions[i], pixel, &scale)) continue;
         const double off = hypot(pixel[0] - x, pixel[1] - y), radius = fmax(3,
-                0.6*scale*v->def.stage.spacing);
-        const double depth = pixel[2] + (v->def.stage.dimension == 2 ? off : 0);
+                0.6*scale*v->def.looks.spacing);
+        const double depth = pixel[2] + (v->def.looks.dimension == 2 ? off : 0);
         if (off > radius || depth >= nearest) continue;
         nearest = depth;
         found = i;
@@ -267,7 +268,7 @@ static void press(viewer *v, const event *e)
 {
     int left, top, width, height;
     time_line_place(v, &left, &top, &width, &height);
-    v->drag = e->button || e->shift || v->def.stage.dimension == 2 ? 2 : 1;
+    v->drag = e->button || e->shift || v->def.looks.dimension == 2 ? 2 : 1;
     if (e->y >= top - 6) {
         v->drag = 3;
         scrub(v, e->x);

@@ -2,15 +2,13 @@
    though the camera has moved on. */
 #define _GNU_SOURCE 1
 #include "painter.h"
-#include "tobiuo/picture.h"
+#include "tobiuo/drawing.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-enum { COLOURS = 64 };
 
 struct shared_moment { tobi_moment moment; int holders; };
 
@@ -42,7 +40,7 @@ void moment_drop(shared_moment *m)
 }
 
 struct painter {
-    stage stage;
+    const tobi_looks *looks;
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -94,86 +92,20 @@ int is_clipped(const look *l, const double point[3])
     return l->clip_below ? point[l->clip_axis] < l->clip : point[l->clip_axis] > l->clip;
 }
 
-/* Arrays of one picture. */
-typedef struct props {
-    double (*positions)[3];
-    float *values;
-    uint8_t *opaque;
-    float palette[COLOURS][3];
-    tobi_picture_mesh *meshes;
-} props;
-
-/* Half the speed of a fall through the domain, as pictures of a run have it. */
-static double color_speed(const stage *s)
+/* The camera and the clip plane of the window. */
+static void set_view(const tobi_looks *s, const look *l, tobi_picture *f)
 {
-    double size = 0;
-    for (int k = 0; k < s->dimension; k++) size += fabs(s->up[k])*(s->high[k] - s->low[k]);
-    return 0.5*sqrt(2*size);
-}
-
-static void add_particles(const stage *s, const tobi_moment *m, const look *l, props *p, tobi_picture *f)
-{
-    const int plain = !*l->field;
-    const tobi_moment_field *material = plain && s->materials ? find_field(m, "material") : NULL;
-    const tobi_moment_field *field = material ? material : find_field(m, plain ? "velocity" : l->field);
-    int64_t n = 0;
-    for (int64_t i = 0; i < m->count; i++) {
-        memcpy(p->positions[n], m->positions[i], sizeof *p->positions);
-        p->values[n] = (float)field_value(field, i);
-        p->opaque[n++] = (uint8_t)s->opaque;
-    }
-    f->particle_count = n;
-    f->positions = (const double (*)[3])p->positions;
-    f->values = p->values;
-    if (s->opaque) f->opaque = p->opaque;
-    f->value_max = material ? COLOURS - 1 : plain ? color_speed(s) : l->high;
-    f->value_min = plain ? 0 : l->low;
-    for (int k = 0; k < COLOURS; k++) {
-        if (material) memcpy(p->palette[k], s->material[k < s->materials ? k : 0], sizeof p->palette[k]);
-        else map_color((double)k/(COLOURS - 1), p->palette[k]);
-    }
-    if (plain && s->dimension == 3 && !material && !s->opaque) f->values = NULL;     /* looks like water */
-    if (!plain || material) {
-        f->palette = (const float (*)[3])p->palette;
-        f->palette_count = COLOURS;
-    }
-}
-
-static void add_meshes(const stage *s, const tobi_moment *m, props *p, tobi_picture *f)
-{
-    static const float colors[4][3] = { { 0.93f, 0.62f, 0.28f }, { 0.80f, 0.33f, 0.36f }, { 0.55f, 0.70f,
-            0.35f },
-                                        { 0.62f, 0.50f, 0.74f } };
-    for (int b = 0; b < m->surface_count; b++) {
-        const tobi_moment_surface *from = &m->surfaces[b];
-        const int known = b < s->bodies;
-        p->meshes[b] = (tobi_picture_mesh){ .vertex_count = from->vertex_count,
-            .vertices = (const double (*)[3])from->vertices, .triangle_count = from->triangle_count,
-            .triangles = (const int32_t (*)[3])from->triangles,
-            .transparency = known ? s->transparency[b] : 0, .hollow = known && s->hollow[b] };
-        memcpy(p->meshes[b].color, known && s->body[b][0] >= 0 ? s->body[b] : colors[b%4],
-               sizeof p->meshes[b].color);
-    }
-    f->meshes = p->meshes;
-    f->mesh_count = m->surface_count;
-}
-
-static void set_view(const stage *s, const look *l, tobi_picture *f)
-{
-    *f = tobi_default_picture();
-    f->dimension = s->dimension;
-    f->width = l->width;
-    f->height = l->height;
-    f->samples = 1;
-    f->radius = 0.5*s->spacing;
     const int flat = s->dimension == 2;
-    memcpy(f->box_min, flat ? l->camera.low : s->low, sizeof f->box_min);
-    memcpy(f->box_max, flat ? l->camera.high : s->high, sizeof f->box_max);
-    memcpy(f->up, s->up, sizeof f->up);
+    f->title = f->label = NULL;
+    if (flat) {
+        memcpy(f->box_min, l->camera.low, sizeof f->box_min);
+        memcpy(f->box_max, l->camera.high, sizeof f->box_max);
+    }
     f->has_camera = !flat;
     camera_eye(&l->camera, f->eye);
     memcpy(f->target, l->camera.target, sizeof f->target);
     f->field_of_view = l->camera.angle;
+    f->threads = 0;
     f->clip = l->clip_axis >= 0;
     if (!f->clip) return;
     f->clip_normal[l->clip_axis] = l->clip_below ? -1 : 1;
@@ -187,31 +119,26 @@ static double clock_seconds(void)
     return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
 }
 
-static void paint(const stage *s, const tobi_moment *m, painting *out)
+static void paint(const tobi_looks *s, const tobi_moment *m, painting *out)
 {
     const double begun = clock_seconds();
-    const size_t n = (size_t)m->count + 1, bodies = (size_t)m->surface_count + 1;
-    props p = { .positions = malloc(n*sizeof *p.positions), .values = malloc(n*sizeof *p.values),
-                .opaque = malloc(n), .meshes = calloc(bodies, sizeof *p.meshes) };
-    tobi_picture f;
+    const look *l = &out->look;
+    const tobi_view_def view = { .width = l->width, .height = l->height, .samples = 1,
+                                 .field = *l->field ? l->field : NULL, .min = l->low, .max = l->high };
+    tobi_drawing *d = NULL;
     tobi_error err = { .text = "out of memory" };
-    out->rgb = malloc((size_t)out->look.width*(size_t)out->look.height*3);
-    set_view(s, &out->look, &f);
-    int good = out->rgb && p.positions && p.values && p.opaque && p.meshes;
-    if (good) {
-        add_particles(s, m, &out->look, &p, &f);
-        add_meshes(s, m, &p, &f);
-        good = tobi_picture_draw(&f, out->rgb, &err) == TOBI_OK;
+    out->rgb = malloc((size_t)l->width*(size_t)l->height*3);
+    tobi_status status = out->rgb ? tobi_drawing_make(s, m, &view, &d, &err) : TOBI_NO_MEMORY;
+    if (status == TOBI_OK) {
+        set_view(s, l, tobi_drawing_picture(d));
+        status = tobi_picture_draw(tobi_drawing_picture(d), out->rgb, &err);
     }
-    if (!good) {
+    tobi_drawing_free(d);
+    if (status != TOBI_OK) {
         snprintf(out->why, sizeof out->why, "%.*s", (int)sizeof out->why - 1, err.text);
         free(out->rgb);
         out->rgb = NULL;
     }
-    free(p.positions);
-    free(p.values);
-    free(p.opaque);
-    free(p.meshes);
     out->seconds = clock_seconds() - begun;
 }
 
@@ -238,7 +165,7 @@ static void *work(void *user)
         p->has_order = 0;
         p->busy = 1;
         pthread_mutex_unlock(&p->lock);
-        paint(&p->stage, moment_of(one.moment), &one);
+        paint(p->looks, moment_of(one.moment), &one);
         pthread_mutex_lock(&p->lock);
         p->busy = 0;
         painting_free(&p->done);
@@ -250,11 +177,11 @@ static void *work(void *user)
     return NULL;
 }
 
-painter *painter_create(const stage *s, void (*done)(void *user), void *user)
+painter *painter_create(const tobi_looks *s, void (*done)(void *user), void *user)
 {
     painter *p = calloc(1, sizeof *p);
     if (!p) return NULL;
-    p->stage = *s;
+    p->looks = s;
     p->tell = done;
     p->user = user;
     pthread_mutex_init(&p->lock, NULL);

@@ -2,7 +2,7 @@
    only. */
 #pragma once
 #include "camera.h"
-#include "tobiuo/results.h"
+#include "tobiuo/drawing.h"
 
 /* A moment that several threads look at; the last to let go frees it. */
 typedef struct shared_moment shared_moment;
@@ -11,17 +11,7 @@ const tobi_moment *moment_of(const shared_moment *m);
 shared_moment *moment_hold(shared_moment *m);
 void moment_drop(shared_moment *m);                         /* NULL is fine */
 
-enum { NAME_ROOM = 64, MATERIALS = 16 };
-
-/* What belongs to the run and does not change. */
-typedef struct stage {
-    int dimension, opaque;              /* opaque: particles belong to solids                       */
-    double low[3], high[3], up[3], spacing;
-    int materials, bodies;              /* colours, from 0; of others the usual                     */
-    float material[MATERIALS][3], body[MATERIALS][3];
-    float transparency[MATERIALS];      /* of bodies                                                */
-    int hollow[MATERIALS];              /* 1: a vessel                                              */
-} stage;
+enum { NAME_ROOM = 64 };
 
 /* How a moment is looked at. */
 typedef struct look {
@@ -44,7 +34,8 @@ typedef struct painting {
 
 typedef struct painter painter;
 /* done(user) is called by the painter's thread after each picture. */
-painter *painter_create(const stage *s, void (*done)(void *user), void *user);
+/* s: borrowed. */
+painter *painter_create(const tobi_looks *s, void (*done)(void *user), void *user);
 void painter_order(painter *p, shared_moment *m, const look *l);
 int painter_is_idle(painter *p);
 /* 1: *out is the newest picture, the caller's from now on. */

@@ -159,8 +159,8 @@ static int open_results(viewer *v)
 static int open_viewer(viewer *v)
 {
     char why[200];
-    camera_home(&v->look.camera, v->def.stage.dimension, v->def.stage.low, v->def.stage.high, v->def.stage.up,
-                v->def.eye, v->def.target, v->def.angle);
+    camera_home(&v->look.camera, v->def.looks.dimension, v->def.looks.box_min, v->def.looks.box_max,
+                v->def.up, v->def.eye, v->def.target, v->def.angle);
     if (open_results(v) != 0) return -1;
     v->screen = screen_open(v->def.width ? v->def.width : WIDTH, v->def.height ? v->def.height : HEIGHT,
                             v->def.title, why);
@@ -168,7 +168,7 @@ static int open_viewer(viewer *v)
         complain("there is no window: %s", why);
         return -1;
     }
-    v->painter = painter_create(&v->def.stage, wake, v);
+    v->painter = painter_create(&v->def.looks, wake, v);
     if (!v->painter) {
         complain("there is no window: out of memory");
         return -1;

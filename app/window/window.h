@@ -6,7 +6,8 @@
 
 typedef struct window_def {
     const char *title, *dir;            /* of the results; pictures and movies of the window go there too */
-    stage stage;
+    tobi_looks looks;                   /* the caller's                                             */
+    double up[3];                       /* against gravity                                          */
     double eye[3], target[3], angle;    /* the camera of the scene; angle 0: a view that fits             */
     const char *keys; /* typed at the start, each when the picture before is there; or NULL */
     int width, height;                  /* pixels at the start; 0: 1280 x 720                              */

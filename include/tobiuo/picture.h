@@ -25,6 +25,13 @@ typedef struct tobi_picture_mesh {
     int hollow;                        /* not 0: a clip plane opens it, else its cut is filled */
 } tobi_picture_mesh;
 
+/* A line through points, seen through water, hidden by what is opaque. */
+typedef struct tobi_picture_path {
+    int64_t count;
+    const double (*points)[3];         /* m                            */
+    float color[3];                    /* sRGB, 0 to 1                 */
+} tobi_picture_path;
+
 /* How particles look: water and solids; surfaces in the colours of values, opaque; balls in those colours. */
 enum { TOBI_LOOK_NATURAL, TOBI_LOOK_SURFACE, TOBI_LOOK_PARTICLES };
 
@@ -44,7 +51,7 @@ typedef struct tobi_picture {
     const double (*positions)[3];      /* m; not finite = not drawn                                     */
     const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
-    const int32_t *group;              /* surfaces of solids: one around each group; NULL = all are one */
+    const int32_t *group;              /* one surface around each group; NULL = all are one            */
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */
@@ -54,6 +61,9 @@ typedef struct tobi_picture {
     double clip_point[3], clip_normal[3];        /* m; from what is drawn to what is not                */
     double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */
     const double (*velocities)[3];     /* m/s, drawn as arrows; NULL = none                             */
+    int isolines;                      /* lines of equal value on surfaces, 0 to 100                           */
+    const tobi_picture_path *paths;
+    int path_count;
     int axes;                          /* not 0: ticks along edges of the box                           */
     int transparent;                   /* not 0: the PNG's background is transparent                    */
     double clarity;                    /* m of water after which 1/e of the light is left; 0 = automatic */

@@ -26,6 +26,13 @@ typedef struct tobi_moment_surface {
     int32_t (*triangles)[3];
 } tobi_moment_surface;
 
+/* Where the centre of mass of a body has been, from output to output. */
+typedef struct tobi_moment_track {
+    char    body[64];                  /* its name                                                */
+    int64_t count, room;
+    double (*points)[3];               /* m, room of them                                         */
+} tobi_moment_track;
+
 /* All that one output holds. Owned by the caller: tobi_moment_free. */
 typedef struct tobi_moment {
     double  time;                      /* s                                                       */
@@ -34,6 +41,8 @@ typedef struct tobi_moment {
     int     field_count, surface_count;
     tobi_moment_field *fields;
     tobi_moment_surface *surfaces;
+    int     track_count;               /* 0 until tobi_tracks_read                                */
+    tobi_moment_track *tracks;
 } tobi_moment;
 
 /* Opens the results in dir. TOBI_NOT_FOUND: there is no run; TOBI_DAMAGED: its list is no list. */
@@ -47,6 +56,11 @@ TOBI_API double tobi_results_time(const tobi_results *results, int64_t output);
    TOBI_DAMAGED: a file that this library did not write, or a part of one. On failure *moment is empty. */
 TOBI_API tobi_status tobi_results_read(const tobi_results *results, int64_t output, tobi_moment *moment,
                                        tobi_error *err);
+/* Fills the tracks of a moment from bodies.csv of the run in dir, up to its time; none without that file. */
+TOBI_API tobi_status tobi_tracks_read(const char *dir, tobi_moment *moment, tobi_error *err);
+/* Adds a point to the track of a body, which is made if there is none. */
+TOBI_API tobi_status tobi_track_add(tobi_moment *moment, const char *body, const double point[3],
+                                    tobi_error *err);
 TOBI_API void tobi_moment_free(tobi_moment *moment);           /* leaves it empty */
 TOBI_API void tobi_results_free(tobi_results *results);        /* NULL is fine    */
 

@@ -407,6 +407,8 @@ typedef struct tobi_view_def {
     int         width, height;        /* pixels                                                       */
     int         samples;              /* per pixel and axis                                           */
     int         arrows;               /* 1: velocities as arrows                                      */
+    int         isolines;             /* lines of equal value on surfaces                             */
+    int         paths;                /* 1: where the centres of bodies have been                     */
     int         axes;                 /* 1: ticks along edges of the domain                           */
     int         transparent;          /* 1: nothing behind                                            */
     const char *follow;               /* name of the body that the camera moves with; NULL = none     */

@@ -154,9 +154,11 @@ void tobi_moment_free(tobi_moment *m)
         free(m->surfaces[k].vertices);
         free(m->surfaces[k].triangles);
     }
+    for (int k = 0; k < m->track_count; k++) free(m->tracks[k].points);
     free(m->positions);
     free(m->fields);
     free(m->surfaces);
+    free(m->tracks);
     *m = (tobi_moment){ 0 };
 }
 

@@ -414,6 +414,18 @@ static double latest_cut(const tobi_particles *p, int64_t i)
     return cut;
 }
 
+/* 0 at the surface of the start, 1 below it, 2 at a cut: within a spacing, so that each side has a layer. */
+static double find_part(const tobi_system *s, int64_t i)
+{
+    const mpm_fields *f = mpm_fields_of(&s->particles);
+    for (int k = 0; f->cuts && k < TOBI_CUTS_EACH && f->cuts[i].c[k].w != 0; k++) {
+        const tobi_float4 *way = &f->cuts[i].c[k];
+        const double square = (double)way->x*way->x + (double)way->y*way->y + (double)way->z*way->z;
+        if (square < s->smoothing.spacing*s->smoothing.spacing) return 2;
+    }
+    return f->rest[i].w > 0 ? 1 : 0;
+}
+
 static void read_field(const tobi_system *s, const char *field, int64_t i, double *out)
 {
     const mpm_view v = mpm_output_view(s->state);
@@ -429,6 +441,10 @@ static void read_field(const tobi_system *s, const char *field, int64_t i, doubl
     }
     if (!strcmp(field, "cut_side")) {
         out[0] = latest_cut(p, i);
+        return;
+    }
+    if (!strcmp(field, "part")) {
+        out[0] = find_part(s, i);
         return;
     }
     mpm_read_field(&v, s->solids[p->fluid[i]].def.density, field, i, out);

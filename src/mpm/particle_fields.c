@@ -10,7 +10,8 @@ const tobi_output mpm_outputs[] = {
     { "material", 1, "1", 0 },      { "von_mises", 1, "Pa", 0 },           { "stress", 6, "Pa", 0 },
     { "J", 1, "1", 0 },             { "deformation_gradient", 9, "1", 0 }, { "plastic", 1, "1", 0 },
     { "rest_position", 3, "m", 0 }, { "piece", 1, "1", 0 },                { "cut_side", 1, "1", 0 },
-    { "damage", 1, "1", 0 },        { "texture_coordinates", 2, "1", 0 },  { NULL, 0, NULL, 0 } };
+    { "damage", 1, "1", 0 },        { "texture_coordinates", 2, "1", 0 },  { "part", 1, "1", 0 },
+    { NULL, 0, NULL, 0 } };
 
 unsigned mpm_needs(const tobi_system *s, int full)
 {

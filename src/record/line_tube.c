@@ -21,7 +21,7 @@ static void make_ring(const double a[3], const double b[3], const double p[3], d
     }
 }
 
-tobi_picture_mesh tobi_line_draw(const tobi_line *line, double radius, tobi_line_tube *tube)
+void tobi_line_draw(const tobi_line *line, double radius, tobi_line_tube *tube)
 {
     enum { N = TOBI_TUBE_POINTS, SIDES = TOBI_TUBE_SIDES };
     double p[N][3];
@@ -36,8 +36,4 @@ tobi_picture_mesh tobi_line_draw(const tobi_line *line, double radius, tobi_line
             for (int t = 0; t < 2; t++, count++)
                 for (int c = 0; c < 3; c++) tube->triangle[count][c] = corner[t][c];
         }
-    return (tobi_picture_mesh){ .vertex_count = N*SIDES, .vertices = (const double (*)[3])tube->vertex,
-                                .triangle_count = count,
-                                .triangles = (const int32_t (*)[3])tube->triangle,
-                                .color = { 0.15f, 0.15f, 0.16f } };
 }

@@ -10,6 +10,8 @@
 #include "io/csv.h"
 #include "io/pvd.h"
 #include "io/vtk.h"
+#include "record/line_tube.h"
+#include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
 #include <pthread.h>
 #include <stdbool.h>
@@ -63,6 +65,9 @@ typedef struct tobi_snapshot {
     tobi_point_set set[TOBI_SETS];
     double (**surface)[3];                /* vertices of each body; NULL: it is absent */
     int surfaces;
+    tobi_line_tube *tube;                 /* of each line                            */
+    int lines;
+    tobi_moment moment;                   /* for pictures; surfaces and positions are those above */
     struct tobi_tractions *tractions;     /* of each body; NULL: not asked           */
     struct tobi_drawing *drawing[1 + TOBI_VIEW_LIMIT];      /* of each view; NULL: no picture */
     struct tobi_record_surface *skin;     /* NULL: no surface                        */
@@ -93,8 +98,11 @@ struct tobi_run {
     int64_t pictures, picture_ns;         /* written; wall clock: atomic             */
     tobi_record_field surface_field[TOBI_RECORD_FIELD_LIMIT];
     int surface_fields;
-    char (*body_file)[80];                /* names of the bodies' surface files      */
+    char (*body_file)[96];                /* names of the bodies' surface files      */
     char (*traction_file)[96];            /* of their tractions                      */
+    char (*line_file)[96];                /* of the lines'                           */
+    tobi_moment tracks;                   /* of the centres of bodies, if a view shows them  */
+    tobi_looks looks;                     /* for pictures; its lists are empty before */
     struct tobi_skin *skin;               /* of bodies with a texture; NULL = none   */
     int skin_count;
     struct tobi_writer *writer;
@@ -186,12 +194,19 @@ tobi_status tobi_tractions_take(tobi_run *run, tobi_snapshot *snapshot, tobi_err
 tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
 void tobi_tractions_free(tobi_snapshot *snapshot);
 
-/* record/frames.c: the picture of an output, which has its particles and surfaces already. */
+/* record/names.c: names of the files of bodies, of their tractions and of lines; the caller frees them. */
+typedef char tobi_record_name[96];
+tobi_status tobi_record_name_bodies(const tobi_world *world, tobi_record_name **body,
+                                    tobi_record_name **traction, tobi_record_name **line, tobi_error *err);
+/* Whether a blade or a crack may part a solid. */
+bool tobi_record_has_pieces(const tobi_world *world);
+
+/* record/frames.c: the pictures of an output, which has its particles and surfaces already. */
 /* The views of run->output, with what they name. */
-tobi_status tobi_drawing_prepare(tobi_run *run, tobi_error *err);
-tobi_status tobi_drawing_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-tobi_status tobi_drawing_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
-void tobi_drawing_free(struct tobi_drawing *drawing);
+tobi_status tobi_frames_prepare(tobi_run *run, tobi_error *err);
+tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+void tobi_frames_free(tobi_snapshot *snapshot);
 
 /* record/surface.c: the surface of fluids and solids of an output, which has its particles already. */
 /* Reads output.surface_fields. */

@@ -4,7 +4,6 @@
 #include "io/exchange.h"
 #include "record/record.h"
 #include "world/world.h"
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,7 +13,7 @@
 /* Fields that are small whole numbers. */
 static bool is_number(const char *field)
 {
-    static const char *const names[] = { "object_id", "material", "piece", "cut_side" };
+    static const char *const names[] = { "object_id", "material", "part", "piece", "cut_side" };
     for (size_t k = 0; k < sizeof names/sizeof *names; k++)
         if (strcmp(field, names[k]) == 0) return true;
     return false;
@@ -64,11 +63,9 @@ static tobi_status add_field(tobi_run *run, const char *name, size_t length, tob
 static tobi_status add_usual(tobi_run *run, tobi_error *err)
 {
     static const char *const usual[] = { "velocity", "pressure", "density", "object_id", "particle_id",
-                                         "von_mises", "material", "piece", "cut_side" };
-    const tobi_simulation *s = &run->world->sim;
-    int count = tobi_world_solids(run->world) ? 7 : 5;
-    for (int k = 0; k < s->body_count && count == 7; k++)
-        if (s->bodies[k].blade) count = 9;
+                                         "von_mises", "material", "part", "piece", "cut_side" };
+    const int parts = tobi_record_has_pieces(run->world);
+    const int count = parts ? 10 : tobi_world_solids(run->world) ? 8 : 5;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
     const tobi_system *fluids = tobi_world_fluids(run->world);
     if (count == 5 && fluids && tobi_system_is_mixed(fluids))
@@ -94,48 +91,8 @@ tobi_status tobi_series_fields(tobi_run *run, tobi_error *err)
         TOBI_TRY(usual ? add_usual(run, err) : add_field(run, p, length, err));
         p += length;
     }
-    TOBI_TRY(tobi_drawing_prepare(run, err));
+    TOBI_TRY(tobi_frames_prepare(run, err));
     return tobi_record_surface_fields(run, err);
-}
-
-static bool is_taken(const tobi_run *run, int count, const char *name)
-{
-    static const char *const ours[] = { "all", "fluid", "bodies", "grid", "surface" };
-    for (size_t k = 0; k < sizeof ours/sizeof *ours; k++)
-        if (strcmp(ours[k], name) == 0) return true;
-    for (int k = 0; k < count; k++)
-        if (strcmp(run->body_file[k], name) == 0 || strcmp(run->traction_file[k], name) == 0) return true;
-    return false;
-}
-
-/* A name and that of its tractions. */
-static bool is_free(const tobi_run *run, int count, const char *name)
-{
-    char tractions[96];
-    snprintf(tractions, sizeof tractions, "%s_tractions", name);
-    return !is_taken(run, count, name) && !is_taken(run, count, tractions);
-}
-
-/* A file name for each body: its own name with odd characters as '_', and a number if taken. */
-static tobi_status name_bodies(tobi_run *run, tobi_error *err)
-{
-    int count = tobi_world_body_count(run->world);
-    run->body_file = calloc((size_t)count + 1, sizeof *run->body_file);
-    run->traction_file = calloc((size_t)count + 1, sizeof *run->traction_file);
-    if (!run->body_file || !run->traction_file)
-        return tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
-    for (int k = 0; k < count; k++) {
-        char stem[64] = "", name[80];
-        const char *own = tobi_world_body_name(run->world, k);
-        for (size_t n = 0; own[n] && n + 1 < sizeof stem; n++)
-            stem[n] = isalnum((unsigned char)own[n]) || strchr("-_", own[n]) ? own[n] : '_';
-        if (!*stem) strcpy(stem, "body");
-        snprintf(name, sizeof name, "%s", stem);
-        for (int i = 2; !is_free(run, k, name); i++) snprintf(name, sizeof name, "%s_%d", stem, i);
-        strcpy(run->body_file[k], name);
-        snprintf(run->traction_file[k], sizeof run->traction_file[k], "%s_tractions", name);
-    }
-    return TOBI_OK;
 }
 
 static const char *const set_names[TOBI_SETS] = { "fluid", "bodies", "grid" };
@@ -154,6 +111,9 @@ static int series_at(const tobi_run *run, int number, series *out)
     if (run->output.surfaces && number < bodies)
         return *out = (series){ run->body_file[number], "surfaces", "vtp" }, 1;
     if (run->output.surfaces) number -= bodies;
+    const int lines = run->output.surfaces ? tobi_world_line_count(run->world) : 0;
+    if (number < lines) return *out = (series){ run->line_file[number], "surfaces", "vtp" }, 1;
+    number -= lines;
     if (!run->output.tractions || number >= bodies) return 0;
     *out = (series){ run->traction_file[number], "tractions", "vtp" };
     return 1;
@@ -161,7 +121,7 @@ static int series_at(const tobi_run *run, int number, series *out)
 
 tobi_status tobi_series_prepare(tobi_run *run, tobi_error *err)
 {
-    TOBI_TRY(name_bodies(run, err));
+    TOBI_TRY(tobi_record_name_bodies(run->world, &run->body_file, &run->traction_file, &run->line_file, err));
     for (series s; series_at(run, run->series, &s);) run->series++;
     run->list = calloc((size_t)run->series + 1, sizeof *run->list);
     return run->list ? tobi_series_folders(run, err)
@@ -267,6 +227,19 @@ static tobi_status write_surface(const tobi_run *run, const tobi_snapshot *snaps
     return status;
 }
 
+static tobi_status write_line(const tobi_run *run, const tobi_snapshot *snapshot, int line, tobi_error *err)
+{
+    const tobi_line_tube *t = &snapshot->tube[line];
+    const tobi_vtk_surface s = { .vertex_count = TOBI_TUBE_VERTICES, .triangle_count = TOBI_TUBE_TRIANGLES,
+                                 .vertices = t->vertex, .triangles = t->triangle };
+    char *path = tobi_record_path(run->dir, "surfaces/%s_%06lld.vtp", run->line_file[line],
+                                  (long long)snapshot->number);
+    const tobi_status status = path ? tobi_vtp_write(path, (tobi_compression)run->output.compression, &s, err)
+                                    : fail_memory(err);
+    free(path);
+    return status;
+}
+
 /* --- lists ----------------------------------------------------------------------------- */
 
 /* Output `number` in the list of each series and in that of all. */
@@ -326,6 +299,9 @@ void tobi_series_free(tobi_run *run)
     free(run->list);
     free(run->body_file);
     free(run->traction_file);
+    free(run->line_file);
+    tobi_looks_free(&run->looks);
+    tobi_moment_free(&run->tracks);
 }
 
 tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error *err)
@@ -335,11 +311,12 @@ tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error 
     if (s->surfaces) TOBI_TRY(write_set(run, s, TOBI_SET_BODIES, err));
     for (int b = 0; o->surfaces && b < s->surfaces; b++)
         for (int kind = 0; kind < 2; kind++) TOBI_TRY(write_surface(run, s, b, kind, err));
+    for (int k = 0; o->surfaces && k < s->lines; k++) TOBI_TRY(write_line(run, s, k, err));
     if (o->tractions) TOBI_TRY(tobi_tractions_write(run, s, err));
     if (o->grid) TOBI_TRY(write_set(run, s, TOBI_SET_GRID, err));
     if (o->surface) TOBI_TRY(tobi_record_write_surface(run, s, err));
     if (o->ply) TOBI_TRY(write_ply(run, s, err));
     for (int b = 0; o->obj && b < s->surfaces; b++) TOBI_TRY(write_surface(run, s, b, 2, err));
-    if (o->frames) TOBI_TRY(tobi_drawing_write(run, s, err));
+    if (o->frames) TOBI_TRY(tobi_frames_write(run, s, err));
     return write_lists(run, s->number + 1, err);
 }

@@ -63,6 +63,8 @@ static tobi_run_size size_output(const tobi_run *run, double particles, double b
     add_files(&size, 1, HEAD + pack*row_bytes(run, 0)*particles);
     add_files(&size, bodies > 0, HEAD + pack*row_bytes(run, 1)*body_particles);
     for (int b = 0; b < bodies; b++) add_surface(&size, o, &run->world->sim.bodies[b]);
+    add_files(&size, o->surfaces*tobi_world_line_count(run->world),
+              HEAD + pack*(24*TOBI_TUBE_VERTICES + 20*TOBI_TUBE_TRIANGLES));
     add_files(&size, o->grid, HEAD + pack*NODE*0.5*particles);
     if (o->surface) add_files(&size, 1, 0.5*HEAD + pack*surface_bytes(run, particles));
     add_files(&size, o->ply, 12*particles);
@@ -84,7 +86,8 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
     const double every = output->checkpoint_interval;
     const int bodies = tobi_world_body_count(world), checkpoints = every > 0 && every < end ? 2 : 1,
               lists = 1 + (bodies > 0) + output->grid + output->surface +
-                      (output->surfaces + output->tractions)*bodies,
+                      (output->surfaces + output->tractions)*bodies +
+                      output->surfaces*tobi_world_line_count(world),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) +
                        (tobi_world_line_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);

@@ -109,15 +109,26 @@ static tobi_status take_surfaces(tobi_run *run, tobi_snapshot *s, tobi_error *er
     return TOBI_OK;
 }
 
+static tobi_status take_lines(const tobi_run *run, tobi_snapshot *s, tobi_error *err)
+{
+    s->lines = tobi_world_line_count(run->world);
+    s->tube = malloc((size_t)s->lines*sizeof *s->tube + 1);
+    if (!s->tube) return fail_memory(err);
+    for (int k = 0; k < s->lines; k++)
+        tobi_line_draw(&run->world->lines[k], 0.15*run->world->sim.def.spacing, &s->tube[k]);
+    return TOBI_OK;
+}
+
 static tobi_status take_all(tobi_run *run, tobi_snapshot *s, tobi_error *err)
 {
     TOBI_TRY(take_particles(run, TOBI_FLUID, &s->set[TOBI_SET_FLUID], err));
     if (s->surfaces) TOBI_TRY(take_particles(run, TOBI_BODIES, &s->set[TOBI_SET_BODIES], err));
     if (run->output.surfaces || run->output.obj || run->output.frames) TOBI_TRY(take_surfaces(run, s, err));
+    if (run->output.surfaces || run->output.frames) TOBI_TRY(take_lines(run, s, err));
     if (run->output.tractions) TOBI_TRY(tobi_tractions_take(run, s, err));
     if (run->output.grid) TOBI_TRY(take_grid(run, &s->set[TOBI_SET_GRID], err));
     if (run->output.surface) TOBI_TRY(tobi_record_take_surface(run, s, err));
-    if (run->output.frames) TOBI_TRY(tobi_drawing_take(run, s, err));
+    if (run->output.frames) TOBI_TRY(tobi_frames_take(run, s, err));
     return tobi_tables_take(run, s, err);
 }
 
@@ -145,7 +156,8 @@ void tobi_snapshot_free(tobi_snapshot *s)
     free(s->surface);
     tobi_record_free_surface(s->skin);
     tobi_tractions_free(s);
-    for (int k = 0; k < 1 + TOBI_VIEW_LIMIT; k++) tobi_drawing_free(s->drawing[k]);
+    tobi_frames_free(s);
+    free(s->tube);
     free(s->bodies.text);
     free(s->history.text);
     free(s);

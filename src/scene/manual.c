@@ -257,6 +257,7 @@ static void write_fields(FILE *out)
           "plastic strain of von-mises, the plastic part of J less 1 of snow, and the logarithm of the\n"
           "volume that loose sand has gained. `damage` of a solid with a strength goes from 0 to 1, where\n"
           "it is broken. `material` is the number of the solid, from 0.\n"
+          "`part` is 0 at the surface of the start, 1 below it, 2 at the face of a cut.\n"
           "`piece` is the number of the connected piece of a solid, 0 = the heaviest, -1 in a liquid;\n"
           "`cut_side` the number of the latest cut near a particle, negative on one side, 0 = none.\n"
           "`texture_coordinates` are those that the mesh of the solid has (`vt` of an OBJ file) nearest to\n"

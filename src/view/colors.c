@@ -29,7 +29,7 @@ void view_find_range(const tobi_picture *f, double *low, double *high)
     if (!(*low < *high)) *high = *low + 1;
 }
 
-enum { STEPS = 1024 };
+enum { STEPS = SCALE_STEPS };
 
 typedef struct coloring {
     const tobi_picture *f;
@@ -61,8 +61,23 @@ vec *view_color_particles(const tobi_picture *f, double low, double high)
         return NULL;
     }
     for (int k = 0; f->palette && k < f->palette_count; k++) c.palette[k] = linear_color(f->palette[k]);
-    for (int k = 0; k <= STEPS; k++) c.step[k] = view_color_of(f, (float)k/STEPS);
+    view_make_scale(f, c.step);
     tobi_loop(f->threads, f->particle_count, 0, color_range, &c);
     free(c.palette);
     return c.out;
+}
+
+void view_make_scale(const tobi_picture *f, vec scale[SCALE_STEPS + 1])
+{
+    for (int k = 0; k <= SCALE_STEPS; k++) scale[k] = view_color_of(f, (float)k/SCALE_STEPS);
+}
+
+vec *view_scale_particles(const tobi_picture *f, double low, double high)
+{
+    vec *out = malloc(((size_t)f->particle_count + 1)*sizeof *out);
+    for (int64_t i = 0; out && i < f->particle_count; i++) {
+        const double t = (f->values[i] - low)/(high - low);
+        out[i] = (vec){ t == t ? clampf((float)t, -1e6f, 1e6f) : 1, 0, 0 };
+    }
+    return out;
 }

@@ -198,12 +198,17 @@ typedef struct painting {
 tobi_status view_paint(canvas *c, const geometry *g, tobi_range kernel, vec *out, tobi_error *err);
 tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water, bool over, tobi_error *err);
 
+/* Straight lines in view space. */
+typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
+
 /* isosurface.c */
 typedef struct surface_request {
     const tobi_picture *f;
     const int32_t *row;          /* particles that the surface is around                           */
     int64_t count;
     const vec *color;            /* linear, of all particles; NULL = one colour for all            */
+    const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
+    segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
     vec     plain;
     float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
@@ -232,6 +237,8 @@ void view_draw_background(canvas *c, const tobi_picture *f);
 void view_draw_floor(canvas *c, const tobi_picture *f);
 /* Lines behind what is opaque are hidden; over_water: only those in front of water are drawn. */
 void view_draw_box(canvas *c, const tobi_picture *f, bool over_water);
+/* A line of view space, `width` pixels wide. */
+void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha, bool over_water);
 
 /* shadow.c */
 tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometry *g, tobi_error *err);
@@ -242,6 +249,14 @@ enum { SHADOW_SIDE = 1024, SHADOW_BLOCK = 8, SHADOW_ACROSS = SHADOW_SIDE/SHADOW_
 vec  view_color_of(const tobi_picture *f, float value);
 void view_find_range(const tobi_picture *f, double *low, double *high);
 vec *view_color_particles(const tobi_picture *f, double low, double high);
+/* Values as x of colours, from 0 at low to 1 at high; and the colours of such values. */
+vec *view_scale_particles(const tobi_picture *f, double low, double high);
+enum { SCALE_STEPS = 1024 };
+void view_make_scale(const tobi_picture *f, vec scale[SCALE_STEPS + 1]);
+static inline vec view_scaled(const vec *scale, float t)
+{
+    return scale[(int)(clampf(t, 0, 1)*SCALE_STEPS + 0.5f)];
+}
 
 /* text.c: a letter as strokes on a small grid, and how many of its steps the next letter is away. */
 const char *view_letter_strokes(char letter);

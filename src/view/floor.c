@@ -35,10 +35,8 @@ static void blend(canvas *c, int x, int y, float z, vec color, float alpha, bool
 }
 
 /* A line of a width in pixels with soft edges, walked along its longer axis. */
-static void draw_line(canvas *c, const double from[3], const double to[3], float width, vec color,
-                      float alpha, bool over_water)
+void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha, bool over_water)
 {
-    vec p = view_point(&c->camera, from), q = view_point(&c->camera, to);
     float near = c->camera.near;
     if (p.z < near && q.z < near) return;
     if (p.z < near) p = vec_mix(p, q, (near - p.z)/(q.z - p.z));
@@ -66,6 +64,13 @@ static void draw_line(canvas *c, const double from[3], const double to[3], float
             if (cover > 0) blend(c, steep ? o : m, steep ? m : o, z*0.9995f, color, alpha*cover, over_water);
         }
     }
+}
+
+static void draw_line(canvas *c, const double from[3], const double to[3], float width, vec color,
+                      float alpha, bool over_water)
+{
+    view_draw_line(c, view_point(&c->camera, from), view_point(&c->camera, to), width, color, alpha,
+                   over_water);
 }
 
 static double grid_step(double size)

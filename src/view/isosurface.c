@@ -409,7 +409,9 @@ static bool add_drops(const grid *s, const surface_request *r, geometry *g)
         if (sum > 0.8f*r->level) continue;
         g->balls[g->ball_count++] = (ball){ view_point(&s->c->camera, p),
                                             r->drop*clampf(1.5f - 1.25f*sum/r->level, 0.5f, 1),
-                                            r->color ? r->color[r->row[i]] : r->plain };
+                                            !r->color ? r->plain
+                                            : r->scale ? view_scaled(r->scale, r->color[r->row[i]].x)
+                                            : r->color[r->row[i]] };
     }
     return true;
 }

@@ -66,10 +66,51 @@ static void add_vertices(const grid *s, const surface_request *r, geometry *g)
     }
 }
 
+/* Where a value lies between those of two corners, or -1. */
+static float find_level(float a, float b, float level)
+{
+    return (a < level) != (b < level) ? (level - a)/(b - a) : -1;
+}
+
+/* The lines of equal value in a face whose corners have the values t; false: no memory. */
+static bool add_isolines(const geometry *g, const int32_t face[3], int levels, segments *out)
+{
+    const float t[3] = { g->color[face[0]].x, g->color[face[1]].x, g->color[face[2]].x };
+    for (int n = 1; n <= levels; n++) {
+        const float level = (float)n/(float)(levels + 1);
+        vec end[3];
+        int ends = 0;
+        for (int k = 0; k < 3; k++) {
+            const float at = find_level(t[k], t[(k + 1)%3], level);
+            if (at >= 0) end[ends++] = vec_mix(g->place[face[k]], g->place[face[(k + 1)%3]], at);
+        }
+        if (ends != 2) continue;
+        if (out->count == out->room) {
+            const int64_t room = 2*out->room + 1024;
+            vec (*longer)[2] = realloc(out->end, (size_t)room*sizeof *longer);
+            if (!longer) return false;
+            out->end = longer, out->room = room;
+        }
+        out->end[out->count][0] = end[0], out->end[out->count++][1] = end[1];
+    }
+    return true;
+}
+
+/* Values become colours, after the lines between them were found. */
+static bool apply_scale(const surface_request *r, geometry *g, int64_t vertex, int64_t face)
+{
+    const int levels = r->isolines ? r->f->isolines : 0;
+    for (int64_t k = face; k < g->faces && levels > 0; k++)
+        if (!add_isolines(g, g->face[k], levels, r->isolines)) return false;
+    for (int64_t v = vertex; v < g->vertices; v++) g->color[v] = view_scaled(r->scale, g->color[v].x);
+    return true;
+}
+
 /* From cells to view space, with normals from the faces around. */
 bool view_add_faces(const grid *s, const surface_request *r, geometry *g)
 {
     const int64_t vertices = s->vertex[s->blocks], quads = s->quad[s->blocks], first = g->vertices;
+    const int64_t first_face = g->faces;
     int32_t (*copy)[3] = malloc(((size_t)vertices + 1)*sizeof *copy);
     if (!copy || !view_reserve(g, 4*vertices, 2*quads, 0)) {
         free(copy);
@@ -96,5 +137,5 @@ bool view_add_faces(const grid *s, const surface_request *r, geometry *g)
     }
     free(copy);
     for (int64_t v = first; v < first + vertices; v++) g->normal[v] = vec_unit(g->normal[v]);
-    return true;
+    return !r->scale || apply_scale(r, g, first, first_face);
 }

@@ -24,6 +24,7 @@ void tobi_picture_set_view(tobi_picture *p, const tobi_view_def *view)
     p->samples = view->samples;
     p->look = view->look;
     p->axes = view->axes;
+    p->isolines = view->isolines;
     p->transparent = view->transparent;
     p->slice = view->slice;
     for (int a = 0; a < 3; a++) {
@@ -75,6 +76,10 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
     const double *n = f->clip_normal;
     if (f->clip && !(n[0]*n[0] + n[1]*n[1] + n[2]*n[2] > 0 && isfinite(n[0] + n[1] + n[2])))
         return tobi_fail(err, TOBI_INVALID, "%s: the normal of the clip plane has no direction", path);
+    if (f->isolines < 0 || f->isolines > 100)
+        return tobi_fail(err, TOBI_INVALID, "%s: %d isolines, allowed are 0 to 100", path, f->isolines);
+    if (f->path_count < 0 || (f->path_count > 0 && !f->paths))
+        return tobi_fail(err, TOBI_INVALID, "%s: %d paths cannot be drawn", path, f->path_count);
     if (f->palette && f->palette_count < 1)
         return tobi_fail(err, TOBI_INVALID, "%s: a palette of %d colours, at least 1", path,
                          f->palette_count);
@@ -108,6 +113,8 @@ typedef struct scene {
     canvas c;
     geometry solids, water, drops, glass;
     vec *color;                  /* of particles; NULL: water in its own colour */
+    vec scale[SCALE_STEPS + 1];  /* of values, for surfaces in their colours    */
+    segments isolines;
     int32_t *row;                /* of particles                                */
     double low, high;            /* values of the colour map's ends             */
     double clock;                /* s, when the stage began                     */
@@ -146,11 +153,18 @@ static void free_scene(scene *s)
     view_geometry_free(&s->glass);
     free(s->color);
     free(s->row);
+    free(s->isolines.end);
 }
 
 static tobi_status no_memory(const tobi_picture *f, tobi_error *err)
 {
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a picture of %d x %d pixels", f->width, f->height);
+}
+
+/* Surfaces in the colours of values: those are interpolated, not the colours. */
+static bool is_scaled(const tobi_picture *f)
+{
+    return f->dimension == 3 && f->look == TOBI_LOOK_SURFACE && f->values && f->particle_count > 0;
 }
 
 static tobi_status make_canvas(scene *s, tobi_error *err)
@@ -170,7 +184,10 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
     c->depth = malloc(n*sizeof *c->depth);
     s->row = malloc(((size_t)f->particle_count + 1)*sizeof *s->row);
     view_find_range(f, &s->low, &s->high);
-    if (f->values && f->particle_count > 0) s->color = view_color_particles(f, s->low, s->high);
+    if (is_scaled(f)) {
+        view_make_scale(f, s->scale);
+        s->color = view_scale_particles(f, s->low, s->high);
+    } else if (f->values && f->particle_count > 0) s->color = view_color_particles(f, s->low, s->high);
     return c->color && c->depth && s->row && (s->color || !f->values || f->particle_count == 0) ? TOBI_OK
         : no_memory(f, err);
 }
@@ -179,9 +196,10 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
 static surface_request choose(scene *s, bool opaque)
 {
     const tobi_picture *f = s->f;
-    surface_request r = { .f = f, .row = s->row, .color = s->color, .level = 0.5f, .plain = { 0.006f,
-                                                                                              0.095f,
-                                                                                                  0.180f } };
+    surface_request r = { .f = f, .row = s->row, .color = s->color, .level = 0.5f,
+                          .plain = { 0.006f, 0.095f, 0.180f } };
+    if (is_scaled(f)) r.scale = s->scale;
+    if (is_scaled(f) && f->isolines > 0) r.isolines = &s->isolines;
     for (int64_t i = 0; i < f->particle_count; i++)
         if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius      /* what its surface needs */
             && (f->look || (f->opaque && f->opaque[i])) == opaque) s->row[r.count++] = (int32_t)i;
@@ -207,24 +225,33 @@ static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *ro
     return true;
 }
 
-/* A surface around each group of solids. */
-static tobi_status add_solids(scene *s, tobi_error *err)
+/* A surface around each group of particles; *within: the eye is in one. */
+static tobi_status add_groups(scene *s, surface_request all, geometry *g, geometry *drops, bool *within,
+                              tobi_error *err)
 {
     const tobi_picture *f = s->f;
-    surface_request all = choose(s, true);
-    bool within;
-    all.plain = (vec){ 0.20f, 0.30f, 0.45f };
-    all.level = 0.38f;
-    all.drop = 1.1f*(float)f->radius;
+    *within = false;
     if (f->group && !sort_by_group(f, &all, s->row)) return no_memory(f, err);
     for (int64_t begin = 0, end; begin < all.count; begin = end) {
+        bool around;
         for (end = begin + 1; end < all.count; end++)
             if (f->group && f->group[s->row[end]] != f->group[s->row[begin]]) break;
         surface_request r = all;
         r.row += begin, r.count = end - begin;
-        TOBI_TRY(view_add_surface(&s->solids, &s->solids, &s->c, &r, &within, err));
+        TOBI_TRY(view_add_surface(g, drops, &s->c, &r, &around, err));
+        *within |= around;
     }
     return TOBI_OK;
+}
+
+static tobi_status add_solids(scene *s, tobi_error *err)
+{
+    surface_request all = choose(s, true);
+    bool within;
+    all.plain = (vec){ 0.20f, 0.30f, 0.45f };
+    all.level = 0.38f;
+    all.drop = 1.1f*(float)s->f->radius;
+    return add_groups(s, all, &s->solids, &s->solids, &within, err);
 }
 
 /* Every particle as a ball. */
@@ -272,7 +299,7 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     if (f->opaque || f->look) TOBI_TRY(add_solids(s, err));
     surface_request r = choose(s, false);
     r.drop = 1.0f*(float)f->radius;
-    if (r.count > 0) TOBI_TRY(view_add_surface(&s->water, &s->drops, &s->c, &r, &s->c.submerged, err));
+    TOBI_TRY(add_groups(s, r, &s->water, &s->drops, &s->c.submerged, err));
     TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
     return view_project(&s->water, &s->c.camera, f->threads, err);
 }
@@ -334,6 +361,22 @@ static tobi_status make_water_planes(scene *s, tobi_error *err)
     return c->front && c->nearness && c->covered ? TOBI_OK : no_memory(s->f, err);
 }
 
+/* Isolines, and paths: those are seen through water. */
+static void draw_lines(scene *s)
+{
+    const tobi_picture *f = s->f;
+    const vec dark = { 0.01f, 0.01f, 0.02f };
+    for (int64_t k = 0; k < s->isolines.count; k++)
+        view_draw_line(&s->c, s->isolines.end[k][0], s->isolines.end[k][1], 1.2f, dark, 0.8f, false);
+    for (int n = 0; n < f->path_count; n++) {
+        const tobi_picture_path *path = &f->paths[n];
+        const vec color = linear_color(path->color);
+        for (int64_t k = 1; k < path->count; k++)
+            view_draw_line(&s->c, view_point(&s->c.camera, path->points[k - 1]),
+                           view_point(&s->c.camera, path->points[k]), 2.2f, color, 0.9f, false);
+    }
+}
+
 static tobi_status draw(scene *s, const char *path, tobi_error *err)
 {
     const tobi_picture *f = s->f;
@@ -357,6 +400,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     end_stage(s, STAGE_WATER);
     if (c->front) view_draw_box(c, f, true);
     if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, err));
+    draw_lines(s);
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
     if (f->axes) view_draw_axes(c, f);
     if (f->title) view_draw_title(c, f->title);

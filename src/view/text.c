@@ -127,6 +127,10 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
             vec color = edge ? ink : view_color_of(f, (float)row/(height - 1));
             i->color[(size_t)py*(size_t)i->width + (size_t)px] = color;
         }
+    for (int k = 1; k <= f->isolines; k++) {
+        const float y = bottom - height*(float)k/(float)(f->isolines + 1);
+        view_draw_stroke(i, (float[2]){ x, y }, (float[2]){ x + width, y }, 1, ink);
+    }
     double step = view_tick_step(high - low);
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         char text[32];

@@ -78,6 +78,11 @@ const tobi_param_table tobi_probe_table = {
       .doc = "Above 0 only what is within half of this from the plane is shown." }, \
     { .key = "picture.arrows", BOOL, AT(type, in arrows), \
       .doc = "Draw velocities as arrows, the longest for the fastest." }, \
+    { .key = "picture.isolines", INT, AT(type, in isolines), RANGE(0, 100), .unit = "1", \
+      .doc = "How many lines of equal value to draw on 3-D surfaces in the colours of picture.field, at " \
+             "equal steps between the ends of the colours." }, \
+    { .key = "picture.paths", BOOL, AT(type, in paths), \
+      .doc = "Draw where the centre of mass of each body has been, from output to output." }, \
     { .key = "picture.axes", BOOL, AT(type, in axes), \
       .doc = "Draw ticks with numbers along edges of the domain." }, \
     { .key = "picture.transparent", BOOL, AT(type, in transparent), \
@@ -96,8 +101,8 @@ static const tobi_param output_rows[] = {
     { .key = "fields", TEXT, AT(tobi_output_def, fields), .unit = "names",
       .text = "usual",
       .doc = "Fields to write for every particle. usual, alone or among others, stands for velocity, "
-             "pressure, density, object_id and particle_id, for mlsmpm von_mises and material too, for "
-             "fluids that differ material, where there is a blade piece and cut_side, and "
+             "pressure, density, object_id and particle_id, for mlsmpm von_mises, material and part too, "
+             "for fluids that differ material, where a solid can part piece and cut_side, and "
              "texture_coordinates if a solid's mesh has them." },
     { .key = "surfaces", BOOL, AT(tobi_output_def, surfaces), .def = { 1 },
       .doc = "Write the moving surface of each body as VTP and STL." },

@@ -27,6 +27,40 @@ expect 0 "" run dam.json --out follows --quiet --set output.picture.follow=post 
     --set "output.camera={\"position\": [0.2, -0.8, 0.3], \"look_at\": [0.2, 0.1, 0.1], \"angle\": 30}"
 check "a picture at each output" test -s follows/frames/frame_000002.png
 
+# What results show is what the run has drawn, bit by bit.
+cat > all.json <<'END'
+{ "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "spacing": 0.021, "end_time": 0.06,
+  "fluids": [{"name": "water", "color": [60, 120, 190], "fill": [{"box": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.1]}}]}],
+  "solids": [{"name": "jelly", "model": "neo-hookean", "density": 500, "youngs_modulus": 1e5, "poissons_ratio": 0.3,
+              "color": [200, 40, 40], "core_color": [250, 240, 200],
+              "fill": [{"box": {"min": [0.05, 0.05, 0.13], "max": [0.15, 0.15, 0.2]}}]}],
+  "bodies": [{"name": "a box", "box": {"min": [0.25, 0.06, 0.08], "max": [0.33, 0.14, 0.14]}, "dynamics": "free",
+              "density": 500, "opacity": 0.4}],
+  "lines": [{"name": "rope", "kind": "rope", "body": "a box", "point": [0.29, 0.1, 0.14], "to": [0.29, 0.1, 0.28],
+             "length": 0.3, "stiffness": 100}],
+  "output": {"interval": 0.02, "frames": true, "picture": {"width": 320, "height": 180, "paths": true}} }
+END
+sed -e '/"solids"/,/"fill": .{"box": {"min": .0.05/d' all.json > wet.json
+sed -e '/"lines"/,/"length"/d; /"bodies"/,/"density"/d; s/"paths": true/"axes": true/' all.json > soft.json
+for scene in wet soft; do
+    expect 0 "" run $scene.json --out $scene --quiet
+    for k in 0 2; do
+        expect 0 "" picture $scene --output $k --out r.png
+        check "$scene: the picture of output $k is that of the run" cmp -s r.png $scene/frames/frame_00000$k.png
+    done
+done
+check "the rope is in the results" test -s wet/surfaces/line_rope_000002.vtp
+expect 0 "" picture wet --out a.png
+expect 0 "" picture wet --out b.png --set output.picture.paths=false
+check "paths are drawn" test "$(cmp -s a.png b.png; echo $?)" = 1
+expect 0 "" picture wet --out b.png --set "bodies[0].opacity=1"
+check "opacity can be changed afterwards" test "$(cmp -s a.png b.png; echo $?)" = 1
+expect 0 "" picture wet --out a.png --set output.picture.field=pressure
+expect 0 "" picture wet --out b.png --set output.picture.field=pressure --set output.picture.isolines=7
+check "isolines are drawn" test "$(cmp -s a.png b.png; echo $?)" = 1
+expect 1 "is 101, allowed is 0 to 100" picture wet --set output.picture.isolines=101
+expect 1 "is 2, allowed is 0 to 1" run wet.json --out no --set "bodies[0].opacity=2"
+
 views='output.views=[{"name": "top", "camera": {"position": [0.2, 0.1, 2], "look_at": [0.2, 0.1, 0], "angle": 20},
     "picture": {"field": "pressure", "width": 320, "height": 180}}, {"name": "all", "picture": {"width": 160}}]'
 expect 0 "" run dam.json --out views --quiet --set "$views"

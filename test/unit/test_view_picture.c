@@ -181,6 +181,41 @@ static void a_plane_cuts_bodies(void **state)
     free(whole), free(filled), free(open), free(gone), free(slice);
 }
 
+static int count_different(const unsigned char *a, const unsigned char *b, int *darker)
+{
+    int n = 0;
+    *darker = 0;
+    for (int i = 0; i < 3*W*H; i += 3) {
+        n += memcmp(a + i, b + i, 3) != 0;
+        *darker += a[i] + a[i + 1] + a[i + 2] > b[i] + b[i + 1] + b[i + 2];
+    }
+    return n;
+}
+
+/* Lines of equal value are dark; a path is as red as it should be. */
+static void lines_are_drawn(void **state)
+{
+    (void)state;
+    static const double points[3][3] = { { 0.1, 0.2, 0.8 }, { 0.5, 0.2, 0.9 }, { 0.9, 0.2, 0.8 } };
+    const tobi_picture_path path = { 3, points, { 1, 0, 0 } };
+    int darker;
+    tobi_picture f = make_frame();
+    f.look = TOBI_LOOK_SURFACE, f.mesh_count = 0;
+    f.value_max = 0.4;
+    unsigned char *bare = draw(&f);
+    f.isolines = 3;
+    unsigned char *lines = draw(&f);
+    const int n = count_different(bare, lines, &darker);
+    print_message("%d pixels of isolines, %d darker\n", n, darker);
+    assert_true(n > 100 && n < W*H/8 && darker > n*8/10);
+    f.paths = &path, f.path_count = 1, f.look = TOBI_LOOK_NATURAL;
+    unsigned char *red = draw(&f);
+    int reds = 0;
+    for (int i = 0; i < W*H; i++) reds += redness(red + 3*i) > 80;
+    assert_true(reds > 100 && reds < 2000);
+    free(lines), free(bare), free(red);
+}
+
 /* The left half of the block is a green solid, the right half water: only the solid hides the cube. */
 static void solids_hide_what_is_behind(void **state)
 {
@@ -433,6 +468,10 @@ static void wrong_arguments_are_refused(void **state)
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     f = make_frame(), memcpy(f.eye, f.target, sizeof f.eye);
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
+    f = make_frame(), f.isolines = 101;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "101 isolines, allowed are 0 to 100");
+    f = make_frame(), f.path_count = 2;
+    REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "2 paths cannot be drawn");
     tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 }, 0, 0 };
     f = make_frame(), f.meshes = &m;
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
@@ -500,7 +539,7 @@ int main(void)
         cmocka_unit_test(place_does_not_matter), cmocka_unit_test(bytes_are_those_of_the_file),
         cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
         cmocka_unit_test(background_is_transparent), cmocka_unit_test(glass_lets_light_through),
-        cmocka_unit_test(a_plane_cuts_bodies),
+        cmocka_unit_test(a_plane_cuts_bodies), cmocka_unit_test(lines_are_drawn),
             cmocka_unit_test(flat_scenes_are_discs),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)

@@ -1,0 +1,55 @@
+/* The picture of a moment of a run: from particles and surfaces, and from what of a world does not change, to
+   a tobi_picture. Runs, `tobiuo picture` and the window draw by it, so that they show the same. */
+#ifndef TOBIUO_DRAWING_H
+#define TOBIUO_DRAWING_H
+#include "tobiuo/picture.h"
+#include "tobiuo/results.h"
+#include "tobiuo/tobiuo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A fluid or solid, by its number among those of all systems. */
+typedef struct tobi_material_look {
+    double color[3], core_color[3];    /* RGB, 0 to 255; -1 = none given                              */
+    int    visible, liquid;
+    int    kind;                       /* the first material with the same properties and colours     */
+} tobi_material_look;
+
+/* A body, or a line that holds one. */
+typedef struct tobi_body_look {
+    char   name[96];                   /* of its surface in results                                   */
+    char   body[64];                   /* its own name                                                */
+    double color[3], opacity;          /* RGB, 0 to 255; -1 = by its number                           */
+    double rest[3];                    /* m, mean of its vertices at rest                             */
+    int    visible, hollow, is_line;
+} tobi_body_look;
+
+/* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */
+typedef struct tobi_looks {
+    int    dimension, threads;
+    double box_min[3], box_max[3], gravity[3], spacing;      /* m, m/s2 */
+    int    material_count, body_count;
+    tobi_material_look *materials;
+    tobi_body_look *bodies;            /* and lines behind them */
+} tobi_looks;
+
+/* world: need not have begun. */
+TOBI_API tobi_status tobi_world_looks(const tobi_world *world, tobi_looks *looks, tobi_error *err);
+TOBI_API void tobi_looks_free(tobi_looks *looks);
+
+typedef struct tobi_drawing tobi_drawing;
+/* The picture of a moment as a view shows it. It borrows looks and moment until it is freed. Fields that
+   colours need: velocity, material, part, piece, particle_id, and that of the view; without them things have
+   the plain colour. TOBI_NOT_FOUND: the moment has no field that the view names. */
+TOBI_API tobi_status tobi_drawing_make(const tobi_looks *looks, const tobi_moment *moment,
+                                       const tobi_view_def *view, tobi_drawing **drawing, tobi_error *err);
+/* Valid until the drawing is freed; its members may be changed. */
+TOBI_API tobi_picture *tobi_drawing_picture(tobi_drawing *drawing);
+TOBI_API void tobi_drawing_free(tobi_drawing *drawing);      /* NULL is fine */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

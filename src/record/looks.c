@@ -1,0 +1,103 @@
+/* What of a world pictures need: colours and names of its materials, bodies and lines. Drawback: lists are
+   copied, so that they outlive their world. */
+#include "mpm/particle_fields.h"
+#include "record/record.h"
+#include "world/fit.h"
+#include "world/world.h"
+#include <stdlib.h>
+#include <string.h>
+
+static int is_same_fluid(const tobi_fluid *a, const tobi_fluid *b)
+{
+    return a->density == b->density && a->viscosity == b->viscosity && a->tension == b->tension &&
+           a->visible == b->visible && memcmp(a->color, b->color, sizeof a->color) == 0;
+}
+
+/* Fluids that differ in nothing are one kind, which has one surface. */
+static void add_materials(const tobi_world *w, const tobi_system *s, tobi_looks *looks)
+{
+    const int first = tobi_world_first_material(w, s);
+    for (int k = 0; k < s->fluid_count; k++) {
+        tobi_material_look *m = &looks->materials[looks->material_count++];
+        *m = (tobi_material_look){ .visible = s->fluid[k].visible, .liquid = 1, .kind = first + k };
+        for (int n = k - 1; n >= 0; n--)
+            if (is_same_fluid(&s->fluid[n], &s->fluid[k])) m->kind = first + n;
+        memcpy(m->color, s->fluid[k].color, sizeof m->color);
+        memcpy(m->core_color, s->fluid[k].color, sizeof m->core_color);
+    }
+    for (int k = 0; k < s->solid_count; k++) {
+        const tobi_solid_def *def = &s->solids[k].def;
+        tobi_material_look *m = &looks->materials[looks->material_count++];
+        *m = (tobi_material_look){ .visible = def->visible, .liquid = def->model == TOBI_LIQUID,
+                                   .kind = first + k };
+        memcpy(m->color, def->color, sizeof m->color);
+        memcpy(m->core_color, def->core_color, sizeof m->core_color);
+    }
+}
+
+static void add_bodies(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks)
+{
+    for (int k = 0; k < w->sim.body_count; k++) {
+        const tobi_body *b = &w->sim.bodies[k];
+        tobi_body_look *look = &looks->bodies[looks->body_count++];
+        *look = (tobi_body_look){ .opacity = b->opacity, .visible = b->visible, .hollow = b->vessel };
+        memcpy(look->name, names[k], sizeof look->name);
+        snprintf(look->body, sizeof look->body, "%s", b->name);
+        memcpy(look->color, b->color, sizeof look->color);
+        for (int64_t i = 0; i < b->mesh.vertex_count; i++)
+            for (int a = 0; a < 3; a++)
+                look->rest[a] += b->mesh.vertices[i][a]/(double)b->mesh.vertex_count;
+    }
+}
+
+static void add_lines(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks)
+{
+    for (int k = 0; k < w->line_count; k++) {
+        tobi_body_look *look = &looks->bodies[looks->body_count++];
+        *look = (tobi_body_look){ .color = { 38, 38, 41 }, .opacity = 1, .visible = 1, .is_line = 1 };
+        memcpy(look->name, names[k], sizeof look->name);
+    }
+}
+
+tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(looks, "the place for the looks");
+    const tobi_world_def *def = &w->sim.def;
+    const size_t materials = (size_t)tobi_world_first_material(w, w->system + w->system_count);
+    tobi_record_name *body, *traction, *line;
+    *looks = (tobi_looks){ .dimension = def->dimension, .threads = w->sim.exec.threads,
+                           .spacing = w->started ? w->system[0].smoothing.spacing
+                                                 : tobi_fit_find(w, def->spacing).spacing };
+    for (int a = 0; a < 3; a++) {
+        looks->box_min[a] = def->domain_min[a], looks->box_max[a] = def->domain_max[a];
+        looks->gravity[a] = def->gravity[a];
+    }
+    looks->materials = calloc(materials + 1, sizeof *looks->materials);
+    looks->bodies = calloc((size_t)(w->sim.body_count + w->line_count) + 1, sizeof *looks->bodies);
+    tobi_status status = tobi_record_name_bodies(w, &body, &traction, &line, err);
+    if (status == TOBI_OK && (!looks->materials || !looks->bodies))
+        status = tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+    for (int k = 0; status == TOBI_OK && k < w->system_count; k++)
+        add_materials(w, &w->system[k], looks);
+    if (status == TOBI_OK) {
+        add_bodies(w, body, looks);
+        add_lines(w, line, looks);
+    } else tobi_looks_free(looks);
+    free(body);
+    free(traction);
+    free(line);
+    return status;
+}
+
+bool tobi_record_has_pieces(const tobi_world *w)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    bool blades = false, breaks = false;
+    for (int k = 0; k < w->sim.body_count; k++) blades |= w->sim.bodies[k].blade;
+    for (int k = 0; s && k < s->solid_count; k++) {
+        const tobi_solid_def *def = &s->solids[k].def;
+        breaks |= tobi_solid_uses(def->model, "cut_friction") && (blades || def->strength > 0);
+    }
+    return breaks;
+}

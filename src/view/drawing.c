@@ -1,0 +1,289 @@
+/* From a moment of a run to the picture of it: colours of materials and fields, hidden things, bodies.
+   Drawback: positions are copied for each view. */
+#include "tobiuo/drawing.h"
+#include "base/error.h"
+#include "view/drawing.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tobi_drawing_free(tobi_drawing *d)
+{
+    if (!d) return;
+    free(d->positions);
+    free(d->velocities);
+    free(d->values);
+    free(d->palette);
+    free(d->tint);
+    free(d->opaque);
+    free(d->group);
+    free(d->meshes);
+    free(d->paths);
+    free(d);
+}
+
+tobi_picture *tobi_drawing_picture(tobi_drawing *d) { return d ? &d->picture : NULL; }
+
+void tobi_looks_free(tobi_looks *looks)
+{
+    if (!looks) return;
+    free(looks->materials);
+    free(looks->bodies);
+    *looks = (tobi_looks){ 0 };
+}
+
+static tobi_status no_memory(tobi_error *err)
+{
+    return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
+}
+
+static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
+{
+    for (int k = 0; k < m->field_count; k++)
+        if (strcmp(m->fields[k].name, name) == 0) return &m->fields[k];
+    return NULL;
+}
+
+static int number_at(const tobi_moment_field *f, int64_t i, int otherwise)
+{
+    const double v = f ? f->values[i*f->components] : otherwise;
+    return v > -1e9 && v < 1e9 ? (int)v : otherwise;
+}
+
+/* As files have it: of a vector its length. */
+static float value_at(const tobi_moment_field *f, int64_t i)
+{
+    const double *v = f->values + i*f->components;
+    double square = 0;
+    if (f->components == 1) return (float)*v;
+    for (int k = 0; k < f->components; k++) square += (double)(float)v[k]*(double)(float)v[k];
+    return (float)sqrt(square);
+}
+
+static const tobi_material_look *look_of(const tobi_looks *s, int material)
+{
+    static const tobi_material_look plain = { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 };
+    return material >= 0 && material < s->material_count ? &s->materials[material] : &plain;
+}
+
+/* A value for each particle that is shown, its place and velocity. */
+static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
+{
+    const tobi_moment *m = d->moment;
+    const size_t n = (size_t)m->count + 1;
+    const tobi_moment_field *velocity = find_field(m, "velocity");
+    const tobi_moment_field *field = d->view->field ? find_field(m, d->view->field) : velocity;
+    if (d->view->field && !field)
+        return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; output.fields of the scene "
+                         "writes it", d->view->field);
+    const int arrows = d->view->arrows && velocity;
+    d->positions = malloc(n*sizeof *d->positions);
+    d->values = malloc(n*sizeof *d->values);
+    d->opaque = malloc(n);
+    d->group = malloc(n*sizeof *d->group);
+    if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
+    if (!d->positions || !d->values || !d->opaque || !d->group || (arrows && !d->velocities))
+        return no_memory(err);
+    for (int64_t i = 0; i < m->count; i++) {
+        const int material = number_at(d->material, i, 0), piece = number_at(d->piece, i, -1);
+        const tobi_material_look *look = look_of(d->looks, material);
+        if (!look->visible) continue;
+        const int64_t to = d->count++;
+        memcpy(d->positions[to], m->positions[i], sizeof *d->positions);
+        for (int k = 0; arrows && k < 3; k++) d->velocities[to][k] = (float)velocity->values[3*i + k];
+        d->opaque[to] = !look->liquid;
+        d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
+        d->values[to] = !d->has_palette ? field ? value_at(field, i) : 0
+            : (float)tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
+    }
+    return TOBI_OK;
+}
+
+int tobi_drawing_find_body(const tobi_looks *s, const char *name)
+{
+    for (int k = 0; name && k < s->body_count; k++)
+        if (strcmp(s->bodies[k].name, name) == 0) return k;
+    for (int k = 0; name && k < s->body_count; k++)
+        if (strcmp(s->bodies[k].body, name) == 0) return k;
+    return -1;
+}
+
+/* Of body b, or without one by a number. */
+static void find_color(const tobi_looks *looks, int b, int number, float out[3])
+{
+    static const float colors[][3] = { { 0.93f, 0.62f, 0.28f }, { 0.80f, 0.33f, 0.36f },
+                                       { 0.55f, 0.70f, 0.35f }, { 0.62f, 0.50f, 0.74f } };
+    memcpy(out, colors[(b >= 0 ? b : number)%4], sizeof colors[0]);
+    for (int c = 0; b >= 0 && looks->bodies[b].color[0] >= 0 && c < 3; c++)
+        out[c] = (float)(looks->bodies[b].color[c]/255);
+}
+
+static void take_bodies(tobi_drawing *d)
+{
+    const tobi_moment *m = d->moment;
+    int count = 0;
+    for (int k = 0; k < m->surface_count; k++) {
+        const tobi_moment_surface *s = &m->surfaces[k];
+        const int b = tobi_drawing_find_body(d->looks, s->name);
+        const tobi_body_look *look = b >= 0 ? &d->looks->bodies[b] : NULL;
+        if (look && !look->visible) continue;
+        tobi_picture_mesh *mesh = &d->meshes[count++];
+        *mesh = (tobi_picture_mesh){ .vertex_count = s->vertex_count,
+                                     .vertices = (const double (*)[3])s->vertices,
+                                     .triangle_count = s->triangle_count,
+                                     .triangles = (const int32_t (*)[3])s->triangles,
+                                     .transparency = look ? (float)(1 - look->opacity) : 0,
+                                     .hollow = look && look->hollow };
+        find_color(d->looks, b, k, mesh->color);
+    }
+    d->picture.meshes = d->meshes;
+    d->picture.mesh_count = count;
+}
+
+/* Half the speed of a fall through the domain: the same colours in every picture of a run. */
+static double color_speed(const tobi_looks *s)
+{
+    double work = 0;
+    for (int a = 0; a < s->dimension; a++) work += fabs(s->gravity[a])*(s->box_max[a] - s->box_min[a]);
+    return 0.5*sqrt(2*work);
+}
+
+/* Range and label of the colours of a field, or of the speed. */
+static void set_range(tobi_drawing *d)
+{
+    const char *name = d->view->field ? d->view->field : "speed", *known, *unit = "m/s";
+    double low = d->view->min, high = d->view->max;
+    int components;
+    if (!(low < high)) {
+        low = INFINITY, high = -INFINITY;
+        for (int64_t i = 0; i < d->count; i++) {
+            if (!isfinite(d->values[i])) continue;
+            low = fmin(low, d->values[i]);
+            high = fmax(high, d->values[i]);
+        }
+        if (!(low <= high)) low = high = 0;
+        if (low == high) high = low + fmax(1e-6*fabs(low), 1e-6);
+    }
+    d->picture.value_min = low;
+    d->picture.value_max = high;
+    for (int k = 0; d->view->field && (known = tobi_world_field_name(k, &components, &unit)); k++)
+        if (strcmp(known, name) == 0) break;
+    const int bare = !unit || strcmp(unit, "1") == 0;
+    snprintf(d->label, sizeof d->label, bare ? "%s" : "%s [%s]", name, unit);
+    d->picture.label = d->label;
+}
+
+/* The camera moves as the mean of the body's vertices has done since its rest pose. */
+static void follow_body(tobi_drawing *d)
+{
+    for (int k = 0; k < d->moment->surface_count; k++) {
+        const tobi_moment_surface *s = &d->moment->surfaces[k];
+        const int b = tobi_drawing_find_body(d->looks, s->name);
+        if (b < 0 || strcmp(d->looks->bodies[b].body, d->view->follow) != 0 || s->vertex_count == 0) continue;
+        for (int a = 0; a < 3; a++) {
+            double sum = 0;
+            for (int64_t i = 0; i < s->vertex_count; i++) sum += s->vertices[i][a];
+            const double way = sum/(double)s->vertex_count - d->looks->bodies[b].rest[a];
+            d->picture.eye[a] += way;
+            d->picture.target[a] += way;
+        }
+    }
+}
+
+/* In the colours of the bodies. */
+static tobi_status take_paths(tobi_drawing *d, tobi_error *err)
+{
+    const tobi_moment *m = d->moment;
+    if (!d->view->paths) return TOBI_OK;
+    d->paths = calloc((size_t)m->track_count + 1, sizeof *d->paths);
+    if (!d->paths) return no_memory(err);
+    for (int k = 0; k < m->track_count; k++) {
+        const int b = tobi_drawing_find_body(d->looks, m->tracks[k].body);
+        if (b >= 0 && !d->looks->bodies[b].visible) continue;
+        tobi_picture_path *path = &d->paths[d->picture.path_count++];
+        *path = (tobi_picture_path){ .count = m->tracks[k].count,
+                                     .points = (const double (*)[3])m->tracks[k].points };
+        find_color(d->looks, b, k, path->color);
+    }
+    d->picture.paths = d->paths;
+    return TOBI_OK;
+}
+
+/* What the view says; colours of a field. */
+static void set_view(tobi_drawing *d)
+{
+    tobi_picture *p = &d->picture;
+    tobi_picture_set_view(p, d->view);
+    p->velocities = (const double (*)[3])d->velocities;
+    if (d->view->follow && p->has_camera) follow_body(d);
+    if (!d->view->field && p->look == TOBI_LOOK_NATURAL) return;
+    p->palette = tobi_color_map(tobi_color_map_name(d->view->map), &p->palette_count);
+    p->values = d->values;
+    if (p->look == TOBI_LOOK_NATURAL) p->look = TOBI_LOOK_SURFACE;
+    set_range(d);
+}
+
+static void set_picture(tobi_drawing *d)
+{
+    const tobi_looks *s = d->looks;
+    tobi_picture *p = &d->picture;
+    int solids = 0, liquids = 0;
+    for (int k = 0; k < s->material_count; k++) {
+        solids |= !s->materials[k].liquid;
+        liquids |= s->materials[k].liquid && s->materials[k].kind > 0;
+    }
+    for (int a = 0; a < 3; a++)
+        p->box_min[a] = s->box_min[a], p->box_max[a] = s->box_max[a], p->up[a] = -s->gravity[a];
+    p->dimension = s->dimension;
+    p->particle_count = d->count;
+    p->positions = (const double (*)[3])d->positions;
+    p->values = d->values;
+    p->radius = 0.5*s->spacing;
+    if (solids) p->opaque = d->opaque;
+    if (solids || liquids) p->group = d->group;
+    p->value_max = d->has_palette ? d->colors - 1 : color_speed(s);
+    if (d->has_palette) p->palette = (const float (*)[3])d->palette, p->palette_count = d->colors;
+    snprintf(d->title, sizeof d->title, "t = %.4f s", d->moment->time);
+    p->title = d->title;
+    p->threads = s->threads;
+    /* Water in 3-D looks like water; what else has no colour of its own shows its speed. */
+    const int natural = s->dimension == 3 && !d->has_palette && !solids;
+    if (natural) p->values = NULL;
+    p->label = d->has_palette || natural ? NULL : "speed [m/s]";
+}
+
+static tobi_status make(tobi_drawing *d, tobi_error *err)
+{
+    const tobi_moment *m = d->moment;
+    d->picture = tobi_default_picture();
+    d->material = find_field(m, "material");
+    d->part = find_field(m, "part");
+    d->piece = find_field(m, "piece");
+    d->meshes = calloc((size_t)m->surface_count + 1, sizeof *d->meshes);
+    if (!d->meshes) return no_memory(err);
+    TOBI_TRY(tobi_drawing_make_palette(d, find_field(m, "particle_id"), err));
+    TOBI_TRY(take_particles(d, err));
+    set_picture(d);
+    take_bodies(d);
+    TOBI_TRY(take_paths(d, err));
+    set_view(d);
+    return TOBI_OK;
+}
+
+tobi_status tobi_drawing_make(const tobi_looks *looks, const tobi_moment *moment, const tobi_view_def *view,
+                              tobi_drawing **drawing, tobi_error *err)
+{
+    TOBI_NEED(looks, "the looks");
+    TOBI_NEED(moment, "the moment");
+    TOBI_NEED(view, "the view");
+    TOBI_NEED(drawing, "the place for the drawing");
+    tobi_drawing *d = *drawing = calloc(1, sizeof *d);
+    if (!d) return no_memory(err);
+    d->looks = looks, d->moment = moment, d->view = view;
+    const tobi_status status = make(d, err);
+    if (status == TOBI_OK) return status;
+    tobi_drawing_free(d);
+    *drawing = NULL;
+    return status;
+}

@@ -1,0 +1,31 @@
+/* A picture and what it points to, shared by drawing.c and palette.c. */
+#pragma once
+#include "tobiuo/drawing.h"
+
+struct tobi_drawing {
+    tobi_picture picture;              /* of what follows                               */
+    const tobi_looks *looks;
+    const tobi_moment *moment;
+    const tobi_view_def *view;
+    const tobi_moment_field *material, *part, *piece;      /* of the moment, or NULL    */
+    char title[64], label[160];
+    int64_t count;                     /* particles that are shown                      */
+    double (*positions)[3], (*velocities)[3];
+    float *values;                     /* of the field; with a palette its colour's number */
+    uint8_t *opaque;
+    int32_t *group;                    /* kind, material or piece                       */
+    float (*palette)[3];
+    int colors;                        /* in the palette                                */
+    int has_palette;                   /* 0: colours by a field                         */
+    uint8_t *tint;                     /* of each piece                                 */
+    int64_t pieces;
+    tobi_picture_mesh *meshes;
+    tobi_picture_path *paths;
+};
+
+/* The colours of all materials, if any has one or if there are several liquids. */
+tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *id, tobi_error *err);
+/* The number of a colour in the palette. */
+int tobi_drawing_color(const tobi_drawing *d, int material, int part, int piece);
+/* A body or line by the name of its surface, or -1. */
+int tobi_drawing_find_body(const tobi_looks *s, const char *name);
