@@ -61,7 +61,7 @@ typedef struct tobi_picture {
     double clip_point[3], clip_normal[3];        /* m; from what is drawn to what is not                */
     double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */
     const double (*velocities)[3];     /* m/s, drawn as arrows; NULL = none                             */
-    int isolines;                      /* lines of equal value on surfaces, 0 to 100                           */
+    int isolines;                      /* lines of equal value on surfaces, 0 to 100                     */
     const tobi_picture_path *paths;
     int path_count;
     int axes;                          /* not 0: ticks along edges of the box                           */

@@ -94,6 +94,8 @@ bool tobi_record_has_pieces(const tobi_world *w)
 {
     const tobi_system *s = tobi_world_solids(w);
     bool blades = false, breaks = false;
+    const mpm_fields *fields = s ? mpm_fields_of(&s->particles) : NULL;
+    blades = fields && fields->cuts;          /* before the start there are none */
     for (int k = 0; k < w->sim.body_count; k++) blades |= w->sim.bodies[k].blade;
     for (int k = 0; s && k < s->solid_count; k++) {
         const tobi_solid_def *def = &s->solids[k].def;
