@@ -103,3 +103,11 @@ bool tobi_record_has_pieces(const tobi_world *w)
     }
     return breaks;
 }
+
+bool tobi_record_has_kinds(const tobi_world *w)
+{
+    const tobi_system *s = tobi_world_fluids(w);
+    bool differ = false;
+    for (int k = 1; s && k < s->fluid_count; k++) differ |= !is_same_fluid(&s->fluid[0], &s->fluid[k]);
+    return differ;
+}

@@ -198,6 +198,8 @@ void tobi_tractions_free(tobi_snapshot *snapshot);
 typedef char tobi_record_name[96];
 tobi_status tobi_record_name_bodies(const tobi_world *world, tobi_record_name **body,
                                     tobi_record_name **traction, tobi_record_name **line, tobi_error *err);
+/* Whether there are fluids that differ, be it in colour alone. */
+bool tobi_record_has_kinds(const tobi_world *world);
 /* Whether a blade or a crack may part a solid. */
 bool tobi_record_has_pieces(const tobi_world *world);
 

@@ -67,8 +67,7 @@ static tobi_status add_usual(tobi_run *run, tobi_error *err)
     const int parts = tobi_record_has_pieces(run->world);
     const int count = parts ? 10 : tobi_world_solids(run->world) ? 8 : 5;
     for (int k = 0; k < count; k++) TOBI_TRY(add_field(run, usual[k], strlen(usual[k]), err));
-    const tobi_system *fluids = tobi_world_fluids(run->world);
-    if (count == 5 && fluids && tobi_system_is_mixed(fluids))
+    if (count == 5 && tobi_record_has_kinds(run->world))
         TOBI_TRY(add_field(run, "material", strlen("material"), err));
     const char *texture = "texture_coordinates";
     return tobi_world_has_textures(run->world) ? add_field(run, texture, strlen(texture), err) : TOBI_OK;
