@@ -258,10 +258,10 @@ int tobi_motion_is_rigid(const tobi_motion *motion)
     return motion->kind != KIND_SCRIPT || tobi_script_is_rigid(motion->script);
 }
 
-int tobi_motion_is_piston(const tobi_motion *motion)
+int tobi_motion_makes_waves(const tobi_motion *motion)
 {
-    int is = motion->kind == KIND_PISTON;
-    for (int k = 0; k < motion->parts; k++) is |= tobi_motion_is_piston(motion->part[k]);
+    int is = motion->kind == KIND_PISTON || motion->kind == KIND_FLAP;
+    for (int k = 0; k < motion->parts; k++) is |= tobi_motion_makes_waves(motion->part[k]);
     return is;
 }
 

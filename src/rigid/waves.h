@@ -29,8 +29,8 @@ int tobi_waves_absorption(const tobi_waves *waves, tobi_absorption *out);
 /* The piston of a motion or of one of its parts that absorbs, and where its waves go (unit vector); NULL. */
 const tobi_waves *tobi_motion_absorber(const tobi_motion *motion, double direction[3]);
 
-/* 1: the motion is a piston, or one of its parts is. */
-int tobi_motion_is_piston(const tobi_motion *motion);
+/* 1: the motion is a piston or a flap, or one of its parts is. */
+int tobi_motion_makes_waves(const tobi_motion *motion);
 
 /* 1/m: k of omega^2 = g k tanh kh for a period (s) and a depth (m). */
 double tobi_waves_number(double gravity, double depth, double period);

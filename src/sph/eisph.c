@@ -13,6 +13,9 @@ enum { SWEEPS_MAX = 200 };
 /* Speed of sound over that of the flow; and what the pressure forgets over what it takes in of the error of
    volume: below 1 sound gains energy (eq. E.8). */
 static const double SOUND = 10, FORGET = 2;
+/* Times of sound over the depth in which both shares rise from 0: at once, the compression that goes with
+   them would come as a blow, 13 % of the pressure at a floor. */
+static const double RISE = 30;
 
 static void choose_smoothing(const void *def, int stirred, int *shape, double *support)
 {
@@ -89,6 +92,7 @@ static tobi_status begin(tobi_system *s, tobi_error *err)
     v->fades = 0;                        /* its late pressure lets the surface settle instead */
     if (m->memory.started == 0) return TOBI_OK;
     m->solver.sweeps.count = count_sweeps(s, m);
+    v->volume_gain = d->volume_gain*fmin(s->sim->time*sound(s, m)/(RISE*m->memory.depth), 1);
     v->keep = 1 - FORGET*v->volume_gain*v->dt/v->motion_dt;
     return TOBI_OK;
 }

@@ -6,6 +6,13 @@
 
 enum { TIMES = 2000 };
 
+/* Along gravity a flap may turn below the floor, at its hinge. */
+static int is_upright(const tobi_world *w, int axis)
+{
+    const double *g = w->sim.def.gravity;
+    return g[axis]*g[axis] > 0.5*(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
+}
+
 static tobi_status check_place(const tobi_world *w, const tobi_body *b, const double (*at)[3], double t,
                                tobi_error *err)
 {
@@ -13,7 +20,7 @@ static tobi_status check_place(const tobi_world *w, const tobi_body *b, const do
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++) {
             const double lower = box->lower[a], upper = box->lower[a] + box->size[a];
-            if (box->periodic[a] || (at[i][a] >= lower && at[i][a] <= upper)) continue;
+            if (box->periodic[a] || is_upright(w, a) || (at[i][a] >= lower && at[i][a] <= upper)) continue;
             return tobi_fail(err, TOBI_INVALID, "the stroke of '%s' is beyond the tank: at t = %.4g s a "
                              "vertex is at %c = %.4g m, allowed is %g to %g m", b->name, t, "xyz"[a],
                              at[i][a], lower, upper);
@@ -24,7 +31,7 @@ static tobi_status check_place(const tobi_world *w, const tobi_body *b, const do
 tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const int64_t n = b->mesh.vertex_count;
-    if (b->motion != tobi_motion_positions || !tobi_motion_is_piston(b->motion_user)) return TOBI_OK;
+    if (b->motion != tobi_motion_positions || !tobi_motion_makes_waves(b->motion_user)) return TOBI_OK;
     double (*at)[3] = malloc((size_t)(n + 1)*sizeof *at);
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
     tobi_status status = TOBI_OK;

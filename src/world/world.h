@@ -66,7 +66,7 @@ int tobi_world_find_body(const tobi_world *w, const char *name);
 /* Materials come in the order of systems: the number of the first of a system. */
 int tobi_world_first_material(const tobi_world *w, const tobi_system *s);
 
-/* Refuses a piston whose stroke takes it out of the domain before the end time. */
+/* Refuses a wave maker whose stroke takes it out of the domain before the end time. */
 tobi_status tobi_world_check_stroke(const tobi_world *w, const tobi_body *b, tobi_error *err);
 
 /* Keeps each line of notes (ended by \n) as a text of its own: "kind 'name': line", "kind line" if name is
