@@ -55,6 +55,7 @@ typedef struct tobi_param_table {
 
 TOBI_API extern const tobi_param_table tobi_world_table;
 TOBI_API extern const tobi_param_table tobi_fluid_table;
+TOBI_API extern const tobi_param_table tobi_interface_table;
 TOBI_API extern const tobi_param_table tobi_solid_table;
 TOBI_API extern const tobi_param_table tobi_fill_table;
 TOBI_API extern const tobi_param_table tobi_body_table;

@@ -42,6 +42,7 @@ TOBI_API tobi_isph_def   tobi_default_isph_def(void);
 TOBI_API tobi_eisph_def  tobi_default_eisph_def(void);
 TOBI_API tobi_mlsmpm_def tobi_default_mlsmpm_def(void);
 TOBI_API tobi_fluid_def  tobi_default_fluid_def(void);
+TOBI_API tobi_interface_def tobi_default_interface_def(void);
 TOBI_API tobi_solid_def  tobi_default_solid_def(void);
 TOBI_API tobi_fill_def   tobi_default_fill_def(void);
 TOBI_API tobi_body_def   tobi_default_body_def(void);
@@ -67,6 +68,10 @@ TOBI_API void tobi_world_destroy(tobi_world *world);
    at start. */
 TOBI_API tobi_status tobi_world_add_fluid(tobi_world *world, const tobi_fluid_def *def,
                                           const tobi_fill_def *fills, int fill_count, tobi_error *err);
+/* Tension between two fluids that were added, for the SPH methods; once for each pair. TOBI_INVALID for names
+   of no fluid, or of one. */
+TOBI_API tobi_status tobi_world_add_interface(tobi_world *world, const tobi_interface_def *def,
+                                              tobi_error *err);
 /* Parameters of the material point method for solids beside the fluids of another method; before the first
    solid. def NULL: the defaults. */
 TOBI_API tobi_status tobi_world_use_solids(tobi_world *world, const tobi_mlsmpm_def *def, tobi_error *err);

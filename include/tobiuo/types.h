@@ -20,7 +20,8 @@ extern "C" {
 enum {
     TOBI_FLUID_LIMIT = 8, TOBI_SOLID_LIMIT = 255, TOBI_REGION_LIMIT = 2048,
     TOBI_BODY_LIMIT = 1024, TOBI_PLANE_LIMIT = 26, TOBI_PROBE_LIMIT = 1024,
-    TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32
+    TOBI_INLET_LIMIT = 32, TOBI_OUTLET_LIMIT = 32,
+    TOBI_INTERFACE_LIMIT = 28
 };
 
 typedef enum tobi_smoothing {
@@ -194,6 +195,12 @@ typedef struct tobi_fluid_def {
     double color[3];      /* RGB, 0 to 255, in pictures; all -1 = by its speed */
     int    visible;       /* 0: left out of pictures */
 } tobi_fluid_def;
+
+/* The interface of two fluids, by their names. */
+typedef struct tobi_interface_def {
+    const char *fluid, *to_fluid;
+    double tension;       /* N/m */
+} tobi_interface_def;
 
 /* Velocities (m/s) at n places (m) when the world starts, added to velocity and spin of a region. Returns
    TOBI_OK, or a status with a text in err. */

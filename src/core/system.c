@@ -74,11 +74,21 @@ int tobi_system_is_mixed(const tobi_system *s)
     return 0;
 }
 
+double tobi_system_capillary(const tobi_system *s)
+{
+    double most = 0;
+    for (int f = 0; f < s->fluid_count; f++) {
+        const tobi_fluid *fluid = &s->fluid[f];
+        most = fmax(most, fluid->tension/(fluid->density*s->smoothing.spacing));
+        for (int b = 0; b < s->fluid_count; b++)
+            most = fmax(most, fluid->interface_tension[b]/(fluid->density*s->smoothing.spacing));
+    }
+    return most;
+}
+
 double tobi_system_speed_scale(const tobi_system *s)
 {
-    double fall = 0, capillary = 0;
+    double fall = 0;
     for (int a = 0; a < s->box.dimension; a++) fall += tobi_simulation_pull(s->sim, a)*s->box.size[a];
-    for (int f = 0; f < s->fluid_count; f++)
-        capillary = fmax(capillary, 8*s->fluid[f].tension/(s->fluid[f].density*s->smoothing.spacing));
-    return sqrt(2*fall + capillary) + s->sim->body_speed + 2*s->start_speed;
+    return sqrt(2*fall + 8*tobi_system_capillary(s)) + s->sim->body_speed + 2*s->start_speed;
 }

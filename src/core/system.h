@@ -147,6 +147,8 @@ typedef struct tobi_method {
 int tobi_system_is_mixed(const tobi_system *s);
 /* Largest over least density of its fluids; 1 for one. */
 double tobi_system_density_ratio(const tobi_system *s);
+/* Tension over density and spacing, the most of all fluids, m2/s2. */
+double tobi_system_capillary(const tobi_system *s);
 /* A speed nothing in the scene should exceed by much, m/s: free fall across the box, the bodies and the
    initial velocities. */
 double tobi_system_speed_scale(const tobi_system *s);

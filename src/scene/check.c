@@ -320,6 +320,7 @@ void tobi_scene_check(const tobi_scene *scene, tobi_source *source)
     check_rules(scene, source);
     check_matter(scene, source);
     check_fluids(scene, source);
+    tobi_interfaces_check(scene, source);
     check_solids(scene, source);
     tobi_check_overlaps(scene, source);
     check_bodies(scene, source);

@@ -9,6 +9,8 @@
 static const tobi_part parts[] = {
     { "world", "fluids", TOBI_PART_LIST, &tobi_fluid_table, 0, TOBI_FLUID_LIMIT,
       "The fluids of the methods dfsph, wcsph, isph and eisph, which need at least one." },
+    { "world", "interfaces", TOBI_PART_LIST, &tobi_interface_table, 0, TOBI_INTERFACE_LIMIT,
+      "Tensions between fluids, if any." },
     { "world", "solids", TOBI_PART_LIST, &tobi_solid_table, 0, TOBI_SOLID_LIMIT,
       "The solids, sands, snows and liquids of the method mlsmpm." },
     { "world", "bodies", TOBI_PART_LIST, &tobi_body_table, 0, TOBI_BODY_LIMIT,

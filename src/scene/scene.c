@@ -261,6 +261,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     flatten_world(scene);
     TOBI_TRY(read_method(scene, &binder, &root));
     TOBI_TRY(read_fluids(scene, &binder, &root));
+    TOBI_TRY(tobi_interfaces_bind(scene, &binder, &root));
     TOBI_TRY(read_solids(scene, &binder, &root));
     TOBI_TRY(read_bodies(scene, &binder, &root));
     tobi_tank_bind(&scene->tank, &binder, scene->root, &root);
@@ -391,6 +392,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->bodies);
     free(scene->planes);
     free(scene->planes_bound);
+    free(scene->interfaces);
     free(scene->lines);
     free(scene->probes);
     free(scene->probes_bound);
@@ -465,6 +467,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
         status = add_body(scene, world, &scene->bodies[i].def, err);
     for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
         status = add_fluid(world, &scene->fluids[i], err);
+    for (int i = 0; i < scene->interface_count && status == TOBI_OK; i++)
+        status = tobi_world_add_interface(world, &scene->interfaces[i], err);
     for (int i = 0; i < scene->solid_count && status == TOBI_OK; i++)
         status = add_solid(world, &scene->solids[i], err);
     for (int i = 0; i < scene->plane_count && status == TOBI_OK; i++)

@@ -60,6 +60,8 @@ struct tobi_scene {
     int inlet_count;
     tobi_outlet_def *outlets;
     int outlet_count;
+    tobi_interface_def *interfaces;
+    int interface_count;
     tobi_line_def *lines;
     int line_count;
     tobi_probe_def *probes;
@@ -95,6 +97,11 @@ json_t *tobi_lines_write_json(const tobi_scene *scene);      /* NULL: no memory 
 /* joints.c: the hinge of a 2-D body has its axis along z; what is wrong with hinge and guide of a body. */
 void tobi_joints_complete(const json_t *body, int dimension, tobi_body_def *def);
 void tobi_joints_check(const tobi_scene *scene, tobi_source *source, int body, const tobi_place *entry);
+
+/* interfaces.c: the key interfaces of the scene, which is `of`; tobi_interfaces_write: 1 without memory. */
+tobi_status tobi_interfaces_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
+void tobi_interfaces_check(const tobi_scene *scene, tobi_source *source);
+int tobi_interfaces_write(const tobi_scene *scene, json_t *root);
 
 /* output.c: the key output of the scene, which is `of`. */
 tobi_status tobi_output_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);

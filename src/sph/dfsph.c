@@ -127,9 +127,8 @@ static double choose_dt(tobi_system *s)
     dfsph *m = s->state;
     double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->sim->body_speed);
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
-    const double depth = s->start_head*tobi_system_density_ratio(s);
-    double head = fmin(m->memory.head, 1.5*depth + s->sim->body_speed*s->sim->body_speed +
-                                           4*s->fluid[0].tension/(s->fluid[0].density*d));
+    const double depth = s->start_head*tobi_system_density_ratio(s), body = s->sim->body_speed;
+    double head = fmin(m->memory.head, 1.5*depth + body*body + 4*tobi_system_capillary(s));
     m->motion_dt = fmin(sph_gravity_dt(s),
                         s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->sim->def.time_step > 0) {

@@ -42,7 +42,7 @@ void sph_phases_find(tobi_system *s, sph_view *v, const sph_kernels *k)
     launch(s, v, k->sph_phase_bend);
 }
 
-static int has_viscosities(const tobi_system *s)
+int sph_phases_differ(const tobi_system *s)
 {
     for (int f = 1; f < s->fluid_count; f++)
         if (s->fluid[f].viscosity != s->fluid[0].viscosity) return 1;
@@ -51,14 +51,14 @@ static int has_viscosities(const tobi_system *s)
 
 void sph_phases_rub(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
-    if (!v->phase || !has_viscosities(s)) return;
+    if (!v->phase || !sph_phases_differ(s)) return;
     launch(s, v, k->sph_phase_set);
     launch(s, v, k->sph_phase_viscosity);
 }
 
 void sph_phases_kick(tobi_system *s, sph_view *v, const sph_kernels *k)
 {
-    if (v->phase && has_viscosities(s)) launch(s, v, k->sph_phase_kick);
+    if (v->phase && sph_phases_differ(s)) launch(s, v, k->sph_phase_kick);
 }
 
 void sph_phases_pull(tobi_system *s, sph_view *v, const sph_kernels *k)

@@ -14,6 +14,8 @@ void sph_phases_rub(tobi_system *s, sph_view *v, const sph_kernels *k);
 void sph_phases_kick(tobi_system *s, sph_view *v, const sph_kernels *k);
 /* v += dt (tension of the interfaces), as an acceleration. */
 void sph_phases_pull(tobi_system *s, sph_view *v, const sph_kernels *k);
+/* Whether the fluids differ in viscosity. */
+int sph_phases_differ(const tobi_system *s);
 /* Whether an interface of two fluids has tension. */
 int sph_phases_have_tension(const tobi_system *s);
 /* The longest step of the interfaces' tension, s; without one INFINITY. */

@@ -24,8 +24,9 @@ TOBI_FN lane sph_phase_other(lane own, lane id)
     return lane_where_less(lane_set(0.25f), apart*apart, lane_set(1), lane_set(0));
 }
 
-/* v += dt/rho sum 2 (mu_ij - mu_i) V F (v_j - v_i), eq. (41): what the harmonic mean mu_ij makes of the
-   viscosity of pairs of different fluids; into `interface`, for sph_phase_kick. */
+/* v += dt/rho sum 2 V F ((dim + 2) mu_ij e e . (v_j - v_i) - mu_i (v_j - v_i)), e the direction of x_ij and
+   mu_ij the harmonic mean, eq. (41): div mu (grad v + grad v^T), which differs from mu_i div grad v where the
+   viscosity does; into `interface`, for sph_phase_kick. */
 typedef struct sph_phase_viscosity_acc { lane ux, uy, uz, x, y, z, mu; } sph_phase_viscosity_acc;
 TOBI_FN void sph_phase_viscosity_start(const sph_view *v, int64_t i, sph_phase_viscosity_acc *a)
 {
@@ -41,10 +42,11 @@ TOBI_FN void sph_phase_viscosity_pair(const sph_view *v, int64_t i, const tobi_n
     (void)i;
     lane_load_float4(v->velocity, n->j, &x, &y, &z, &w);
     lane_load_float4(v->phase, n->j, &rho, &mu, &depth, &id);
-    /* exactly 0 between particles of one viscosity */
-    const lane more = a->mu*(mu - a->mu)/(mu + a->mu + 1e-30f);
-    const lane f = 2*more*smoothing_falloff(shape, r*v->inverse_h, r);
-    a->x += f*(x - a->ux); a->y += f*(y - a->uy); a->z += f*(z - a->uz);
+    x -= a->ux; y -= a->uy; z -= a->uz;
+    const lane f = 2*smoothing_falloff(shape, r*v->inverse_h, r), own = f*a->mu;
+    const lane mean = 2*a->mu*mu/(mu + a->mu + 1e-30f);
+    const lane along = (float)(v->dimension + 2)*f*mean*(x*n->dx + y*n->dy + z*n->dz)/(n->r2 + 1e-30f);
+    a->x += along*n->dx - own*x; a->y += along*n->dy - own*y; a->z += along*n->dz - own*z;
 }
 TOBI_FN void sph_phase_viscosity_finish(const sph_view *v, int64_t i, sph_phase_viscosity_acc *a,
                                         double *totals)

@@ -124,6 +124,7 @@ double sph_viscous_dt(const tobi_system *s)
     for (int f = 0; f < s->fluid_count; f++)
         if (s->fluid[f].viscosity > 0)
             dt = fmin(dt, 0.8*s->fluid[f].density/(s->fluid[f].viscosity*rate));
+    if (sph_phases_differ(s)) dt *= s->box.dimension/(s->box.dimension + 2.0);     /* by eq. (41) */
     return dt;
 }
 

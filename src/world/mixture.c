@@ -3,8 +3,10 @@
    is too much. */
 #include "world/mixture.h"
 #include "base/error.h"
+#include "base/param.h"
 #include "world/methods.h"
 #include <math.h>
+#include <string.h>
 
 /* What a method computes beside fluids of different density: bits of tobi_company. */
 static unsigned allows(const tobi_method *m)
@@ -72,5 +74,30 @@ tobi_status tobi_mixture_start(const tobi_world *w, tobi_error *err)
         if (tobi_mixture_check(s->method, &fluid, &other, company, &why) != TOBI_OK)
             return tobi_fail(err, why.status, "fluid '%s': density %s", s->fluid[k].name, why.text);
     }
+    return TOBI_OK;
+}
+
+/* The fluid of this name, -1: there is none. */
+static int find_fluid(const tobi_system *s, const char *name)
+{
+    for (int k = 0; k < s->fluid_count; k++)
+        if (strcmp(s->fluid[k].name, name) == 0) return k;
+    return -1;
+}
+
+tobi_status tobi_world_add_interface(tobi_world *w, const tobi_interface_def *def, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_NEED(def->fluid && def->to_fluid, "the name of a fluid");
+    TOBI_TRY(tobi_param_check(&tobi_interface_table, def, err));
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more interfaces");
+    tobi_system *s = &w->system[0];
+    const int a = find_fluid(s, def->fluid), b = find_fluid(s, def->to_fluid);
+    if (a < 0 || b < 0)
+        return tobi_fail(err, TOBI_INVALID, "interface: '%s' is no fluid of the world",
+                         a < 0 ? def->fluid : def->to_fluid);
+    if (a == b) return tobi_fail(err, TOBI_INVALID, "interface: '%s' is on both sides", def->fluid);
+    s->fluid[a].interface_tension[b] = s->fluid[b].interface_tension[a] = def->tension;
     return TOBI_OK;
 }

@@ -25,6 +25,20 @@ static const tobi_param fluid_rows[] = {
 const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 
+static const tobi_param interface_rows[] = {
+    { .key = "fluid", TEXT, AT(tobi_interface_def, fluid), .unit = "name", .text = "fluid", .required = true,
+      .doc = "Name of the fluid on one side." },
+    { .key = "to_fluid", TEXT, AT(tobi_interface_def, to_fluid), .unit = "name", .text = "fluid",
+      .required = true, .doc = "Name of the fluid on the other." },
+    { .key = "tension", REAL, AT(tobi_interface_def, tension), RANGE(0, 1e6), .unit = "N/m", .text = "none",
+      .doc = "Tension of the interface; oil on water has some 0.03. It wants a support of 2.5 to 3." },
+    { 0 }
+};
+
+const tobi_param_table tobi_interface_table = {
+    "interface", "An entry of interfaces: the tension between two fluids.", sizeof(tobi_interface_def),
+    interface_rows };
+
 static const tobi_param fill_rows[] = {
     { .key = "box.min", VEC3, AT(tobi_fill_def, box_min), PLACE, .unit = "m",
       .doc = "Lower corner of the filled box; a box has both corners." },

@@ -43,11 +43,15 @@ static void viscosity(const scene *s, int i, four out)
 {
     const oracle *o = of(s);
     out[0] = out[1] = out[2] = out[3] = 0;
-    const double own = mu_of(s, i), scale = o->volume*o->g_scale*o->dt/o->rho0[o->fluid[i]];
+    const double own = mu_of(s, i), scale = 2*o->volume*o->g_scale*o->dt/o->rho0[o->fluid[i]];
     EACH_NEIGHBOUR(o, s->in, i, j, x, r) {
-        const double other = mu_of(s, j), k = 2*(2*own*other/(own + other) - own)*oracle_f(o, r)*scale;
-        for (int c = 0; c < 3; c++) out[c] += k*(s->in[j][VEL + c] - s->in[i][VEL + c]);
-        (void)x;
+        const double mean = 2*own*mu_of(s, j)/(own + mu_of(s, j)), k = scale*oracle_f(o, r);
+        double u[3], along = 0;
+        for (int c = 0; c < 3; c++) {
+            u[c] = s->in[j][VEL + c] - s->in[i][VEL + c];
+            along += u[c]*x[c]/(r*r);
+        }
+        for (int c = 0; c < 3; c++) out[c] += k*((o->dimension + 2)*mean*along*x[c] - own*u[c]);
     }
 }
 

@@ -153,6 +153,80 @@ static void refuse(const char *method, const char *density, const char *more, co
     tobi_world_destroy(w);
 }
 
+/* A pressure higher by sigma/R in a disc without weight; tolerance: 2 %, and no stray motion to speak of. */
+static void test_jump(void **state)
+{
+    (void)state;
+    static const char *const method[] = { "isph", "dfsph" };
+    for (int k = 0; k < 2; k++) {
+        tobi_world *w;
+        tobi_error err = { 0 };
+        double in = 0, out = 0;
+        int ins = 0, outs = 0;
+        must(make(method[k], 1, "{ \"name\": \"water\", \"viscosity\": 0.1, \"fill\": [ { \"box\": { "
+                  "\"min\": [0, 0], \"max\": [0.4, 0.5] } } ] }, { \"name\": \"oil\", \"density\": 500, "
+                  "\"viscosity\": 0.1, \"fill\": [ { \"sphere\": { \"centre\": [0.2, 0.25], "
+                  "\"radius\": 0.1 } } ] }", "\"gravity\": [0, 0], \"interfaces\": [ { \"fluid\": \"oil\", "
+                  "\"to_fluid\": \"water\", \"tension\": 0.05 } ],", &w, &err), &err);
+        must(tobi_world_advance(w, 0.5, NULL, &err), &err);
+        const int64_t n = tobi_world_fluids(w)->particles.count;
+        double *p = calloc((size_t)n, sizeof *p), (*x)[3] = calloc((size_t)n, sizeof *x);
+        must(tobi_world_read(w, TOBI_FLUID, "pressure", p, n, &err), &err);
+        must(tobi_world_read(w, TOBI_FLUID, "position", (double *)x, n, &err), &err);
+        for (int64_t i = 0; i < n; i++) {
+            const double r = hypot(x[i][0] - 0.2, x[i][1] - 0.25);
+            if (r < 0.05) in += p[i], ins++;
+            if (r > 0.16) out += p[i], outs++;
+        }
+        const double jump = (in/ins - out/outs)/(0.05/0.1);
+        if (!(fabs(jump - 1) < 0.02)) fail_msg("%s: jump of %g sigma/R", method[k], jump);
+        free(p);
+        free(x);
+        tobi_world_destroy(w);
+    }
+}
+
+static void refuse_interface(const char *text, const char *words)
+{
+    char more[400];
+    snprintf(more, sizeof more, "\"interfaces\": [\n%s ],", text);
+    refuse("isph", "500", more, words);
+}
+
+static void test_interfaces(void **state)
+{
+    (void)state;
+    refuse_interface("{ \"fluid\": \"oil\", \"to_fluid\": \"air\", \"tension\": 0.03 }",
+                     "s.json:3:31: interfaces[0].to_fluid: \"air\" is no fluid of the scene");
+    refuse_interface("{ \"fluid\": \"air\", \"to_fluid\": \"oil\" }",
+                     "s.json:3:12: interfaces[0].fluid: \"air\" is no fluid of the scene");
+    refuse_interface("{ \"fluid\": \"oil\", \"to_fluid\": \"oil\" }", "is the fluid on the other side too");
+    refuse_interface("{ \"fluid\": \"oil\", \"to_fluid\": \"water\" },\n"
+                     "{ \"fluid\": \"water\", \"to_fluid\": \"oil\" }",
+                     "interfaces[1]: is between the same fluids as interfaces[0]");
+    tobi_world *w;
+    tobi_error err = { 0 };
+    tobi_world_def def = tobi_default_world_def();
+    tobi_interface_def between = tobi_default_interface_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    def.domain_max[0] = def.domain_max[1] = def.domain_max[2] = 1;
+    def.spacing = 0.1;
+    def.end_time = 1;
+    must(tobi_world_create(&def, NULL, &w, &err), &err);
+    fluid.name = between.fluid = between.to_fluid = "water";
+    must(tobi_world_add_fluid(w, &fluid, NULL, 0, &err), &err);
+    assert_int_equal(tobi_world_add_interface(w, &between, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "interface: 'water' is on both sides"));
+    between.to_fluid = "air";
+    assert_int_equal(tobi_world_add_interface(w, &between, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "interface: 'air' is no fluid of the world"));
+    w->started = 1;
+    assert_int_equal(tobi_world_add_interface(w, &between, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "a started world takes no more interfaces"));
+    w->started = 0;
+    tobi_world_destroy(w);
+}
+
 static void test_mistakes(void **state)
 {
     (void)state;
@@ -190,6 +264,8 @@ int main(void)
         cmocka_unit_test(test_layers),
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_drop),
+        cmocka_unit_test(test_jump),
+        cmocka_unit_test(test_interfaces),
         cmocka_unit_test(test_mistakes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
