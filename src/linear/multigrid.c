@@ -139,7 +139,7 @@ static void gather(const tobi_multigrid *m, tobi_exec *x, const tobi_grid_view *
     launch_nodes(x, k->grid_collect, v);
 }
 
-/* Faces of the finest grid, from the count of points in grid[0].value. */
+/* Faces of the finest grid, from the count of points, or the sum of their shares, in grid[0].value. */
 static void set_faces(const tobi_multigrid *m, tobi_exec *x, const tobi_grid_weights *w)
 {
     tobi_grid_view v = see_points(m);
@@ -172,8 +172,11 @@ void tobi_multigrid_set(tobi_multigrid *m, tobi_exec *x, const tobi_cell_points 
     m->points = *p;
     tobi_grid_view v = see_points(m);
     v.out = v.g.value;
+    v.share = w->share ? TOBI_SHARE_DOUBLE : TOBI_SHARE_ONE;
+    v.value = w->share;
     gather(m, x, &v);
     set_faces(m, x, w);
+    v.share = TOBI_SHARE_ONE;
     v.active = w->active;
     v.out = v.g.source;
     gather(m, x, &v);

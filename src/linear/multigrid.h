@@ -31,6 +31,7 @@ typedef struct tobi_multigrid {
 typedef struct tobi_grid_weights {
     double strength;                 /* c of A p ~ -c Laplace p                                     */
     double volume;                   /* m3 (m2 in 2-D) of a point where they lie densely            */
+    const double *share;             /* of that c at each point, 0 to 1; NULL: all of it            */
     const float *active;             /* a point is solved for where > 0; NULL: all are              */
     /* what a row has beside -c Laplace: a surface where p = 0, or a fixed value nearby             */
     const uint8_t *marked;           /* a point that is marked (1) has `hold` of it; or             */

@@ -192,10 +192,34 @@ static void precondition_by_diagonal(void *user, double *z, const double *r)
     tobi_launch(m->exec, m->kernel->isph_diagonal, &m->view, 0, m->view.count, NULL);
 }
 
+typedef struct lightness { const isph_view *v; double least, *share; } lightness;
+
+/* Least density over that of each particle. */
+static void share_range(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const lightness *l = view;
+    (void)totals;
+    for (int64_t i = begin; i < end; i++) l->share[i] = l->least/l->v->phase[i].x;
+}
+
+/* Of several liquids, 1/rho over that of the first, which varies from point to point: at most that of the
+   lightest. The shares lie in scratch, which is free until a cycle. */
+static double set_shares(isph_solver *m, const tobi_system *s)
+{
+    lightness l = { &m->view, INFINITY, m->scratch };
+    for (int f = 0; f < s->fluid_count; f++) l.least = fmin(l.least, s->fluid[f].density);
+    tobi_launch(m->exec, TOBI_HOST(share_range, 0, 0), &l, 0, m->view.count, NULL);
+    return m->view.density/l.least;
+}
+
 static void set_grid(isph_solver *m, tobi_system *s)
 {
     const tobi_cell_points points = tobi_cells_points(&s->cells, &s->box, &s->particles);
-    const tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
+    tobi_grid_weights w = { .strength = 1, .volume = m->view.volume, .excess = m->view.excess };
+    if (m->view.phase) {
+        w.strength = set_shares(m, s);
+        w.share = m->scratch;
+    }
     tobi_multigrid_set(&m->grid, m->exec, &points, &w);
 }
 

@@ -186,6 +186,20 @@ static void test_jump(void **state)
     }
 }
 
+/* The multigrid knows the densities: 1 : 1000 takes no more than some iterations. */
+static void test_iterations(void **state)
+{
+    (void)state;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    tobi_step_info info;
+    must(make("isph", 1, WATER ", { \"name\": \"air\", \"density\": 1, \"viscosity\": 1e-5, \"fill\": [ { "
+              "\"sphere\": { \"centre\": [0.2, 0.1], \"radius\": 0.06 } } ] }", "", &w, &err), &err);
+    must(tobi_world_advance(w, 0.02, &info, &err), &err);
+    if (!(info.divergence_iterations < 20)) fail_msg("%d iterations", (int)info.divergence_iterations);
+    tobi_world_destroy(w);
+}
+
 static void refuse_interface(const char *text, const char *words)
 {
     char more[400];
@@ -265,6 +279,7 @@ int main(void)
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_drop),
         cmocka_unit_test(test_jump),
+        cmocka_unit_test(test_iterations),
         cmocka_unit_test(test_interfaces),
         cmocka_unit_test(test_mistakes),
     };
