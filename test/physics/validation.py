@@ -179,7 +179,8 @@ def index(tree):
              "## Goals that are missed", "", "| case | figure | value | goal |", "|---|---|---|---|", *misses]
     missing = [case for case in tree.cases() if not Page(tree, case).text]
     if missing:
-        lines += ["", f"Without a page, so not run to the end at reference size: {', '.join(missing)}."]
+        text = f"Without a page, so not run to the end at reference size: {', '.join(missing)}."
+        lines += ["", *textwrap.wrap(text, 100)]
     return "\n".join(lines) + "\n"
 
 
