@@ -141,12 +141,34 @@ static bool is_same(const geometry *g, const share *s, int32_t item, float nearn
         && fabsf(nearness - s->nearness) <= same_surface*fabsf(s->nearness);
 }
 
+/* Most pixels: all four samples see one surface. The same sums as below. */
+static bool find_one_share(const layer *l, const square *q, const geometry *g, int px, int py, bool join,
+                           share *out, float *most)
+{
+    const int k = 2*(py*q->side + px);
+    const int32_t *i = l->item + k, *j = i + q->side;
+    const float *a = l->nearness + k, *b = a + q->side;
+    share s = { .item = i[0], .count = 4, .nearness = a[0] };
+    if (i[0] < 0 || i[1] < 0 || j[0] < 0 || j[1] < 0) return false;
+    if (!is_same(g, &s, i[1], a[1], join) || !is_same(g, &s, j[0], b[0], join) ||
+        !is_same(g, &s, j[1], b[1], join)) return false;
+    for (int n = 0; n < 4; n++) {
+        s.x += q->left + ((float)(px*2 + n%2) + 0.5f)*q->step;
+        s.y += q->top + ((float)(py*2 + n/2) + 0.5f)*q->step;
+    }
+    const float upper = a[1] > a[0] ? a[1] : a[0], lower = b[1] > b[0] ? b[1] : b[0];
+    *most = lower > upper ? lower : upper;
+    *out = s;
+    return true;
+}
+
 /* Returns how many there are; *most is the nearness of the nearest. */
 static int find_shares(const layer *l, const square *q, const geometry *g, int samples, int px, int py,
                        bool join,
                        share out[], float *most)
 {
     int n = 0;
+    if (samples == 2 && find_one_share(l, q, g, px, py, join, out, most)) return 1;
     *most = -INFINITY;
     for (int j = 0; j < samples; j++)
         for (int i = 0; i < samples; i++) {

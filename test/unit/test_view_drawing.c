@@ -1,0 +1,136 @@
+/* From a moment to a picture: what is hidden, colours of kinds and pieces, bodies by name, paths. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "tobiuo/drawing.h"
+#include "calls.h"
+
+enum { N = 40 };
+
+static double place[N][3], material[N], speed[3*N];
+static tobi_material_look looks_of[4] = {
+    { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 }, { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 },
+    { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 2 }, { { 200, 0, 0 }, { -1, -1, -1 }, 0, 0, 3 }
+};
+static tobi_body_look body = { .name = "a_box", .body = "a box", .color = { 255, 0, 0 }, .opacity = 0.25,
+                               .visible = 1, .hollow = 1 };
+static tobi_looks looks = { .dimension = 3, .box_max = { 1, 1, 1 }, .gravity = { 0, 0, -9.81 }, .spacing = 0.1,
+                            .material_count = 4, .body_count = 1, .materials = looks_of, .bodies = &body };
+static char field_name[] = "material", velocity_name[] = "velocity", box_name[] = "a_box";
+static double corner[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
+static int32_t side[1][3] = { { 0, 1, 2 } };
+static tobi_moment_field fields[2] = { { field_name, 1, material }, { velocity_name, 3, speed } };
+static tobi_moment_surface surface = { box_name, 3, 1, corner, side };
+static tobi_moment moment = { .time = 0.5, .count = N, .positions = place, .field_count = 2,
+                              .surface_count = 1, .fields = fields, .surfaces = &surface };
+
+static tobi_view_def plain_view(void)
+{
+    return (tobi_view_def){ .width = 64, .height = 64, .samples = 1 };
+}
+
+static tobi_drawing *make(const tobi_view_def *view)
+{
+    tobi_error err = { 0 };
+    tobi_drawing *d;
+    for (int i = 0; i < N; i++) material[i] = i%4, place[i][0] = 0.01*i;
+    if (tobi_drawing_make(&looks, &moment, view, &d, &err) != TOBI_OK) fail_msg("%s", err.text);
+    return d;
+}
+
+static void materials_have_looks(void **state)
+{
+    (void)state;
+    const tobi_view_def view = plain_view();
+    tobi_drawing *d = make(&view);
+    const tobi_picture *p = tobi_drawing_picture(d);
+    assert_int_equal(p->particle_count, 3*N/4);                /* the last material is hidden */
+    assert_non_null(p->palette);                               /* two kinds of liquid */
+    assert_int_equal(p->group[0], p->group[1]);                /* equal fluids are one */
+    assert_true(p->group[0] != p->group[2]);
+    for (int k = 0; k < 3; k++)
+        assert_true(p->palette[(int)p->values[0]][k] == p->palette[(int)p->values[1]][k]);
+    assert_true(memcmp(p->palette[(int)p->values[0]], p->palette[(int)p->values[2]], 12) != 0);
+    assert_string_equal(p->title, "t = 0.5000 s");
+    tobi_drawing_free(d);
+    tobi_drawing_free(NULL);
+}
+
+static void bodies_are_found_by_name(void **state)
+{
+    (void)state;
+    tobi_view_def view = plain_view();
+    tobi_error err = { 0 };
+    const double at[2][3] = { { 0.1, 0.2, 0.3 }, { 0.4, 0.5, 0.6 } };
+    for (int k = 0; k < 2; k++) assert_int_equal(tobi_track_add(&moment, "a box", at[k], &err), TOBI_OK);
+    view.paths = 1;
+    tobi_drawing *d = make(&view);
+    const tobi_picture *p = tobi_drawing_picture(d);
+    assert_int_equal(p->mesh_count, 1);
+    assert_true(p->meshes[0].transparency == 0.75f && p->meshes[0].hollow && p->meshes[0].color[0] == 1);
+    assert_int_equal(p->path_count, 1);
+    assert_true(p->paths[0].count == 2 && p->paths[0].points[1][2] == (float)0.6 && p->paths[0].color[0] == 1);
+    tobi_drawing_free(d);
+    body.visible = 0;
+    d = make(&view);
+    assert_true(tobi_drawing_picture(d)->mesh_count == 0 && tobi_drawing_picture(d)->path_count == 0);
+    tobi_drawing_free(d);
+    free(moment.tracks[0].points);
+    free(moment.tracks);
+    moment.tracks = NULL, moment.track_count = 0;
+}
+
+/* A table of two bodies; rows after the moment's time, and broken ones, do not count. */
+static void tracks_are_read(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/tobi_tracks_XXXXXX", path[64];
+    tobi_moment m = { .time = 0.2 };
+    tobi_error err = { 0 };
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(tobi_tracks_read(folder, &m, &err), TOBI_OK);
+    assert_int_equal(m.track_count, 0);
+    snprintf(path, sizeof path, "%s/bodies.csv", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("time [s],name,position_x [m],position_y [m],position_z [m]\n0,\"a \"\"b\"\", c\",1,2,3,9\n"
+          "0,two,4,5,6\n0.2,\"a \"\"b\"\", c\",1.5,2,3\n0.2,two\nx,two,1,1,1\n0.3,two,7,7,7\n0.2", file);
+    fclose(file);
+    assert_int_equal(tobi_tracks_read(folder, &m, &err), TOBI_OK);
+    assert_int_equal(m.track_count, 2);
+    assert_string_equal(m.tracks[0].body, "a \"b\", c");
+    assert_true(m.tracks[0].count == 2 && m.tracks[0].points[1][0] == 1.5);
+    assert_true(m.tracks[1].count == 1 && m.tracks[1].points[0][2] == 6);
+    tobi_moment_free(&m);
+    unlink(path);
+    rmdir(folder);
+}
+
+static void wrong_calls_are_refused(void **state)
+{
+    (void)state;
+    tobi_view_def view = plain_view();
+    tobi_drawing *d;
+    REFUSED(tobi_drawing_make(NULL, &moment, &view, &d, &err), TOBI_INVALID, "the looks is NULL");
+    REFUSED(tobi_drawing_make(&looks, NULL, &view, &d, &err), TOBI_INVALID, "the moment is NULL");
+    REFUSED(tobi_drawing_make(&looks, &moment, NULL, &d, &err), TOBI_INVALID, "the view is NULL");
+    view.field = "vorticity";
+    REFUSED(tobi_drawing_make(&looks, &moment, &view, &d, &err), TOBI_NOT_FOUND,
+            "the output has no field 'vorticity'; output.fields of the scene writes it");
+    assert_null(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(materials_have_looks), cmocka_unit_test(bodies_are_found_by_name),
+        cmocka_unit_test(tracks_are_read), cmocka_unit_test(wrong_calls_are_refused)
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
