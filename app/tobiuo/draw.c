@@ -94,7 +94,9 @@ static int draw(const draw_options *o, source *s)
         return complain("%s", err.text);
     const tobi_picture *p = tobi_drawing_picture(s->drawing);
     if (asprintf(&path, "%s/picture.png", o->dir) < 0) return complain("out of memory");
-    const char *out = o->out ? o->out : path;
+    const char *out = o->out ? o->out : path, *body = tobi_drawing_body_around(s->drawing);
+    if (body)
+        fprintf(stderr, "tobiuo: note: the camera is inside of the body '%s', which hides all else\n", body);
     if (tobi_picture_write(out, p, &err) != TOBI_OK) code = complain("%s", err.text);
     else printf("picture: %s, %d x %d, %s\n", out, p->width, p->height, p->title);
     free(path);

@@ -47,6 +47,8 @@ TOBI_API tobi_status tobi_drawing_make(const tobi_looks *looks, const tobi_momen
                                        const tobi_view_def *view, tobi_drawing **drawing, tobi_error *err);
 /* Valid until the drawing is freed; its members may be changed. */
 TOBI_API tobi_picture *tobi_drawing_picture(tobi_drawing *drawing);
+/* The name of the body that the camera is inside of, so that it hides all else; NULL: of none. */
+TOBI_API const char *tobi_drawing_body_around(const tobi_drawing *drawing);
 TOBI_API void tobi_drawing_free(tobi_drawing *drawing);      /* NULL is fine */
 
 #ifdef __cplusplus

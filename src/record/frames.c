@@ -151,6 +151,16 @@ static tobi_status take_tracks(tobi_run *run, tobi_moment *m, tobi_error *err)
     return TOBI_OK;
 }
 
+/* Said once, at the start: pictures go on. */
+static tobi_status note_camera(tobi_run *run, const tobi_drawing *d, int view, tobi_error *err)
+{
+    const char *body = tobi_drawing_body_around(d);
+    char text[200];
+    if (!body) return TOBI_OK;
+    snprintf(text, sizeof text, "is inside of the body '%s', which hides all else from it\n", body);
+    return tobi_world_add_notes(run->world, "camera of", run->view[view].name, text, err);
+}
+
 tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
     tobi_moment *m = &snapshot->moment;
@@ -161,8 +171,10 @@ tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
     TOBI_TRY(take_fields(run, m, err));
     TOBI_TRY(list_surfaces(run, snapshot, m, err));
     TOBI_TRY(take_tracks(run, m, err));
-    for (int k = 0; k < run->view_count; k++)
+    for (int k = 0; k < run->view_count; k++) {
         TOBI_TRY(tobi_drawing_make(&run->looks, m, &run->view[k].def, &snapshot->drawing[k], err));
+        if (snapshot->number == 0) TOBI_TRY(note_camera(run, snapshot->drawing[k], k, err));
+    }
     return TOBI_OK;
 }
 

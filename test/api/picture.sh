@@ -61,6 +61,12 @@ check "isolines are drawn" test "$(cmp -s a.png b.png; echo $?)" = 1
 expect 1 "is 101, allowed is 0 to 100" picture wet --set output.picture.isolines=101
 expect 1 "is 2, allowed is 0 to 1" run wet.json --out no --set "bodies[0].opacity=2"
 
+camera='output.camera={"position": [0.32, 0.1, 0.1], "look_at": [0.2, 0.1, 0.1], "angle": 30}'
+expect 0 "the camera is inside of the body 'post', which hides all else" picture dam --set "$camera"
+"$program" run dam.json --out within --set "$camera" > /dev/null 2> notes
+check "a camera inside of a body is told, and the run goes on" \
+    test "$(grep -c "is inside of the body 'post'" notes)" = 1 -a -s within/frames/frame_000002.png
+
 views='output.views=[{"name": "top", "camera": {"position": [0.2, 0.1, 2], "look_at": [0.2, 0.1, 0], "angle": 20},
     "picture": {"field": "pressure", "width": 320, "height": 180}}, {"name": "all", "picture": {"width": 160}}]'
 expect 0 "" run dam.json --out views --quiet --set "$views"
