@@ -110,6 +110,10 @@ TOBI_API void tobi_motion_free(tobi_motion *motion);
 TOBI_API tobi_status tobi_motion_positions(void *motion, double t, int64_t n, const double (*rest)[3],
                                   double (*position)[3], tobi_error *err);
 
+/* The numbers that deform() gets as its last argument from now on: a tobi_steer_fn, `motion` is the
+   tobi_motion. Rigid motions have no use for them. */
+TOBI_API void tobi_motion_steer(void *motion, const double steer[3]);
+
 /* 1 when all points move by one rigid transform, 0 when the body deforms. */
 TOBI_API int tobi_motion_is_rigid(const tobi_motion *motion);
 

@@ -229,6 +229,8 @@ typedef struct tobi_fill_def {
    move all points by one rigid transform. Returns TOBI_OK, or a status with a text in err. */
 typedef tobi_status (*tobi_motion_fn)(void *user, double t, int64_t n, const double (*rest)[3],
                                       double (*position)[3], tobi_error *err);
+/* Hands to a motion what a control program steers it with, before each call of it. */
+typedef void (*tobi_steer_fn)(void *user, const double steer[3]);
 
 /* Prescribed: at rest or moved by a motion, whatever pushes. Free: moved by the forces on it. Controlled:
    free, and a program adds a force and a torque each step. */
@@ -246,15 +248,18 @@ typedef struct tobi_control_input {
     double mass;                /* kg                                                                */
     int    phase;               /* 1 at the start, then what the program said last                   */
     double phase_time;          /* s since this phase began                                          */
+    double step;                /* s, length of the last step                                        */
+    double steer[3];            /* what the program said last; 0 at the start                        */
 } tobi_control_input;
 typedef struct tobi_control_output {
     double force[3];            /* N on the centre of mass                                           */
     double torque[3];           /* N m                                                               */
     int    phase;               /* of the next step on                                               */
     const char *hold;           /* axes held still in this step, like tobi_body_def.locked, or NULL  */
+    double steer[3];            /* numbers for the motion of a body that changes its shape           */
 } tobi_control_output;
 /* Must be a pure function of its input, or restarts would not repeat a run. out holds zeros and the input's
-   phase when it is called. hold must stay valid until the next call. */
+   phase and steer when it is called. hold must stay valid until the next call. */
 typedef tobi_status (*tobi_control_fn)(void *user, const tobi_control_input *in,
                                        tobi_control_output *out, tobi_error *err);
 
@@ -314,6 +319,7 @@ typedef struct tobi_body_def {
     double guide_stiffness, guide_damping;  /* N/m, N s/m                                             */
     tobi_control_fn control;    /* of a controlled body                                              */
     void  *control_user;        /* handed to control; owned by the caller, must outlive the world    */
+    tobi_steer_fn motion_steer; /* of a controlled body with a motion, gets motion_user; NULL = none */
 } tobi_body_def;
 
 /* A fixed plane in the domain; solids of mlsmpm and bodies stay on the side that its normal points to. */

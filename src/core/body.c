@@ -150,6 +150,7 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
         memcpy(out, rest, (size_t)n*sizeof *out);
         return TOBI_OK;
     }
+    if (b->swimmer && b->steer) b->steer(b->motion_user, b->swimmer->steer);
     TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
     if (vec3_dot(b->shift, b->shift) > 0)
         for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, b->shift);
@@ -372,6 +373,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
     b->spacing = def->spacing > 0 ? def->spacing : 2*point_spacing;
     b->motion = def->motion;
     b->motion_user = def->motion_user;
+    b->steer = def->motion_steer;
     b->deforms = def->motion && !def->motion_rigid;
     memcpy(b->lower, box->lower, sizeof b->lower);
     tobi_status status = load_mesh(b, def, box, point_spacing, err);

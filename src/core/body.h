@@ -59,6 +59,7 @@ typedef struct tobi_body {
     double opacity;                  /* of its surface, for pictures                           */
     tobi_motion_fn motion;           /* NULL = fixed                                           */
     void *motion_user;
+    tobi_steer_fn steer;             /* NULL: the motion is not steered                        */
     double shift[3];                 /* m, that a piston which absorbs adds to its motion      */
     int motion_set;                  /* 1: not that of its definition any more                 */
     int motion_due;                  /* 1: so it was before a load, and must be set again      */

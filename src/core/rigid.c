@@ -158,9 +158,11 @@ static tobi_status check_swimmer(const tobi_body_def *def, const char *name, tob
     if (vec3_dot(def->inertia, def->inertia) > 0)
         return tobi_fail(err, TOBI_INVALID, "body '%s' changes its shape, so that its inertia follows from "
                          "the shape; give mass or density instead of inertia", name);
-    if (def->vessel || def->blade)
+    const double *hinge = def->hinge_axis, *guide = def->guide_axis;
+    const int joined = vec3_dot(hinge, hinge) + vec3_dot(guide, guide) > 0;
+    if (def->vessel || def->blade || joined)
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces; a %s does "
-                         "not", name, def->vessel ? "vessel" : "blade");
+                         "not", name, joined ? "body on a hinge or guide" : def->vessel ? "vessel" : "blade");
     return TOBI_OK;
 }
 

@@ -66,6 +66,7 @@ static tobi_status check_shape(const tobi_body *b, double t, tobi_error *err)
 static tobi_status ask(const tobi_body *b, double t, int64_t n, const double (*rest)[3], double (*out)[3],
                        tobi_error *err)
 {
+    if (b->steer) b->steer(b->motion_user, b->swimmer->next_steer);
     TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
     for (int64_t i = 0; i < n; i++)
         if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
@@ -121,6 +122,7 @@ static void swap_shapes(tobi_body *b)
     w->now = w->next;
     w->next = swap;
     memcpy(w->centre, w->next_centre, sizeof w->centre);
+    memcpy(w->steer, w->next_steer, sizeof w->steer);
     memcpy(b->rigid.inertia, w->next_inertia, sizeof w->next_inertia);
     if (w->dimension == 3) memcpy(b->rigid.inverse, w->next_inverse, sizeof w->next_inverse);
     memcpy(b->info.inertia, w->next_inertia, sizeof b->info.inertia);
@@ -200,6 +202,8 @@ void tobi_swimmer_save(const tobi_swimmer *w, double (*rows)[3])
 {
     memcpy(rows, w->now, (size_t)w->count*sizeof *rows);
     memcpy(rows[w->count], w->centre, sizeof w->centre);
+    memcpy(rows[w->count + 1], w->steer, sizeof w->steer);
+    memcpy(rows[w->count + 2], w->next_steer, sizeof w->next_steer);
 }
 
 void tobi_swimmer_restore(tobi_body *b, const double (*rows)[3])
@@ -208,5 +212,7 @@ void tobi_swimmer_restore(tobi_body *b, const double (*rows)[3])
     tobi_swimmer_inertia(w, rows, w->next_inertia, w->next_inverse);
     memcpy(w->next, rows, (size_t)w->count*sizeof *rows);
     memcpy(w->next_centre, rows[w->count], sizeof w->next_centre);
+    memcpy(w->next_steer, rows[w->count + 1], sizeof w->next_steer);
     swap_shapes(b);
+    memcpy(w->next_steer, rows[w->count + 2], sizeof w->next_steer);
 }

@@ -19,6 +19,7 @@ typedef struct tobi_swimmer {
     double (*flow)[3];               /* [vertices] m/s, world axes, mean over the step: what is left of
                                         the velocity without momentum and angular momentum         */
     double (*point_flow)[3];         /* [quadrature points] the same                               */
+    double steer[3], next_steer[3];  /* of the present shape; of the next, by the control program  */
     double least_inertia;            /* kg m2: less is that of no body                             */
     int dimension;
 } tobi_swimmer;
@@ -27,12 +28,13 @@ typedef struct tobi_swimmer {
    body has its mesh, its mass and its arrays. TOBI_INVALID in words for a shape without inside. */
 tobi_status tobi_swimmer_create(struct tobi_body *b, int dimension, tobi_error *err);
 void tobi_swimmer_free(tobi_swimmer *w);
-/* The shape at t + dt, flow over the step, and the moments between both shapes, which the drift reads.
-   Changes nothing that a failed step would have to take back. */
+/* The shape at t + dt by next_steer, flow over the step, and the moments between both shapes, which the drift
+   reads. Changes nothing that a failed step would have to take back. */
 tobi_status tobi_swimmer_predict(struct tobi_body *b, double t, double dt, tobi_error *err);
 /* Makes the shape at the end of the step the present one, with its inertia and angular velocity. */
 void tobi_swimmer_advance(struct tobi_body *b);
-/* For checkpoints: rows of three doubles, count + 1 of them, that hold the present shape. */
+/* For checkpoints: rows of three doubles, count + TOBI_SWIMMER_MORE of them, that hold the present shape. */
+enum { TOBI_SWIMMER_MORE = 3 };
 void tobi_swimmer_save(const tobi_swimmer *w, double (*rows)[3]);
 /* Takes back what tobi_swimmer_inertia has found good. */
 void tobi_swimmer_restore(struct tobi_body *b, const double (*rows)[3]);

@@ -136,11 +136,12 @@ void tobi_rigid_update_lines(tobi_dynamics_state *d)
     for (int k = 0; k < d->world.line_count; k++) tobi_line_update(&d->world.lines[k], d->bodies);
 }
 
-static tobi_status run_control(tobi_body *b, double t, double force[3], double torque[3], tobi_error *err)
+static tobi_status run_control(tobi_body *b, double t, double dt, double force[3], double torque[3],
+                               tobi_error *err)
 {
     tobi_rigid *r = &b->rigid;
     tobi_control_input in = { .time = t, .mass = r->mass, .phase = (int)r->phase,
-                              .phase_time = t - r->phase_start };
+                              .phase_time = t - r->phase_start, .step = dt };
     tobi_control_output out = { .phase = in.phase };
     char unknown[32];
     vec3_add_scaled(in.position, b->lower, 1, r->position);
@@ -149,6 +150,8 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
     memcpy(in.angular_velocity, r->angular_velocity, sizeof in.angular_velocity);
     memcpy(in.contact_force, r->contact_force, sizeof in.contact_force);
     memcpy(in.contact_torque, r->contact_torque, sizeof in.contact_torque);
+    if (b->swimmer) memcpy(in.steer, b->swimmer->next_steer, sizeof in.steer);
+    memcpy(out.steer, in.steer, sizeof out.steer);
     TOBI_TRY(r->control(r->control_user, &in, &out, err));
     int hold = tobi_rigid_axes(out.hold, unknown);
     if (hold < 0)
@@ -163,9 +166,11 @@ static tobi_status run_control(tobi_body *b, double t, double force[3], double t
                          "axis alone; allowed are none, two and three", b->name, out.hold);
     double sum = 0;
     for (int a = 0; a < 3; a++) sum += 0*out.force[a] + 0*out.torque[a];
+    for (int a = 0; a < 3; a++) sum += 0*out.steer[a];
     if (sum != 0)      /* 0 times a number is 0 */
-        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force or torque that "
-                         "is not finite at t = %.9g s", b->name, t);
+        return tobi_fail(err, TOBI_SCRIPT, "body '%s': its control program answered a force, torque or steer "
+                         "that is not finite at t = %.9g s", b->name, t);
+    if (b->swimmer) memcpy(b->swimmer->next_steer, out.steer, sizeof out.steer);
     if (out.phase != in.phase) r->phase_start = t;
     r->phase = out.phase;
     r->hold = hold;
@@ -194,7 +199,7 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     double force[3], torque[3], keep = tobi_rigid_keep(r, dt), span = r->span > 0 ? r->span : dt;
     memcpy(force, r->force, sizeof force);
     memcpy(torque, r->torque, sizeof torque);
-    if (r->control) TOBI_TRY(run_control(b, t, force, torque, err));
+    if (r->control) TOBI_TRY(run_control(b, t, dt, force, torque, err));
     vec3_add_scaled(force, force, 1, r->inertial);
     vec3_add_scaled(torque, torque, 1, r->inertial + 3);
     tobi_line_load now = { 0 }, mean = { 0 };

@@ -251,6 +251,13 @@ void tobi_motion_free(tobi_motion *motion)
     free(motion);
 }
 
+void tobi_motion_steer(void *user, const double steer[3])
+{
+    tobi_motion *motion = user;
+    if (!motion || tobi_motion_is_rigid(motion)) return;
+    tobi_script_steer(motion->kind == KIND_SUM ? motion->part[0]->script : motion->script, steer);
+}
+
 int tobi_motion_is_rigid(const tobi_motion *motion)
 {
     if (!motion) return 0;

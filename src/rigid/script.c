@@ -283,6 +283,11 @@ static void walk(tobi_script *s, double t, int64_t n, const double (*from)[3], d
     }
 }
 
+void tobi_script_steer(tobi_script *s, const double steer[3])
+{
+    memcpy(s->channel->steer, steer, sizeof s->channel->steer);
+}
+
 tobi_status tobi_script_deform(tobi_script *s, double t, int64_t n, const double (*rest)[3],
                                double (*position)[3], tobi_error *err)
 {
@@ -352,7 +357,7 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
 {
     TOBI_NEED(user, "the script");
     tobi_script *s = user;
-    double from[23] = { in->time }, into[7] = { 0, 0, 0, 0, 0, 0, in->phase };
+    double from[27] = { in->time }, into[10] = { 0, 0, 0, 0, 0, 0, in->phase };
     memcpy(from + 1, in->position, 3*sizeof *from);
     memcpy(from + 4, in->orientation, 4*sizeof *from);
     memcpy(from + 8, in->velocity, 3*sizeof *from);
@@ -362,19 +367,24 @@ tobi_status tobi_script_control(void *user, const tobi_control_input *in, tobi_c
     from[20] = in->mass;
     from[21] = in->phase;
     from[22] = in->phase_time;
+    from[23] = in->step;
+    memcpy(from + 24, in->steer, 3*sizeof *from);
+    memcpy(into + 7, in->steer, 3*sizeof *into);
     memcpy(s->channel->from, from, sizeof from);
     memcpy(s->channel->to, into, sizeof into);
     const char *why = ask(s, TOBI_REQUEST_CONTROL);
     if (why) return tobi_fail(err, TOBI_SCRIPT, "%s: %s (t = %.9g s)", s->label, why, in->time);
     memcpy(into, s->channel->to, sizeof into);
-    for (int k = 0; k < 7; k++)
-        if (!(fabs(into[k]) <= (k < 6 ? DBL_MAX : 1e9)))
+    for (int k = 0; k < 10; k++)
+        if (!(fabs(into[k]) <= (k != 6 ? DBL_MAX : 1e9)))
             return tobi_fail(err, TOBI_SCRIPT, "%s: control returned a %s that is not finite (t = %.9g s)",
-                             s->label, k < 3 ? "force" : k < 6 ? "torque" : "phase", in->time);
+                             s->label,
+                             k < 3 ? "force" : k < 6 ? "torque" : k < 7 ? "phase" : "steer", in->time);
     copy_text(s->hold, s->channel->hold, sizeof s->hold);
     memcpy(out->force, into, sizeof out->force);
     memcpy(out->torque, into + 3, sizeof out->torque);
     out->phase = (int)into[6];
+    memcpy(out->steer, into + 7, sizeof out->steer);
     out->hold = s->hold;
     return TOBI_OK;
 }

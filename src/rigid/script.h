@@ -1,7 +1,7 @@
 /* A script of the user: a text file in Lua; loading, control and flow are in tobiuo/motion.h. A motion script
    defines exactly one of
 
-     function deform(x, y, z, t)        -- rest position (m) and time (s)
+     function deform(x, y, z, t, steer) -- rest position (m), time (s), what control steers with
          return x, y, z                 -- position (m)
      end
 
@@ -17,12 +17,14 @@
    A control script defines
 
      function control(t, body)          -- time (s) and what the body does, see below
-         return { force = {x, y, z}, torque = {x, y, z}, phase = 2, hold = "z,turn" }
+         return { force = {x, y, z}, torque = {x, y, z}, phase = 2, hold = "z,turn",
+                  steer = {a, b, c} }
      end
 
    Every key of the answer may be left out, and no answer at all is no force. body has position (m),
    orientation (w, x, y, z), velocity, angular_velocity (rad/s), contact_force (N) and contact_torque (N m) of
-   the last step as lists, and the numbers mass, phase and phase_time (s since the phase began). The
+   the last step as lists, and the numbers mass, phase, phase_time (s since the phase began) and step (s,
+   the last). steer is what it answered last, for deform() of the same body. The
    force acts on the centre of mass, in world axes. phase, a whole number, is 1 at the start and then what the
    script answered last: the only memory a script may have, since a restart begins with it; globals cannot be
    assigned after loading, tables and locals outside control are not watched. hold names the axes that stand
@@ -64,6 +66,8 @@ tobi_status tobi_script_load_within(const char *path, const char *params_json, t
 /* 1 when the script defines place(), 0 when it defines deform(). */
 int tobi_script_is_rigid(const tobi_script *script);
 
+/* What deform() gets as its last argument from now on. */
+void tobi_script_steer(tobi_script *script, const double steer[3]);
 /* Calls deform() for n points. */
 tobi_status tobi_script_deform(tobi_script *script, double t, int64_t n, const double (*rest)[3],
                                double (*position)[3], tobi_error *err);

@@ -113,20 +113,22 @@ static const char DRIVER[] =
     "end\n"
     "local f, h, walked\n"
     "local function bind(name, points, control) walked, f, h = name, points, control end\n"
-    "local function walk(n, t, from, to, at)\n"
+    "local function walk(n, t, from, to, at, a, b, c)\n"
+    "    local steer = { a, b, c }\n"
     "    from, to = ffi.cast('const double *', from), ffi.cast('double *', to)\n"
     "    at = ffi.cast('double *', at)\n"
     "    for i = 0, n - 1 do\n"
     "        local k = 3 * i\n"
     "        at[0] = i\n"
-    "        local x, y, z, more = f(from[k], from[k + 1], from[k + 2], t)\n"
+    "        local x, y, z, more = f(from[k], from[k + 1], from[k + 2], t, steer)\n"
     "        if type(x) ~= 'number' or type(y) ~= 'number' or type(z) ~= 'number' or more ~= nil then\n"
     "            error(walked .. ' must return three numbers', 0)\n"
     "        end\n"
     "        to[k], to[k + 1], to[k + 2] = x, y, z\n"
     "    end\n"
     "end\n"
-    "local known = { force = true, torque = true, phase = true, hold = true }\n"
+    "local known = { force = true, torque = true, phase = true, hold = true,\n"
+    "    steer = true }\n"
     "local function take(value, name, into, first)\n"
     "    if value == nil then return end\n"
     "    if type(value) ~= 'table' or value[4] ~= nil then value = {} end\n"
@@ -139,7 +141,8 @@ static const char DRIVER[] =
     "end\n"
     "local inputs = { __index = function(_, k)\n"
     "    error(\"body has no '\" .. text(k) .. \"'; it has position, orientation, velocity, \" ..\n"
-    "          'angular_velocity, contact_force, contact_torque, mass, phase and phase_time', 2)\n"
+    "          'angular_velocity, contact_force, contact_torque, mass, phase, phase_time, step ' ..\n"
+    "          'and steer', 2)\n"
     "end }\n"
     "local function control(from, into)\n"
     "    from, into = ffi.cast('const double *', from), ffi.cast('double *', into)\n"
@@ -148,7 +151,7 @@ static const char DRIVER[] =
     "        orientation = { from[4], from[5], from[6], from[7] }, velocity = three(8),\n"
     "        angular_velocity = three(11), contact_force = three(14),\n"
     "        contact_torque = three(17), mass = from[20], phase = from[21],\n"
-    "        phase_time = from[22] }, inputs))\n"
+    "        phase_time = from[22], step = from[23], steer = three(24) }, inputs))\n"
     "    if answer == nil then return end\n"
     "    if type(answer) ~= 'table' then error('control must return a table or nothing', 0) end\n"
     "    local unknown\n"
@@ -158,10 +161,11 @@ static const char DRIVER[] =
     "    end\n"
     "    if unknown then\n"
     "        error(\"control returned the unknown key '\" .. unknown ..\n"
-    "              \"'; allowed are force, torque, phase, hold\", 0)\n"
+    "              \"'; allowed are force, torque, phase, hold, steer\", 0)\n"
     "    end\n"
     "    take(answer.force, 'force', into, 0)\n"
     "    take(answer.torque, 'torque', into, 3)\n"
+    "    take(answer.steer, 'steer', into, 7)\n"
     "    if answer.phase ~= nil then\n"
     "        if type(answer.phase) ~= 'number' or answer.phase % 1 ~= 0 or\n"
     "           math.abs(answer.phase) > 1e9 then\n"
@@ -364,7 +368,8 @@ static int call_walk(process *s)
     lua_pushlightuserdata(s->lua, c->from);
     lua_pushlightuserdata(s->lua, c->to);
     lua_pushlightuserdata(s->lua, &c->at);
-    return lua_pcall(s->lua, 5, 0, 0);
+    for (int k = 0; k < 3; k++) lua_pushnumber(s->lua, c->steer[k]);
+    return lua_pcall(s->lua, 8, 0, 0);
 }
 
 /* Answers that are no numbers become NAN, which the other side refuses. */

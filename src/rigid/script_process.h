@@ -30,6 +30,7 @@ typedef struct tobi_script_channel {
     double at;                                /* number of the point in work                               */
     double from[TOBI_SCRIPT_BATCH][3];        /* points | what control sees                                */
     double to[TOBI_SCRIPT_BATCH][3];          /* points | what place or control answered                   */
+    double steer[3];                          /* for deform                                                */
     double pivot[3];                          /* m, set by loading                                         */
     int rigid;                                /* 1: the script has place, set by loading                   */
     char hold[64], text[1024];

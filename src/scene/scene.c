@@ -142,6 +142,7 @@ static tobi_status read_bodies(tobi_scene *scene, const tobi_binder *binder, con
         if (!body->motion) continue;
         body->def.motion = tobi_motion_positions;
         body->def.motion_user = body->motion;
+        body->def.motion_steer = tobi_motion_steer;
         body->def.motion_rigid = tobi_motion_is_rigid(body->motion);
     }
     return TOBI_OK;

@@ -87,7 +87,7 @@ static tobi_status put_contacts(const tobi_world *w, tobi_store *f, tobi_error *
 
 static tobi_status put_shape(const tobi_body *b, int k, tobi_store *f, tobi_error *err)
 {
-    const int64_t n = b->swimmer->count + 1;
+    const int64_t n = b->swimmer->count + TOBI_SWIMMER_MORE;
     double (*rows)[3] = malloc((size_t)n*sizeof *rows);
     char name[32];
     if (!rows) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the shape of '%s'", b->name);

@@ -110,6 +110,7 @@ static tobi_status find_jump(const tobi_world *w, const tobi_body *b, tobi_motio
     const int64_t n = b->mesh.vertex_count;
     double (*at)[3] = malloc((size_t)(n + 1)*sizeof *at), most = 0;
     if (!at) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the vertices of '%s'", b->name);
+    if (b->swimmer && b->steer) b->steer(user, b->swimmer->steer);
     const tobi_status status = motion(user, w->sim.time, n, (const double (*)[3])b->mesh.vertices, at, err);
     if (status == TOBI_OK && b->swimmer) tobi_body_pose_shape(b, n, at);
     for (int64_t i = 0; status == TOBI_OK && i < n; i++)

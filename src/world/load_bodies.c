@@ -102,7 +102,7 @@ static tobi_status read_absorber(const tobi_world *w, int k, tobi_store *f, tobi
 
 static tobi_status read_shape(const tobi_body *b, int k, tobi_store *f, tobi_loaded_body *l, tobi_error *err)
 {
-    const int64_t count = b->swimmer->count + 1;
+    const int64_t count = b->swimmer->count + TOBI_SWIMMER_MORE;
     char name[32];
     double inertia[9], inverse[9];
     l->shape = malloc((size_t)count*sizeof *l->shape);

@@ -108,7 +108,8 @@ static tobi_status ask(const char *text, tobi_control_output *out, tobi_error *e
     tobi_control_input in = { .time = 2, .position = { 1, 2, 3 }, .orientation = { 1 },
                               .velocity = { 4, 5, 6 }, .angular_velocity = { 7, 8, 9 },
                               .contact_force = { 10, 11, 12 },
-                              .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18 };
+                              .contact_torque = { 13, 14, 15 }, .mass = 16, .phase = 17, .phase_time = 18,
+                              .step = 19, .steer = { 20, 21, 22 } };
     write_file("ask.lua", text);
     TOBI_TRY(tobi_script_load_within("ask.lua", NULL, TOBI_CONTROL_SCRIPT, 0.2, &script, err));
     *out = (tobi_control_output){ .phase = in.phase };
@@ -130,9 +131,11 @@ static void test_control_script(void **state)
                          "        sum = sum + b.position[k] + b.velocity[k] + b.angular_velocity[k]\n"
                          "        + b.contact_force[k] + b.contact_torque[k] end\n"
                          "    return { force = { sum, b.position[2], b.contact_force[3] },\n"
-                         "             torque = b.velocity, phase = 3, hold = 'x,turn' }\n"
+                         "             torque = b.velocity, phase = 3, hold = 'x,turn',\n"
+                         "             steer = { b.steer[1] + b.step, b.steer[3], 7 } }\n"
                          "end\n", &out, &err), TOBI_OK);
     assert_true(out.force[0] == 2 + 1 + 16 + 17 + 18 + 120 && out.force[1] == 2 && out.force[2] == 12);
+    assert_true(out.steer[0] == 20 + 19 && out.steer[1] == 22 && out.steer[2] == 7);
     assert_true(out.torque[0] == 4 && out.torque[2] == 6 && out.phase == 3 && out.hold[0] == 'x');
     assert_int_equal(ask("function control() end", &out, &err), TOBI_OK);
     assert_true(out.force[0] == 0 && out.phase == 17 && !out.hold[0]);
@@ -144,6 +147,8 @@ static void test_control_script(void **state)
         { "function control() return { torque = {1, 2} } end", "torque of three numbers" },
         { "function control() return { phase = 0.5 } end", "whole number as phase" },
         { "function control() return { hold = 1 } end", "a text as hold" },
+        { "function control() return { steer = {1, 2} } end", "steer of three numbers" },
+        { "function control() return { steer = {0/0, 2, 3} } end", "steer that is not finite" },
         { "function control() return { froce = {0, 0, 0} } end", "unknown key 'froce'" },
         { "function control() return { force = {0/0, 0, 0} } end", "force that is not finite (t = 2 s)" },
         { "function control() return { torque = {0, 1/0, 0} } end", "torque that is not finite" },

@@ -351,13 +351,15 @@ static void test_bodies_refused(void **state)
     (void)state;
     def.dynamics = TOBI_FREE;
     def.motion = flatten;
-    tobi_body_def rigid = def, heavy = def, vessel = def, mpm = def, dry = def;
+    tobi_body_def rigid = def, heavy = def, vessel = def, hinged = def, mpm = def, dry = def;
     rigid.motion_rigid = 1;
     refuse(rigid, "has a rigid motion");
     heavy.inertia[0] = heavy.inertia[1] = heavy.inertia[2] = 1;
     refuse(heavy, "its inertia follows from the shape");
     vessel.vessel = 1;
     refuse(vessel, "a vessel does not");
+    hinged.hinge_axis[2] = 1;
+    refuse(hinged, "a body on a hinge or guide does not");
     mpm.mass = -1;
     refuse(mpm, "which mlsmpm does not know");
     dry.density = 0;

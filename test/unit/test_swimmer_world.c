@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const char *const methods[] = { "dfsph", "isph", "wcsph" };
+static const char *const methods[] = { "dfsph", "isph", "wcsph", "steered" };
 enum { METHODS = 3 };
 
 /* A plate of 0.6 m by 0.1 m about (1, 0.5) m that beats its tail, from rest. */
@@ -28,14 +28,40 @@ static tobi_status beat(void *user, double t, int64_t n, const double (*rest)[3]
 
 static double swing = 1, strange = 1.5;
 
+/* The same by a program that lets the phase go on, faster until the plate moves. */
+static double steered[3];
+
+static void steer(void *user, const double numbers[3])
+{
+    (void)user;
+    memcpy(steered, numbers, sizeof steered);
+}
+
+static tobi_status beat_by_phase(void *user, double t, int64_t n, const double (*rest)[3], double (*out)[3],
+                                 tobi_error *err)
+{
+    (void)t;
+    return beat(user, steered[0], n, rest, out, err);
+}
+
+static tobi_status control(void *user, const tobi_control_input *in, tobi_control_output *out,
+                           tobi_error *err)
+{
+    (void)user;
+    (void)err;
+    out->steer[0] = in->steer[0] + in->step*(in->velocity[0] > -0.005 ? 1.5 : 0.5);
+    return TOBI_OK;
+}
+
 static tobi_world *build(const char *method, int threads)
 {
+    const int steering = strcmp(method, "steered") == 0;
     tobi_world_def def = tobi_default_world_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     tobi_body_def b = tobi_default_body_def();
     tobi_world *w;
-    def.method = method;
+    def.method = steering ? "dfsph" : method;
     def.dimension = 2;
     def.spacing = 0.04;
     def.threads = threads;
@@ -51,6 +77,12 @@ static tobi_world *build(const char *method, int threads)
     b.motion = beat;
     b.motion_user = &swing;
     b.friction = TOBI_NO_SLIP;
+    if (steering) {
+        b.dynamics = TOBI_CONTROLLED;
+        b.control = control;
+        b.motion = beat_by_phase;
+        b.motion_steer = steer;
+    }
     b.density = 500;
     memcpy(b.box_min, (double[3]){ 0.7, 0.45, 0 }, sizeof b.box_min);
     memcpy(b.box_max, (double[3]){ 1.3, 0.55, 0 }, sizeof b.box_max);
@@ -69,11 +101,16 @@ static uint64_t run_to(tobi_world *w, double t)
 static void test_restart(void **state)
 {
     (void)state;
-    for (int k = 0; k < METHODS; k++) {
+    for (int k = 0; k < METHODS + 1; k++) {
         tobi_world *a = build(methods[k], 1), *b = build(methods[k], 3), *c = build(methods[k], 1);
         run_to(a, 0.15);
         OK(tobi_world_save(a, "fish.h5", &err));
         const uint64_t whole = run_to(a, 0.3);
+        if (k == METHODS) {
+            const double phase = a->sim.bodies[0].swimmer->steer[0];
+            print_message("steered to a phase of %.3g s\n", phase);
+            assert_true(phase > 0.16 && phase < 0.44);      /* 0.15 and 0.45 by either rate alone */
+        }
         run_to(b, 0.15);
         if (run_to(b, 0.3) != whole) fail_msg("%s: other threads, other bits", methods[k]);
         OK(tobi_world_load(c, "fish.h5", &err));
