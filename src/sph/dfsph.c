@@ -316,7 +316,7 @@ static void set_grid(tobi_system *s, dfsph *m)
 static double first_share(const tobi_system *s, const dfsph *m)
 {
     enum { FIRST_STEPS = 10 };
-    const int alone = !tobi_couple_any(s) && !s->sim->soft.solids;
+    const int alone = !tobi_couple_any(s) && sph_of(s)->soft.points == 0;
     return s->step < FIRST_STEPS && m->memory.vessel != SPH_VESSEL_FULL && alone ? 0.3 : 1;
 }
 
