@@ -173,7 +173,7 @@ static void write_lobovsky(const family_choice *c, FILE *out)
     static const double heights[] = { 0.003, 0.015, 0.03, 0.08 };
     const double size[3] = { 1.61, 0.15, chosen(c, "height") }, zero[3] = { 0 };
     const double water[3] = { 0.6, size[1], chosen(c, "water-height") };
-    char name[8];
+    char name[16];
     put_world(c, out, size, "the dam break of Lobovsky et al., Ocean Eng. 82 (2014) 150", 0);
     put_water(c, out, zero, water);
     put_gate(c, out, water[0], size[1]);
@@ -245,7 +245,7 @@ static void write_impact(const family_choice *c, FILE *out)
     put_corners(c, out, low, high);
     fputs(" } } ],\n  \"probes\": [", out);
     for (int k = 0; k < 4; k++) {
-        char name[8];
+        char name[16];
         snprintf(name, sizeof name, "P%d", k + 1);
         put_probe(c, out, k == 0, name, "point", at, size[1]/2 - 0.07*half, up*(0.13 + 0.25*k));
     }
@@ -310,7 +310,7 @@ static void write_wave(const family_choice *c, FILE *out)
     const double at = chosen(c, "maker-at"), depth = chosen(c, "depth"), thick = 4*chosen(c, "spacing");
     const double low[3] = { at, 0, 0 }, high[3] = { size[0], size[1], depth };
     const double back[3] = { at - thick, 0, 0 }, face[3] = { at, size[1], size[2] };
-    char name[8];
+    char name[16];
     put_world(c, out, size, "a piston makes waves, by Biesel's or Goring's theory", 0);
     put_water(c, out, low, high);
     fputs("  \"bodies\": [\n    { \"name\": \"piston\", \"box\": { ", out);

@@ -9,6 +9,7 @@
 
 void tobi_limit_memory(uint64_t bytes)
 {
+    (void)bytes;
     setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
 #ifndef __SANITIZE_ADDRESS__       /* its shadow memory maps terabytes */
     FILE *file = fopen("/proc/self/statm", "r");

@@ -155,7 +155,7 @@ static void long_texts_are_kept(void **state)
     assert_int_equal(tobi_store_put_text(s, "long", text, &err), 0);
     assert_int_equal(tobi_store_put_text(s, "none", "", &err), 0);
     for (int i = 0; i < 40; i++) {
-        char name[16];
+        char name[24];
         snprintf(name, sizeof name, "value%d", i);
         assert_int_equal(tobi_store_put_real(s, name, i, &err), 0);
     }
