@@ -139,6 +139,20 @@ void tobi_body_pose_shape(const tobi_body *b, int64_t n, double (*at)[3])
                 at);
 }
 
+tobi_status tobi_body_ask_motion(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
+                                 double (*out)[3], tobi_error *err)
+{
+    TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
+    if (vec3_dot(b->shift, b->shift) > 0)
+        for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, b->shift);
+    for (int64_t i = 0; i < n; i++)
+        if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
+            return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
+                             "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
+                             out[i][2], t);
+    return TOBI_OK;
+}
+
 static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const double (*rest)[3],
                             double (*out)[3], tobi_error *err)
 {
@@ -151,14 +165,7 @@ static tobi_status evaluate(const tobi_body *b, double t, int64_t n, const doubl
         return TOBI_OK;
     }
     if (b->swimmer && b->steer) b->steer(b->motion_user, b->swimmer->steer);
-    TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
-    if (vec3_dot(b->shift, b->shift) > 0)
-        for (int64_t i = 0; i < n; i++) vec3_add_scaled(out[i], out[i], 1, b->shift);
-    for (int64_t i = 0; i < n; i++)
-        if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
-            return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
-                             "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
-                             out[i][2], t);
+    TOBI_TRY(tobi_body_ask_motion(b, t, n, rest, out, err));
     if (b->swimmer) tobi_body_pose_shape(b, n, out);
     return TOBI_OK;
 }
@@ -250,7 +257,7 @@ static void turn_frame(tobi_body *b)
         for (int a = 0; a < 3; a++) b->frame[k][a] = m[a][k];
 }
 
-static void update_surface(tobi_body *b)
+void tobi_body_update_surface(tobi_body *b)
 {
     tobi_bvh_refit(b->bvh, (const double (*)[3])b->vertex);
     tobi_quadrature_update(&b->surface, (const double(*)[3])b->vertex,
@@ -281,7 +288,7 @@ static void mirror_motion(tobi_body *b)
 tobi_status tobi_body_place(tobi_body *b, double t, tobi_error *err)
 {
     TOBI_TRY(move_vertices(b, t, b->vertex, err));
-    update_surface(b);
+    tobi_body_update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
     if (b->rigid.kind != TOBI_PRESCRIBED) {
         if (b->swimmer) turn_frame(b);
@@ -298,7 +305,7 @@ void tobi_body_restore(tobi_body *b, const double (*vertex)[3], const tobi_body_
 {
     memcpy(b->vertex, vertex, (size_t)b->mesh.vertex_count*sizeof *b->vertex);
     tobi_body_find_absence(b);
-    update_surface(b);
+    tobi_body_update_surface(b);
     memcpy(b->centre, place->centre, sizeof b->centre);
     memcpy(b->frame, place->frame, sizeof b->frame);
 }
@@ -486,8 +493,6 @@ void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double
     add_flow(b->point_count, (const double (*)[3])b->swimmer->point_flow, b->point_velocity);
 }
 
-void tobi_body_update_surface(tobi_body *b) { update_surface(b); }
-
 static void interpolate_points(tobi_body *b, const double (*vertex)[3], double (*point)[3])
 {
     tobi_quadrature_interpolate(&b->surface, (const int32_t (*)[3])b->mesh.triangles, vertex,
@@ -565,7 +570,7 @@ static void advance_free(tobi_body *b)
     swap_vertices(b);
     if (b->swimmer) {
         tobi_swimmer_advance(b);
-        update_surface(b);
+        tobi_body_update_surface(b);
     }
     tobi_body_report(b);
 }
@@ -583,7 +588,7 @@ tobi_status tobi_body_advance(tobi_body *b, double t, double dt, tobi_error *err
     memcpy(old_centre, b->centre, sizeof old_centre);
     memcpy(old_frame, b->frame, sizeof old_frame);
     swap_vertices(b);
-    if (b->deforms) update_surface(b);
+    if (b->deforms) tobi_body_update_surface(b);
     TOBI_TRY(place_frame(b, t, b->centre, b->frame, err));
     for (int a = 0; a < 3; a++) b->info.velocity[a] = (b->centre[a] - old_centre[a])/dt;
     memcpy(b->info.position, b->centre, sizeof b->centre);

@@ -67,13 +67,7 @@ static tobi_status ask(const tobi_body *b, double t, int64_t n, const double (*r
                        tobi_error *err)
 {
     if (b->steer) b->steer(b->motion_user, b->swimmer->next_steer);
-    TOBI_TRY(b->motion(b->motion_user, t, n, rest, out, err));
-    for (int64_t i = 0; i < n; i++)
-        if (!isfinite(out[i][0] + out[i][1] + out[i][2]))
-            return tobi_fail(err, TOBI_INVALID, "body '%s': its motion puts a point at (%g, %g, %g) m at "
-                             "t = %.9g s; allowed are finite numbers", b->name, out[i][0], out[i][1],
-                             out[i][2], t);
-    return TOBI_OK;
+    return tobi_body_ask_motion(b, t, n, rest, out, err);
 }
 
 int tobi_swimmer_inertia(const tobi_swimmer *w, const double (*at)[3], double inertia[9], double inverse[9])

@@ -53,13 +53,20 @@ tobi_status tobi_system_insert(tobi_system *s, int64_t count, int64_t *first, to
     return TOBI_OK;
 }
 
+void tobi_system_densities(const tobi_system *s, double *least, double *most)
+{
+    *least = INFINITY;
+    *most = 0;
+    for (int f = 0; f < s->fluid_count; f++) {
+        *least = fmin(*least, s->fluid[f].density);
+        *most = fmax(*most, s->fluid[f].density);
+    }
+}
+
 double tobi_system_density_ratio(const tobi_system *s)
 {
-    double least = INFINITY, most = 0;
-    for (int f = 0; f < s->fluid_count; f++) {
-        least = fmin(least, s->fluid[f].density);
-        most = fmax(most, s->fluid[f].density);
-    }
+    double least, most;
+    tobi_system_densities(s, &least, &most);
     return most > 0 ? most/least : 1;
 }
 

@@ -145,7 +145,9 @@ typedef struct tobi_method {
 
 /* Whether its fluids differ in density or viscosity, or an interface has tension. */
 int tobi_system_is_mixed(const tobi_system *s);
-/* Largest over least density of its fluids; 1 for one. */
+/* Least and largest density of its fluids, kg/m3; it has one at least. */
+void tobi_system_densities(const tobi_system *s, double *least, double *most);
+/* Largest over least density of its fluids; 1 for one or none. */
 double tobi_system_density_ratio(const tobi_system *s);
 /* Tension over density and spacing, the most of all fluids, m2/s2. */
 double tobi_system_capillary(const tobi_system *s);

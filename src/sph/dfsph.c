@@ -146,13 +146,10 @@ static double choose_dt(tobi_system *s)
    densities, which feel what is left of gravity, stay above 0. */
 static double base_pressure(const tobi_system *s)
 {
-    double depth = 0, least = INFINITY, most = 0;
+    double depth = 0, least, most;
     for (int a = 0; a < s->box.dimension; a++)
         depth += fabs(s->sim->def.gravity[a] - s->gravity[a])*s->box.size[a];
-    for (int f = 0; f < s->fluid_count; f++) {
-        least = fmin(least, s->fluid[f].density);
-        most = fmax(most, s->fluid[f].density);
-    }
+    tobi_system_densities(s, &least, &most);
     return most > least ? BASE*(most - least)*depth : 0;
 }
 

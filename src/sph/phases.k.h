@@ -145,15 +145,8 @@ TOBI_FN void sph_phase_normal_finish(const sph_view *v, int64_t i, sph_phase_nor
 {
     const tobi_float4 g = v->accel[i];
     float n[3] = {g.w*g.x + lane_sum(a->x), g.w*g.y + lane_sum(a->y), g.w*g.z + lane_sum(a->z)};
-    const float size = sqrtf(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
     (void)totals;
-    for (int c = 0; c < 3; c++) n[c] = size > 0 ? n[c]/size : 0;
-    for (int k = 0; k < v->plane_count && size > 0; k++) {
-        if (sph_plane_distance(v, k, i) >= 1.5f*v->spacing) continue;
-        float w[3] = {0, 0, 0};
-        w[v->plane[k].axis] = v->plane[k].sign;
-        sph_touch_wall(n, w, 0);
-    }
+    sph_finish_normal(v, i, n, 0);
     const tobi_float4 out = {n[0], n[1], n[2], g.w};
     v->interface[i] = out;
 }

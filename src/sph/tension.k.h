@@ -60,19 +60,25 @@ TOBI_FN void sph_touch_wall(float n[3], const float w[3], float cosine)
     for (int c = 0; c < 3; c++) n[c] = size*t[c] + cosine*w[c];
 }
 
-TOBI_FN void sph_smooth_normal_finish(const sph_view *v, int64_t i, sph_smooth_normal_acc *a, double *totals)
+/* A unit normal out of the sum in n, at planes nearer than 1.5 spacings with that angle. */
+TOBI_FN void sph_finish_normal(const sph_view *v, int64_t i, float n[3], float cosine)
 {
-    tobi_float4 g = v->accel[i];
-    float n[3] = {-g.w*g.x - lane_sum(a->x), -g.w*g.y - lane_sum(a->y), -g.w*g.z - lane_sum(a->z)};
-    float size = sqrtf(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
-    (void)totals;
+    const float size = sqrtf(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
     for (int c = 0; c < 3; c++) n[c] = size > 0 ? n[c]/size : 0;
     for (int k = 0; k < v->plane_count && size > 0; k++) {
         if (sph_plane_distance(v, k, i) >= 1.5f*v->spacing) continue;
         float w[3] = {0, 0, 0};
         w[v->plane[k].axis] = v->plane[k].sign;
-        sph_touch_wall(n, w, v->contact_cosine);
+        sph_touch_wall(n, w, cosine);
     }
+}
+
+TOBI_FN void sph_smooth_normal_finish(const sph_view *v, int64_t i, sph_smooth_normal_acc *a, double *totals)
+{
+    tobi_float4 g = v->accel[i];
+    float n[3] = {-g.w*g.x - lane_sum(a->x), -g.w*g.y - lane_sum(a->y), -g.w*g.z - lane_sum(a->z)};
+    (void)totals;
+    sph_finish_normal(v, i, n, v->contact_cosine);
     tobi_float4 out = {n[0], n[1], n[2], g.w};
     v->normal[i] = out;
 }

@@ -46,8 +46,8 @@ static void choose_smoothing(const void *def, int driven, int *shape, double *su
 
 static double find_sound(const tobi_system *s, const tobi_wcsph_def *d)
 {
-    double least = s->fluid[0].density;
-    for (int f = 1; f < s->fluid_count; f++) least = fmin(least, s->fluid[f].density);
+    double least, most;
+    tobi_system_densities(s, &least, &most);
     return sqrt(d->exponent*d->stiffness/least);
 }
 
