@@ -4,6 +4,7 @@
 #include "scene/parts.h"
 #include "scene/write.h"
 #include "base/param.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,6 +31,19 @@ static int is_fluid(const tobi_scene *scene, const char *name)
     return 0;
 }
 
+/* What is allowed, as far as it fits. */
+static void tell_fluids(const tobi_scene *scene, tobi_source *source, const tobi_place *place,
+                        const char *name)
+{
+    char names[200] = "";
+    for (int k = 0; k < scene->fluid_count; k++) {
+        const size_t used = strlen(names);
+        const char *one = scene->fluids[k].def.name;
+        if (one) snprintf(names + used, sizeof names - used, "%s\"%s\"", used ? ", " : "", one);
+    }
+    tobi_source_mistake(source, place, "\"%s\" is no fluid of the scene; its fluids are %s", name, names);
+}
+
 static int joins(const tobi_interface_def *a, const char *fluid, const char *to)
 {
     return a->fluid && a->to_fluid && strcmp(a->fluid, fluid) == 0 && strcmp(a->to_fluid, to) == 0;
@@ -45,9 +59,9 @@ void tobi_interfaces_check(const tobi_scene *scene, tobi_source *source)
                    other = { &entry, "to_fluid", 0 };
         if (!def->fluid || !def->to_fluid) continue;             /* said already */
         if (!is_fluid(scene, def->fluid))
-            tobi_source_mistake(source, &one, "\"%s\" is no fluid of the scene", def->fluid);
+            tell_fluids(scene, source, &one, def->fluid);
         if (!is_fluid(scene, def->to_fluid))
-            tobi_source_mistake(source, &other, "\"%s\" is no fluid of the scene", def->to_fluid);
+            tell_fluids(scene, source, &other, def->to_fluid);
         else if (strcmp(def->fluid, def->to_fluid) == 0)
             tobi_source_mistake(source, &other, "is the fluid on the other side too");
         for (int k = 0; k < i; k++) {
