@@ -102,14 +102,16 @@ def bubble(across):
         speed.append(sum(v*m for v, m in zip(data["velocity"][1::3], material))/count)
         round_.append(1 if case.smoke else circularity(data["Points"], material, d))
     fastest = max(speed)
-    case.figure(f"bubble, {across} across: largest rise velocity over 0.2417 m/s", fastest/0.2417, "within 0.03",
-                abs(fastest/0.2417 - 1) <= 0.03)
+    case.figure(f"bubble, {across} across: largest rise velocity over 0.2417 m/s", fastest/0.2417, "within 0.01",
+                abs(fastest/0.2417 - 1) <= 0.01)
+    case.hold(f"bubble, {across} across: rise velocity within 3 %", abs(fastest/0.2417 - 1) <= 0.03)
     if case.smoke:
         return times, speed
     case.figure(f"bubble, {across} across: centre of mass at 3 s over 1.081 m", centre[-1]/1.081, "within 0.01",
                 abs(centre[-1]/1.081 - 1) <= 0.01)
-    case.figure(f"bubble, {across} across: least circularity over 0.901", min(round_)/0.901, "within 0.03",
-                abs(min(round_)/0.901 - 1) <= 0.03)
+    case.figure(f"bubble, {across} across: least circularity over 0.901", min(round_)/0.901, "within 0.01",
+                abs(min(round_)/0.901 - 1) <= 0.01)
+    case.hold(f"bubble, {across} across: circularity within 3 %", abs(min(round_)/0.901 - 1) <= 0.03)
     return times, speed
 
 
