@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """A piston that absorbs: waves that it gives back, at the end of a flume and while it makes waves itself."""
-import cmath
 import math
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table
+from waves import G, amplitude, split, wave_number
 
 case = Case("absorption", "Active absorption by a piston", """
 Regular waves of height 0.1 h on water of depth h = 0.3 m, 2-D, inviscid, by a piston with a ramp of two periods. First a
@@ -16,47 +16,18 @@ back over those that go, of the last four periods, split by least squares over g
 the waves that go differ from those before any came back, over those that come back. The goal of 5 % is that of
 H. A. Schaeffer and G. Klopman (J. Waterway Port Coastal Ocean Eng. 126 (2000) 88).""")
 
-G, DEPTH, STEEP, GAUGES = 9.81, 0.3, 0.1, 24
+DEPTH, STEEP, GAUGES = 0.3, 0.1, 24
 
 
-def wave_number(period):
-    k = (2*math.pi/period)**2/G
-    for _ in range(300):
-        k = 0.5*k + 0.5*(2*math.pi/period)**2/G/math.tanh(k*DEPTH)
-    return k
-
-
-def solve(rows, right):
-    """Least squares with few unknowns: normal equations by elimination."""
-    n = len(rows[0])
-    a = [[sum(r[i].conjugate()*r[j] for r in rows) for j in range(n)] + [sum(r[i].conjugate()*y for r, y in zip(rows, right))]
-         for i in range(n)]
-    for p in range(n):
-        for q in range(n):
-            if q != p:
-                f = a[q][p]/a[p][p]
-                a[q] = [x - f*y for x, y in zip(a[q], a[p])]
-    return [a[p][n]/a[p][p] for p in range(n)]
-
-
-def split(table, xs, k, omega, begin, end):
-    """Amplitudes of the waves that go and that come back, by the wave number near that of theory that fits best."""
+def find_waves(table, xs, k, omega, begin, end):
+    """Amplitudes of the waves that go and that come back, from gauges between two times."""
     at = [n for n, t in enumerate(table["time"]) if begin < t <= end]
-    rows = [[1 + 0j] + [cmath.exp(1j*s*n*omega*table["time"][i]) for n in (1, 2) for s in (1, -1)] for i in at]
-    found = [2*solve(rows, [complex(table[f"g{g}_level"][i] - DEPTH) for i in at])[1] for g in range(GAUGES)]
-    best = None
-    for part in range(-40, 41):
-        kk = k*(1 + 0.0025*part)
-        waves = [[cmath.exp(-1j*kk*x), cmath.exp(1j*kk*x)] for x in xs]
-        c = solve(waves, found)
-        error = sum(abs(w[0]*c[0] + w[1]*c[1] - a)**2 for w, a in zip(waves, found))
-        if best is None or error < best[0]:
-            best = (error, abs(c[0]), abs(c[1]))
-    return best[1:]
+    times = [table["time"][n] for n in at]
+    return split(xs, [amplitude(times, [table[f"g{g}_level"][n] - DEPTH for n in at], omega) for g in range(GAUGES)], k)
 
 
 def flume(method, layers, period, at_end):
-    d, k = DEPTH/layers, wave_number(period)
+    d, k = DEPTH/layers, wave_number(DEPTH, period)
     wave, block, room = 2*math.pi/k, 6*d, round(0.6*layers)*d
     length, top = round(2.5*wave/d)*d, 1.8*DEPTH
     xs = [round(1.2*DEPTH + wave*i/(GAUGES - 1), 4) for i in range(GAUGES)]
@@ -74,11 +45,11 @@ def flume(method, layers, period, at_end):
     label = f"{'end' if at_end else 'maker'}_{method}_{layers}_{period}"
     table = read_table(case.run(label, scene=case.write_scene(label, content))/"probes.csv")
     omega, name = 2*math.pi/period, f"{method}, kh = {k*DEPTH:.2f}, h/{layers}"
-    away, back = split(table, xs, k, omega, end - 4*period, end)
+    away, back = find_waves(table, xs, k, omega, end - 4*period, end)
     if at_end:
         case.figure(f"{name}: at the end of a flume, waves that come back over those that go", back/away, "below 0.05", back/away < 0.05)
         return name, table
-    first, _ = split(table, xs, k, omega, 4*period, 6*period)
+    first, _ = find_waves(table, xs, k, omega, 4*period, 6*period)
     case.figure(f"{name}: before a wall, what the maker gives back", abs(away - first)/back, "below 0.05", abs(away - first)/back < 0.05)
     # Without absorption the waves have doubled by then.
     case.hold(f"{name}: the waves that go are within 15 % of the first", abs(away/first - 1) < 0.15)

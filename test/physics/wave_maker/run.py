@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Waves of a piston against Biesel, what a beach gives back, and a solitary wave."""
-import cmath
 import math
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from harness import Case, read_table
+from waves import G, amplitude, solve, split, wave_number
 
 case = Case("wave_maker", "Wave maker, beach and solitary wave", """
 A piston makes regular waves on water of depth h, 2-D, inviscid; its stroke follows from the height H by the transfer function
@@ -17,47 +17,8 @@ beach is a damping zone of a length L at the end, with a rate of ten over the pe
 Goring (Tsunamis, Caltech KH-R-38, 1978): its height 20 depths further on, over that at 5 depths.""",
             methods=("wcsph", "isph", "eisph"))
 
-G, DEPTH = 9.81, 0.3
+DEPTH = 0.3
 GAUGES = 40
-
-
-def wave_number(h, period):
-    k = (2*math.pi/period)**2/G
-    for _ in range(300):
-        k = 0.5*k + 0.5*(2*math.pi/period)**2/G/math.tanh(k*h)
-    return k
-
-
-def solve(rows, right):
-    """Least squares with few unknowns: normal equations by elimination."""
-    n = len(rows[0])
-    a = [[sum(r[i].conjugate()*r[j] for r in rows) for j in range(n)] + [sum(r[i].conjugate()*y for r, y in zip(rows, right))]
-         for i in range(n)]
-    for p in range(n):
-        for q in range(n):
-            if q != p:
-                f = a[q][p]/a[p][p]
-                a[q] = [x - f*y for x, y in zip(a[q], a[p])]
-    return [a[p][n]/a[p][p] for p in range(n)]
-
-
-def amplitude(times, level, omega):
-    """Complex amplitude of the first harmonic: the mean and two harmonics are fitted."""
-    rows = [[1 + 0j] + [cmath.exp(1j*s*n*omega*t) for n in (1, 2) for s in (1, -1)] for t in times]
-    return 2*solve(rows, [complex(y) for y in level])[1]
-
-
-def split(xs, amplitudes, k):
-    """Waves that go and that come back, by the wave number near that of theory that fits best."""
-    best = None
-    for part in range(-40, 41):
-        kk = k*(1 + 0.0025*part)
-        rows = [[cmath.exp(-1j*kk*x), cmath.exp(1j*kk*x)] for x in xs]
-        c = solve(rows, amplitudes)
-        error = sum(abs(r[0]*c[0] + r[1]*c[1] - a)**2 for r, a in zip(rows, amplitudes))
-        if best is None or error < best[0]:
-            best = (error, abs(c[0]), abs(c[1]))
-    return best[1:]
 
 
 def compute(label, spacing, length, top, end, motion, xs, zones=()):
