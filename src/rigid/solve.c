@@ -26,7 +26,6 @@ struct tobi_solve_row {
     double axis[3][3];               /* the normal and two tangents                            */
     double lever_a[3][3], lever_b[3][3];       /* arm x axis                                   */
     double spin_a[3][3], spin_b[3][3];         /* change of angular velocity per N s           */
-    double along_a[3], along_b[3];   /* change along a joint per N s, in units of its s        */
     double mass[3];                  /* kg, effective along the axes; 0 = nothing can move     */
     double sum[3];                   /* N s so far                                             */
     double was[3], way[3];           /* N s: before this sweep, and the direction of search    */
@@ -34,6 +33,8 @@ struct tobi_solve_row {
     double friction;
     double pushed;                   /* of the displacements                                   */
     double early;                    /* m, what bouncing before the gap has closed puts too far */
+    int jointed;                     /* one of the two has a joint                             */
+    double along_a[3], along_b[3];   /* change along a joint per N s, in units of its s        */
 };
 
 static void *grow(void *array, int64_t *capacity, int64_t count, size_t size)
@@ -91,6 +92,16 @@ static inline double speed_along(const tobi_solve_row *r, int k)
     return part(r, k, r->a->speed, r->b->speed);
 }
 
+/* Out of line: few contacts have a body with a joint, and this is the inner loop of every sweep. */
+static __attribute__((noinline)) void drive_joints(const tobi_solve_row *r, int k, double impulse, double *a,
+                                                   double *b)
+{
+    for (int i = 0; i < 6; i++) {
+        a[i] += impulse*r->along_a[k]*r->a->joint[i];
+        b[i] -= impulse*r->along_b[k]*r->b->joint[i];
+    }
+}
+
 static inline void drive(const tobi_solve_row *r, int k, double impulse, double *a, double *b)
 {
     for (int i = 0; i < 3; i++) {
@@ -100,8 +111,7 @@ static inline void drive(const tobi_solve_row *r, int k, double impulse, double 
         b[i] -= p*r->b->shift[i];
         b[3 + i] -= impulse*r->spin_b[k][i];
     }
-    for (int i = 0; i < 6 && r->along_a[k] != 0; i++) a[i] += impulse*r->along_a[k]*r->a->joint[i];
-    for (int i = 0; i < 6 && r->along_b[k] != 0; i++) b[i] -= impulse*r->along_b[k]*r->b->joint[i];
+    if (r->jointed) drive_joints(r, k, impulse, a, b);
 }
 
 static inline void push(tobi_solve_row *r, int k, double impulse)
@@ -146,6 +156,7 @@ static void prepare(tobi_solver *s, tobi_solve_row *r, tobi_touch *c, const tobi
         double sum = respond(r->a, r->axis[k], r->lever_a[k], r->spin_a[k], &r->along_a[k]) +
                      respond(r->b, r->axis[k], r->lever_b[k], r->spin_b[k], &r->along_b[k]);
         r->mass[k] = sum > 0 ? 1/sum : 0;
+        r->jointed |= r->along_a[k] != 0 || r->along_b[k] != 0;
     }
 }
 
