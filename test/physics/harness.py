@@ -73,6 +73,7 @@ class Case:
         self.temporary = None
         if self.args.out:
             self.out = pathlib.Path(self.args.out)
+            self.out.mkdir(parents=True, exist_ok=True)
         else:
             self.temporary = tempfile.TemporaryDirectory()
             self.out = pathlib.Path(self.temporary.name)
@@ -217,7 +218,6 @@ class Case:
 
     def write_scene(self, label, content):
         """A scene made by the case, for run(): a dictionary."""
-        self.out.mkdir(parents=True, exist_ok=True)
         self.writes_scenes = True
         path = self.out / f"{label}.json"
         path.write_text(json.dumps(content, indent=1))

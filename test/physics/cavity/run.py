@@ -35,7 +35,6 @@ def compute(re, across, end, goal):
     scene = json.loads("\n".join(l for l in (case.folder / "scene.json").read_text().splitlines() if l[:1] != "#"))
     scene.update(probes=probes, spacing=1/across, end_time=end)
     scene["fluids"][0]["viscosity"] = 1000/re
-    case.out.mkdir(parents=True, exist_ok=True)
     path = case.out / f"cavity{re}.json"
     path.write_text(json.dumps(scene))
     table = read_table(case.run(f"cavity{re}_out", scene=path) / "probes.csv")

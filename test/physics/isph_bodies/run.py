@@ -53,7 +53,6 @@ curves = [let_go("cylinder", 1, [0.8, 0.8], density, across, end)
 curves += [let_go("sphere", 0.5, [0.4]*3, density, 10, 0.1) for density in case.pick((), (500, 2000))]
 case.plot("Let go in a full vessel", "t, s", "velocity over acceleration in theory, s", curves)
 
-case.out.mkdir(parents=True, exist_ok=True)
 hold = case.out / "hold.lua"
 hold.write_text("function control(t, body)\n    if t < 0.199 then return { hold = 'shift,turn' } end\n    return {}\nend\n")
 for density in case.pick((500,), (500, 2000, 50)):

@@ -74,7 +74,6 @@ def factor(one, other):
     return sum(a*b for a, b in zip(one, other))/sum(b*b for b in other)
 
 
-case.out.mkdir(parents=True, exist_ok=True)
 write_ring(case.out/"ring.obj")
 curves = []
 for n in case.pick((25,), (25, 50, 100)):

@@ -69,7 +69,6 @@ if not case.smoke:
 case.plot("Cylinder in a full vessel", "t, s", "velocity over acceleration in theory, s", curves)
 
 # --- let go under a free surface ------------------------------------------------------------------
-case.out.mkdir(parents=True, exist_ok=True)
 hold = case.out / "hold.lua"
 hold.write_text("function control(t, body)\n    if t < 0.199 then return { hold = 'shift,turn' } end\n    return {}\nend\n")
 for density in case.pick((500,), (500, 2000, 50)):
