@@ -212,6 +212,7 @@ typedef struct surface_request {
     vec     plain;
     float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
+    bool    joins;               /* particles that touch others are within the surface             */
 } surface_request;
 /* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
 tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
@@ -230,6 +231,8 @@ typedef struct node_view {
     float *colors;               /* 4 BLOCK_NODES for each that has a surface: sums and weight     */
     const int32_t *colored;      /* of each block, or -1: its place there                          */
     float reach;                 /* of a particle                                                  */
+    const float *extra;          /* of particles: what is added to sums, times this; NULL: all new */
+    const uint8_t *touched;      /* of blocks: something is added; or NULL                         */
 } node_view;
 
 /* floor.c */
@@ -242,8 +245,19 @@ void view_draw_line(canvas *c, vec p, vec q, float width, vec color, float alpha
 
 /* shadow.c */
 tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometry *g, tobi_error *err);
-float view_lit_at(const canvas *c, vec point);
 enum { SHADOW_SIDE = 1024, SHADOW_BLOCK = 8, SHADOW_ACROSS = SHADOW_SIDE/SHADOW_BLOCK };
+float view_lit_around(const shadow *s, float x, float y, float depth);
+/* Share of the light that reaches a depth, m, at a point of the map; most are far from every edge of a
+   shadow. */
+static inline float view_lit_at(const shadow *s, float x, float y, float depth)
+{
+    if (x >= 0 && y >= 0 && x < SHADOW_SIDE && y < SHADOW_SIDE) {
+        const float *range = &s->range[2*((int)y/SHADOW_BLOCK*SHADOW_ACROSS + (int)x/SHADOW_BLOCK)];
+        if (depth < range[0]) return 1;
+        if (depth >= range[1]) return 0;
+    }
+    return view_lit_around(s, x, y, depth);
+}
 
 /* colors.c: of a value from 0 to 1 by the picture's map; of all particles, NULL without memory. */
 vec  view_color_of(const tobi_picture *f, float value);

@@ -99,29 +99,62 @@ typedef struct flooring {
     int   x0, x1;
 } flooring;
 
-/* The floor's brightness where the ray through a pixel meets it: shadows. */
-static vec floor_tint(const flooring *f, float x, float y)
+enum { STRIP = 64 };             /* pixels of a row that are looked at together */
+
+/* Where the rays through the pixels of a strip meet the floor, on the map of shadows. */
+static void find_floor_shadows(const flooring *f, const float px[STRIP], float py, float x[STRIP],
+                               float y[STRIP], float depth[STRIP])
 {
-    const canvas *c = f->c;
-    const vec tint = { 0.80f, 0.82f, 0.83f }, ray = unproject(&c->camera, x, y, 1);
-    if (c->camera.orthographic || !c->shadow.depth) return tint;
-    const float t = vec_dot(f->point, f->normal)/vec_dot(ray, f->normal);
-    return vec_scale(0.45f + 0.55f*view_lit_at(c, vec_scale(t, ray)), tint);
+    const camera *c = &f->c->camera;
+    const shadow s = f->c->shadow;
+    const vec point = f->point, normal = f->normal;
+    const float distance = vec_dot(point, normal), middle = 0.5f*SHADOW_SIDE, bias = 4/s.focal;
+    const float across = 1/c->focal, up = (c->center_y - py)*across, center = c->center_x;
+    TOBI_SIMD
+    for (int k = 0; k < STRIP; k++) {
+        const vec ray = { (px[k] - center)*across, up, 1 };
+        const vec q = vec_sub(vec_scale(distance/vec_dot(ray, normal), ray), s.center);
+        x[k] = middle + s.focal*vec_dot(q, s.right), y[k] = middle - s.focal*vec_dot(q, s.up);
+        depth[k] = vec_dot(q, s.forward) - bias;
+    }
+}
+
+/* How much of each pixel is in the quadrangle. */
+static bool cover_strip(const flooring *f, const float px[STRIP], float py, float cover[STRIP])
+{
+    float most = 0;
+    for (int k = 0; k < STRIP; k++) cover[k] = 1;
+    for (int i = 0; i < 4; i++) {
+        const float a = f->a[i][0], rest = f->a[i][1]*py + f->a[i][2] + 0.5f;
+        TOBI_SIMD
+        for (int k = 0; k < STRIP; k++) {
+            const float inside = a*px[k] + rest;
+            cover[k] = inside < cover[k] ? inside : cover[k];
+        }
+    }
+    for (int k = 0; k < STRIP; k++) most = cover[k] > most ? cover[k] : most;
+    return most > 0;
 }
 
 static void fill_floor_rows(const void *view, int64_t begin, int64_t end)
 {
     const flooring *f = view;
     canvas *c = f->c;
-    for (int y = (int)begin; y < end; y++)
-        for (int x = f->x0; x < f->x1; x++) {
-            const float px = (float)x + 0.5f, py = (float)y + 0.5f;
-            float cover = 1;
-            for (int i = 0; i < 4; i++) {
-                const float inside = f->a[i][0]*px + f->a[i][1]*py + f->a[i][2] + 0.5f;
-                cover = inside < cover ? inside : cover;
+    const vec plain = { 0.80f, 0.82f, 0.83f };
+    const bool shadows = c->shadow.depth && !c->camera.orthographic;
+    float px[STRIP], cover[STRIP], x[STRIP], y[STRIP], depth[STRIP];
+    for (int row = (int)begin; row < end; row++)
+        for (int from = f->x0; from < f->x1; from += STRIP) {
+            const float py = (float)row + 0.5f;
+            for (int k = 0; k < STRIP; k++) px[k] = (float)(from + k) + 0.5f;
+            if (!cover_strip(f, px, py, cover)) continue;
+            if (shadows) find_floor_shadows(f, px, py, x, y, depth);
+            for (int k = 0; k < STRIP && from + k < f->x1; k++) {
+                if (!(cover[k] > 0)) continue;
+                const float lit = shadows ? view_lit_at(&c->shadow, x[k], y[k], depth[k]) : 1;
+                blend(c, from + k, row, -INFINITY, vec_scale(0.45f + 0.55f*lit, plain), 0.6f*cover[k],
+                      false);
             }
-            if (cover > 0) blend(c, x, y, -INFINITY, floor_tint(f, px, py), 0.6f*cover, false);
         }
 }
 

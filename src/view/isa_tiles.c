@@ -446,10 +446,12 @@ static void sum_block(const node_view *v, int64_t b)
 {
     float *node = v->node + b*BLOCK_NODES;
     const float inverse = 1/(v->reach*v->reach);
-    memset(node, 0, BLOCK_NODES*sizeof *node);
+    if (!v->extra) memset(node, 0, BLOCK_NODES*sizeof *node);
     for (int64_t e = v->first[b]; e < v->first[b + 1]; e++) {
+        const float weight = v->extra ? v->extra[v->entry[e]] : 1;
         float at[3];
         int low[3], high[3];
+        if (!(weight > 0)) continue;
         for (int k = 0; k < 3; k++) {
             at[k] = v->place[v->entry[e]][k] - (float)(BLOCK_EDGE*v->block[b][k]);
             const float from = at[k] - v->reach, to = at[k] + v->reach;
@@ -463,11 +465,10 @@ static void sum_block(const node_view *v, int64_t b)
             for (int y = low[1]; y <= high[1]; y++) {
                 const float dz = (float)z - at[2], dy = (float)y - at[1], rest = 1 - (dz*dz + dy*dy)*inverse;
                 float *row = node + (z*BLOCK_EDGE + y)*BLOCK_EDGE;
-                if (rest <= 0) continue;
                 TOBI_SIMD
                 for (int x = 0; x < BLOCK_EDGE; x++) {
                     const float t = rest - along[x], w = t > 0 ? t : 0;
-                    row[x] += w*w*w;
+                    row[x] += weight*(w*w*w);
                 }
             }
     }
@@ -475,7 +476,9 @@ static void sum_block(const node_view *v, int64_t b)
 
 static void sum_nodes(const void *view, int64_t begin, int64_t end)
 {
-    for (int64_t b = begin; b < end; b++) sum_block(view, b);
+    const node_view *v = view;
+    for (int64_t b = begin; b < end; b++)
+        if (!v->touched || v->touched[b]) sum_block(v, b);
 }
 
 /* The nearest particle counts most by far: colours stay sharp. */

@@ -13,7 +13,7 @@ static const int64_t many = 200000;      /* particles: from here on cells are la
 static void free_grid(grid *s)
 {
     void *all[] = { s->at, s->place, s->block, s->first, s->entry, s->colored, s->node, s->colors, s->vertex,
-                    s->quad, s->cell, s->point, s->moved, s->locked, s->corner };
+                    s->quad, s->cell, s->point, s->moved, s->locked, s->corner, s->extra, s->touched };
     for (size_t k = 0; k < sizeof all/sizeof *all; k++) free(all[k]);
 }
 
@@ -70,32 +70,34 @@ static void place_particles(grid *s, const surface_request *r)
     }
 }
 
-/* The blocks that have nodes within `reach` of a particle: {x0, y0, z0, x1, y1, z1}. */
-static void find_blocks(const float place[3], float reach, int out[6])
+void view_find_blocks(const grid *s, const float place[3], float reach, reached *r)
 {
+    int low[3], high[3], same = r->count > 0;
     for (int k = 0; k < 3; k++) {
-        out[k] = (int)(place[k] - reach)/BLOCK_EDGE;
-        out[k + 3] = (int)(place[k] + reach)/BLOCK_EDGE;
+        low[k] = (int)(place[k] - reach)/BLOCK_EDGE;
+        high[k] = (int)(place[k] + reach)/BLOCK_EDGE;
+        same &= low[k] == r->low[k] && high[k] == r->high[k];
     }
+    if (same) return;
+    r->count = 0;
+    for (int k = 0; k < 3; k++) r->low[k] = low[k], r->high[k] = high[k];
+    for (int z = low[2]; z <= high[2]; z++)
+        for (int y = low[1]; y <= high[1]; y++)
+            for (int x = low[0]; x <= high[0]; x++) r->at[r->count++] = block_at(s, x, y, z) - s->at;
 }
-
-#define FOR_BLOCKS(b, x, y, z)                         \
-    for (int z = (b)[2]; z <= (b)[5]; z++)             \
-        for (int y = (b)[1]; y <= (b)[4]; y++)         \
-            for (int x = (b)[0]; x <= (b)[3]; x++)
 
 /* A block has all nodes that a particle reaches and the next ones, so that no surface ends at its edge. */
 static bool make_blocks(grid *s, int64_t count)
 {
     const int64_t places = (int64_t)s->size[0]*s->size[1]*s->size[2];
-    int b[6];
+    reached r = { .count = 0 };
     s->at = malloc((size_t)places*sizeof *s->at);
     if (!s->at) return false;
     memset(s->at, -1, (size_t)places*sizeof *s->at);
     for (int64_t i = 0; i < count; i++) {
         if (s->place[i][0] < 0) continue;
-        find_blocks(s->place[i], s->reach + 1, b);
-        FOR_BLOCKS(b, x, y, z) *block_at(s, x, y, z) = 0;
+        view_find_blocks(s, s->place[i], s->reach + 1, &r);
+        for (int k = 0; k < r.count; k++) s->at[r.at[k]] = 0;
     }
     for (int64_t k = 0; k < places; k++)
         if (s->at[k] == 0) s->at[k] = (int32_t)s->blocks++;
@@ -114,30 +116,20 @@ static bool make_blocks(grid *s, int64_t count)
 /* The particles of each block in their order: a counting sort. */
 static bool list_particles(grid *s, int64_t count)
 {
-    int b[6];
+    reached r = { .count = 0 };
     for (int64_t i = 0; i < count; i++) {
         if (s->place[i][0] < 0) continue;
-        find_blocks(s->place[i], s->reach, b);
-        FOR_BLOCKS(b, x, y, z) s->first[*block_at(s, x, y, z) + 2]++;
+        view_find_blocks(s, s->place[i], s->reach, &r);
+        for (int k = 0; k < r.count; k++) s->first[s->at[r.at[k]] + 2]++;
     }
     for (int64_t k = 2; k < s->blocks + 2; k++) s->first[k] += s->first[k - 1];
     s->entry = malloc((size_t)(s->first[s->blocks + 1] + 1)*sizeof *s->entry);
     for (int64_t i = 0; s->entry && i < count; i++) {
         if (s->place[i][0] < 0) continue;
-        find_blocks(s->place[i], s->reach, b);
-        FOR_BLOCKS(b, x, y, z) s->entry[s->first[*block_at(s, x, y, z) + 1]++] = (int32_t)i;
+        view_find_blocks(s, s->place[i], s->reach, &r);
+        for (int k = 0; k < r.count; k++) s->entry[s->first[s->at[r.at[k]] + 1]++] = (int32_t)i;
     }
     return s->entry != NULL;
-}
-
-/* Share of the kernel on the inner side of a plane at a distance, in reaches, from its middle: the
-   integral of (1 - t^2)^4. */
-static float share_inside(float s)
-{
-    if (s >= 1) return 1;
-    if (s < -0.7f) s = -0.7f;
-    const float q = s*s, part = s*(1 - q*(4.0f/3 - q*(6.0f/5 - q*(4.0f/7 - q/9))));
-    return 0.5f + 0.5f*part/0.40634921f;
 }
 
 /* Beyond a clip plane sums fall through the level in it, as in a wall. */
@@ -347,7 +339,8 @@ static void make_quads(const void *view, int64_t begin, int64_t end)
 }
 
 /* Moves each vertex by a share of the way to the mean of its neighbours; with shares of both signs the volume
-   stays. Those in a wall have neighbours there, those of a waterline along it. */
+   stays. Those in a wall have neighbours there, those of a waterline along it. An edge is in two quads, once
+   in each direction. */
 static void smooth(grid *s, float share)
 {
     const int64_t vertices = s->vertex[s->blocks], quads = s->quad[s->blocks];
@@ -357,63 +350,14 @@ static void smooth(grid *s, float share)
     for (int64_t q = 0; q < quads; q++)
         for (int k = 0; k < 4; k++) {
             const int32_t a = s->corner[q][k], b = s->corner[q][(k + 1) & 3];
-            const bool to_a = (s->locked[b] & s->locked[a]) == s->locked[a];
-            const bool to_b = (s->locked[a] & s->locked[b]) == s->locked[b];
-            for (int m = 0; m < 3; m++) {
-                s->moved[a][m] += to_a ? s->point[b][m] : 0;
-                s->moved[b][m] += to_b ? s->point[a][m] : 0;
-            }
-            weight[a] += to_a, weight[b] += to_b;
+            if ((s->locked[b] & s->locked[a]) != s->locked[a]) continue;
+            for (int m = 0; m < 3; m++) s->moved[a][m] += s->point[b][m];
+            weight[a]++;
         }
     for (int64_t v = 0; v < vertices; v++)
         for (int m = 0; m < 3 && weight[v] > 0; m++)
             if (!(s->locked[v] >> m & 1))
                 s->point[v][m] += share*(s->moved[v][m]/weight[v] - s->point[v][m]);
-}
-
-static float node_at(const grid *s, int x, int y, int z)
-{
-    const int64_t b = *block_at(s, x/BLOCK_EDGE, y/BLOCK_EDGE, z/BLOCK_EDGE);
-    return s->node[b*BLOCK_NODES + (z%BLOCK_EDGE*BLOCK_EDGE + y%BLOCK_EDGE)*BLOCK_EDGE + x%BLOCK_EDGE];
-}
-
-/* The sum at a particle, from the eight nodes around it. */
-static float sum_at(const grid *s, const float place[3])
-{
-    float sum = 0, t[3];
-    int low[3];
-    for (int k = 0; k < 3; k++) low[k] = (int)place[k], t[k] = place[k] - (float)low[k];
-    for (int n = 0; n < 8; n++) {
-        const float share = (n & 1 ? t[0] : 1 - t[0])*(n & 2 ? t[1] : 1 - t[1])*(n & 4 ? t[2] : 1 - t[2]);
-        sum += share*node_at(s, low[0] + (n & 1), low[1] + (n >> 1 & 1), low[2] + (n >> 2));
-    }
-    return sum;
-}
-
-/* Particles outside of the surface: the smaller the less alone they are. */
-static bool add_drops(const grid *s, const surface_request *r, geometry *g)
-{
-    if (!view_reserve(g, 0, 0, r->count)) return false;
-    for (int64_t i = 0; i < r->count; i++) {
-        const double *p = r->f->positions[r->row[i]];
-        if (!(fabs(p[0]) + fabs(p[1]) + fabs(p[2]) < 1e15*r->drop)) continue;
-        if (!view_is_shown(r->f, r->row[i])) continue;
-        float place[3] = { 0, 0, 0 };
-        const bool inside = s->place && s->place[i][0] >= 0;
-        for (int k = 0; k < 3 && inside; k++)      /* half a cell from walls, beyond which there is nothing */
-            place[k] = clampf(s->place[i][k], s->wall[k][0] + 0.5f, s->wall[k][1] - 0.5f);
-        if (inside && node_at(s, (int)(place[0] + 0.5f), (int)(place[1] + 0.5f),
-                              (int)(place[2] + 0.5f)) > 0.8f)
-            continue;
-        const float sum = inside ? sum_at(s, place) : 0;
-        if (sum > 0.8f*r->level) continue;
-        g->balls[g->ball_count++] = (ball){ view_point(&s->c->camera, p),
-                                            r->drop*clampf(1.5f - 1.25f*sum/r->level, 0.5f, 1),
-                                            !r->color ? r->plain
-                                            : r->scale ? view_scaled(r->scale, r->color[r->row[i]].x)
-                                            : r->color[r->row[i]] };
-    }
-    return true;
 }
 
 static void add_up(int64_t *count, int64_t n)
@@ -433,8 +377,13 @@ static bool sum_particles(grid *s, const surface_request *r, const vec *colors)
     if (!s->node || !s->vertex || !s->quad || !s->colored) return false;
     node_view view = { (const int32_t (*)[3])s->block, s->first, s->entry, (const float (*)[3])s->place,
                        colors,
-                       s->node, NULL, s->colored, s->reach };
+                       s->node, NULL, s->colored, s->reach, NULL, NULL };
     tobi_loop(s->c->threads, s->blocks, 1, k->sum_nodes, &view);
+    if (r->joins) {
+        if (!view_join_drops(s, r)) return false;
+        view.extra = s->extra, view.touched = s->touched;
+        tobi_loop(s->c->threads, s->blocks, 1, k->sum_nodes, &view);
+    }
     tobi_loop(s->c->threads, s->blocks, 0, limit_blocks, s);
     tobi_loop(s->c->threads, s->blocks, 1, count_crossings, s);
     for (int64_t b = 0; b < s->blocks; b++)
@@ -475,7 +424,7 @@ static bool is_around(const grid *s, const double eye[3])
         if (*block_at(s, ((int)place[0] + (n & 1))/BLOCK_EDGE, ((int)place[1] + (n >> 1 & 1))/BLOCK_EDGE,
                       ((int)place[2] + (n >> 2))/BLOCK_EDGE) < 0)
             return false;
-    return sum_at(s, place) > s->level;
+    return view_sum_at(s, place) > s->level;
 }
 
 tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
@@ -500,7 +449,7 @@ tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, cons
                  sum_particles(&s, r, colors) && make_mesh(&s);
     }
     *around = enough && any && is_around(&s, c->camera.eye);
-    if (enough && r->drop > 0) enough = add_drops(&s, r, drops);
+    if (enough && r->drop > 0) enough = view_add_drops(&s, r, drops);
     for (int k = 0; k < 2*ROUNDS && enough && any; k++) smooth(&s, k & 1 ? -0.52f : 0.5f);
     if (enough && any) enough = view_add_faces(&s, r, g);
     free(colors);

@@ -298,7 +298,8 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     }
     if (f->opaque || f->look) TOBI_TRY(add_solids(s, err));
     surface_request r = choose(s, false);
-    r.drop = 1.0f*(float)f->radius;
+    r.drop = 0.9f*(float)f->radius;
+    r.joins = true;
     TOBI_TRY(add_groups(s, r, &s->water, &s->drops, &s->c.submerged, err));
     TOBI_TRY(view_project(&s->solids, &s->c.camera, f->threads, err));
     return view_project(&s->water, &s->c.camera, f->threads, err);

@@ -76,18 +76,36 @@ static inline void add_light(vec *out, const batch *b, int i, vec color, bool pl
     to->z += b->weight[i]*(color.z < 1 ? color.z : 1);
 }
 
+/* The share of the key light at each point, `lift` m along its normal. */
+static inline void find_light(const canvas *c, batch *b, float lift)
+{
+    const shadow s = c->shadow;
+    const int n_points = b->count;
+    const float middle = 0.5f*SHADOW_SIDE, bias = 4/s.focal;
+    float x[BATCH], y[BATCH], depth[BATCH];
+    for (int i = 0; i < n_points; i++) b->lit[i] = 1;
+    if (!s.depth) return;
+    TOBI_SIMD
+    for (int i = 0; i < n_points; i++) {
+        const vec p = { b->x[i], b->y[i], b->z[i] }, n = { b->nx[i], b->ny[i], b->nz[i] };
+        const vec q = vec_sub(vec_add(p, vec_scale(lift, n)), s.center);
+        x[i] = middle + s.focal*vec_dot(q, s.right), y[i] = middle - s.focal*vec_dot(q, s.up);
+        depth[i] = vec_dot(q, s.forward) - bias;
+    }
+    for (int i = 0; i < n_points; i++) b->lit[i] = view_lit_at(&c->shadow, x[i], y[i], depth[i]);
+}
+
 static inline void shade_solids(const canvas *c, vec *out, batch *b)
 {
-    const bool shadows = c->shadow.depth != NULL;
     const float keep = c->camera.orthographic ? 0 : 1;
     const int n_points = b->count;
-    const float lift = shadows ? 2/c->shadow.focal : 0;
+    TOBI_SIMD
     for (int i = 0; i < n_points; i++) {
         const vec p = { b->x[i], b->y[i], b->z[i] }, eye = eye_from(keep, p);
         const vec n = face_eye((vec){ b->nx[i], b->ny[i], b->nz[i] }, eye);
         b->nx[i] = n.x, b->ny[i] = n.y, b->nz[i] = n.z;
-        b->lit[i] = shadows ? view_lit_at(c, vec_add(p, vec_scale(lift, n))) : 1;
     }
+    find_light(c, b, 2/c->shadow.focal);
     const vec light = c->light, up = c->sky_up;
     TOBI_SIMD
     for (int i = 0; i < n_points; i++) {
@@ -167,8 +185,7 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
     const vec window = vec_unit(vec_add(vec_scale(0.45f, up), (vec){ 0.25f, 0, 0.9f }));
     bend_rays(c, b);
     look_under(c, b);
-    for (int i = 0; i < n_points; i++)
-        b->lit[i] = c->shadow.depth ? view_lit_at(c, (vec){ b->x[i], b->y[i], b->z[i] }) : 1;
+    find_light(c, b, 0);
     TOBI_SIMD
     for (int i = 0; i < n_points; i++) {
         const vec p = { b->x[i], b->y[i], b->z[i] }, n = { b->nx[i], b->ny[i], b->nz[i] };
@@ -201,19 +218,26 @@ static inline void shade_waters(const canvas *c, vec *out, batch *b)
 static inline void shade_drops(const canvas *c, vec *out, batch *b)
 {
     const float keep = c->camera.orthographic ? 0 : 1;
-    for (int i = 0; i < b->count; i++) {
-        const vec p = { b->x[i], b->y[i], b->z[i] }, eye = eye_from(keep, p), sum = vec_add(c->light, eye);
+    const vec light = c->light, sky_up = c->sky_up;
+    const int n_points = b->count;
+    TOBI_SIMD
+    for (int i = 0; i < n_points; i++) {
+        const vec p = { b->x[i], b->y[i], b->z[i] }, eye = eye_from(keep, p), sum = vec_add(light, eye);
         const vec n = face_eye((vec){ b->nx[i], b->ny[i], b->nz[i] }, eye);
         const vec under = { b->under_r[i], b->under_g[i], b->under_b[i] };
-        const float up = vec_dot(n, c->sky_up), facing = clampf(vec_dot(n, eye), 0, 1), away = 1 - facing;
+        const float up = vec_dot(n, sky_up), facing = clampf(vec_dot(n, eye), 0, 1), away = 1 - facing;
         const float mirror = 0.02f + 0.98f*away*away*away*away*away;
         const vec through = vec_mix(sky_color(0.25f - 0.6f*up), under, 0.35f + 0.35f*facing*facing);
         const vec tint = { 1 - 0.2f*facing, 1 - 0.07f*facing, 1 - 0.03f*facing };
-        const vec color = vec_mix(vec_mul(through, tint), sky_color(2*facing*up - vec_dot(eye, c->sky_up)),
+        const vec color = vec_mix(vec_mul(through, tint), sky_color(2*facing*up - vec_dot(eye, sky_up)),
                                   mirror);
         const float between = clampf(vec_dot(n, sum)/sqrtf(vec_dot(sum, sum) + 1e-20f), 0, 1);
         const float shine = 1.5f*power_64(between);
-        add_light(out, b, i, vec_add(vec_scale(0.88f, color), (vec){ shine, shine, shine }), false);
+        b->under_r[i] = 0.88f*color.x + shine;
+        b->under_g[i] = 0.88f*color.y + shine;
+        b->under_b[i] = 0.88f*color.z + shine;
     }
+    for (int i = 0; i < n_points; i++)
+        add_light(out, b, i, (vec){ b->under_r[i], b->under_g[i], b->under_b[i] }, false);
     b->count = 0;
 }

@@ -3,7 +3,7 @@
 #include "view/draw.h"
 #include <stdlib.h>
 
-/* A block is wider than the reach of view_lit_at. */
+/* A block is wider than the reach of view_lit_around. */
 enum { SIDE = SHADOW_SIDE, BLOCK = SHADOW_BLOCK, ACROSS = SHADOW_ACROSS };
 
 static vec turn(const shadow *s, vec p)
@@ -106,22 +106,13 @@ tobi_status view_make_shadow(canvas *c, const tobi_picture *frame, const geometr
     return TOBI_OK;
 }
 
-/* Share of the light that reaches a view point: 16 samples around it, softer edges than the map's. */
-float view_lit_at(const canvas *c, vec p)
+/* 16 samples around the point: softer edges than the map's. */
+float view_lit_around(const shadow *s, float x, float y, float depth)
 {
-    const shadow *s = &c->shadow;
-    if (!s->depth) return 1;
     static const float ring[4][2] = {
         { 0.92f, 0.38f }, { -0.38f, 0.92f }, { -0.92f, -0.38f }, { 0.38f, -0.92f }
     };
-    vec q = turn(s, p);
-    const float x = 0.5f*SIDE + s->focal*q.x, y = 0.5f*SIDE - s->focal*q.y, bias = 4/s->focal;
     int lit = 0;
-    if (x >= 0 && y >= 0 && x < SIDE && y < SIDE) {      /* most points are far from every edge of a shadow */
-        const float *range = &s->range[2*((int)y/BLOCK*ACROSS + (int)x/BLOCK)];
-        if (q.z - bias < range[0]) return 1;
-        if (q.z - bias >= range[1]) return 0;
-    }
     for (int k = 0; k < 16; k++) {
         float r = 1 + 1.3f*(float)(k/4);
         float sx = x + r*ring[k%4][k/4%2], sy = y + r*ring[k%4][1 - k/4%2];
@@ -129,7 +120,7 @@ float view_lit_at(const canvas *c, vec p)
             lit++;
             continue;
         }
-        lit += q.z - bias < s->depth[(size_t)sy*SIDE + (size_t)sx];
+        lit += depth < s->depth[(size_t)sy*SIDE + (size_t)sx];
     }
     return (float)lit/16;
 }
