@@ -105,6 +105,9 @@ typedef struct tobi_rules {
 /* method_def: the parameters of world->method, NULL = not known; rules that need a method do nothing where
    there is none of that name. */
 TOBI_API void tobi_rules_world(const tobi_rules *rules, const tobi_world_def *world, const void *method_def);
+/* Those of solids beside fluids; `solids`: their method's parameters. */
+TOBI_API void tobi_rules_beside(const tobi_rules *rules, const tobi_world_def *world,
+                                const tobi_mlsmpm_def *solids);
 /* Those of a solid in such a world; keys are of the solid. */
 TOBI_API void tobi_rules_solid(const tobi_rules *rules, const tobi_world_def *world, const void *method_def,
                                const tobi_solid_def *solid);

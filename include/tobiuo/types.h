@@ -153,6 +153,7 @@ typedef struct tobi_mlsmpm_def {
     double cfl;                       /* 1, dt <= cfl cell/(speed of sound + |v|)                     */
     int    gradient;                  /* tobi_gradient                                                */
     int    measure_transfer;          /* 1: sum up the energy that transfers cost, in every step      */
+    double spacing;                   /* m, of particles of solids; 0 = that of the world             */
 } tobi_mlsmpm_def;
 
 /* A solid (or liquid, snow, sand) of the material point method: one material. */

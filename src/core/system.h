@@ -78,7 +78,7 @@ typedef struct tobi_method {
     unsigned (*needs)(const tobi_system *s, int full);
     int planes;                                                  /* 1: it knows planes in the domain */
     double density_ratio;                                        /* largest over least of its fluids */
-    int mixes_with_bodies;                                       /* 1: of several densities, beside bodies */
+    int mixes_with_bodies;                                       /* 1: beside bodies and solids too */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */
     void (*smoothing)(const void *def, int driven, int *shape, double *support);

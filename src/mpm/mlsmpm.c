@@ -50,7 +50,7 @@ static void add_planes(const tobi_system *s, int keep, mpm_view *v)
     for (int a = 0; a < s->box.dimension; a++)
         for (int side = 0; side < 2; side++) {
             const int kind = side ? def->wall_max[a] : def->wall_min[a];
-            if (kind == TOBI_WALL_OPEN) continue;
+            if (kind == TOBI_WALL_OPEN || kind == TOBI_WALL_PERIODIC) continue;     /* nobody gets there */
             v->held |= keep << (2*a + side);
             mpm_plane *p = &v->plane[v->plane_count++];
             const double *velocity = side ? def->wall_velocity_max[a] : def->wall_velocity_min[a];

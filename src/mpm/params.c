@@ -5,6 +5,9 @@
 static const tobi_param mlsmpm_rows[] = {
     { .key = "cell", REAL, AT(tobi_mlsmpm_def, cell), .def = { 2 }, RANGE(1, 8), .unit = "spacings",
       .doc = "Side of a grid cell: 2 puts 8 particles in a cell of a 3-D scene." },
+    { .key = "spacing", REAL, AT(tobi_mlsmpm_def, spacing), LENGTHS, .unit = "m", .text = "scene",
+      .doc = "Distance of the particles of solids. Beside fluids at most theirs; thin solids want a finer "
+             "one." },
     { .key = "transfer", CHOICE("apic|flip|xpic", 3), AT(tobi_mlsmpm_def, transfer),
       .doc = "How velocities go between particles and grid: apic keeps angular momentum, flip keeps "
              "the most energy, xpic filters noise." },

@@ -410,6 +410,7 @@ tobi_status mpm_touch_bodies(mpm_touch *t, tobi_system *s, const mpm_grid *g, co
     if (s->sim->body_count == 0) return TOBI_OK;
     TOBI_TRY(tobi_contact_begin(&t->contacts, &s->particles, drift, &s->sim->exec, err));
     for (int k = 0; k < s->sim->body_count; k++) {
+        if (s->sim->bodies[k].is_absent) continue;
         TOBI_TRY(touch_body(t, s, &s->sim->bodies[k], g, v, step, err));
         s->info.contacts += tobi_contact_finish(&t->contacts, &s->particles, &s->sim->bodies[k], step,
                                                 &t->far, &t->work, &s->sim->exec);

@@ -48,6 +48,7 @@ static void check_rules(const tobi_scene *scene, tobi_source *source)
                                .numbers = scene->world_bound.good == scene->world_bound.given };
     tobi_place gravity = { &root, "gravity", 0 };
     tobi_rules_world(&rules, w, scene->method_def);
+    if (tobi_scene_has_both(scene)) tobi_rules_beside(&rules, w, &scene->solids_def);
     if (w->dimension == 2 && w->gravity[2] != 0)
         tobi_source_mistake(source, &gravity, "is %.10g m/s2 in z, must be 0 in a 2-D scene",
                             w->gravity[2]);

@@ -243,7 +243,7 @@ static tobi_status take_over(tobi_system *s, const tobi_region *r, const tobi_bv
         give(s, r, i, at);
         met++;
     }
-    return met > 0 ? tobi_overlap_create(s, taken, err) : TOBI_OK;
+    return met > 0 ? tobi_overlap_create(s, s->smoothing.spacing, taken, err) : TOBI_OK;
 }
 
 /* Places the points of a region and keeps those in the domain, outside of bodies and before planes. */

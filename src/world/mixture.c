@@ -11,7 +11,7 @@
 /* What a method computes beside fluids of different density: bits of tobi_company. */
 static unsigned allows(const tobi_method *m)
 {
-    return m->mixes_with_bodies ? TOBI_WITH_BODIES : 0;
+    return m->mixes_with_bodies ? TOBI_WITH_BODIES | TOBI_WITH_SOLIDS : 0;
 }
 
 tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid, const tobi_fluid_def *other,
@@ -33,7 +33,7 @@ tobi_status tobi_mixture_check(const tobi_method *m, const tobi_fluid_def *fluid
     if (!what) return TOBI_OK;
     return tobi_fail(err, TOBI_UNSUPPORTED, "is %.10g kg/m3 and that of fluid '%s' is %.10g kg/m3; beside %s "
                      "%s takes fluids of one density%s", fluid->density, name, other->density, what, m->name,
-                     company & TOBI_WITH_BODIES ? "; dfsph and wcsph take several beside bodies" : "");
+                     company & TOBI_WITH_OPENINGS ? "" : "; dfsph and wcsph take several there");
 }
 
 void tobi_rules_fluid(const tobi_rules *r, const tobi_world_def *d, const tobi_fluid_def *fluid,

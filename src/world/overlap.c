@@ -1,6 +1,6 @@
 /* The particles of solids in a table by cell. A fluid's particle lies in a solid where one of the solid's is
-   nearer than NEAR spacings: inside a lattice some always is, outside the next layer of the same lattice is
-   not. Drawback: between scattered particles (seeding blue-noise) a hole may be found. */
+   nearer than NEAR spacings, the mean of both: inside a lattice some always is, outside the next layer of the
+   same lattice is not. Drawback: between scattered particles (seeding blue-noise) a hole may be found. */
 #include "world/overlap.h"
 #include "base/error.h"
 #include "world/world.h"
@@ -30,12 +30,14 @@ static void find_cell(const tobi_overlap *o, const double *x, int64_t cell[3])
         cell[a] = a < o->solids->box.dimension ? (int64_t)floor(x[a]/o->reach) : 0;
 }
 
-tobi_status tobi_overlap_create(const tobi_system *solids, tobi_overlap **out, tobi_error *err)
+tobi_status tobi_overlap_create(const tobi_system *solids, double spacing, tobi_overlap **out,
+                                tobi_error *err)
 {
     const int64_t n = solids->particles.count;
     tobi_overlap *o = *out = calloc(1, sizeof *o);
     if (!o) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the places of solids");
-    *o = (tobi_overlap){ .solids = solids, .reach = NEAR*solids->smoothing.spacing, .mask = 1 };
+    const double between = 0.5*(solids->smoothing.spacing + spacing);
+    *o = (tobi_overlap){ .solids = solids, .reach = NEAR*between, .mask = 1 };
     while (o->mask < n) o->mask *= 2;
     o->head = malloc((size_t)o->mask*sizeof *o->head);
     o->next = malloc((size_t)(n + 1)*sizeof *o->next);
@@ -87,7 +89,7 @@ tobi_status tobi_overlap_note_solids(tobi_world *w, tobi_error *err)
     const tobi_system *solids = w->sim.soft.solids;
     for (int k = 0; solids && k < w->region_count; k++) {
         const tobi_region *r = &w->regions[k];
-        const double d = solids->smoothing.spacing;
+        const double d = w->system[0].smoothing.spacing;   /* of the water, whose kernels reach through */
         double least = INFINITY;
         char text[200];
         if (&w->system[r->system] != solids || r->shape.triangle_count) continue;

@@ -4,8 +4,9 @@
 
 typedef struct tobi_overlap tobi_overlap;
 
-/* From the particles of a system of solids; freed by tobi_overlap_free. */
-tobi_status tobi_overlap_create(const tobi_system *solids, tobi_overlap **out, tobi_error *err);
+/* From the particles of a system of solids, for fluids of this spacing, m; freed by tobi_overlap_free. */
+tobi_status tobi_overlap_create(const tobi_system *solids, double spacing, tobi_overlap **out,
+                                tobi_error *err);
 /* 1 if a particle of a fluid at x, m from the lower corner, would lie in a solid. NULL: no solids. */
 int tobi_overlap_meets(const tobi_overlap *o, const double x[3]);
 /* Notes the boxes and spheres of solids that are

@@ -111,6 +111,15 @@ static void check_isph(const tobi_rules *r, const tobi_isph_def *m)
     }
 }
 
+void tobi_rules_beside(const tobi_rules *r, const tobi_world_def *d, const tobi_mlsmpm_def *m)
+{
+    tobi_error why = { 0 };
+    if (!r || !d || !m || !(m->spacing > d->spacing*(1 + 1e-9)) || !r->numbers) return;
+    tobi_fail(&why, TOBI_INVALID, "is %.10g m, must not be above the spacing of the fluids, %.10g m: they "
+              "would see holes between the particles", m->spacing, d->spacing);
+    tell(r, &why, "mlsmpm.spacing");
+}
+
 void tobi_rules_solid(const tobi_rules *r, const tobi_world_def *d, const void *method_def,
                       const tobi_solid_def *solid)
 {
@@ -120,7 +129,8 @@ void tobi_rules_solid(const tobi_rules *r, const tobi_world_def *d, const void *
     tobi_error why = { 0 };
     if (!r || !d || !solid || !m || tobi_method_find(d->method) != &tobi_mlsmpm ||
         !tobi_solid_uses(solid->model, "strength")) return;
-    if (mpm_damage_check(solid, m->cell*d->spacing, &key, note, &why) != TOBI_OK) tell(r, &why, "%s", key);
+    if (mpm_damage_check(solid, m->cell*mpm_spacing(m, d->spacing), &key, note, &why) != TOBI_OK)
+        tell(r, &why, "%s", key);
 }
 
 void tobi_rules_world(const tobi_rules *r, const tobi_world_def *d, const void *method_def)

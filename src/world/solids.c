@@ -11,16 +11,16 @@ int tobi_world_solid_count(const tobi_world *w)
     return s ? s->solid_count : 0;
 }
 
-static double cell_of(const tobi_world *w)
+static double cell_of(const tobi_system *s)
 {
-    double d = w->system[0].smoothing.spacing;
-    return w->system[0].box.dimension == 3 ? d*d*d : d*d;
+    double d = s->smoothing.spacing;
+    return s->box.dimension == 3 ? d*d*d : d*d;
 }
 
 int64_t tobi_world_guess_particles(const tobi_world *w, const tobi_region *r)
 {
     int64_t most = tobi_region_count(&w->system[r->system], r);
-    double about = floor(r->volume/cell_of(w) + 0.5);
+    double about = floor(r->volume/cell_of(&w->system[r->system]) + 0.5);
     if (r->radius > 0) about = fmax(about, 1);           /* the middle of the lattice is in it */
     return (r->shape.triangle_count || r->radius > 0) && about < (double)most ? (int64_t)about : most;
 }
@@ -81,6 +81,30 @@ tobi_status tobi_world_note_time_step(tobi_world *w, tobi_error *err)
     snprintf(text, sizeof text, "%.4g s is longer than the %.3g s that the stiffness of the solids%s and "
              "gravity allow: each is cut into %.9g or more\n", wish, stable, speed, parts);
     return tobi_world_add_notes(w, "world", "time_step", text, err);
+}
+
+/* Times the density of what hangs on it: with less a clamp gives way as if it were a hinge. */
+static const double CLAMP = 1e3;
+
+/* A stationary solid holds others by its mass, as they share the velocity of nodes. */
+tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    char text[200];
+    double most = 0;
+    for (int k = 0; s && k < s->solid_count; k++) {
+        const tobi_solid_def *d = &s->solids[k].def;
+        const int hangs = d->bonded && (d->model == TOBI_NEO_HOOKEAN || d->model == TOBI_COROTATED);
+        if (hangs) most = fmax(most, d->density);
+    }
+    for (int k = 0; s && k < s->solid_count; k++) {
+        const tobi_solid_def *d = &s->solids[k].def;
+        if (d->model != TOBI_STATIONARY || !d->bonded || d->density >= CLAMP*most*(1 - 1e-9)) continue;
+        snprintf(text, sizeof text, "holds what is bonded to it by its mass: lighter than %.3g kg/m3 it "
+                 "gives way as if it were a hinge\n", CLAMP*most);
+        TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
+    }
+    return TOBI_OK;
 }
 
 /* How far a body reaches into the domain from a side, m. */

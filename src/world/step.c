@@ -4,6 +4,7 @@
 #include "world/step.h"
 #include "world/absorb.h"
 #include "world/acceleration.h"
+#include "world/beside.h"
 #include "world/bodies.h"
 #include "world/limits.h"
 #include "world/openings.h"
@@ -27,6 +28,8 @@ static void take_back(tobi_world *w, double dt)
 
 /* Substeps of a system in a step of another. */
 enum { SUBSTEP_LIMIT = 10000 };
+/* s: the square of the inverse of a shorter step is no float. */
+static const double LEAST_STEP = 1e-18;
 
 /* The step of all, and the substeps that each system takes in it. */
 static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI_SYSTEM_LIMIT],
@@ -38,6 +41,9 @@ static tobi_status choose_dt(tobi_world *w, double max_dt, int64_t substeps[TOBI
     dt = stable[0];
     if (tobi_body_any_free(s->bodies, s->body_count))
         for (int k = 1; k < w->system_count; k++) dt = fmin(dt, stable[k]);
+    if (dt < LEAST_STEP)
+        return tobi_fail(err, TOBI_STALLED, "the time step would be %.3g s at t = %.9g s; allowed are %g s "
+                         "or more", dt, s->time, LEAST_STEP);
     s->dt = tobi_simulation_fit_dt(dt, max_dt);
     for (int k = 0; k < w->system_count; k++) {
         substeps[k] = k > 0 ? (int64_t)fmax(ceil(s->dt/stable[k]*(1 - 1e-9)), 1) : 1;
@@ -239,7 +245,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     tobi_absorb_finish(w);
     tobi_step_sum_up(w);
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(check_runaway(&w->system[k], err));
-    return TOBI_OK;
+    return tobi_beside_check(w, err);
 }
 
 /* What the choice of a step may change before anything moves. */

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "world/fit.h"
 #include "base/param.h"
+#include "mpm/mlsmpm.h"
 #include "world/openings.h"
 #include "world/vessel.h"
 #include "world/world.h"
@@ -19,14 +20,16 @@ static void keep_first(void *user, const char *path, const tobi_error *why)
     if (first->status == TOBI_OK) tobi_fail(first, why->status, "%s: %s", path, why->text);
 }
 
+/* beside: 1 for solids beside fluids. */
 static tobi_status check_rules(const tobi_world_def *def, const tobi_method *method, const void *method_def,
-                               tobi_error *err)
+                               int beside, tobi_error *err)
 {
     tobi_world_def d = *def;
     d.method = method->name;
     tobi_error first = { 0 };
     const tobi_rules rules = { .tell = keep_first, .user = &first, .corners = 1, .numbers = 1 };
-    tobi_rules_world(&rules, &d, method_def);
+    if (beside) tobi_rules_beside(&rules, &d, method_def);
+    else tobi_rules_world(&rules, &d, method_def);
     return first.status ? tobi_fail(err, first.status, "%s", first.text) : TOBI_OK;
 }
 
@@ -61,10 +64,11 @@ static void set_smoothing(tobi_world *w, tobi_system *s)
     int shape, periodic[3];
     double support;
     s->method->smoothing(s->def, is_stirred_vessel(w, s), &shape, &support);
-    const double spacing = tobi_fit_find(w, d->spacing).spacing;
+    const double common = tobi_fit_find(w, d->spacing).spacing;
+    const double spacing = s->method->solids ? mpm_spacing(s->def, common) : common;
     if (s->smoothing.h == support*spacing) return;
     tobi_smoothing_init(&s->smoothing, shape, d->dimension, spacing, support);
-    for (int a = 0; a < 3; a++) periodic[a] = d->wall_min[a] == TOBI_WALL_PERIODIC;
+    for (int a = 0; a < 3; a++) periodic[a] = !s->method->solids && d->wall_min[a] == TOBI_WALL_PERIODIC;
     tobi_box_init(&s->box, d->dimension, d->domain_min, d->domain_max, periodic, s->smoothing.h);
 }
 
@@ -77,7 +81,7 @@ tobi_status tobi_world_add_system(tobi_world *w, const tobi_method *method, cons
     tobi_param_defaults(table, params);
     if (method_def) memcpy(params, method_def, method->params->size);
     tobi_status status = tobi_param_check(table, params, err);
-    if (status == TOBI_OK) status = check_rules(&w->sim.def, method, params, err);
+    if (status == TOBI_OK) status = check_rules(&w->sim.def, method, params, w->system_count > 0, err);
     if (status != TOBI_OK) {
         free(params);
         return status;

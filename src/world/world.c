@@ -2,6 +2,7 @@
 #include "world/mixture.h"
 #include "world/world.h"
 #include "world/absorb.h"
+#include "world/beside.h"
 #include "world/acceleration.h"
 #include "base/error.h"
 #include "rigid/dynamics.h"
@@ -136,9 +137,6 @@ const char *tobi_world_note(const tobi_world *w, int note)
 
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
-    if (b->absent[0] > 0 && tobi_world_solids(w))
-        return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': bodies of %s cannot be absent", b->name,
-                         tobi_world_solids(w)->method->name);
     const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
         for (int a = 0; a < box->dimension; a++)
@@ -229,7 +227,7 @@ static tobi_status fill_systems(tobi_world *w, tobi_error *err)
     for (int k = w->system_count - 1; k >= 0 && status == TOBI_OK; k--) {
         status = tobi_world_fill_system(w, &w->system[k], err);
         if (status == TOBI_OK && soft->solids == &w->system[k])
-            status = tobi_overlap_create(soft->solids, &soft->start, err);
+            status = tobi_overlap_create(soft->solids, w->system[0].smoothing.spacing, &soft->start, err);
     }
     tobi_overlap_free(soft->start);
     soft->start = NULL;
@@ -255,7 +253,9 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_fit_note(w, err));
     TOBI_TRY(tobi_world_note_regions(w, err));
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
+    TOBI_TRY(tobi_world_note_clamps(w, err));
     TOBI_TRY(tobi_overlap_note_solids(w, err));
+    TOBI_TRY(tobi_beside_check(w, err));
     TOBI_TRY(tobi_world_note_edges(w, err));
     TOBI_TRY(tobi_world_fit_systems(w, err));
     for (int k = 0; k < w->system_count; k++) TOBI_TRY(tobi_world_start_system(w, &w->system[k], err));

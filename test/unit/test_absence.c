@@ -28,7 +28,6 @@ static tobi_world *make_tank(const char *method)
     w.gravity[1] = -9.81; w.gravity[2] = 0;
     w.end_time = 1;
     assert_int_equal(tobi_world_create(&w, NULL, &world, &err), TOBI_OK);
-    if (strcmp(method, "mlsmpm") == 0) return world;
     tobi_fluid_def f = tobi_default_fluid_def();
     tobi_fill_def fill = tobi_default_fill_def();
     fill.box_max[0] = 0.1; fill.box_max[1] = 0.2;
@@ -191,10 +190,7 @@ static void what_cannot_be_absent_is_refused(void **state)
     b.dynamics = TOBI_FREE;
     refuse(world, &b, "only a prescribed body can be absent");
     tobi_world_destroy(world);
-    world = make_tank("mlsmpm");
     b = make_gate(0.2, 0);
-    refuse(world, &b, "bodies of mlsmpm cannot be absent");
-    tobi_world_destroy(world);
     tobi_world_def w = tobi_default_world_def();
     w.dimension = 2;
     w.spacing = D;
