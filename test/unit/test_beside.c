@@ -101,8 +101,8 @@ static void periodic_sides(void **state)
     OK(tobi_world_advance(w, 0.05, NULL, &err));
     tobi_world_destroy(w);
     w = make_world("dfsph", 0, 1, 0.01);
-    REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED, "solid 'jelly' comes to x = 0.015 m; solids do not go "
-            "through periodic sides");
+    REFUSED(tobi_world_start(w, &err), TOBI_UNSUPPORTED, "solid 'jelly' comes to x = 0.015 m; solids do not "
+            "go through periodic sides");
     tobi_world_destroy(w);
 }
 
