@@ -5,7 +5,6 @@
 #include "sph/isph.h"
 #include "sph/isph_sweeps.h"
 #include "sph/isph_verbs.h"
-#include "sph/boundary.h"
 #include <math.h>
 
 /* Most sweeps that the method chooses itself. */
@@ -35,9 +34,6 @@ static tobi_status create(tobi_system *s, tobi_error *err)
     def.volume_gain = d->volume_gain;
     def.shifting = d->shifting;
     def.time_order = 1;
-    if (tobi_couple_any(s))
-        return tobi_fail(err, TOBI_INVALID, "eisph knows bodies that are held or driven; those that move by "
-                         "forces need \"method\": \"isph\"");
     return isph_create_state(s, &def, err);
 }
 

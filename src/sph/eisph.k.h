@@ -18,12 +18,10 @@ TOBI_FN void eisph_extent(const isph_view *v, int64_t i, double *totals)
     totals[7] = isph_larger(totals[7], sqrt(reach) - along);
 }
 
-/* in: the pressure. totals: the residual, the square of the source. */
+/* out: the product with the pressure. totals: the residual, the square of the source. */
 TOBI_FN void eisph_residual(const isph_view *v, int64_t i, double *totals)
 {
     const double source = v->source[i];
-    double none[8];
-    isph_multiply(v, i, none);
     v->source[i] = source - v->out[i];
     totals[0] += v->source[i];
     totals[1] += source*source;
@@ -42,8 +40,6 @@ TOBI_FN void eisph_begin(const isph_view *v, int64_t i, double *totals)
 /* A change of carry times the last and gain r/D. */
 TOBI_FN void eisph_sweep(const isph_view *v, int64_t i, double *totals)
 {
-    double none[8];
-    isph_multiply(v, i, none);
     const double r = v->source[i] - v->out[i],
                  change = v->carry*v->in[i] + v->gain*r*v->inverse_diagonal[i];
     v->source[i] = r;

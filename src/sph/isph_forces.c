@@ -279,6 +279,17 @@ static void find_added_mass_factor(const tobi_rigid *r, isph_body *b)
     invert(x, b->added_mass_factor);
 }
 
+static void find_mobility(const tobi_rigid *r, isph_body *b)
+{
+    for (int j = 0; j < 6; j++) {
+        double force[6] = { 0 }, moved[6];
+        force[j] = 1;
+        tobi_rigid_answer(r, force, moved);
+        multiply((const double (*)[6])b->added_mass_factor, moved);
+        for (int i = 0; i < 6; i++) b->mobility[i][j] = moved[i];
+    }
+}
+
 /* What the body would change without the water at its surface, as an acceleration from the last step's
    velocities on, less what that water takes of it. */
 static void predict(isph_solver *m, tobi_system *s, int k)
@@ -291,6 +302,7 @@ static void predict(isph_solver *m, tobi_system *s, int k)
     if (r->kind == TOBI_PRESCRIBED) return;
     find_added_mass(m, s, k);
     find_added_mass_factor(r, b);
+    find_mobility(r, b);
     for (int a = 0; a < 6; a++) {
         const double now = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
         f[a] = now + answer[a] - r->before[a];
@@ -326,6 +338,32 @@ void isph_forces_add_answer(isph_solver *m, double *product, const double *press
     isph_view v = m->view;
     v.out = product;
     tobi_launch(m->exec, m->kernel->isph_add_answer, &v, 0, v.count, NULL);
+}
+
+/* totals[0]: trace of what a body adds to the equation, over its diagonal. */
+static void trace_answer(const void *view, int64_t begin, int64_t end, double *totals)
+{
+    const isph_solver *m = view;
+    const isph_view *v = &m->view;
+    for (int64_t k = begin; k < end; k++) {
+        const double *c = m->coupling[k].f;
+        double moved[6];
+        if (m->system->sim->bodies[v->link[k].body].rigid.kind == TOBI_PRESCRIBED) continue;
+        memcpy(moved, c, sizeof moved);
+        multiply((const double (*)[6])m->body[v->link[k].body].mobility, moved);
+        for (int a = 0; a < 6; a++)
+            totals[0] += v->density/v->volume*v->inverse_diagonal[v->link[k].particle]*c[a]*moved[a];
+    }
+}
+
+double isph_forces_answer_bound(isph_solver *m)
+{
+    tobi_system *s = m->system;
+    double most = 0;
+    if (!m->coupled) return 0;
+    tobi_boundary_sum(s, TOBI_HOST(trace_answer, 1, 0), m, 1);
+    for (int k = 0; k < s->sim->body_count; k++) most = fmax(most, sph_of(s)->links.total[k][0]);
+    return most;
 }
 
 void isph_forces_correct(isph_solver *m, tobi_system *s)

@@ -10,6 +10,8 @@ tobi_status isph_forces_find_coupling(isph_solver *m, tobi_system *s, tobi_error
 void isph_forces_predict(isph_solver *m, tobi_system *s);
 /* product += how they answer pressures, Pa, one per particle, eq. (15). */
 void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure);
+/* At least the largest eigenvalue of what they add to the equation, over its diagonal; 0 without them. */
+double isph_forces_answer_bound(isph_solver *m);
 /* After the solve: their mirrors get the velocities that the pressure makes. */
 void isph_forces_correct(isph_solver *m, tobi_system *s);
 /* The pressure's force and torque on each body; friction is there already. */

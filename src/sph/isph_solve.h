@@ -15,6 +15,7 @@ typedef struct isph_body {
     double explicit_change[6];       /* m/s, rad/s: what all but the pressure changes               */
     double added_mass[6][6];         /* kg: of the water between particles and surface              */
     double added_mass_factor[6][6];  /* 1: what of its own acceleration is left with that           */
+    double mobility[6][6];           /* 1/kg: acceleration by a force on it, with that              */
 } isph_body;
 
 /* What eisph does in place of the solve. */
