@@ -26,9 +26,9 @@ const tobi_param_table tobi_fluid_table = {
     "fluid", "An entry of fluids: one material.", sizeof(tobi_fluid_def), fluid_rows };
 
 static const tobi_param interface_rows[] = {
-    { .key = "fluid", TEXT, AT(tobi_interface_def, fluid), .unit = "name", .text = "fluid", .required = true,
+    { .key = "fluid", TEXT, AT(tobi_interface_def, fluid), .unit = "name", .required = true,
       .doc = "Name of the fluid on one side." },
-    { .key = "to_fluid", TEXT, AT(tobi_interface_def, to_fluid), .unit = "name", .text = "fluid",
+    { .key = "to_fluid", TEXT, AT(tobi_interface_def, to_fluid), .unit = "name",
       .required = true, .doc = "Name of the fluid on the other." },
     { .key = "tension", REAL, AT(tobi_interface_def, tension), RANGE(0, 1e6), .unit = "N/m", .text = "none",
       .doc = "Tension of the interface; oil on water has some 0.03. It wants a support of 2.5 to 3." },
