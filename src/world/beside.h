@@ -4,4 +4,4 @@
 
 /* TOBI_UNSUPPORTED when a solid comes so near to a periodic side that the liquid beyond it would feel the
    solid, or the solid would leave. Costs nothing without periodic sides. */
-tobi_status tobi_beside_check(const tobi_world *w, tobi_error *err);
+tobi_status tobi_beside_check(tobi_world *w, tobi_error *err);
