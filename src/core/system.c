@@ -34,8 +34,8 @@ void tobi_system_measure(tobi_system *s)
 tobi_status tobi_system_room(tobi_system *s, int64_t rows, tobi_error *err)
 {
     if (rows <= s->particles.capacity) return TOBI_OK;
-    TOBI_TRY(tobi_exec_reserve(&s->sim->exec, rows, err));
     TOBI_TRY(tobi_particles_room(&s->particles, rows, err));
+    TOBI_TRY(tobi_exec_reserve(&s->sim->exec, s->particles.capacity, err));    /* more rows fill it later */
     if (s->method->inserted) s->method->inserted(s);
     return s->method->solids ? TOBI_OK : tobi_cells_grow(&s->cells, &s->particles, err);
 }

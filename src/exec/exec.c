@@ -125,6 +125,7 @@ static void run_blocks(tobi_exec *x, tobi_kernel kernel, const void *view, int64
     if (totals) memset(totals, 0, TOBI_TOTALS*sizeof *totals);
     if (blocks <= 0) return;
     double *partial = x->partial;
+    assert(!totals || blocks <= x->partial_blocks);
     #pragma omp parallel for schedule(dynamic, 4) num_threads(x->threads) if (blocks > 1)
     for (int64_t b = 0; b < blocks; b++) {
         double sums[TOBI_TOTALS] = {0};

@@ -164,6 +164,20 @@ static void insert_cube(tobi_system *s, double x)
     }
 }
 
+/* Sums are made block by block: there is memory for those of all rows that fit, however they came. */
+static void memory_of_sums_grows_with_rows(void **state)
+{
+    (void)state;
+    tobi_world *world = make_world("dfsph", POOL, 1);
+    OK(tobi_world_start(world, &err));
+    tobi_system *s = &world->system[0];
+    for (int k = 0; k < 400; k++) {
+        insert_cube(s, 0.3);
+        assert_true(world->sim.exec.partial_blocks*TOBI_BLOCK >= s->particles.count);
+    }
+    tobi_world_destroy(world);
+}
+
 /* Rows come while the world runs: nobody's id changes, the new ones fall as everything does, and the result
    is the same for any number of threads. */
 static void rows_can_be_inserted(void **state)
@@ -219,6 +233,7 @@ int main(void)
         cmocka_unit_test(a_restart_changes_nothing),
         cmocka_unit_test(what_is_not_known_yet),
         cmocka_unit_test(rows_can_be_inserted),
+        cmocka_unit_test(memory_of_sums_grows_with_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
