@@ -1,6 +1,6 @@
-/* tobiuo surface DIR: the surfaces of fluids and solids of a finished run,
-    from its particles: a file for each
-   output, or one glTF with all of them as an animation. */
+/* tobiuo surface DIR: the surfaces of fluids and solids of a finished run, from its particles: a file for
+   each output, or one glTF with all of them as an animation. Drawback: colours of skins are means of
+   particles, so that their edges are a spacing wide. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "tobiuo/results.h"
@@ -25,8 +25,8 @@ static const struct argp_option options[] = {
     { "cell", KEY_CELL, "C", 0, "cell of the grid, spacings (0.75)", 0 },
     { "smooth", KEY_SMOOTH, "N", 0, "rounds of smoothing (20)", 0 },
     { "field", KEY_FIELD, "NAME", 0,
-      "field of the vertices, \"speed\" among them; vtp and ply: without it all; "
-      "glb: their colour", 0 },
+      "field of the vertices, \"speed\" among them, in glb their colour; without it all, and the colours of "
+      "the materials", 0 },
     { "slow", KEY_SLOW, "X", 0, "glb: so many times slower than the scene (1)", 0 },
     { "last", KEY_LAST, NULL, 0, "the last output only", 0 },
     { "threads", KEY_THREADS, "N", 0, "threads (all cores)", 0 },
@@ -70,8 +70,9 @@ typedef struct input {
     tobi_moment moment;
     tobi_surface_def def;
     tobi_surface_field field[TOBI_SURFACE_FIELD_LIMIT];
-    double *speed;
+    double *speed, *color;
     int32_t *group;
+    tobi_looks looks;
 } input;
 
 static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
@@ -96,8 +97,9 @@ static void free_input(input *in)
 {
     tobi_moment_free(&in->moment);
     free(in->speed);
+    free(in->color);
     free(in->group);
-    in->speed = NULL;
+    in->speed = in->color = NULL;
     in->group = NULL;
 }
 
@@ -131,19 +133,38 @@ static int make_speed(input *in)
     return 0;
 }
 
+/* Of each particle red, green, blue and opacity of its material: skin, core, face of a cut. */
+static int make_color(input *in)
+{
+    const tobi_moment *m = &in->moment;
+    const tobi_moment_field *material = find_field(m, "material"), *part = find_field(m, "part");
+    in->color = malloc(4*(size_t)m->count*sizeof *in->color + 1);
+    if (!in->color) return complain("out of memory");
+    for (int64_t i = 0; i < m->count; i++) {
+        float color[4];
+        tobi_looks_color(&in->looks, material ? (int)material->values[i] : 0, part ? (int)part->values[i] : 0,
+                         color);
+        for (int k = 0; k < 4; k++) in->color[4*i + k] = (double)color[k];
+    }
+    return 0;
+}
+
 /* The field that was asked for, or all that are not numbers of something. */
 static int take_fields(const surface_options *o, input *in)
 {
     const tobi_moment *m = &in->moment;
     int n = 0;
     int code = make_speed(in);
+    if (code == 0 && !o->field) code = make_color(in);
     if (code != 0) return code;
+    if (!o->field) in->field[n++] = (tobi_surface_field){ "color", 4, in->color };
     if (in->speed && (!o->field || strcmp(o->field, "speed") == 0))
         in->field[n++] = (tobi_surface_field){ "speed", 1, in->speed };
     for (int k = 0; k < m->field_count && n < TOBI_SURFACE_FIELD_LIMIT; k++) {
         const tobi_moment_field *f = &m->fields[k];
         const int number = strstr(f->name, "_id") || strcmp(f->name, "material") == 0 ||
-                           strcmp(f->name, "piece") == 0 || strcmp(f->name, "cut_side") == 0;
+                           strcmp(f->name, "part") == 0 || strcmp(f->name, "piece") == 0 ||
+                           strcmp(f->name, "cut_side") == 0;
         if (o->field ? strcmp(o->field, f->name) == 0 : !number)
             in->field[n++] = (tobi_surface_field){ f->name, f->components, f->values };
     }
@@ -298,26 +319,25 @@ static int write_files(const surface_options *o, const tobi_results *results, in
 static int read_scene(const surface_options *o, input *in, double up[3])
 {
     tobi_scene *scene = NULL;
-    tobi_looks looks = { 0 };
     const overrides none = { 0 };
-    const int code = load_looks(o->dir, &none, &scene, &looks), dimension = looks.dimension;
+    const int code = load_looks(o->dir, &none, &scene, &in->looks), dimension = in->looks.dimension;
     double weight = 0;
     if (code == 0) {
         in->def = tobi_default_surface();
-        in->def.spacing = looks.spacing;
+        in->def.spacing = in->looks.spacing;
         in->def.cell = o->cell;
         in->def.smoothing = o->smooth;
         in->def.threads = o->threads;
     }
     for (int a = 0; code == 0 && a < 3; a++) {
-        in->def.box_min[a] = looks.box_min[a], in->def.box_max[a] = looks.box_max[a];
+        in->def.box_min[a] = in->looks.box_min[a], in->def.box_max[a] = in->looks.box_max[a];
         in->def.flat_min[a] = in->def.flat_max[a] = 1;
-        up[a] = -looks.gravity[a];
+        up[a] = -in->looks.gravity[a];
         weight += up[a]*up[a];
     }
     if (!(weight > 0)) up[2] = 1;
-    tobi_looks_free(&looks);
     tobi_scene_free(scene);
+    if (code != 0 || dimension != 3) tobi_looks_free(&in->looks);
     return code != 0 || dimension == 3 ? code : complain("%s is a run in 2-D, which has no surface", o->dir);
 }
 
@@ -345,6 +365,7 @@ int tobiuo_surface(int argc, char **argv)
         printf(", %.3g million triangles, %.3g million particles in %.3g s\n", 1e-6*(double)t.triangles,
                1e-6*t.particles, wall_clock() - begun);
     free_input(&in);
+    tobi_looks_free(&in.looks);
     tobi_results_free(results);
     return code;
 }

@@ -38,6 +38,8 @@ typedef struct tobi_looks {
 /* world: need not have begun. */
 TOBI_API tobi_status tobi_world_looks(const tobi_world *world, tobi_looks *looks, tobi_error *err);
 TOBI_API void tobi_looks_free(tobi_looks *looks);
+/* Red, green, blue (sRGB) and opacity, 0 to 1, of a part of a material (0 skin, 1 core, 2 face of a cut). */
+TOBI_API void tobi_looks_color(const tobi_looks *looks, int material, int part, float color[4]);
 
 typedef struct tobi_drawing tobi_drawing;
 /* The picture of a moment as a view shows it. It borrows looks and moment until it is freed. Fields that

@@ -6,6 +6,7 @@
    end. Drawback: positions are floats, measured from the middle of the first frame. */
 #define _GNU_SOURCE 1
 #include "base/file.h"
+#include "io/surface_files.h"
 #include "tobiuo/surface.h"
 #include <assert.h>
 #include <errno.h>
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FRAME_ROOM = 2200, HEAD_ROOM = 2600, ACCESSORS = 4, VIEWS = 4 };
+enum { FRAME_ROOM = 2700, HEAD_ROOM = 2800, VIEWS = 4 };
 /* of GLB and glTF */
 enum { MAGIC = 0x46546c67, JSON_PART = 0x4e4f534a, BINARY_PART = 0x004e4942,
        FLOAT_NUMBERS = 5126, WORD_NUMBERS = 5125, BYTE_NUMBERS = 5121, VERTEX_DATA = 34962,
@@ -25,6 +26,7 @@ enum { MAGIC = 0x46546c67, JSON_PART = 0x4e4f534a, BINARY_PART = 0x004e4942,
 typedef struct frame {
     double time;
     int64_t vertices, triangles;
+    int64_t opaque;              /* triangles that come first; the rest lets light through */
     uint64_t at;                 /* of its bytes in the binary part */
     float low[3], high[3];
 } frame;
@@ -90,7 +92,10 @@ void tobi_surface_movie_free(tobi_surface_movie *m)
     free(m);
 }
 
-/* Linear RGB: of a field dark blue, blue, white, of groups one after the other. */
+static float to_linear(float s) { return s <= 0.04045f ? s/12.92f : powf((s + 0.055f)/1.055f, 2.4f); }
+
+/* Linear RGB and opacity: of a field dark blue, blue, white; without one the surface's own colours, or those
+   of groups one after the other. */
 static void find_color(const tobi_surface *s, int64_t i, int field, double low, double high, uint8_t out[4])
 {
     static const float ramp[4][3] = {
@@ -98,8 +103,10 @@ static void find_color(const tobi_surface *s, int64_t i, int field, double low, 
     static const float group[6][3] = {
         { 0.02f, 0.20f, 0.50f }, { 0.62f, 0.10f, 0.05f }, { 0.85f, 0.75f, 0.45f },
         { 0.10f, 0.35f, 0.10f }, { 0.60f, 0.30f, 0.03f }, { 0.25f, 0.12f, 0.40f } };
-    const float *color = group[s->group[i]%6];
-    float mixed[3];
+    const float *color = group[s->group[i]%6], *own = field < 0 ? tobi_surface_colors(s) : NULL;
+    float mixed[3], opacity = own ? fminf(1, fmaxf(0, own[4*i + 3])) : 1;
+    for (int c = 0; own && c < 3; c++) mixed[c] = to_linear(fminf(1, fmaxf(0, own[4*i + c])));
+    if (own) color = mixed;
     if (field >= 0) {
         const int n = s->field_components[field];
         double square = 0, value = s->fields[field][i*n];
@@ -112,7 +119,24 @@ static void find_color(const tobi_surface *s, int64_t i, int field, double low, 
         color = mixed;
     }
     for (int c = 0; c < 3; c++) out[c] = (uint8_t)lrintf(255*color[c]);
-    out[3] = 255;
+    out[3] = (uint8_t)lrintf(255*opacity);
+}
+
+/* Particles of a group are of one material, so a triangle is opaque as its first vertex is. */
+static bool is_opaque(const tobi_surface *s, int64_t triangle, int field)
+{
+    const float *own = field < 0 ? tobi_surface_colors(s) : NULL;
+    return !own || own[4*(int64_t)s->triangles[triangle][0] + 3] > 0.99f;
+}
+
+static void write_triangles(tobi_surface_movie *m, frame *f, const tobi_surface *s, int field)
+{
+    for (int opaque = 1; opaque >= 0; opaque--)
+        for (int64_t t = 0; t < s->triangle_count && !m->file.error; t++) {
+            if (is_opaque(s, t, field) != opaque) continue;
+            f->opaque += opaque;
+            tobi_file_write(&m->file, s->triangles[t], sizeof *s->triangles);
+        }
 }
 
 static void write_frame(tobi_surface_movie *m, frame *f, const tobi_surface *s, int field, double low,
@@ -134,7 +158,7 @@ static void write_frame(tobi_surface_movie *m, frame *f, const tobi_surface *s, 
         find_color(s, i, field, low, high, color);
         tobi_file_write(&m->file, color, sizeof color);
     }
-    tobi_file_write(&m->file, s->triangles, (size_t)s->triangle_count*sizeof *s->triangles);
+    write_triangles(m, f, s, field);
 }
 
 static tobi_status check_frame(const tobi_surface_movie *m, double time, const tobi_surface *s, int field,
@@ -190,6 +214,12 @@ static void put(tobi_surface_movie *m, const char *format, ...)
 
 static bool is_empty(const frame *f) { return f->triangles == 0; }
 
+/* Positions, normals, colours; triangles that are opaque, and others. */
+static int count_accessors(const frame *f)
+{
+    return is_empty(f) ? 0 : 3 + (f->opaque > 0) + (f->opaque < f->triangles);
+}
+
 /* Turns up to y, and moves the frames back to where they are. */
 static void put_root(tobi_surface_movie *m)
 {
@@ -220,11 +250,22 @@ static void put_meshes(tobi_surface_movie *m)
 {
     int n = 0;
     for (int k = 0; k < m->count; k++) {
-        if (is_empty(&m->frame[k])) continue;
-        put(m, "%s{\"name\":\"surface_%06d\",\"primitives\":[{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,"
-            "\"COLOR_0\":%d},\"indices\":%d,\"material\":0}]}", n ? "," : "", k, n, n + 1, n + 2, n + 3);
-        n += ACCESSORS;
+        const frame *f = &m->frame[k];
+        if (is_empty(f)) continue;
+        put(m, "%s{\"name\":\"surface_%06d\",\"primitives\":[", n ? "," : "", k);
+        for (int i = 3; i < count_accessors(f); i++)
+            put(m, "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"COLOR_0\":%d},\"indices\":%d,"
+                "\"material\":%d}", i > 3 ? "," : "", n, n + 1, n + 2, n + i, i > 3 || f->opaque == 0);
+        put(m, "]}");
+        n += count_accessors(f);
     }
+}
+
+static void put_indices(tobi_surface_movie *m, int view, int64_t first, int64_t count)
+{
+    if (count == 0) return;
+    put(m, ",{\"bufferView\":%d,\"byteOffset\":%" PRId64 ",\"componentType\":%d,\"count\":%" PRId64
+        ",\"type\":\"SCALAR\"}", view, 12*first, WORD_NUMBERS, 3*count);
 }
 
 static void put_accessors(tobi_surface_movie *m)
@@ -241,8 +282,8 @@ static void put_accessors(tobi_surface_movie *m)
             FLOAT_NUMBERS, f->vertices);
         put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"normalized\":true,\"count\":%" PRId64
             ",\"type\":\"VEC4\"}", n + 2, BYTE_NUMBERS, f->vertices);
-        put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"count\":%" PRId64 ",\"type\":\"SCALAR\"}", n + 3,
-            WORD_NUMBERS, 3*f->triangles);
+        put_indices(m, n + 3, 0, f->opaque);
+        put_indices(m, n + 3, f->opaque, f->triangles - f->opaque);
         n += VIEWS;
     }
 }
@@ -292,7 +333,7 @@ static void put_animation(tobi_surface_movie *m, int accessors)
     put(m, "]}");
 }
 
-static void write_animation(tobi_surface_movie *m, int accessors)
+static void write_animation(tobi_surface_movie *m, int accessors, int views)
 {
     uint64_t at = m->bytes;
     for (int k = 0; k < m->count; k++) {
@@ -302,8 +343,8 @@ static void write_animation(tobi_surface_movie *m, int accessors)
         tobi_file_write(&m->file, scale, (size_t)n*sizeof *scale);
         put(m, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%d,\"type\":\"SCALAR\",\"min\":[%.9g],"
             "\"max\":[%.9g]},{\"bufferView\":%d,\"componentType\":%d,\"count\":%d,\"type\":\"VEC3\"}",
-            accessors + k ? "," : "", accessors + 2*k, FLOAT_NUMBERS, n, (double)time[0], (double)time[n - 1],
-            accessors + 2*k + 1, FLOAT_NUMBERS, n);
+            accessors + k ? "," : "", views + 2*k, FLOAT_NUMBERS, n, (double)time[0], (double)time[n - 1],
+            views + 2*k + 1, FLOAT_NUMBERS, n);
         m->bytes += (uint64_t)n*16;
     }
     put(m, "],\"bufferViews\":[");
@@ -321,13 +362,17 @@ tobi_status tobi_surface_movie_finish(tobi_surface_movie *m, tobi_error *err)
 {
     TOBI_NEED(m, "movie");
     if (m->count == 0) return tobi_fail(err, TOBI_INVALID, "%s: a movie without a frame", m->path);
-    int accessors = 0;
-    for (int k = 0; k < m->count; k++) accessors += is_empty(&m->frame[k]) ? 0 : ACCESSORS;
+    int accessors = 0, views = 0;
+    for (int k = 0; k < m->count; k++) {
+        accessors += count_accessors(&m->frame[k]);
+        views += is_empty(&m->frame[k]) ? 0 : VIEWS;
+    }
     put(m, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tobiuo %s\"},\"scene\":0,"
         "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[", TOBI_VERSION);
     put_nodes(m);
     put(m, "],\"materials\":[{\"name\":\"surface\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-        "\"roughnessFactor\":0.15}}]");
+        "\"roughnessFactor\":0.15}},{\"name\":\"liquid\",\"alphaMode\":\"BLEND\","
+        "\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.05}}]");
     if (accessors > 0) {
         put(m, ",\"meshes\":[");
         put_meshes(m);
@@ -335,7 +380,7 @@ tobi_status tobi_surface_movie_finish(tobi_surface_movie *m, tobi_error *err)
     }
     put(m, ",\"accessors\":[");
     put_accessors(m);
-    write_animation(m, accessors);
+    write_animation(m, accessors, views);
     put_animation(m, accessors);
     put(m, "],\"buffers\":[{\"byteLength\":%" PRIu64 "}]}", m->bytes);
     assert(m->length <= m->limit);                   /* FRAME_ROOM is enough */

@@ -1,7 +1,8 @@
-/* Surfaces of particles as VTP, PLY, OBJ, STL and glTF, by the ending of the path. Drawback: OBJ and STL have
-   no room for fields. */
+/* Surfaces of particles as VTP, PLY, OBJ, STL and glTF, by the ending of the path. Drawback: OBJ has
+   room for colours and texture coordinates alone, STL for no field. */
 #include "io/surface_files.h"
 #include "base/file.h"
+#include <math.h>
 #include <string.h>
 #include <strings.h>
 
@@ -27,18 +28,42 @@ static tobi_status write_stl(const char *path, const tobi_surface *s, tobi_error
                           (const int32_t (*)[3])s->triangles, err);
 }
 
+/* The values of a field of so many components by its name, or NULL. */
+static const float *find_field(const tobi_surface *s, const char *name, int components)
+{
+    for (int f = 0; f < s->field_count; f++)
+        if (s->field_components[f] == components && strcmp(s->field_names[f], name) == 0) return s->fields[f];
+    return NULL;
+}
+
+const float *tobi_surface_colors(const tobi_surface *s) { return find_field(s, "color", 4); }
+
+/* Colours behind the place, as Blender, MeshLab and others read them. */
+static void print_obj_vertex(tobi_file *file, const tobi_surface *s, int64_t i)
+{
+    const double *v = s->vertices[i];
+    const float *color = tobi_surface_colors(s);
+    if (!color) tobi_file_print(file, "v %.9g %.9g %.9g\n", v[0], v[1], v[2]);
+    else tobi_file_print(file, "v %.9g %.9g %.9g %.4f %.4f %.4f\n", v[0], v[1], v[2], (double)color[4*i],
+                         (double)color[4*i + 1], (double)color[4*i + 2]);
+}
+
 static tobi_status write_obj(const char *path, const tobi_surface *s, tobi_error *err)
 {
+    const float *uv = find_field(s, "texture_coordinates", 2);
     tobi_file file;
     TOBI_TRY(tobi_file_open(&file, path, err));
     for (int64_t i = 0; i < s->vertex_count && !file.error; i++)
-        tobi_file_print(&file, "v %.9g %.9g %.9g\n", s->vertices[i][0], s->vertices[i][1], s->vertices[i][2]);
+        print_obj_vertex(&file, s, i);
+    for (int64_t i = 0; uv && i < s->vertex_count && !file.error; i++)
+        tobi_file_print(&file, "vt %.6g %.6g\n", (double)uv[2*i], (double)uv[2*i + 1]);
     for (int64_t i = 0; i < s->vertex_count && !file.error; i++)
         tobi_file_print(&file, "vn %.4f %.4f %.4f\n", (double)s->normals[i][0], (double)s->normals[i][1],
                         (double)s->normals[i][2]);
     for (int64_t i = 0; i < s->triangle_count && !file.error; i++) {
         const int a = s->triangles[i][0] + 1, b = s->triangles[i][1] + 1, c = s->triangles[i][2] + 1;
-        tobi_file_print(&file, "f %d//%d %d//%d %d//%d\n", a, a, b, b, c, c);
+        if (uv) tobi_file_print(&file, "f %d/%d/%d %d/%d/%d %d/%d/%d\n", a, a, a, b, b, b, c, c, c);
+        else tobi_file_print(&file, "f %d//%d %d//%d %d//%d\n", a, a, b, b, c, c);
     }
     return tobi_file_commit(&file, err);
 }
@@ -60,8 +85,11 @@ static void print_ply_head(tobi_file *file, const tobi_surface *s)
                     "property double x\nproperty double y\nproperty double z\n"
                     "property float nx\nproperty float ny\nproperty float nz\nproperty int group\n",
                     (long long)s->vertex_count);
+    if (tobi_surface_colors(s))
+        tobi_file_print(file, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                        "property uchar alpha\n");
     for (int f = 0; f < s->field_count; f++)
-        for (int c = 0; c < s->field_components[f]; c++)
+        for (int c = 0; c < s->field_components[f] && s->fields[f] != tobi_surface_colors(s); c++)
             print_property(file, s->field_names[f], c, s->field_components[f]);
     tobi_file_print(file, "element face %lld\nproperty list uchar int vertex_indices\nend_header\n",
                     (long long)s->triangle_count);
@@ -69,6 +97,7 @@ static void print_ply_head(tobi_file *file, const tobi_surface *s)
 
 static tobi_status write_ply(const char *path, const tobi_surface *s, tobi_error *err)
 {
+    const float *color = tobi_surface_colors(s);
     tobi_file file;
     TOBI_TRY(tobi_file_open(&file, path, err));
     print_ply_head(&file, s);
@@ -76,8 +105,10 @@ static tobi_status write_ply(const char *path, const tobi_surface *s, tobi_error
         tobi_file_write(&file, s->vertices[i], sizeof s->vertices[i]);
         tobi_file_write(&file, s->normals[i], sizeof s->normals[i]);
         tobi_file_write(&file, &s->group[i], sizeof s->group[i]);
+        for (int k = 0; color && k < 4; k++)
+            tobi_file_write(&file, &(uint8_t){ (uint8_t)lrintf(255*color[4*i + k]) }, 1);
         for (int f = 0; f < s->field_count; f++) {
-            const size_t n = (size_t)s->field_components[f];
+            const size_t n = s->fields[f] == color ? 0 : (size_t)s->field_components[f];
             tobi_file_write(&file, s->fields[f] + (size_t)i*n, n*sizeof(float));
         }
     }

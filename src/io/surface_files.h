@@ -6,3 +6,7 @@
 tobi_status tobi_surface_write_vtp(const char *path, tobi_compression compression,
                                    const tobi_surface *surface,
                                    tobi_error *err);
+
+/* Of each vertex red, green, blue (sRGB) and opacity, 0 to 1: the field "color" of four components, or
+   NULL. */
+const float *tobi_surface_colors(const tobi_surface *surface);

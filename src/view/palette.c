@@ -114,6 +114,25 @@ static tobi_status choose_tints(tobi_drawing *d, const tobi_moment_field *id, to
     return TOBI_OK;
 }
 
+/* How many kinds of liquid there are before a material. */
+static int count_kinds(const tobi_looks *s, const tobi_material_look *look)
+{
+    int kind = 0;
+    for (int k = 0; k < look->kind; k++) kind += s->materials[k].liquid && s->materials[k].kind == k;
+    return kind;
+}
+
+void tobi_looks_color(const tobi_looks *looks, int material, int part, float color[4])
+{
+    static const float plain[4] = { 0.5f, 0.5f, 0.5f, 1 };
+    static const float share_of_liquid = 0.6f;      /* of light that is kept away */
+    memcpy(color, plain, sizeof plain);
+    if (material < 0 || material >= looks->material_count) return;
+    const tobi_material_look *look = &looks->materials[material];
+    find_color(look, count_kinds(looks, look), part < SKIN || part >= PARTS ? SKIN : part, 0, color);
+    if (look->liquid) color[3] = share_of_liquid;
+}
+
 tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *id, tobi_error *err)
 {
     const tobi_looks *s = d->looks;
@@ -123,8 +142,7 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
     if (!d->palette) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int m = 0; m < s->material_count; m++) {
         const tobi_material_look *look = &s->materials[m];
-        int kind = 0;
-        for (int k = 0; k < look->kind; k++) kind += s->materials[k].liquid && s->materials[k].kind == k;
+        const int kind = count_kinds(s, look);
         if (look->liquid && kind + 1 > kinds) kinds = kind + 1;
         colored |= look->color[0] >= 0 || look->core_color[0] >= 0;
         for (int c = 0; c < PARTS*TINTS; c++)

@@ -44,6 +44,33 @@ assert reader.GetOutput().GetPointData().GetNormals() is not None'
 fi
 check "no parts are left" test -z "$(find dam -name '*.part')"
 
+# Two liquids: a surface and a colour each, which lets light through.
+cat > two.json <<'END'
+{ "domain": {"min": [0, 0, 0], "max": [0.4, 0.2, 0.3]}, "gravity": [0, 0, -9.81], "spacing": 0.02, "end_time": 0.01,
+  "fluids": [{"name": "water", "fill": [{"box": {"min": [0, 0, 0], "max": [0.2, 0.2, 0.2]}}]},
+    {"name": "oil", "density": 900, "color": [204, 153, 51],
+     "fill": [{"box": {"min": [0.2, 0, 0], "max": [0.4, 0.2, 0.1]}}]}],
+  "output": {"interval": 0.01} }
+END
+expect 0 "" run two.json --out two --quiet
+for format in obj ply glb; do expect 0 "" surface two --last --format $format; done
+check "two liquids, their colours" $python - <<'END'
+import json, struct
+lines = open("two/surface/surface_000001.obj").read().splitlines()
+colors = {tuple(l.split()[4:]) for l in lines if l.startswith("v ")}
+assert colors == {("0.1000", "0.4000", "0.5000"), ("0.8000", "0.6000", "0.2000")}, colors
+head, _, body = open("two/surface/surface_000001.ply", "rb").read().partition(b"end_header\n")
+assert b"property uchar red" in head and b"color_0" not in head
+size = {b"uchar": 1, b"int": 4, b"float": 4, b"double": 8}
+row = sum(size[l.split()[1]] for l in head.splitlines() if l.startswith(b"property") and b"list" not in l)
+count = int(head.split(b"element vertex")[1].split()[0])
+assert {struct.unpack_from("<i", body, row*i + 36)[0] for i in range(count)} == {0, 1}
+data = open("two/surface.glb", "rb").read()
+g = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])
+parts = g["meshes"][0]["primitives"]
+assert [g["materials"][p["material"]].get("alphaMode") for p in parts] == ["BLEND"], parts
+END
+
 # The same bits for any number of threads; glTF as a reader of JSON sees it.
 expect 0 "" surface dam --format glb --field speed --threads 1
 mv dam/surface.glb one.glb
