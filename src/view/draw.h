@@ -200,6 +200,9 @@ tobi_status view_paint_glass(canvas *c, const geometry *g, const geometry *water
 
 /* Straight lines in view space. */
 typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
+/* isolines.c; false: no memory. In 2-D, at f->isolines values between low and high. */
+bool view_add_segment(segments *s, vec from, vec to);
+bool view_find_isolines(const canvas *c, const tobi_picture *f, double low, double high, segments *out);
 
 /* isosurface.c */
 typedef struct surface_request {

@@ -217,6 +217,7 @@ static void set_view(tobi_drawing *d)
     tobi_picture_set_view(p, d->view);
     p->velocities = (const double (*)[3])d->velocities;
     if (d->view->follow && p->has_camera) follow_body(d);
+    if (d->has_palette) p->isolines = 0;      /* values are numbers of colours */
     if (!d->view->field && p->look == TOBI_LOOK_NATURAL) return;
     p->palette = tobi_color_map(tobi_color_map_name(d->view->map), &p->palette_count);
     p->values = d->values;

@@ -85,13 +85,7 @@ static bool add_isolines(const geometry *g, const int32_t face[3], int levels, s
             if (at >= 0) end[ends++] = vec_mix(g->place[face[k]], g->place[face[(k + 1)%3]], at);
         }
         if (ends != 2) continue;
-        if (out->count == out->room) {
-            const int64_t room = 2*out->room + 1024;
-            vec (*longer)[2] = realloc(out->end, (size_t)room*sizeof *longer);
-            if (!longer) return false;
-            out->end = longer, out->room = room;
-        }
-        out->end[out->count][0] = end[0], out->end[out->count++][1] = end[1];
+        if (!view_add_segment(out, end[0], end[1])) return false;
     }
     return true;
 }

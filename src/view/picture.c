@@ -323,6 +323,8 @@ static tobi_status add_discs(scene *s, tobi_error *err)
         }
     }
     TOBI_TRY(add_bodies(s, err));
+    if (f->isolines > 0 && f->values && f->particle_count > 0
+        && !view_find_isolines(&s->c, f, s->low, s->high, &s->isolines)) return no_memory(f, err);
     return view_project(g, &s->c.camera, f->threads, err);
 }
 

@@ -407,6 +407,36 @@ static void flat_scenes_are_discs(void **state)
     free(p), free(labelled);
 }
 
+/* Values rise to the right: lines in 2-D stand where a quarter, a half and three quarters are. */
+static void flat_scenes_have_isolines(void **state)
+{
+    (void)state;
+    static double place[800][3];
+    static float value[800];
+    for (int i = 0; i < 800; i++) {
+        place[i][0] = 0.025 + 0.05*(i%40), place[i][1] = 0.025 + 0.05*(i/40);
+        value[i] = (float)(0.5*place[i][0]);
+    }
+    tobi_picture f = tobi_default_picture();
+    f.width = W, f.height = H, f.dimension = 2;
+    f.box_max[0] = 2, f.box_max[1] = 1;
+    f.positions = (const double (*)[3])place, f.values = value, f.particle_count = 800;
+    f.radius = 0.025, f.value_max = 1;
+    unsigned char *bare = draw(&f);
+    f.isolines = 3;
+    unsigned char *lines = draw(&f);
+    const double scale = fmin(0.92*W/2, 0.92*H);
+    int at[W] = { 0 }, far = 0;
+    for (int i = 0; i < W*H; i++) at[i%W] += memcmp(bare + 3*i, lines + 3*i, 3) != 0;
+    for (int x = 0; x < W; x++) {
+        const double quarters = 2*((x + 0.5 - 0.5*W)/scale + 1);
+        if (fabs(quarters - round(quarters)) > 0.1) far += at[x];
+        if (fabs(quarters - 2)*scale < 1) assert_true(at[x] > scale/2);
+    }
+    assert_int_equal(far, 0);
+    free(bare), free(lines);
+}
+
 /* Not finite, enormous, behind the eye, a camera inside the water, every direction of up: a picture all the
    same. */
 static void strange_input_is_drawn(void **state)
@@ -540,7 +570,7 @@ int main(void)
         cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
         cmocka_unit_test(background_is_transparent), cmocka_unit_test(glass_lets_light_through),
         cmocka_unit_test(a_plane_cuts_bodies), cmocka_unit_test(lines_are_drawn),
-            cmocka_unit_test(flat_scenes_are_discs),
+            cmocka_unit_test(flat_scenes_are_discs), cmocka_unit_test(flat_scenes_have_isolines),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
