@@ -171,8 +171,10 @@ char *clear_place(const char *folder, const char *file);
 /* movie.c */
 /* Why a path is not that of a movie, to stand behind its name; NULL if it is. */
 const char *movie_objection(const char *path);
-/* 0 if a movie can be made there and no file is in the way, or else EXIT_ERROR after a complaint. */
+/* 0 if no file is in the way, or else EXIT_ERROR after a complaint. */
 int prepare_movie(const char *out, int force);
+/* 0 if there is a program that makes movies, or else EXIT_ERROR after a complaint. */
+int check_encoder(void);
 /* Makes a movie of a run's pictures, `slow` times slower than the scene. Returns the exit code.
    view: an entry of output.views, NULL for the output's own pictures, here and below. */
 int make_movie(const char *dir, const char *view, const char *out, double slow, int force);

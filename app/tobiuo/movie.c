@@ -174,8 +174,12 @@ static int write_movie(const char *dir, const char *view, const char *out, const
 
 int prepare_movie(const char *out, int force)
 {
+    return force || access(out, F_OK) != 0 ? 0 : complain("%s exists; --force replaces it", out);
+}
+
+int check_encoder(void)
+{
     char *const ask[] = { "ffmpeg", "-version", NULL };
-    if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
     const int code = run_tool(NULL, ask, "makes the movie", "ffmpeg", 1);
     return code < 0 ? complain("ffmpeg does not work") : code;
 }

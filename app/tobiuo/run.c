@@ -123,8 +123,10 @@ static int run_scene(tobi_scene *scene, const run_options *o)
                tobi_scene_import_program(scene));
     int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
+    const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
+    if (no_movie) complain("the run goes on and keeps its pictures; later: tobiuo movie %s", dir);
     if (code == 0) code = record(scene, world, o, dir);
-    if (code == 0 && o->movie) code = handle_movies(scene, o, dir, MAKE);
+    if (code == 0 && o->movie) code = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
     free(dir);
     tobi_world_destroy(world);
     return code;

@@ -60,7 +60,8 @@ static bool add_segment(const canvas *c, const plane *p, const int (*node)[2], f
     }
     for (int k = 0; k < 3; k++) {
         const float a = value[k], b = value[(k + 1)%3];
-        if ((a < level) != (b < level)) end[ends++] = vec_mix(place[k], place[(k + 1)%3], (level - a)/(b - a));
+        if ((a < level) != (b < level))
+            end[ends++] = vec_mix(place[k], place[(k + 1)%3], (level - a)/(b - a));
     }
     return ends != 2 || view_add_segment(out, end[0], end[1]);
 }

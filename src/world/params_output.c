@@ -79,8 +79,8 @@ const tobi_param_table tobi_probe_table = {
     { .key = "picture.arrows", BOOL, AT(type, in arrows), \
       .doc = "Draw velocities as arrows, the longest for the fastest." }, \
     { .key = "picture.isolines", INT, AT(type, in isolines), RANGE(0, 100), .unit = "1", \
-      .doc = "How many lines of equal value to draw, in 3-D on surfaces in the colours of picture.field, at " \
-             "equal steps between the ends of the colours." }, \
+      .doc = "How many lines of equal value to draw, in 3-D on surfaces in the colours of " \
+             "picture.field, at equal steps between the ends of the colours." }, \
     { .key = "picture.paths", BOOL, AT(type, in paths), \
       .doc = "Draw where the centre of mass of each body has been, from output to output." }, \
     { .key = "picture.axes", BOOL, AT(type, in axes), \

@@ -27,7 +27,8 @@ got=0; PATH=/nonexistent "$program" movie "100%d run" > out.txt 2> err.txt || go
 check "ffmpeg missing: exit code 1 (was $got)" test $got = 1
 check "ffmpeg missing: the package is named" grep -q "apt-get install ffmpeg" err.txt
 got=0; PATH=/nonexistent "$program" run drop.json --out never --movie a.mp4 > out.txt 2> err.txt || got=$?
-check "nor does a run begin whose movie cannot be made (exit code $got)" test $got = 1 -a ! -e never
+check "a run goes on without its movie (exit code $got)" test $got = 1 -a -s never/frames/frame_000001.png
+check "and says so" grep -q "the run goes on and keeps its pictures; later: tobiuo movie never" err.txt
 touch there.mp4
 expect 1 "there.mp4 exists; --force replaces it" movie "100%d run" --out there.mp4
 expect 1 "there.mp4 exists; --force replaces it" run drop.json --out again --quiet --movie there.mp4
