@@ -27,8 +27,10 @@
 #define ISPH_HELD_ROW 10.0
 /* Most of kappa. */
 #define ISPH_SCALE_MAX 1.3
-/* Determinant below which M has no use. */
+/* Determinant of M up to which M^-1 has no use, as in drops, and from which it is taken whole: half a plane
+   of neighbours has 0.4, half of space 0.3. */
 #define ISPH_DETERMINANT_MIN 0.1
+#define ISPH_DETERMINANT_FULL 0.2
 /* Lack of volume that the source takes out at most, and in full vessels, where it fills cavities. */
 #define ISPH_STRETCH_MAX 0.05
 #define ISPH_CAVITY_MAX 0.5
@@ -45,10 +47,8 @@
 /* The same in full vessels, where only particles that are next to alone in a cavity are a surface. */
 #define ISPH_CAVITY_BEGIN 0.6
 #define ISPH_CAVITY_OPEN 0.8
-/* Of tr M/dim: less are drops, which do not shift; less know no gradient of the velocity; more are the
-   bulk. */
+/* Of tr M/dim: less are drops, which do not shift and know no gradient of the velocity; more are the bulk. */
 #define ISPH_DROP 0.6
-#define ISPH_SPARSE 0.75
 #define ISPH_BULK 0.95
 
 /* Whether the pressure of a particle is no unknown: it lies in the buffer of an opening. */
@@ -66,15 +66,18 @@ TOBI_FN void isph_apply(const isph_tensor *t, const double x[3], double out[3])
     out[2] = t->zx*x[0] + t->yz*x[1] + t->zz*x[2];
 }
 
-/* B = (1 - gamma) M^-1 + gamma, eq. (4). In 2-D zz = 1. */
-TOBI_FN isph_tensor isph_invert(const double m[6], double gate)
+/* 1 up to a, 0 from b. */
+TOBI_FN double isph_fade(double x, double a, double b) { return isph_clamp((b - x)/(b - a), 0, 1); }
+
+/* B of the velocity's gradient and divergence, eq. (4): M^-1, or 1 where that has no use. In 2-D zz = 1. */
+TOBI_FN isph_tensor isph_invert(const double m[6])
 {
     const double a = m[0], b = m[1], c = m[2], d = m[3], e = m[4], f = m[5];
     const double xx = b*c - e*e, yy = a*c - f*f, zz = a*b - d*d, xy = e*f - d*c, yz = d*f - a*e,
                  zx = d*e - b*f, determinant = a*xx + d*xy + f*zx;
-    if (!(determinant > ISPH_DETERMINANT_MIN)) gate = 1;
-    const double k = gate < 1 ? (1 - gate)/determinant : 0;
-    isph_tensor t = {(float)(k*xx + gate), (float)(k*yy + gate), (float)(k*zz + gate), (float)(k*xy),
+    const double one = isph_fade(determinant, ISPH_DETERMINANT_MIN, ISPH_DETERMINANT_FULL),
+                 k = one < 1 ? (1 - one)/determinant : 0;
+    isph_tensor t = {(float)(k*xx + one), (float)(k*yy + one), (float)(k*zz + one), (float)(k*xy),
                      (float)(k*yz), (float)(k*zx)};
     return t;
 }
@@ -158,9 +161,6 @@ TOBI_FN tobi_float4 isph_weigh_gradient(const isph_view *v, tobi_float4 c, doubl
     return c;
 }
 
-/* 1 up to a, 0 from b. */
-TOBI_FN double isph_fade(double x, double a, double b) { return isph_clamp((b - x)/(b - a), 0, 1); }
-
 /* How surely the loss of neighbours is a narrow gap between i and a body: 0 to 1. c: sum of V grad W, which
    points away from what is missing. */
 TOBI_FN double isph_gap(const isph_view *v, int64_t i, const tobi_float4 *c, double loss)
@@ -212,7 +212,7 @@ TOBI_FN void isph_geometry_finish(const isph_view *v, int64_t i, isph_geometry_a
     v->scale[i] = v->uniform_scale ? 1 : (float)isph_scale(v->dimension, trace);
     v->concentration[i] = (float)(v->weight*(1 + (double)main.w));
     v->concentration_gradient[i] = isph_weigh_gradient(v, gradient, trace);
-    v->inverse[i] = isph_invert(m, gate);
+    v->inverse[i] = isph_invert(m);
 }
 
 /* v += dt g, and what neighbours read while rows are made. */
@@ -411,9 +411,9 @@ TOBI_FN void isph_store_pressure(const isph_view *v, int64_t i, double *totals)
     v->record[i].w = v->pressure[i];
 }
 
-/* v -= dt/rho grad p, eq. (9): the difference form, with B, in the bulk; the plain sum, with -p_i in place of
-   missing neighbours, at a free surface. totals: |grad p|; [1..3] force of image pairs on the sides of the
-   domain, eq. (11), N. */
+/* v -= dt/rho grad p, eq. (9): the difference form, with M^-1, in the bulk; the plain sum, with -p_i in place
+   of missing neighbours, at a free surface: corrected there, it would throw particles out. totals: |grad p|;
+   [1..3] force of image pairs on the sides of the domain, eq. (11), N. */
 typedef struct isph_projection_acc { lane p, x, y, z, fx, fy, fz; } isph_projection_acc;
 
 TOBI_FN void isph_projection_start(const isph_view *v, int64_t i, isph_projection_acc *a)
@@ -459,6 +459,7 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
     isph_apply(&v->inverse[i], x, g);
     if (v->as_summed)
         for (int c = 0; c < 3; c++) g[c] = x[c];
+    for (int c = 0; c < 3; c++) g[c] += v->gate[i]*(x[c] - g[c]);
     for (int c = 0; c < 3; c++) g[c] += mean*(&v->concentration_gradient[i].x)[c];
     totals[0] += sqrt(g[0]*g[0] + g[1]*g[1] + g[2]*g[2]);
     totals[1] += v->volume*k*w.x; totals[2] += v->volume*k*w.y; totals[3] += v->volume*k*w.z;
@@ -557,7 +558,7 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
         size += x[a]*x[a];
     }
     const double most = ISPH_SHIFT_MAX*d, keep = size > most*most ? most/sqrt(size) : 1;
-    const double part = v->open && full < ISPH_SPARSE ? 0 : keep;
+    const double part = v->open && full < ISPH_DROP ? 0 : keep;
     isph_apply(&v->inverse[i], x, along);
     for (int a = 0; a < 3; a++) {
         const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2];

@@ -18,7 +18,7 @@ TOBI_FN void isph_drift(const isph_view *v, int64_t i, double *totals)
     }
 }
 
-/* tr (grad v grad v), 1/s2, away from a free surface, eq. (6b). */
+/* tr (grad v grad v), 1/s2, eq. (6b). */
 typedef struct isph_invariant_acc { lane ux, uy, uz, slope[9]; } isph_invariant_acc;
 
 TOBI_FN void isph_invariant_start(const isph_view *v, int64_t i, isph_invariant_acc *a)
@@ -51,5 +51,5 @@ TOBI_FN void isph_invariant_finish(const isph_view *v, int64_t i, isph_invariant
     }
     for (int b = 0; b < v->dimension; b++)
         for (int c = 0; c < v->dimension; c++) sum += g[3*b + c]*g[3*c + b];
-    v->invariant[i] = (float)((1 - v->gate[i])*sum);
+    v->invariant[i] = v->trace[i] < ISPH_DROP*v->dimension ? 0 : (float)sum;
 }

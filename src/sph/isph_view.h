@@ -85,7 +85,7 @@ typedef struct isph_view {
     const double (*soft_change)[3];  /* m/s, of each point in this step                             */
     float *body_share;               /* 1: share of the kernel in and behind bodies                 */
     /* the method's own: geometry, eq. (2) to (5) */
-    isph_tensor *inverse;            /* 1: B                                                        */
+    isph_tensor *inverse;            /* 1: B, of the gradient of the velocity                       */
     float *trace;                    /* 1: tr M                                                     */
     float *gate;                     /* 1: gamma, 0 in the bulk, 1 at a free surface                */
     float *scale;                    /* 1: kappa                                                    */

@@ -60,3 +60,10 @@ static double kernel_f(int shape, int dimension, double h, double r)
         return (deep ? 1365/(64*pi) : 78/(7*pi))/size*22*q*pow(1 - q, 7)*(16*q*q + 7*q + 1);
     }
 }
+
+/* Of a symmetric matrix. */
+static inline double determinant_of(const double m[3][3])
+{
+    return m[0][0]*(m[1][1]*m[2][2] - m[1][2]*m[1][2]) - m[0][1]*(m[0][1]*m[2][2] - m[1][2]*m[0][2]) +
+           m[0][2]*(m[0][1]*m[1][2] - m[1][1]*m[0][2]);
+}
