@@ -246,8 +246,7 @@ static void oracle_isph_geometry(check *c, int64_t i, const sums *s)
 {
     const double trace = view.dimension*(1 - loss_of(s)), gate = gate_of(i, s);
     const isph_tensor b = view.inverse[i];
-    const double made[6] = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx};
-    const double *grad = s->gradient_c;
+    const double made[6] = {b.xx, b.yy, b.zz, b.xy, b.yz, b.zx}, *grad = s->gradient_c;
     double m[6], missing = sqrt(grad[0]*grad[0] + grad[1]*grad[1] + grad[2]*grad[2]);
     compare(c, view.trace[i], trace, 1);
     compare(c, view.gate[i], gate, 10);
@@ -446,7 +445,8 @@ static void follow_the_equations(int scalar)
             tobi_float4 *old = malloc((size_t)view.count*sizeof *old);
             memcpy(old, view.velocity, (size_t)view.count*sizeof *old);
             last = malloc((size_t)view.count*sizeof *last);
-            for (int64_t i = 0; i < view.count; i++) last[i] = (sweep){view.source[i], view.solution[i]};
+            for (int64_t i = 0; i < view.count; i++)
+                last[i] = (sweep){view.source[i], view.solution[i], view.out[i]};
             prepare(n);
             run(kernel_at(kernel, n), t);
             const int all = !strcmp(kernels[n].name, "isph_projection") ||
