@@ -3,8 +3,10 @@
 # The log is build/PRESET.log. With nothing to do it takes a second.
 set -uo pipefail
 cd "$(dirname "$0")/.."
-preset=$1
-shift
+case ${1:-} in
+release|dev|asan|fuzz) preset=$1; shift ;;
+*) echo "usage: tools/build.sh release|dev|asan|fuzz [TARGET...]" >&2; exit 2 ;;
+esac
 mkdir -p build
 log=build/$preset.log
 
