@@ -16,7 +16,8 @@ mean over the last half. Level: rise of the centre of mass, doubled. Iterations:
 a true residual of 1e-6. Dam break: a = n2 = 1 in a box 4 a long, inviscid; front Z against T = t sqrt(g/a) of potential flow
 (dam_break); energy against that of the start. Patch: a square of 1 m turns at 1 rad/s without gravity (A. Colagrossi,
 PhD thesis, Rome 2005), to t omega = 4. Main body: the largest set of particles linked within 1.8 d. Wave and vortex: as
-in standing_wave, taylor_green; amplitude: the root of the kinetic energy. Box: 8 d high, held in a pool; buoyancy over rho g V, mean over the last half.
+in standing_wave, taylor_green; amplitude: the root of the kinetic energy. Box: 8 d high, held in a pool; buoyancy over
+rho g V, mean over the last half.
 
 `"method": "eisph"` runs the same dam break and column with one sweep per step, and with as many in pseudo-time as the
 step of isph needs.""")
