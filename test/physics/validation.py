@@ -52,11 +52,15 @@ class Tree:
     def cases(self):
         return sorted(path.parent.name for path in (self.root / "test/physics").glob("*/run.py"))
 
+    def names_folder(self, text, name):
+        """A name that a method has too is a folder only in a path: it mostly means the method."""
+        return re.search(rf"""{'/ "' if name in self.methods else '["/]'}{name}["/]""", text)
+
     def case_stamp(self, case):
         folder = self.root / "test/physics" / case
         text = (folder / "run.py").read_text()
         named = [other for home in ("test/physics", "scenes") for other in sorted((self.root / home).glob("*"))
-                 if other.is_dir() and other != folder and re.search(rf"""["/]{other.name}["/]""", text)]
+                 if other.is_dir() and other != folder and self.names_folder(text, other.name)]
         files = [path for place in [folder, *named] for path in sorted(place.rglob("*"))
                  if path.is_file() and path.suffix not in (".md", ".png", ".pyc")]
         return digest(part for path in files for part in (path.name.encode(), path.read_bytes()))
