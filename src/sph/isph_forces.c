@@ -302,7 +302,6 @@ static void predict(isph_solver *m, tobi_system *s, int k)
     if (r->kind == TOBI_PRESCRIBED) return;
     find_added_mass(m, s, k);
     find_added_mass_factor(r, b);
-    find_mobility(r, b);
     for (int a = 0; a < 6; a++) {
         const double now = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
         f[a] = now + answer[a] - r->before[a];
@@ -361,6 +360,10 @@ double isph_forces_answer_bound(isph_solver *m)
     tobi_system *s = m->system;
     double most = 0;
     if (!m->coupled) return 0;
+    for (int k = 0; k < s->sim->body_count; k++) {
+        const tobi_rigid *r = &s->sim->bodies[k].rigid;
+        if (r->kind != TOBI_PRESCRIBED) find_mobility(r, &m->body[k]);
+    }
     tobi_boundary_sum(s, TOBI_HOST(trace_answer, 1, 0), m, 1);
     for (int k = 0; k < s->sim->body_count; k++) most = fmax(most, sph_of(s)->links.total[k][0]);
     return most;
