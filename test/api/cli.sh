@@ -267,7 +267,9 @@ for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
     check "closed $closed: the same results" same_results streams closed
     rm -rf closed
 done
-for command in --help --version "run --help" "describe scene" "check tank.json" info "import $old/rigid_blocks.json --out full.json" \
+ln -s "$old" old_scenes        # the words of a command have no spaces
+for command in --help --version "run --help" "describe scene" "check tank.json" info \
+               "import old_scenes/rigid_blocks.json --out full.json" \
                "run tank.json --until 0.01 --out full"; do
     got=0; "$program" $command > /dev/full 2> err.txt || got=$?
     check "$command to a full device: exit code 1 (was $got)" test $got = 1

@@ -32,7 +32,7 @@ grep "$work/usr/share/tobiuo/scenes/flying_fish/meshes/fish.obj" "$work/check.tx
 mkdir "$work/home"
 page=docs/c.md
 awk '/^```$/ { if (inside) exit; inside = 1; next } inside' "$here/../../$page" |
-    sed "s|build/release|$build|" > "$work/page.sh"
+    sed "s|build/release|\"$build\"|" > "$work/page.sh"
 [ "$(wc -l < "$work/page.sh")" -ge 3 ] || { echo "$page has no commands"; exit 1; }
 (cd "$here/../.." && HOME=$work/home bash -e "$work/page.sh" > "$work/page.txt")
 tail -n 1 "$work/page.txt"

@@ -62,6 +62,8 @@ def write_scene(folder):
 class Checker:
     def __init__(self, options, folder):
         self.options, self.folder = options, folder
+        self.temporary = tempfile.TemporaryDirectory()         # LD_PRELOAD knows no path with a space
+        self.preload = shutil.copy(options.preload, self.temporary.name)
         self.base = dict(os.environ, OMP_WAIT_POLICY="passive", OMP_NUM_THREADS="1", LC_ALL="C")
         write_scene(folder)
         self.reference = folder / "reference"
@@ -77,7 +79,7 @@ class Checker:
 
     def run(self, arguments, fault=None, must=None):
         environment = dict(self.base)
-        if fault: environment.update(fault, LD_PRELOAD=str(self.options.preload))
+        if fault: environment.update(fault, LD_PRELOAD=str(self.preload))
         try:
             done = subprocess.run([str(self.options.tobiuo), *map(str, arguments), "--quiet"],
                                   cwd=self.folder, env=environment, timeout=100, capture_output=True,
@@ -92,7 +94,7 @@ class Checker:
     def translate(self, command, new, fault=None):
         """(code, what is to be like the reference, stderr) of `check` or `import` of the old scene."""
         environment = dict(self.base, **(fault or {}))
-        if fault: environment["LD_PRELOAD"] = str(self.options.preload)
+        if fault: environment["LD_PRELOAD"] = str(self.preload)
         arguments = [command, "old.json"] + (["--out", str(new), "--quiet"] if command == "import" else [])
         done = subprocess.run([str(self.options.tobiuo), *arguments], cwd=self.folder, env=environment,
                               timeout=100, capture_output=True, stdin=subprocess.DEVNULL)
