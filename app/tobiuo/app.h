@@ -1,5 +1,6 @@
 /* The program: one file per command, each a function of its own argc and argv that returns the exit
-   code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 130 after Ctrl-C.
+   code: 0, 1 for an error (told on stderr as "tobiuo: ..."), 2 for wrong usage, 3 for a run to its end
+   of which files could not be written, 130 after Ctrl-C.
  */
 #pragma once
 #include "tobiuo/drawing.h"
@@ -8,7 +9,7 @@
 #include <argp.h>
 #include <stdio.h>
 
-enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
+enum { EXIT_ERROR = 1, EXIT_USAGE = 2, EXIT_UNWRITTEN = 3, EXIT_INTERRUPTED = 130 };
 
 /* The commands. Their options are tables, for argp, the man page and the completion of words alike. */
 extern const struct argp run_argp, resume_argp, check_argp, import_argp, plot_argp, movie_argp, view_argp,
@@ -198,6 +199,7 @@ typedef struct progress {
     double in_steps;                 /* s that the world had spent in steps then               */
     double particle_steps;           /* since the last line                                    */
     const tobi_run *run;             /* whose pictures count, or NULL                          */
+    int troubles;                    /* of them said                                           */
 } progress;
 void progress_begin(progress *p, const tobi_world *world, int quiet);
 void progress_step(progress *p, const tobi_world *world, const tobi_step_info *info, double end);

@@ -15,6 +15,7 @@ static void catch_signals(void)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    signal(SIGXFSZ, SIG_IGN);       /* a file beyond a limit fails, then, as on a full disk */
 }
 
 int is_interrupted(void) { return caught != 0; }
@@ -23,6 +24,16 @@ static int is_caught(void *user)
 {
     (void)user;
     return caught != 0;
+}
+
+/* What could not be written, once each. */
+static void say_trouble(const tobi_run *run, progress *p)
+{
+    const char *text;
+    for (; (text = tobi_run_trouble(run, p->troubles)); p->troubles++) {
+        progress_end(p);
+        complain("%s", text);
+    }
 }
 
 static tobi_status step_to_end(tobi_world *world, tobi_run *run, const drive_options *o, progress *p,
@@ -34,6 +45,7 @@ static tobi_status step_to_end(tobi_world *world, tobi_run *run, const drive_opt
         tobi_status status = tobi_run_step(run, o->end, &info, err);
         if (status == TOBI_STOPPED) break;
         if (status != TOBI_OK) return status;
+        say_trouble(run, p);
         watch_step(w, world, &info);
         progress_step(p, world, &info, o->end);
     }
@@ -53,15 +65,16 @@ static void print_end(const drive_options *o, const watch *w, const tobi_world *
 }
 
 static int end_run(const tobi_world *world, tobi_run *run, const drive_options *o, const watch *w,
-                   double begun)
+                   progress *p)
 {
     tobi_error err = { 0 };
     const int done = tobi_run_done(run, o->end);
     tobi_status status = tobi_run_checkpoint(run, &err);
     if (status == TOBI_OK) status = tobi_run_finish(run, done ? "complete" : "interrupted", &err);
+    say_trouble(run, p);
     if (status != TOBI_OK) return complain("%s", err.text);
-    print_end(o, w, world, done, tobi_run_losses(run), wall_clock() - begun);
-    return done ? 0 : EXIT_INTERRUPTED;
+    print_end(o, w, world, done, tobi_run_losses(run), wall_clock() - p->begun);
+    return !done ? EXIT_INTERRUPTED : tobi_run_unwritten(run) ? EXIT_UNWRITTEN : 0;
 }
 
 static int end_failed_run(const tobi_world *world, tobi_run *run, const drive_options *o, tobi_status status,
@@ -84,9 +97,10 @@ int drive(tobi_world *world, tobi_run *run, const drive_options *o)
     watch_begin(&w, world);
     progress_begin(&p, world, o->quiet);
     p.run = run;
+    tobi_run_go_on(run, 1);
     tobi_status status = step_to_end(world, run, o, &p, &w, &err);
     progress_end(&p);
-    int code = status == TOBI_OK ? end_run(world, run, o, &w, p.begun)
+    int code = status == TOBI_OK ? end_run(world, run, o, &w, &p)
                                  : end_failed_run(world, run, o, status, &err);
     watch_end(&w);
     return code;

@@ -94,16 +94,18 @@ int64_t count_pictures(const char *dir, const char *view)
     }
 }
 
-/* s from one output to the next, in the mean; 0 if the table does not say. */
-static double find_interval(const char *dir)
+/* s from one output to the next, in the mean; 0 if the table does not say. *outputs: how many there were. */
+static double find_interval(const char *dir, int64_t *outputs)
 {
     table t = { 0 };
     char *path = NULL;
     double interval = 0;
+    *outputs = 0;
     if (asprintf(&path, "%s/history.csv", dir) < 0) return 0;
     if (table_read(&t, path) == 0) {
         const int column = table_column(&t, "time");
         const size_t last = t.rows - 1;
+        *outputs = (int64_t)t.rows;
         if (column >= 0 && t.rows > 1)
             interval = (table_number(&t, last, column) - table_number(&t, 0, column))/(double)last;
     }
@@ -190,9 +192,9 @@ int encode_pictures(const char *dir, const char *out, double rate)
 }
 
 /* s between the pictures of a run; 0 after a complaint. */
-static double check_pictures(const char *dir, const char *view, int64_t count)
+static double check_pictures(const char *dir, const char *view, int64_t count, int64_t *outputs)
 {
-    const double interval = count > 0 ? find_interval(dir) : 0;
+    const double interval = count > 0 ? find_interval(dir, outputs) : 0;
     if (access(dir, F_OK) != 0) complain_run(dir, "there is no run");
     else if (count == 0 && view) complain("%s has no pictures of a view '%s'", dir, view);
     else if (count == 0) complain("%s has no pictures: run the scene with --frames, or with --movie", dir);
@@ -204,10 +206,14 @@ static double check_pictures(const char *dir, const char *view, int64_t count)
 int make_movie(const char *dir, const char *view, const char *out, double slow, int force)
 {
     const int64_t count = count_pictures(dir, view);
-    const double interval = check_pictures(dir, view, count);
+    int64_t outputs;
+    const double interval = check_pictures(dir, view, count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     if (!force && access(out, F_OK) == 0) return complain("%s exists; --force replaces it", out);
     const int code = write_movie(dir, view, out, find_kind(out), 1/(interval*slow));
+    if (code == 0 && outputs > count)
+        complain("%s ends before output %lld of %lld, whose picture is missing", out, (long long)count,
+                 (long long)outputs - 1);
     if (code == 0)
         printf("movie: %s, %lld pictures, %.4g s\n", out, (long long)count, (double)count*interval*slow);
     return code;
@@ -217,7 +223,8 @@ int make_small_movie(const char *dir, const char *out, double *slow)
 {
     static const double SHORTEST = 4, STEPS[] = { 1, 2, 5, 10 };       /* s of a movie */
     const int64_t count = count_pictures(dir, NULL);
-    const double interval = check_pictures(dir, NULL, count);
+    int64_t outputs;
+    const double interval = check_pictures(dir, NULL, count, &outputs);
     if (!(interval > 0)) return EXIT_ERROR;
     const double wanted = fmax(1, SHORTEST/((double)count*interval)), ten = pow(10, floor(log10(wanted)));
     for (int k = 0; k < 4; k++) {

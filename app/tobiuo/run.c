@@ -126,7 +126,10 @@ static int run_scene(tobi_scene *scene, const run_options *o)
     const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
     if (no_movie) complain("the run goes on and keeps its pictures; later: tobiuo movie %s", dir);
     if (code == 0) code = record(scene, world, o, dir);
-    if (code == 0 && o->movie) code = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
+    if ((code == 0 || code == EXIT_UNWRITTEN) && o->movie) {      /* of the pictures that there are */
+        const int made = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
+        if (code == 0) code = made;
+    }
     free(dir);
     tobi_world_destroy(world);
     return code;

@@ -74,12 +74,23 @@ TOBI_API int64_t tobi_run_pictures(const tobi_run *run, double *seconds);
    tables and resolved.json are made again, lists leave out what is not there. Owned by the run. */
 TOBI_API const char *tobi_run_losses(const tobi_run *run);
 
+/* on = 1: from now on a file that cannot be written, because a disk is full, say, does not end the run and is
+   no failure of the calls below. Files of an output are left out, rows of tables wait for room, the
+   checkpoint of before stays; the next output tries again. */
+TOBI_API void tobi_run_go_on(tobi_run *run, int on);
+/* What could not be written: a sentence per kind of file, of its first failure, by index; NULL past the
+   end. Owned by the run. May be called between steps; new sentences come last. */
+TOBI_API const char *tobi_run_trouble(const tobi_run *run, int index);
+/* Files that are missing by now for that reason, and rows of tables that wait; tobi_run_losses says which
+   after tobi_run_finish. Files of outputs stay missing, when others are written again, too. */
+TOBI_API int64_t tobi_run_unwritten(tobi_run *run);
+
 /* One time step, not beyond `end` (s), then the output and the checkpoint that are due. info may be
    NULL; its energies, momentum and weight are those of the last output. When `end` is a multiple of
    the interval to within rounding, that multiple is the end.
    A thread of the run writes the output while the next steps are taken, and a step waits only while
    two outputs are not written; the step that reaches the end waits for all. TOBI_IO: an output could
-   not be written, maybe an earlier one; the next call tries again. */
+   not be written, maybe an earlier one; the next call tries again. tobi_run_go_on changes that. */
 TOBI_API tobi_status tobi_run_step(tobi_run *run, double end, tobi_step_info *info,
                                    tobi_error *err);
 /* 1 when the world has reached `end` and no output is due. */

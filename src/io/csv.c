@@ -14,6 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { WAITING_LIMIT = 64 << 20 /* bytes */ };
+
 struct tobi_csv {
     char    *path;
     int      fd;
@@ -23,6 +25,9 @@ struct tobi_csv {
     tobi_csv_rows header;
     tobi_csv_rows row;       /* its text */
     int      no_memory;
+    int      patient;
+    tobi_csv_rows waiting;   /* refused by the disk */
+    int64_t  dropped;        /* rows that had no room there */
     locale_t plain;          /* "C", for numbers */
 };
 
@@ -197,13 +202,43 @@ static tobi_status start_table(tobi_csv *csv, const tobi_csv_column *columns, to
     return open_table(csv, mode, err);
 }
 
-tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
+static int64_t count_rows(const tobi_csv_rows *rows)
+{
+    int64_t count = 0;
+    for (size_t at = 0, n; (n = line_length(rows->text + at, rows->length - at)) > 0; at += n) count++;
+    return count;
+}
+
+void tobi_csv_set_patient(tobi_csv *csv, int patient) { csv->patient = patient; }
+
+int64_t tobi_csv_waiting(const tobi_csv *csv) { return count_rows(&csv->waiting) + csv->dropped; }
+
+tobi_status tobi_csv_flush(tobi_csv *csv, tobi_error *err)
+{
+    if (csv->waiting.length == 0) return TOBI_OK;
+    TOBI_TRY(write_text(csv, &csv->waiting, err));
+    csv->waiting.length = 0;
+    return TOBI_OK;
+}
+
+static tobi_status write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
 {
     if (tobi_csv_is_gone(csv)) {
         if (csv->fd >= 0) close(csv->fd);
         TOBI_TRY(open_table(csv, TOBI_CSV_APPEND, err));
     }
+    TOBI_TRY(tobi_csv_flush(csv, err));
     return write_text(csv, rows, err);
+}
+
+tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err)
+{
+    const tobi_status status = write_rows(csv, rows, err);
+    if (status != TOBI_IO || !csv->patient) return status;
+    if (csv->waiting.length + rows->length > WAITING_LIMIT ||
+        !append_text(&csv->waiting, rows->text, rows->length))
+        csv->dropped += count_rows(rows);
+    return TOBI_IO;
 }
 
 tobi_status tobi_csv_open(const char *path, tobi_csv_mode mode, int digits, const tobi_csv_column *columns,
@@ -236,6 +271,7 @@ void tobi_csv_close(tobi_csv *csv)
     free(csv->path);
     free(csv->row.text);
     free(csv->header.text);
+    free(csv->waiting.text);
     free(csv);
 }
 

@@ -6,6 +6,7 @@
    every locale; what is not finite is written as nan, inf, -inf. */
 #pragma once
 #include "base/error.h"
+#include <stdint.h>
 
 typedef struct tobi_csv tobi_csv;
 
@@ -40,6 +41,13 @@ tobi_status tobi_csv_take_row(tobi_csv *csv, tobi_csv_rows *rows, tobi_error *er
 /* Writes such rows, at once and all or none; TOBI_IO. Another thread may take rows meanwhile. A file that was
    deleted begins anew. */
 tobi_status tobi_csv_write_rows(tobi_csv *csv, const tobi_csv_rows *rows, tobi_error *err);
+/* Patient: rows that the disk refuses wait in memory (64 MB at most, what comes then is dropped) and are
+   written before the next; TOBI_IO is returned all the same. */
+void tobi_csv_set_patient(tobi_csv *csv, int patient);
+/* Tries to write the rows that wait; TOBI_IO. */
+tobi_status tobi_csv_flush(tobi_csv *csv, tobi_error *err);
+/* Rows that wait or were dropped. */
+int64_t tobi_csv_waiting(const tobi_csv *csv);
 /* 1 if somebody has deleted, moved or replaced the file. */
 int tobi_csv_is_gone(const tobi_csv *csv);
 /* 1 if it was not there, or empty, when it was to be continued. */

@@ -211,6 +211,14 @@ tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err)
     return status;
 }
 
+bool tobi_record_is_folder_gone(const tobi_run *run)
+{
+    char *path = tobi_record_path(run->dir, "fluid");
+    const bool gone = path && access(path, F_OK) != 0;
+    free(path);
+    return gone;
+}
+
 static int compare_descending(const void *a, const void *b)
 {
     int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;

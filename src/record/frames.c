@@ -191,7 +191,7 @@ void tobi_frames_free(tobi_snapshot *s)
     free(s->moment.surfaces);
 }
 
-static tobi_status write_view(tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
+tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
 {
     const double begun = tobi_record_clock();
     char *path = tobi_record_path(run->dir, "frames/%s_%06lld.png", run->view[k].name,
@@ -204,12 +204,6 @@ static tobi_status write_view(tobi_run *run, const tobi_snapshot *snapshot, int 
         __atomic_fetch_add(&run->pictures, 1, __ATOMIC_RELAXED);
     }
     return status;
-}
-
-tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
-{
-    for (int k = 0; k < run->view_count; k++) TOBI_TRY(write_view(run, snapshot, k, err));
-    return TOBI_OK;
 }
 
 int64_t tobi_run_pictures(const tobi_run *run, double *seconds)

@@ -30,7 +30,8 @@ tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err)
 {
     const double now = tobi_world_time(run->world);
     if (!run->lines || !tobi_record_is_due(run->output.probe_interval, before, now)) return TOBI_OK;
-    if (tobi_csv_is_gone(run->lines)) TOBI_TRY(tobi_record_keep_dir(run, err));
+    if (tobi_csv_is_gone(run->lines))
+        TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_record_keep_dir(run, err), err));
     tobi_csv_add_real(run->lines, now);
     for (int k = 0; k < tobi_world_line_count(run->world); k++) {
         tobi_line_info info;
@@ -38,5 +39,5 @@ tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err)
         tobi_csv_add_real(run->lines, info.tension);
         tobi_csv_add_real(run->lines, info.distance);
     }
-    return tobi_csv_end_row(run->lines, err);
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->lines, err), err);
 }

@@ -120,7 +120,8 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
     bool row = false;
     if (!run->probes) return TOBI_OK;
     for (int k = 0; k < probes; k++) row |= probe_is_due(run, &run->world->probes[k].def, before, now);
-    if (row && tobi_csv_is_gone(run->probes)) TOBI_TRY(tobi_record_keep_dir(run, err));
+    if (row && tobi_csv_is_gone(run->probes))
+        TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_record_keep_dir(run, err), err));
     if (row) tobi_csv_add_real(run->probes, now);
     for (int k = 0; k < probes; k++) {
         const tobi_probe_def *def = &run->world->probes[k].def;
@@ -134,7 +135,8 @@ tobi_status tobi_tables_write_probes(tobi_run *run, double before, tobi_error *e
         if (row) add_cells(run, count, state, due);
         state += count;
     }
-    return row ? tobi_csv_end_row(run->probes, err) : TOBI_OK;
+    if (!row) return TOBI_OK;
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->probes, err), err);
 }
 
 /* --- checkpoints and summary --------------------------------------------------------------- */

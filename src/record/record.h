@@ -82,6 +82,16 @@ typedef struct tobi_sensor_state {
     int begun, noted;                     /* 1: there are values in the first, the second line */
 } tobi_sensor_state;
 
+/* Kinds of files, for what is said of those that cannot be written. */
+typedef enum tobi_record_kind {
+    TOBI_KIND_PARTICLES, TOBI_KIND_SURFACES, TOBI_KIND_COPIES, TOBI_KIND_PICTURES, TOBI_KIND_LISTS,
+    TOBI_KIND_TABLES, TOBI_KIND_CHECKPOINTS, TOBI_KIND_SUMMARY, TOBI_KINDS
+} tobi_record_kind;
+typedef struct tobi_trouble {
+    int64_t files, first, last;           /* not written; outputs, the first and the last */
+    bool fails, told;                     /* the last of the kind failed; one was told    */
+} tobi_trouble;
+
 struct tobi_run {
     tobi_world *world;
     tobi_output_def output;               /* fields is not used after creation       */
@@ -89,7 +99,7 @@ struct tobi_run {
     int lock;                             /* descriptor of dir, locked               */
     pthread_mutex_t dir_lock;             /* of the descriptor, and of making folders */
     char *resolved;                       /* text of resolved.json, NULL = there is none */
-    char note[1024], losses[512];         /* texts for the user                      */
+    char note[1024], losses[1536];        /* texts for the user                      */
     bool lost_dir;                        /* dir was deleted and made again          */
     tobi_record_field field[TOBI_RECORD_FIELD_LIMIT];
     int field_count;
@@ -118,6 +128,11 @@ struct tobi_run {
     double wall, step_wall;               /* s, earlier sessions + this one          */
     double begun;                         /* s, monotonic clock at the start         */
     double particle_steps;                /* sum of fluid particles over steps       */
+    bool goes_on;                         /* files that cannot be written are passed over */
+    pthread_mutex_t trouble_lock;         /* of the next three                       */
+    tobi_trouble trouble[TOBI_KINDS];
+    char *told[TOBI_KINDS];
+    int told_count;                       /* atomic                                  */
     int64_t checkpoint_step;              /* of the last checkpoint, -1 = none       */
     double next_checkpoint;               /* s                                       */
 };
@@ -134,8 +149,21 @@ tobi_status tobi_record_clear(const char *dir, bool only_parts, tobi_error *err)
 tobi_status tobi_record_make_dir(const char *dir, const char *name, tobi_error *err);
 /* Makes what was deleted of the run's directory and its folders again. */
 tobi_status tobi_record_keep_dir(tobi_run *run, tobi_error *err);
+/* Whether somebody has deleted a folder since it was looked for. */
+bool tobi_record_is_folder_gone(const tobi_run *run);
 /* Steps of the checkpoints in dir, newest first; at most limit. -1: they cannot be listed. */
 int tobi_record_checkpoints(const char *dir, int64_t *steps, int limit);
+
+/* record/trouble.c: what could not be written of a run that goes on. */
+/* TOBI_IO becomes TOBI_OK and is noted, if the run goes on; TOBI_OK ends the trouble of a kind that is no
+   file per output. Any thread. */
+tobi_status tobi_trouble_pass(tobi_run *run, tobi_record_kind kind, int64_t output, tobi_status status,
+                              const tobi_error *err);
+/* Whether the last file of the kind failed. */
+bool tobi_trouble_lasts(tobi_run *run, tobi_record_kind kind);
+/* "pictures not written: 3, of outputs 4 to 6; ": its length. */
+int tobi_trouble_write(tobi_run *run, char *text, size_t room);
+void tobi_trouble_free(tobi_run *run);
 
 /* record/tables.c: history.csv, bodies.csv and probes.csv. */
 /* Opens them: new, or continued after the rows up to the world's time. */
@@ -151,6 +179,9 @@ tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to the world's time. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
+/* Tries to write rows that wait; how many do. */
+tobi_status tobi_tables_flush(tobi_run *run, tobi_error *err);
+int64_t tobi_tables_waiting(const tobi_run *run);
 void tobi_tally_add(tobi_tally *tally, const tobi_step_info *info);
 void tobi_tally_bodies(tobi_run *run, double dt);
 
@@ -191,7 +222,8 @@ void tobi_series_free(tobi_run *run);
 
 /* record/tractions.c: pressure and shear on the surface of each body, in pieces. */
 tobi_status tobi_tractions_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+/* Those of one body. */
+tobi_status tobi_tractions_write(tobi_run *run, const tobi_snapshot *snapshot, int body, tobi_error *err);
 void tobi_tractions_free(tobi_snapshot *snapshot);
 
 /* record/names.c: names of the files of bodies, of their tractions and of lines; the caller frees them. */
@@ -207,14 +239,16 @@ bool tobi_record_has_pieces(const tobi_world *world);
 /* The views of run->output, with what they name. */
 tobi_status tobi_frames_prepare(tobi_run *run, tobi_error *err);
 tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+/* That of one view. */
+tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, int view, tobi_error *err);
 void tobi_frames_free(tobi_snapshot *snapshot);
 
 /* record/surface.c: the surface of fluids and solids of an output, which has its particles already. */
 /* Reads output.surface_fields. */
 tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err);
 tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err);
-tobi_status tobi_record_write_surface(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err);
+tobi_status tobi_record_write_surface(tobi_run *run, const tobi_snapshot *snapshot, int unused,
+                                      tobi_error *err);
 void tobi_record_free_surface(struct tobi_record_surface *surface);
 
 /* record/writer.c: the thread. */
@@ -236,7 +270,7 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err);
 tobi_status tobi_state_load(tobi_run *run, bool *found, tobi_error *err);
 
 /* record/summary.c */
-tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err);
+tobi_status tobi_summary_write(tobi_run *run, const char *outcome, tobi_error *err);
 
 /* record.c */
 /* Outputs from time 0 to end. */

@@ -56,7 +56,7 @@ static tobi_status open_run(tobi_world *world, const tobi_output_def *output, co
     run->world = world;
     run->output = *output;
     run->lock = -1;
-    run->dir_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
+    run->dir_lock = run->trouble_lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
     run->checkpoint_step = -1;
     run->begun = tobi_record_clock();
     TOBI_TRY(tobi_series_fields(run, err));
@@ -110,10 +110,13 @@ static void tell_losses(tobi_run *run)
     for (size_t k = 0; k < sizeof tables/sizeof *tables; k++)
         if (tables[k].csv && tobi_csv_has_lost(tables[k].csv))
             at += snprintf(at, (size_t)(end - at), "%s was deleted and begins anew; ", tables[k].name);
-    if (run->missing)
+    at += tobi_trouble_write(run, at, (size_t)(end - at));
+    const int64_t missing = run->missing - run->trouble[TOBI_KIND_PARTICLES].files -
+                            run->trouble[TOBI_KIND_SURFACES].files;      /* said already */
+    if (missing > 0)
         at += snprintf(at, (size_t)(end - at),
                        "missing files of earlier outputs: %lld (the lists, *.pvd, leave them out); ",
-                       (long long)run->missing);
+                       (long long)missing);
     if (at > run->losses) at[-2] = '\0';
 }
 
@@ -282,17 +285,33 @@ tobi_status tobi_run_output(tobi_run *run, tobi_error *err)
 
 tobi_status tobi_run_wait(tobi_run *run, tobi_error *err) { return tobi_writer_wait(run->writer, err); }
 
+/* A checkpoint counts on the rows: a resumed run cuts the tables back to it, and cannot make any. */
+static tobi_status save(tobi_run *run, tobi_error *err)
+{
+    TOBI_TRY(tobi_record_keep_dir(run, err));
+    TOBI_TRY(keep_scene(run, err));
+    TOBI_TRY(tobi_tables_flush(run, err));
+    return tobi_state_save(run, err);
+}
+
 /* A checkpoint counts the outputs: they must be on the disk before it is. */
 tobi_status tobi_run_checkpoint(tobi_run *run, tobi_error *err)
 {
     TOBI_NEED(run, "run");
     TOBI_TRY(tobi_writer_wait(run->writer, err));
     if (run->world->sim.step == run->checkpoint_step) return TOBI_OK;
-    TOBI_TRY(tobi_record_keep_dir(run, err));
-    TOBI_TRY(keep_scene(run, err));
-    TOBI_TRY(tobi_state_save(run, err));
+    TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_CHECKPOINTS, run->outputs, save(run, err), err));
     run->next_checkpoint = next_checkpoint_after(run, tobi_world_time(run->world));
     return TOBI_OK;
+}
+
+static tobi_status end_files(tobi_run *run, tobi_error *err)
+{
+    const int64_t last = run->outputs - 1;
+    tobi_status status = tobi_record_keep_dir(run, err);
+    if (status == TOBI_OK) status = tobi_series_lists(run, err);
+    TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_LISTS, last, status, err));
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, last, tobi_tables_flush(run, err), err);
 }
 
 /* The summary is written after a failure too, but then it says so. */
@@ -301,11 +320,11 @@ tobi_status tobi_run_finish(tobi_run *run, const char *outcome, tobi_error *err)
     TOBI_NEED(run, "run");
     TOBI_NEED(outcome, "the outcome");
     tobi_status status = tobi_writer_wait(run->writer, err);
-    if (status == TOBI_OK) status = tobi_record_keep_dir(run, err);
-    if (status == TOBI_OK) status = tobi_series_lists(run, err);
-    tell_losses(run);
+    if (status == TOBI_OK) status = end_files(run, err);
     if (status != TOBI_OK) err = NULL;
     tobi_status written = tobi_summary_write(run, status == TOBI_OK ? outcome : "failed", err);
+    written = tobi_trouble_pass(run, TOBI_KIND_SUMMARY, run->outputs, written, err);
+    tell_losses(run);
     return status != TOBI_OK ? status : written;
 }
 
@@ -320,6 +339,7 @@ void tobi_run_free(tobi_run *run)
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);
+    tobi_trouble_free(run);
     free(run->body_since);
     free(run->sensor);
     free(run->resolved);

@@ -149,7 +149,7 @@ static tobi_status fail_memory(tobi_error *err)
     return tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
 }
 
-static tobi_status write_set(const tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
+static tobi_status write_set(tobi_run *run, const tobi_snapshot *snapshot, int k, tobi_error *err)
 {
     const tobi_point_set *set = &snapshot->set[k];
     char *path = tobi_record_path(run->dir, "%s/%s_%06lld.vtu", set_names[k], set_names[k],
@@ -162,8 +162,9 @@ static tobi_status write_set(const tobi_run *run, const tobi_snapshot *snapshot,
     return status;
 }
 
-static tobi_status write_ply(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+static tobi_status write_ply(tobi_run *run, const tobi_snapshot *snapshot, int unused, tobi_error *err)
 {
+    (void)unused;
     const tobi_point_set *set = &snapshot->set[TOBI_SET_FLUID];
     char *path = tobi_record_path(run->dir, "ply/fluid_%06lld.ply", (long long)snapshot->number);
     tobi_status status =
@@ -226,7 +227,22 @@ static tobi_status write_surface(const tobi_run *run, const tobi_snapshot *snaps
     return status;
 }
 
-static tobi_status write_line(const tobi_run *run, const tobi_snapshot *snapshot, int line, tobi_error *err)
+static tobi_status write_body_vtp(tobi_run *run, const tobi_snapshot *s, int body, tobi_error *err)
+{
+    return write_surface(run, s, body, 0, err);
+}
+
+static tobi_status write_body_stl(tobi_run *run, const tobi_snapshot *s, int body, tobi_error *err)
+{
+    return write_surface(run, s, body, 1, err);
+}
+
+static tobi_status write_body_obj(tobi_run *run, const tobi_snapshot *s, int body, tobi_error *err)
+{
+    return write_surface(run, s, body, 2, err);
+}
+
+static tobi_status write_line(tobi_run *run, const tobi_snapshot *snapshot, int line, tobi_error *err)
 {
     const tobi_line_tube *t = &snapshot->tube[line];
     const tobi_vtk_surface s = { .vertex_count = TOBI_TUBE_VERTICES, .triangle_count = TOBI_TUBE_TRIANGLES,
@@ -303,19 +319,55 @@ void tobi_series_free(tobi_run *run)
     tobi_moment_free(&run->tracks);
 }
 
-tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error *err)
+/* A file of an output: its kind, and which of them. */
+typedef struct file_job {
+    tobi_record_kind kind;
+    int which;
+    tobi_status (*write)(tobi_run *run, const tobi_snapshot *s, int which, tobi_error *err);
+} file_job;
+
+/* The files of an output by number; 0 past the last. */
+static int job_at(const tobi_run *run, const tobi_snapshot *s, int number, file_job *out)
 {
     const tobi_output_def *o = &run->output;
-    TOBI_TRY(write_set(run, s, TOBI_SET_FLUID, err));
-    if (s->surfaces) TOBI_TRY(write_set(run, s, TOBI_SET_BODIES, err));
-    for (int b = 0; o->surfaces && b < s->surfaces; b++)
-        for (int kind = 0; kind < 2; kind++) TOBI_TRY(write_surface(run, s, b, kind, err));
-    for (int k = 0; o->surfaces && k < s->lines; k++) TOBI_TRY(write_line(run, s, k, err));
-    if (o->tractions) TOBI_TRY(tobi_tractions_write(run, s, err));
-    if (o->grid) TOBI_TRY(write_set(run, s, TOBI_SET_GRID, err));
-    if (o->surface) TOBI_TRY(tobi_record_write_surface(run, s, err));
-    if (o->ply) TOBI_TRY(write_ply(run, s, err));
-    for (int b = 0; o->obj && b < s->surfaces; b++) TOBI_TRY(write_surface(run, s, b, 2, err));
-    if (o->frames) TOBI_TRY(tobi_frames_write(run, s, err));
-    return write_lists(run, s->number + 1, err);
+    const int bodies = s->surfaces;
+    const struct { int count; file_job job; } list[] = {
+        { 1, { TOBI_KIND_PARTICLES, TOBI_SET_FLUID, write_set } },
+        { bodies > 0, { TOBI_KIND_PARTICLES, TOBI_SET_BODIES, write_set } },
+        { o->surfaces ? bodies : 0, { TOBI_KIND_SURFACES, 0, write_body_vtp } },
+        { o->surfaces ? bodies : 0, { TOBI_KIND_COPIES, 0, write_body_stl } },
+        { o->surfaces ? s->lines : 0, { TOBI_KIND_SURFACES, 0, write_line } },
+        { o->tractions ? bodies : 0, { TOBI_KIND_SURFACES, 0, tobi_tractions_write } },
+        { o->grid != 0, { TOBI_KIND_PARTICLES, TOBI_SET_GRID, write_set } },
+        { o->surface != 0, { TOBI_KIND_SURFACES, 0, tobi_record_write_surface } },
+        { o->ply != 0, { TOBI_KIND_COPIES, 0, write_ply } },
+        { o->obj ? bodies : 0, { TOBI_KIND_COPIES, 0, write_body_obj } },
+        { o->frames ? run->view_count : 0, { TOBI_KIND_PICTURES, 0, tobi_frames_write } },
+    };
+    for (size_t k = 0; k < sizeof list/sizeof *list; number -= list[k++].count) {
+        if (number >= list[k].count) continue;
+        *out = list[k].job;
+        out->which += number;
+        return 1;
+    }
+    return 0;
+}
+
+/* A second try where the kind was well until now: a disk may be full for a moment. TOBI_IO: the folder was
+   gone, and the output has to be written anew. */
+static tobi_status write_job(tobi_run *run, const tobi_snapshot *s, const file_job *j, tobi_error *err)
+{
+    tobi_status status = j->write(run, s, j->which, err);
+    if (status == TOBI_IO && tobi_record_is_folder_gone(run) &&
+        (!run->goes_on || tobi_record_keep_dir(run, NULL) == TOBI_OK)) return status;
+    if (status == TOBI_IO && run->goes_on && !tobi_trouble_lasts(run, j->kind))
+        status = j->write(run, s, j->which, err);
+    return tobi_trouble_pass(run, j->kind, s->number, status, err);
+}
+
+tobi_status tobi_series_write(tobi_run *run, const tobi_snapshot *s, tobi_error *err)
+{
+    file_job job;
+    for (int k = 0; job_at(run, s, k, &job); k++) TOBI_TRY(write_job(run, s, &job, err));
+    return tobi_trouble_pass(run, TOBI_KIND_LISTS, s->number, write_lists(run, s->number + 1, err), err);
 }

@@ -141,6 +141,7 @@ tobi_status tobi_state_save(tobi_run *run, tobi_error *err)
     json_decref(json);
     free(companion);
     free(state);
+    if (status != TOBI_OK) remove_checkpoint(run, step);      /* the small file of none */
     if (status != TOBI_OK) return status;
     run->checkpoint_step = step;
     drop_old(run, step);

@@ -75,7 +75,7 @@ static tobi_status add_pieces(const tobi_run *run, json_t *json, tobi_error *err
 
 /* density_error_mean: mean over steps and particles; density_error_max: largest of any step.
    particle_steps_per_s counts the time in steps, wall_s everything including files. */
-static json_t *make_summary(const tobi_run *run, const char *outcome)
+static json_t *make_summary(tobi_run *run, const char *outcome)
 {
     const tobi_tally *t = &run->total;
     const tobi_step_info *info = tobi_world_info(run->world);
@@ -104,11 +104,14 @@ static json_t *make_summary(const tobi_run *run, const char *outcome)
     if (json && more) json_object_update(json, more);
     if (json && tobi_world_probe_count(run->world)) json_object_set_new(json, "sensors",
         tobi_probes_sum_up(run));
+    const int64_t unwritten = tobi_run_unwritten(run);
+    if (json && unwritten)
+        json_object_set_new(json, "files_not_written", json_integer((json_int_t)unwritten));
     json_decref(more);
     return json;
 }
 
-tobi_status tobi_summary_write(const tobi_run *run, const char *outcome, tobi_error *err)
+tobi_status tobi_summary_write(tobi_run *run, const char *outcome, tobi_error *err)
 {
     json_t *json = make_summary(run, outcome);
     tobi_status status = json ? add_pieces(run, json, err) : TOBI_OK;

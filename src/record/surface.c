@@ -86,8 +86,10 @@ tobi_status tobi_record_take_surface(tobi_run *run, tobi_snapshot *snapshot, tob
     return find_groups(run, s->group, err);
 }
 
-tobi_status tobi_record_write_surface(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+tobi_status tobi_record_write_surface(tobi_run *run, const tobi_snapshot *snapshot, int unused,
+                                      tobi_error *err)
 {
+    (void)unused;
     const tobi_world_def *w = &run->world->sim.def;
     const tobi_point_set *set = &snapshot->set[TOBI_SET_FLUID];
     tobi_surface_field fields[TOBI_SURFACE_FIELD_LIMIT];

@@ -143,8 +143,27 @@ tobi_status tobi_tables_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 
 tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
+    tobi_status status = TOBI_OK;
     if (run->bodies && !snapshot->bodies_written)
-        TOBI_TRY(tobi_csv_write_rows(run->bodies, &snapshot->bodies, err));
+        status = tobi_csv_write_rows(run->bodies, &snapshot->bodies, err);
+    TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err));
     snapshot->bodies_written = true;
-    return tobi_csv_write_rows(run->history, &snapshot->history, err);
+    status = tobi_csv_write_rows(run->history, &snapshot->history, err);
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err);
+}
+
+tobi_status tobi_tables_flush(tobi_run *run, tobi_error *err)
+{
+    tobi_csv *const all[] = { run->history, run->bodies, run->probes, run->lines };
+    for (size_t k = 0; k < sizeof all/sizeof *all; k++)
+        if (all[k]) TOBI_TRY(tobi_csv_flush(all[k], err));
+    return TOBI_OK;
+}
+
+int64_t tobi_tables_waiting(const tobi_run *run)
+{
+    const tobi_csv *const all[] = { run->history, run->bodies, run->probes, run->lines };
+    int64_t sum = 0;
+    for (size_t k = 0; k < sizeof all/sizeof *all; k++) sum += all[k] ? tobi_csv_waiting(all[k]) : 0;
+    return sum;
 }

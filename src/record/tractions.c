@@ -71,24 +71,21 @@ tobi_status tobi_tractions_take(tobi_run *run, tobi_snapshot *snapshot, tobi_err
     return TOBI_OK;
 }
 
-tobi_status tobi_tractions_write(const tobi_run *run, const tobi_snapshot *snapshot, tobi_error *err)
+tobi_status tobi_tractions_write(tobi_run *run, const tobi_snapshot *snapshot, int b, tobi_error *err)
 {
-    for (int b = 0; b < snapshot->surfaces; b++) {
-        const tobi_tractions *t = &snapshot->tractions[b];
-        const tobi_vtk_array arrays[] = { { "pressure", TOBI_F64, 1, t->pressure },
-                                          { "shear", TOBI_F64, 3, t->shear } };
-        const tobi_vtk_cells cells = { .corners = run->world->sim.def.dimension, .count = t->count,
-                                       .points = (const double (*)[3])t->corner, .arrays = arrays,
-                                       .array_count = 2 };
-        char *path = tobi_record_path(run->dir, "tractions/%s_%06lld.vtp", run->traction_file[b],
-                                      (long long)snapshot->number);
-        const tobi_status status =
-            path ? tobi_vtp_write_cells(path, (tobi_compression)run->output.compression, &cells, err)
-                 : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
-        free(path);
-        TOBI_TRY(status);
-    }
-    return TOBI_OK;
+    const tobi_tractions *t = &snapshot->tractions[b];
+    const tobi_vtk_array arrays[] = { { "pressure", TOBI_F64, 1, t->pressure },
+                                      { "shear", TOBI_F64, 3, t->shear } };
+    const tobi_vtk_cells cells = { .corners = run->world->sim.def.dimension, .count = t->count,
+                                   .points = (const double (*)[3])t->corner, .arrays = arrays,
+                                   .array_count = 2 };
+    char *path = tobi_record_path(run->dir, "tractions/%s_%06lld.vtp", run->traction_file[b],
+                                  (long long)snapshot->number);
+    const tobi_status status =
+        path ? tobi_vtp_write_cells(path, (tobi_compression)run->output.compression, &cells, err)
+             : tobi_fail(err, TOBI_NO_MEMORY, "output: out of memory");
+    free(path);
+    return status;
 }
 
 void tobi_tractions_free(tobi_snapshot *snapshot)

@@ -2,16 +2,15 @@
 
    The caller's thread hands over at most two snapshots: one in work, one that waits; then it waits
    itself, so that memory stays bounded. What cannot be written stays at the head of the queue: the
-   failure is told by the caller's next call and then tried again. The thread reads of run and world
-   only what no step changes: names, triangles, counts, parameters. Drawback: a full disk is told a few
-   steps late. */
+   failure is told by the caller's next call and then tried again; unless the run goes on, see trouble.c.
+   The thread reads of run and world only what no step changes: names, triangles, counts, parameters.
+   Drawback: a full disk is told a few steps late. */
 #include "exec/exec.h"
 #include "record/record.h"
 #include "world/world.h"
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { QUEUE = 2 };
 
@@ -26,21 +25,14 @@ struct tobi_writer {
     tobi_error error;
 };
 
-/* Whether somebody has deleted a folder since it was looked for. */
-static bool is_folder_gone(const tobi_run *run)
-{
-    char *path = tobi_record_path(run->dir, "fluid");
-    const bool gone = path && access(path, F_OK) != 0;
-    free(path);
-    return gone;
-}
-
 /* A row of history.csv comes last: it says that everything of this output is on disk. */
 static tobi_status write_files(tobi_run *run, tobi_snapshot *snapshot, tobi_error *err)
 {
-    TOBI_TRY(tobi_record_keep_dir(run, err));
+    const tobi_status kept = tobi_record_keep_dir(run, err);
+    /* Without room for a folder its files fail, too, and are noted. */
+    if (kept != TOBI_OK && !(kept == TOBI_IO && run->goes_on)) return kept;
     tobi_status status = tobi_series_write(run, snapshot, err);
-    if (status == TOBI_IO && is_folder_gone(run)) {
+    if (status == TOBI_IO && (run->goes_on || tobi_record_is_folder_gone(run))) {
         TOBI_TRY(tobi_record_keep_dir(run, err));
         status = tobi_series_write(run, snapshot, err);
     }

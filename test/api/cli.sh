@@ -307,6 +307,19 @@ got=0
 check "full disk: exit code 1 (was $got)" test $got = 1
 check "full disk: said so" grep -q "^tobiuo: .*full/" err.txt
 check "full disk: no unfinished files" no_parts full
+# Room for all but checkpoints: the run goes on. Then for all.
+largest=$(find $a -name "*.vtu" -printf "%k\n" | sort -n | tail -1)
+smallest=$(find $a -name "*.h5" -printf "%k\n" | sort -n | head -1)
+check "checkpoints are the largest files" test $smallest -gt $((largest + 4))
+got=0
+(ulimit -f $((largest + 4)); exec "$program" run tank.json --quiet --until 0.02 --out going) > out.txt 2> err.txt || got=$?
+check "a checkpoint without room: exit code 3 (was $got)" test $got = 3
+check "a checkpoint without room: said once" test "$(grep -c "h5: File too large; the checkpoint of before" err.txt)" = 1
+check "a checkpoint without room: said at the end" grep -q "going: not written: the last checkpoint" err.txt
+check "a checkpoint without room: all else is there" same_results $a going
+check "a checkpoint without room: no unfinished files" no_parts going
+expect 0 "" resume going --quiet
+check "resumed with room" test -n "$(ls going/checkpoints)"
 
 # --- scenes of the Taichi program -------------------------------------------------------------------
 expect 0 "" check "$old/fish.json"

@@ -9,6 +9,8 @@ the middle, once without a fault and then once for each n (every few n, unless -
   exit code 1   one to three lines on stderr, each beginning with "tobiuo: "; no *.part file; every file
                 is the reference's or a whole beginning of it; `resume` without a fault ends with the
                 reference's results (or, with nothing to resume, says so in words);
+  exit code 3   the run went on to its end without files that could not be written: at most ten lines; the rest
+                as for 1;
   anything else (a signal, a hang, another code) is a failure.
 A scene of the Taichi program is checked and imported in the same way: after exit code 0 the table or the new
 scene is the reference's, after exit code 1 there is no new scene.
@@ -154,9 +156,9 @@ class Checker:
         if code == 0:
             bad = self.differs(folder)
             return f"exit 0, but {bad[0]} differs" if bad else None
-        if code != 1: return f"exit {code}: {text.strip()[:200]}"
-        if not lines: return "exit 1 without a message"
-        if len(lines) > 3 or any(not line.startswith("tobiuo: ") for line in lines):
+        if code not in (1, 3): return f"exit {code}: {text.strip()[:200]}"
+        if not lines: return f"exit {code} without a message"
+        if len(lines) > (3 if code == 1 else 10) or any(not line.startswith("tobiuo: ") for line in lines):
             return f"message: {text.strip()[:300]}"
         if not folder.is_dir(): return None
         bad = self.broken(folder)
