@@ -64,6 +64,7 @@ TOBI_API extern const tobi_param_table tobi_inlet_table;
 TOBI_API extern const tobi_param_table tobi_outlet_table;
 TOBI_API extern const tobi_param_table tobi_probe_table;
 TOBI_API extern const tobi_param_table tobi_line_table;
+TOBI_API extern const tobi_param_table tobi_joint_table;
 TOBI_API extern const tobi_param_table tobi_output_table;
 TOBI_API extern const tobi_param_table tobi_view_table;
 TOBI_API extern const tobi_param_table tobi_reference_table;

@@ -51,6 +51,7 @@ TOBI_API tobi_inlet_def  tobi_default_inlet_def(void);
 TOBI_API tobi_outlet_def tobi_default_outlet_def(void);
 TOBI_API tobi_probe_def  tobi_default_probe_def(void);
 TOBI_API tobi_line_def   tobi_default_line_def(void);
+TOBI_API tobi_joint_def  tobi_default_joint_def(void);
 TOBI_API tobi_output_def tobi_default_output_def(void);
 TOBI_API tobi_reference_def tobi_default_reference_def(void);
 TOBI_API tobi_gravity_def tobi_default_gravity_def(void);
@@ -102,6 +103,13 @@ TOBI_API tobi_status tobi_world_add_line(tobi_world *world, const tobi_line_def 
 TOBI_API int tobi_world_line_count(const tobi_world *world);
 /* Name and, if info is not NULL, values after the last step; NULL past the end. */
 TOBI_API const char *tobi_world_line(const tobi_world *world, int line, tobi_line_info *info);
+
+/* Adds a joint, after the bodies that it names. TOBI_INVALID if they are not there, if `body` is prescribed,
+   or for an axis that its kind does not have; TOBI_UNSUPPORTED if one deforms or is absent at times. */
+TOBI_API tobi_status tobi_world_add_joint(tobi_world *world, const tobi_joint_def *def, tobi_error *err);
+TOBI_API int tobi_world_joint_count(const tobi_world *world);
+/* Name and, if info is not NULL, values after the last step; NULL past the end. */
+TOBI_API const char *tobi_world_joint(const tobi_world *world, int joint, tobi_joint_info *info);
 
 /* What was repaired or looks odd in the meshes of bodies and fluids, a sentence each, by index; NULL past
    the end. Owned by the world, valid until it is destroyed. */

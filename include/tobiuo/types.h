@@ -407,6 +407,26 @@ typedef struct tobi_line_info {
     double point[3], to[3];     /* m, the ends                                                       */
 } tobi_line_info;
 
+/* A joint of a body with another one, or with the domain. */
+enum { TOBI_JOINT_LIMIT = 64 };
+typedef enum tobi_joint_between { TOBI_BETWEEN_HINGE, TOBI_BETWEEN_BALL } tobi_joint_between;
+typedef struct tobi_joint_def {
+    const char *name;
+    int    kind;                /* tobi_joint_between; in 2-D both are the same                      */
+    const char *body;           /* name of a free or controlled body                                 */
+    const char *to_body;        /* name of another body, not a deforming one; NULL = the domain      */
+    double point[3];            /* m, where they are joined, as the bodies start                     */
+    double axis[3];             /* of a hinge, of any length; 0 in 2-D: along z                      */
+} tobi_joint_def;
+
+/* A joint after a step. */
+typedef struct tobi_joint_info {
+    double force[3];            /* N on the body, mean over the step                                 */
+    double moment[3];           /* N m on it, of a hinge, across its axis                            */
+    double angle;               /* degrees since the start, of the body against the other            */
+    double gap;                 /* m between what is joined                                          */
+} tobi_joint_info;
+
 /* What pictures show, and from where. */
 enum { TOBI_VIEW_LIMIT = 8 };        /* views besides the output's own */
 typedef struct tobi_view_def {

@@ -435,7 +435,7 @@ void tobi_body_free(tobi_body *b)
     memset(b, 0, sizeof *b);
 }
 
-static void place_next(tobi_body *b)
+void tobi_body_place_next(tobi_body *b)
 {
     const tobi_rigid *r = &b->rigid;
     const double (*shape)[3] = (const double (*)[3])(b->swimmer ? b->swimmer->shape : b->mesh.vertices);
@@ -446,23 +446,8 @@ static void place_next(tobi_body *b)
 
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt)
 {
-    tobi_rigid *r = &b->rigid;
-    double turn[3];
-    if (r->joint.kind) {
-        const int hinge = r->joint.kind == TOBI_JOINT_HINGE;
-        tobi_joint_place(r, vec3_dot(r->joint.axis, hinge ? spin : velocity)*dt +
-                            vec3_dot(r->joint.axis, hinge ? r->turn : r->push));
-        r->joint.driven = 1;
-        place_next(b);
-        return;
-    }
-    tobi_rigid_drift_freely(r, dt);
-    for (int a = 0; a < 3; a++) {
-        r->next_position[a] += (velocity[a] - r->velocity[a])*dt;
-        turn[a] = (spin[a] - r->angular_velocity[a])*dt;
-    }
-    tobi_quaternion_turn(r->next_orientation, turn);
-    place_next(b);
+    tobi_rigid_drift_by(&b->rigid, velocity, spin, dt);
+    tobi_body_place_next(b);
 }
 
 static void drive_points(const tobi_rigid *r, const double velocity[3], const double spin[3], int64_t n,
@@ -510,7 +495,7 @@ static tobi_status predict_free(tobi_body *b, double t, double dt, tobi_error *e
         interpolate_points(b, (const double (*)[3])b->swimmer->flow, b->swimmer->point_flow);
     }
     tobi_rigid_drift(r, dt);
-    place_next(b);
+    tobi_body_place_next(b);
     drive_points(r, r->velocity, r->angular_velocity, b->mesh.vertex_count, (const double (*)[3])b->vertex,
                  b->vertex_velocity);
     if (b->swimmer) add_flow(b->mesh.vertex_count, (const double (*)[3])b->swimmer->flow, b->vertex_velocity);

@@ -133,6 +133,8 @@ tobi_status tobi_body_predict(tobi_body *b, double t, double dt, double *speed, 
 /* Between the two calls, for a free body: it drifts by these velocities (m/s, rad/s) and no pull instead,
    because contact has changed them. */
 void tobi_body_correct(tobi_body *b, const double velocity[3], const double spin[3], double dt);
+/* The vertices at the end of the step, of a free body whose next pose was changed. */
+void tobi_body_place_next(tobi_body *b);
 /* Gives every point of a free body the velocities of a rigid motion at its present pose (m/s, rad/s). */
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
 /* Its mesh, in the pose of the definition before scale, rotation and translation: the file's or that of its

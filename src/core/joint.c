@@ -1,6 +1,6 @@
 /* One coordinate instead of constraints: all forces act on it by the body's velocity for a rate of 1, so that
    an axis never drifts and the pressure of a liquid sees the right inertia. Drawback: joints between two
-   bodies that both move need constraints, and are not here. */
+   bodies that both move need constraints, and are in constraint.c. */
 #include "core/joint.h"
 #include "core/rigid.h"
 #include "geom/vec3.h"
@@ -213,7 +213,8 @@ void tobi_joint_drift(tobi_rigid *r, double dt)
     j->pull = tobi_joint_pull(r);
     const int rests = dot6(s, s) == 0;
     const double pull = rests || j->held ? 0 : j->pull;
-    tobi_joint_place(r, 0.5*dt*(rate + keep*(rate + dt*pull)) + vec3_dot(j->axis, push));
+    const double joined = rests ? 0 : dot6(j->freedom, r->constraint)/j->mass;
+    tobi_joint_place(r, 0.5*dt*(rate + keep*(rate + dt*pull)) + dt*joined + vec3_dot(j->axis, push));
 }
 
 /* Velocity Verlet alone; a liquid's drift took the pull where it began, and contact has none. */

@@ -342,6 +342,24 @@ void tobi_rigid_drift_freely(tobi_rigid *r, double dt)
     if (vec3_dot(w, w) > 0) tobi_quaternion_turn(q, w);
 }
 
+void tobi_rigid_drift_by(tobi_rigid *r, const double velocity[3], const double spin[3], double dt)
+{
+    double turn[3];
+    if (r->joint.kind) {
+        const int hinge = r->joint.kind == TOBI_JOINT_HINGE;
+        tobi_joint_place(r, vec3_dot(r->joint.axis, hinge ? spin : velocity)*dt +
+                            vec3_dot(r->joint.axis, hinge ? r->turn : r->push));
+        r->joint.driven = 1;
+        return;
+    }
+    tobi_rigid_drift_freely(r, dt);
+    for (int a = 0; a < 3; a++) {
+        r->next_position[a] += (velocity[a] - r->velocity[a])*dt;
+        turn[a] = (spin[a] - r->angular_velocity[a])*dt;
+    }
+    tobi_quaternion_turn(r->next_orientation, turn);
+}
+
 /* Coasts by the mean of the velocities before and after the kick (R.15). */
 void tobi_rigid_drift(tobi_rigid *r, double dt)
 {
@@ -352,8 +370,10 @@ void tobi_rigid_drift(tobi_rigid *r, double dt)
     }
     tobi_rigid mean = *r;
     for (int a = 0; a < 3; a++) {
-        mean.velocity[a] = 0.5*(r->velocity[a] + keep*(r->velocity[a] + dt*r->pull[a]));
-        mean.momentum[a] = 0.5*(r->momentum[a] + keep*(r->momentum[a] + dt*r->pull_torque[a]));
+        mean.velocity[a] = 0.5*(r->velocity[a] + keep*(r->velocity[a] + dt*r->pull[a])) +
+                           r->constraint[a]/r->mass;
+        mean.momentum[a] = 0.5*(r->momentum[a] + keep*(r->momentum[a] + dt*r->pull_torque[a])) +
+                           r->constraint[3 + a];
     }
     tobi_rigid_apply_locks(&mean);
     tobi_rigid_drift_freely(&mean, dt);
@@ -397,6 +417,19 @@ void tobi_rigid_answer(const tobi_rigid *r, const double f[6], double out[6])
     if (!r->joint.kind) return;
     const double *s = r->joint_mobility, along = vec3_dot(s, f) + vec3_dot(s + 3, f + 3);
     for (int a = 0; a < 6; a++) out[a] += along*s[a];
+}
+
+int tobi_rigid_has_pull(const tobi_rigid *r)
+{
+    return vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque) > 0;
+}
+
+int tobi_rigid_drop_pull(tobi_rigid *r)
+{
+    const int before = tobi_rigid_has_pull(r);
+    memset(r->pull, 0, sizeof r->pull);
+    memset(r->pull_torque, 0, sizeof r->pull_torque);
+    return before;
 }
 
 void tobi_rigid_apply_locks(tobi_rigid *r)

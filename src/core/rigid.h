@@ -46,6 +46,8 @@ typedef struct tobi_rigid {
     double moments[3][3];            /* kg m2, rest axes: sum of m y0 y1^T, places about the centre at both
                                         ends of the step                                                */
     double span;                     /* s, over which `impulse` is the mean force; 0 = the step         */
+    double constraint[6];            /* N s, N m s about the centre: of joints to other bodies, where the
+                                        step began; core/constraint.h                                   */
 
     /* Within the step of a liquid, sph/boundary.h: */
     double driven[6];                             /* m/s, rad/s: by tobi_body_set_velocity, last        */
@@ -74,6 +76,8 @@ int tobi_rigid_axes(const char *words, char unknown[32]);
 void tobi_rigid_drift(tobi_rigid *r, double dt);
 /* The same by the present velocities alone. */
 void tobi_rigid_drift_freely(tobi_rigid *r, double dt);
+/* The same by other velocities, m/s and rad/s. */
+void tobi_rigid_drift_by(tobi_rigid *r, const double velocity[3], const double spin[3], double dt);
 
 /* Inverse of mass times the unit matrix, as a diagonal, and of inertia in world axes at the present
    orientation; locked degrees of freedom give 0. Those of a body with a joint are 0, tobi_joint_freedom has
@@ -83,6 +87,9 @@ void tobi_rigid_inverse(const tobi_rigid *r, double shift[3], double turn[3][3])
 double tobi_rigid_keep(const tobi_rigid *r, double dt);
 /* Velocities by an impulse f, N s and N m s about the centre, by the mobility that a liquid works with. */
 void tobi_rigid_answer(const tobi_rigid *r, const double f[6], double out[6]);
+/* Whether it has a pull; and drops it, with the same answer. */
+int tobi_rigid_has_pull(const tobi_rigid *r);
+int tobi_rigid_drop_pull(tobi_rigid *r);
 /* Drops what locked degrees of freedom do not allow; brings angular_velocity up to date. */
 void tobi_rigid_apply_locks(tobi_rigid *r);
 /* J, of velocity and angular velocity; against fixed walls and bodies nobody else has it. */

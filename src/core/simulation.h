@@ -3,6 +3,7 @@
 #include "core/acceleration.h"
 #include "core/body.h"
 #include "core/cells.h"
+#include "core/constraint.h"
 #include "core/damping.h"
 #include "core/opening.h"
 #include "core/plane.h"
@@ -23,6 +24,7 @@ typedef struct tobi_simulation {
     tobi_exec exec;
     tobi_body *bodies;
     int body_count;
+    tobi_constraints constraints;   /* owned by the world: joints between bodies             */
     tobi_fixed_plane plane[TOBI_PLANE_LIMIT];
     int plane_count;
     tobi_opening *openings;         /* owned by the world                                    */

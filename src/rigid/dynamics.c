@@ -57,6 +57,7 @@ static tobi_status note_overlaps(tobi_dynamics_state *d, char *notes, size_t roo
     TOBI_TRY(tobi_broad_find(&d->broad, d->bodies, d->shapes, d->count, 0, err));
     for (int64_t k = 0; k < d->broad.pair_count; k++) {
         int a = d->broad.pairs[k].a, b = d->broad.pairs[k].b, searched;
+        if (tobi_constraints_join(d->world.constraints, a, b)) continue;
         double deep = find_overlap(d, a, b);
         TOBI_TRY(check_overlap(d, a, b, deep, &searched, err));
         if (!searched && ++unsure <= NAMED) {
@@ -207,16 +208,19 @@ static tobi_status kick(tobi_dynamics_state *d, tobi_body *b, double t, double d
     const int body = (int)(b - d->bodies);
     tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_NOW, &now);
     tobi_lines_add(d->world.lines, d->world.line_count, body, TOBI_LINES_MEAN, &mean);
-    for (int a = 0; a < 3; a++) impulse[a] = r->impulse[a], impulse[3 + a] = r->twist[a];
     for (int a = 0; a < 3; a++) {
-        double dv = dt*(d->world.gravity[a] + (force[a] + mean.force[a])/r->mass) + r->impulse[a]/r->mass;
+        impulse[a] = r->impulse[a] + r->constraint[a];
+        impulse[3 + a] = r->twist[a] + r->constraint[3 + a];
+    }
+    for (int a = 0; a < 3; a++) {
+        double dv = dt*(d->world.gravity[a] + (force[a] + mean.force[a])/r->mass) + impulse[a]/r->mass;
         if (!r->joint.kind) {
             r->velocity[a] = keep*(r->velocity[a] + dv);
-            r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + r->twist[a]);
+            r->momentum[a] = keep*(r->momentum[a] + dt*(torque[a] + mean.torque[a]) + impulse[3 + a]);
         }
         r->contact_force[a] = r->impulse[a]/span;
         r->contact_torque[a] = r->twist[a]/span;
-        r->impulse[a] = r->twist[a] = 0;
+        r->impulse[a] = r->twist[a] = r->constraint[a] = r->constraint[3 + a] = 0;
         r->pull[a] = d->world.gravity[a] + (force[a] + now.force[a])/r->mass;
         r->pull_torque[a] = torque[a] + now.torque[a];
     }
@@ -275,6 +279,7 @@ static void touch_pair(const tobi_dynamics_state *d, tobi_pair p, double dt, tob
 {
     int64_t first = out->count;
     double turn[3];
+    if (tobi_constraints_join(d->world.constraints, p.a, p.b)) return;
     tobi_touch_look look = { tobi_broad_margin(&d->broad, p.a) + tobi_broad_margin(&d->broad, p.b), 0 };
     vec3_sub(turn, d->bodies[p.a].rigid.angular_velocity, d->bodies[p.b].rigid.angular_velocity);
     look.turn = 1.2*dt*vec3_length(turn);
@@ -378,14 +383,6 @@ static void predict(const tobi_rigid *r, const tobi_touch *c, int sign, double d
                   sqrt(r->joint.mass)*tobi_joint_pull(r);
 }
 
-static int drop_pull(tobi_rigid *r)
-{
-    double before = vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque);
-    memset(r->pull, 0, sizeof r->pull);
-    memset(r->pull_torque, 0, sizeof r->pull_torque);
-    return before > 0;
-}
-
 /* The velocities are such that nothing comes nearer than touching, the pull is not yet answered: a body that
    it would draw into another one, or a side, drifts by its velocities alone (R.16), or a stack would creep
    by half of g dt^2 in every step. A body held may hold others, hence the rounds. */
@@ -402,10 +399,11 @@ static void hold_bodies(tobi_dynamics_state *d, double dt)
             if (b) predict(b, c, -1, dt, sum);
             double size = vec3_length(a->pull) + (b ? vec3_length(b->pull) : 0);
             if (sum[1] >= -level*dt*dt*size || sum[0] + sum[1] >= 0) continue;
-            again |= drop_pull(a);
-            if (b) again |= drop_pull(b);
+            again |= tobi_rigid_drop_pull(a);
+            if (b) again |= tobi_rigid_drop_pull(b);
         }
     }
+    tobi_constraints_hold(d->world.constraints, d->bodies);
 }
 
 /* A resting contact is there in the next step as well; an impact is not. */
@@ -443,9 +441,10 @@ tobi_status tobi_rigid_step(tobi_dynamics_state *d, double t, double dt, tobi_er
     }
     TOBI_TRY(find_contacts(d, dt, err));
     keep_impulses(d);
-    TOBI_TRY(tobi_solve(&d->solver, d->bodies, d->count, &d->contacts, dt,
+    TOBI_TRY(tobi_solve(&d->solver, d->bodies, d->count, &d->contacts, d->world.constraints, dt,
                         fmax(PLASTIC*g*dt, PLASTIC_LEAST), err));
     hold_bodies(d, dt);
+    tobi_constraints_report(d->world.constraints, d->bodies, dt);
     for (int k = 0; k < d->count; k++) {
         tobi_body *b = &d->bodies[k];
         const tobi_rigid *r = &b->rigid;
@@ -484,6 +483,7 @@ static tobi_status begin_pull(tobi_dynamics_state *d, tobi_error *err)
 {
     double dt = tobi_rigid_step_limit(d);
     tobi_rigid_update_lines(d);
+    tobi_solve_joints(d->bodies, d->world.constraints);
     for (int k = 0; k < d->count; k++) {
         tobi_rigid *r = &d->bodies[k].rigid;
         tobi_line_load load = { 0 };
@@ -544,8 +544,7 @@ static int is_held(const tobi_dynamics_state *d, const tobi_rigid *r)
 {
     double due[3];
     vec3_add_scaled(due, d->world.gravity, 1/r->mass, r->force);
-    return vec3_dot(r->pull, r->pull) + vec3_dot(r->pull_torque, r->pull_torque) == 0 &&
-           vec3_dot(due, due) + vec3_dot(r->torque, r->torque) > 0;
+    return !tobi_rigid_has_pull(r) && vec3_dot(due, due) + vec3_dot(r->torque, r->torque) > 0;
 }
 
 /* The pull of the next drift. What lines and a control program add to it stays. */

@@ -15,6 +15,7 @@ typedef struct tobi_rigid_world {
     int plane_count;
     tobi_line *lines;            /* owned by the caller, must outlive the state                 */
     int line_count;
+    tobi_constraints *constraints;    /* joints between bodies, the caller's                    */
     int threads;                 /* that look for contacts; they do not change the result       */
 } tobi_rigid_world;
 

@@ -120,6 +120,57 @@ static inline void push(tobi_solve_row *r, int k, double impulse)
     drive(r, k, impulse, r->a->speed, r->b->speed);
 }
 
+/* --- joints between bodies --------------------------------------------------------------------- */
+
+static void begin_joints(tobi_constraints *c, const tobi_body *bodies)
+{
+    tobi_constraints_take_inverse(c, bodies);
+    tobi_constraints_factor(c, bodies);
+    memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
+}
+
+static void obey_joints(tobi_solver *s)
+{
+    tobi_constraints *c = s->joints;
+    if (c->count == 0) return;
+    for (int k = 0; k < c->slots; k++) memcpy(c->speed[k], s->bodies[1 + c->body[k]].speed, sizeof *c->speed);
+    tobi_constraints_project(c, 1);
+    for (int k = 0; k < c->slots; k++) memcpy(s->bodies[1 + c->body[k]].speed, c->speed[k], sizeof *c->speed);
+}
+
+/* Angular momentum: of velocities the bodies have been told. */
+static void finish_joints(tobi_constraints *c, tobi_body *bodies)
+{
+    for (int k = 0; k < c->slots; k++) {
+        double f[6] = { 0 };
+        tobi_constraints_add_load(c, k, f);
+        tobi_rigid *r = &bodies[c->body[k]].rigid;
+        vec3_add_scaled(r->momentum, r->momentum, 1, f + 3);
+    }
+    tobi_constraints_count(c);
+}
+
+void tobi_solve_joints(tobi_body *bodies, tobi_constraints *c)
+{
+    if (c->count == 0) return;
+    begin_joints(c, bodies);
+    for (int k = 0; k < c->slots; k++) {
+        const tobi_rigid *r = &bodies[c->body[k]].rigid;
+        memcpy(c->speed[k], r->velocity, sizeof r->velocity);
+        memcpy(c->speed[k] + 3, r->angular_velocity, sizeof r->angular_velocity);
+    }
+    tobi_constraints_project(c, 1);
+    finish_joints(c, bodies);
+    for (int k = 0; k < c->slots; k++) {
+        tobi_rigid *r = &bodies[c->body[k]].rigid;
+        memcpy(r->velocity, c->speed[k], sizeof r->velocity);
+        memcpy(r->angular_velocity, c->speed[k] + 3, sizeof r->angular_velocity);
+        tobi_rigid_apply_locks(r);
+    }
+}
+
+/* --- contacts ---------------------------------------------------------------------------------- */
+
 static int is_fixed(const tobi_solve_body *b)
 {
     return b->shift[0] + b->shift[1] + b->shift[2] == 0 &&
@@ -193,6 +244,7 @@ static double sweep(tobi_solver *s, int64_t count)
     double change = 0;
     for (int64_t k = 0; k < count; k++) change = fmax(change, solve_row(&s->rows[k]));
     for (int64_t k = count; k-- > 0;) change = fmax(change, solve_row(&s->rows[k]));
+    obey_joints(s);
     s->sweeps += 2;
     return change;
 }
@@ -316,12 +368,15 @@ static double restitution_of(const tobi_touch *c, const tobi_body *bodies)
 }
 
 tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_touch_list *contacts,
-                       double dt, double bounce, tobi_error *err)
+                       tobi_constraints *joints, double dt, double bounce, tobi_error *err)
 {
     int64_t count = contacts->count;
     double fastest = 0;
     TOBI_TRY(reserve(s, count, body_count, err));
     take_bodies(s, bodies, body_count);
+    s->joints = joints;
+    if (joints->count) begin_joints(joints, bodies);
+    obey_joints(s);
     for (int64_t k = 0; k < count; k++) {
         tobi_solve_row *r = &s->rows[k];
         prepare(s, r, &contacts->at[k], bodies);
@@ -332,6 +387,7 @@ tobi_status tobi_solve(tobi_solver *s, tobi_body *bodies, int body_count, tobi_t
     sweep_all(s, count, fastest);
     push_out(s, count);
     for (int64_t k = 0; k < count; k++) finish(&s->rows[k], bodies, dt);
+    if (joints->count) finish_joints(joints, bodies);
     give_bodies(s, bodies, body_count);
     return TOBI_OK;
 }

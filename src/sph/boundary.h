@@ -63,6 +63,10 @@ int tobi_couple_any(const struct tobi_system *s);
 void tobi_couple_predict(struct tobi_system *s, int body, const double f[6]);
 /* Into links.answer of a body that was predicted: its accelerations by f alone. */
 void tobi_couple_answer(struct tobi_system *s, int body, const double f[6]);
+/* After those calls for all bodies: lets the answers obey the joints between bodies (P W f, symmetric). join:
+   first, at each pose, by the mobilities of the bodies. moving: of tobi_couple_predict. */
+void tobi_couple_join(struct tobi_system *s);
+void tobi_couple_obey(struct tobi_system *s, int moving);
 /* The bodies' velocities by all forces but this step's pressure, and the flux of the walls that they are,
    into particles.wall. */
 void tobi_couple_begin(struct tobi_system *s);

@@ -81,6 +81,38 @@ void tobi_couple_answer(tobi_system *s, int k, const double f[6])
     if (moves(&s->sim->bodies[k])) tobi_rigid_answer(r, f, answer);
 }
 
+void tobi_couple_join(tobi_system *s)
+{
+    tobi_constraints *c = &s->sim->constraints;
+    for (int k = 0; k < c->slots; k++)
+        for (int j = 0; j < 6; j++) {
+            double force[6] = { 0 }, moved[6];
+            force[j] = 1;
+            tobi_rigid_answer(&s->sim->bodies[c->body[k]].rigid, force, moved);
+            for (int i = 0; i < 6; i++) c->inverse[k][i][j] = moved[i];
+        }
+    if (c->count) tobi_constraints_factor(c, s->sim->bodies);
+}
+
+void tobi_couple_obey(tobi_system *s, int moving)
+{
+    tobi_constraints *c = &s->sim->constraints;
+    double now[6] = { 0 };
+    if (c->count == 0) return;
+    for (int step = 0; step < 2; step++) {
+        for (int k = 0; k < c->slots; k++) {
+            const tobi_rigid *r = &s->sim->bodies[c->body[k]].rigid;
+            double *answer = sph_of(s)->links.answer[c->body[k]];
+            for (int a = 0; a < 6 && moving; a++)
+                now[a] = a < 3 ? r->velocity[a] : r->angular_velocity[a - 3];
+            for (int a = 0; a < 6; a++)
+                if (step == 0) c->speed[k][a] = now[a] + answer[a];
+                else answer[a] = c->speed[k][a] - now[a];
+        }
+        if (step == 0) tobi_constraints_project(c, moving);
+    }
+}
+
 static tobi_couple_view see_entries(const tobi_system *s)
 {
     const tobi_boundary_links *links = &sph_of(s)->links;
@@ -118,6 +150,8 @@ void tobi_couple_begin(tobi_system *s)
         if (moves(&s->sim->bodies[k])) sph_body_hydrostatic(s, k, f);
         tobi_couple_predict(s, k, f);
     }
+    tobi_couple_join(s);
+    tobi_couple_obey(s, 1);
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_flux, &v, 0, s->particles.count, NULL);
 }
 
@@ -143,6 +177,7 @@ void tobi_couple_product(tobi_system *s, double *totals)
         for (int a = 0; a < TOBI_SUMS; a++) t[a] *= 2*s->smoothing.volume;
         tobi_couple_answer(s, k, t);
     }
+    tobi_couple_obey(s, 0);
     tobi_launch(&s->sim->exec, kernels_of(s)->couple_product, &v, 0, s->particles.count, t);
     if (!totals) return;
     totals[0] += t[0];
@@ -155,13 +190,37 @@ static void collect_forces(const tobi_system *s, const tobi_body *b, double f[6]
     for (int a = 0; a < 6; a++) f[a] = load->pressure[a] + load->friction[a];
 }
 
+/* Joined bodies, if particles see any of them. */
+static void correct_joined(tobi_system *s)
+{
+    tobi_constraints *c = &s->sim->constraints;
+    const int64_t *first = sph_of(s)->links.first;
+    int seen = 0;
+    for (int k = 0; k < c->slots; k++) seen |= first[c->body[k]] != first[c->body[k] + 1];
+    if (!seen) return;
+    for (int k = 0; k < c->slots; k++) {
+        tobi_body *b = &s->sim->bodies[c->body[k]];
+        double f[6];
+        collect_forces(s, b, f);
+        predict(s, b, f);
+        memcpy(c->speed[k], b->rigid.predicted, sizeof b->rigid.predicted);
+        memcpy(c->speed[k] + 3, b->rigid.predicted_spin, sizeof b->rigid.predicted_spin);
+    }
+    tobi_couple_join(s);
+    tobi_constraints_drive(c, s->sim->bodies, s->sim->dt);
+    for (int k = 0; k < c->slots; k++)
+        tobi_body_set_velocity(&s->sim->bodies[c->body[k]], c->speed[k], c->speed[k] + 3);
+}
+
 void tobi_couple_correct(tobi_system *s)
 {
     const int64_t *first = sph_of(s)->links.first;
+    correct_joined(s);
     for (int k = 0; k < s->sim->body_count; k++) {
         tobi_body *b = &s->sim->bodies[k];
         double f[6];
         if (!moves(b) || first[k] == first[k + 1]) continue;
+        if (tobi_constraints_slot(&s->sim->constraints, k) >= 0) continue;
         collect_forces(s, b, f);
         predict(s, b, f);
         tobi_body_correct(b, b->rigid.predicted, b->rigid.predicted_spin, s->dt);

@@ -311,11 +311,29 @@ static void predict(isph_solver *m, tobi_system *s, int k)
     for (int a = 0; a < 6; a++) answer[a] = b->explicit_change[a] += f[a];
 }
 
+/* Joints between bodies: W is (M + K)^-1. */
+static void join(isph_solver *m, tobi_system *s)
+{
+    tobi_constraints *c = &s->sim->constraints;
+    if (c->count == 0) return;
+    for (int k = 0; k < c->slots; k++) {
+        isph_body *b = &m->body[c->body[k]];
+        find_mobility(&s->sim->bodies[c->body[k]].rigid, b);
+        memcpy(c->inverse[k], b->mobility, sizeof b->mobility);
+    }
+    tobi_constraints_factor(c, s->sim->bodies);
+    tobi_couple_obey(s, 1);
+    for (int k = 0; k < c->slots; k++)
+        memcpy(m->body[c->body[k]].explicit_change, sph_of(s)->links.answer[c->body[k]],
+               sizeof m->body->explicit_change);
+}
+
 void isph_forces_predict(isph_solver *m, tobi_system *s)
 {
     if (!m->coupled) return;
     tobi_boundary_known_forces(s, 1);
     for (int k = 0; k < s->sim->body_count; k++) predict(m, s, k);
+    join(m, s);
     isph_bodies_accelerate(m, s, 1);
 }
 
@@ -328,6 +346,7 @@ static void answer(isph_solver *m, tobi_system *s, const double *pressure)
         if (s->sim->bodies[k].rigid.kind != TOBI_PRESCRIBED)
             multiply((const double (*)[6])m->body[k].added_mass_factor, sph_of(s)->links.answer[k]);
     }
+    tobi_couple_obey(s, 0);
 }
 
 void isph_forces_add_answer(isph_solver *m, double *product, const double *pressure)

@@ -32,11 +32,13 @@ tobi_status tobi_world_start_bodies(tobi_world *w, tobi_error *err)
             return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' changes its shape and moves by forces, which "
                              "%s does not know; fluids of dfsph, isph and wcsph do", s->sim->bodies[k].name,
                              tobi_world_solids(w)->method->name);
+    TOBI_TRY(tobi_constraints_start(&w->sim.constraints, w->sim.bodies, s->box.dimension, err));
     char *notes = malloc(NOTES);
     if (!notes) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for notes");
     describe_world(s, &world);
     world.lines = w->lines;
     world.line_count = w->line_count;
+    world.constraints = &w->sim.constraints;
     tobi_status status = tobi_rigid_start(s->sim->bodies, s->sim->body_count, &world, notes, NOTES,
                                           &w->dynamics, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", NULL, notes, err);

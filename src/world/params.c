@@ -79,9 +79,9 @@ const tobi_param_table tobi_world_table = {
 const tobi_param_table *tobi_param_table_at(int index)
 {
     static const tobi_param_table *const others[] = {
-        &tobi_fluid_table, &tobi_interface_table, &tobi_solid_table, &tobi_fill_table,   &tobi_body_table,
+        &tobi_fluid_table, &tobi_interface_table, &tobi_solid_table, &tobi_fill_table, &tobi_body_table,
         &tobi_plane_table, &tobi_inlet_table, &tobi_outlet_table, &tobi_probe_table, &tobi_line_table,
-        &tobi_output_table, &tobi_view_table, &tobi_reference_table, &tobi_gravity_table,
+        &tobi_joint_table, &tobi_output_table, &tobi_view_table, &tobi_reference_table, &tobi_gravity_table,
         &tobi_damping_table
     };
     if (index == 0) return &tobi_world_table;
@@ -132,6 +132,7 @@ DEFAULT(outlet)
 DEFAULT(interface)
 DEFAULT(probe)
 DEFAULT(line)
+DEFAULT(joint)
 DEFAULT(output)
 DEFAULT(reference)
 DEFAULT(gravity)

@@ -182,6 +182,27 @@ static const tobi_param line_rows[] = {
 const tobi_param_table tobi_line_table = {
     "line", "An entry of lines: a spring, a rope or a mooring line.", sizeof(tobi_line_def), line_rows };
 
+static const tobi_param joint_rows[] = {
+    { .key = "name", TEXT, AT(tobi_joint_def, name), .unit = "name", .text = "joint", .required = true,
+      .doc = "Name of the joint, used once in a scene and in the columns of joints.csv." },
+    { .key = "kind", CHOICE("hinge|ball", 2), AT(tobi_joint_def, kind),
+      .doc = "A hinge lets the bodies turn against each other about its axis, a ball joint about its point. "
+             "In 2-D both are the same." },
+    { .key = "body", TEXT, AT(tobi_joint_def, body), .unit = "name", .required = true,
+      .doc = "Name of the free or controlled body that it holds." },
+    { .key = "to_body", TEXT, AT(tobi_joint_def, to_body), .unit = "name",
+      .doc = "Name of the body that it is joined to, which may be prescribed; without it, the domain." },
+    { .key = "point", VEC3, AT(tobi_joint_def, point), PLACE, .unit = "m", .required = true,
+      .doc = "Where they are joined, as the bodies start." },
+    { .key = "axis", VEC3, AT(tobi_joint_def, axis), DIRECTION, .unit = "1",
+      .doc = "Direction of the axis of a hinge, as the bodies start; in 2-D it is along z." },
+    { 0 }
+};
+
+const tobi_param_table tobi_joint_table = {
+    "joint", "An entry of joints: joins a body to another one, or to the domain.", sizeof(tobi_joint_def),
+    joint_rows };
+
 static const tobi_param plane_rows[] = {
     { .key = "point", VEC3, AT(tobi_plane_def, point), PLACE, .unit = "m", .required = true,
       .doc = "Any point of the plane, in the domain." },

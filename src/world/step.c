@@ -64,6 +64,7 @@ static tobi_status predict_bodies(tobi_simulation *s, tobi_error *err)
         tobi_body_clear_loads(&s->bodies[k]);
         TOBI_TRY(tobi_body_predict(&s->bodies[k], s->time, s->dt, &s->body_speed, err));
     }
+    TOBI_TRY(tobi_constraints_close(&s->constraints, s->bodies, s->time, s->dt, err));
     tobi_stage_end(&s->stages, "motion", &clock);
     return TOBI_OK;
 }

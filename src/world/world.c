@@ -88,6 +88,7 @@ void tobi_world_destroy(tobi_world *w)
     free(w->probes);
     tobi_openings_free(w);
     free(w->lines);
+    tobi_constraints_free(&w->sim.constraints);
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
     free(w->texture);

@@ -16,6 +16,7 @@ typedef struct rig {
     int count;
     tobi_box box;
     tobi_rigid_world world;
+    tobi_constraints joints;
     tobi_dynamics_state *state;
     double time;
     char notes[4000];
@@ -34,6 +35,7 @@ static inline void rig_open(rig *g, double size, const double gravity[3])
         g->world.size[a] = size;
         g->world.wall[a] = 3;
     }
+    g->world.constraints = &g->joints;
 }
 
 static inline tobi_body_def rig_def(void)
@@ -82,6 +84,8 @@ static inline tobi_body *rig_ball(rig *g, tobi_body_def def, double radius, cons
 static inline void rig_start(rig *g)
 {
     tobi_error err = { 0 };
+    if (tobi_constraints_start(&g->joints, g->bodies, g->world.dimension, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
     if (tobi_rigid_start(g->bodies, g->count, &g->world, g->notes, sizeof g->notes, &g->state, &err) !=
         TOBI_OK)
         fail_msg("%s", err.text);
@@ -92,10 +96,11 @@ static inline void rig_step(rig *g, double dt)
     tobi_error err = { 0 };
     double speed = 0;
     tobi_status status = TOBI_OK;
-    for (int k = 0; k < g->count && status == TOBI_OK; k++) {
+    for (int k = 0; k < g->count && status == TOBI_OK; k++)
         status = tobi_body_predict(&g->bodies[k], g->time, dt, &speed, &err);
-        if (status == TOBI_OK) status = tobi_body_advance(&g->bodies[k], g->time + dt, dt, &err);
-    }
+    if (status == TOBI_OK) status = tobi_constraints_close(&g->joints, g->bodies, g->time, dt, &err);
+    for (int k = 0; k < g->count && status == TOBI_OK; k++)
+        status = tobi_body_advance(&g->bodies[k], g->time + dt, dt, &err);
     g->time += dt;
     if (status == TOBI_OK) status = tobi_rigid_step(g->state, g->time, dt, &err);
     if (status != TOBI_OK) fail_msg("%s", err.text);
@@ -122,6 +127,7 @@ static inline double rig_energy(const rig *g)
 static inline void rig_close(rig *g)
 {
     tobi_rigid_free(g->state);
+    tobi_constraints_free(&g->joints);
     for (int k = 0; k < g->count; k++) tobi_body_free(&g->bodies[k]);
     free(g->bodies);
 }

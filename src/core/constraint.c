@@ -1,0 +1,447 @@
+/* Joints between bodies: all of them in one dense factor, so that a chain is solved exactly, without sweeps.
+   Closed at both ends of a step like RATTLE (H. C. Andersen, J. Comput. Phys. 52 (1983) 24), they keep the
+   energy. Drawback: rows that others determine (closed loops, locked axes) are found by a small pivot. */
+#include "core/constraint.h"
+#include "base/error.h"
+#include "geom/vec3.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEPENDENT 1e-11          /* of a diagonal entry: a pivot below it is rounding                  */
+#define CLOSED 1e-13             /* of `reach`, or rad: gaps that are as good as none                  */
+enum { MOST_ROUNDS = 40 };
+
+/* --- from definitions ------------------------------------------------------------------------- */
+
+static int moves(const tobi_body *bodies, int body)
+{
+    return body >= 0 && bodies[body].rigid.kind != TOBI_PRESCRIBED;
+}
+
+static int count_rows(const tobi_constraints *c, const tobi_constraint *j)
+{
+    return c->dimension == 2 ? 2 : j->kind == TOBI_BETWEEN_BALL ? 3 : 5;
+}
+
+static int find_slot(tobi_constraints *c, const tobi_body *bodies, int body)
+{
+    if (!moves(bodies, body)) return -1;
+    const int slot = tobi_constraints_slot(c, body);
+    if (slot >= 0) return slot;
+    c->body[c->slots] = body;
+    return c->slots++;
+}
+
+/* w x y z of the body against the other. */
+static void find_turn(const tobi_constraint *j, const tobi_body *bodies, double q[4])
+{
+    double to[4] = { 1, 0, 0, 0 };
+    if (j->body[1] >= 0) memcpy(to, bodies[j->body[1]].rigid.orientation, sizeof to);
+    for (int a = 1; a < 4; a++) to[a] = -to[a];
+    tobi_quaternion_product(to, bodies[j->body[0]].rigid.orientation, q);
+}
+
+static void free_work(tobi_constraints *c)
+{
+    free(c->body);
+    free(c->row);
+    free(c->inverse);
+    free(c->speed);
+    free(c->factor);
+    free(c->impulse);
+    free(c->change);
+    *c = (tobi_constraints){ .at = c->at, .count = c->count };
+}
+
+static tobi_status allocate(tobi_constraints *c, tobi_error *err)
+{
+    const size_t rows = (size_t)c->rows, slots = (size_t)c->slots;
+    c->inverse = calloc(slots + 1, sizeof *c->inverse);
+    c->speed = calloc(slots + 1, sizeof *c->speed);
+    c->factor = calloc(rows*rows + 1, sizeof *c->factor);
+    c->impulse = calloc(rows + 1, sizeof *c->impulse);
+    c->change = calloc(rows + 1, sizeof *c->change);
+    if (c->inverse && c->speed && c->factor && c->impulse && c->change) return TOBI_OK;
+    return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d joints", c->count);
+}
+
+tobi_status tobi_constraints_start(tobi_constraints *c, const tobi_body *bodies, int dimension,
+                                   tobi_error *err)
+{
+    const size_t most = (size_t)c->count*TOBI_CONSTRAINT_ROWS;
+    free_work(c);                                /* of a start that failed later */
+    if (c->count == 0) return TOBI_OK;
+    c->dimension = dimension;
+    c->body = calloc(2*(size_t)c->count, sizeof *c->body);
+    c->row = calloc(most, sizeof *c->row);
+    if (!c->body || !c->row) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %d joints", c->count);
+    for (int k = 0; k < c->count; k++) {
+        tobi_constraint *j = &c->at[k];
+        for (int i = count_rows(c, j); i > 0; i--, c->rows++)
+            for (int side = 0; side < 2; side++)
+                c->row[c->rows].slot[side] = find_slot(c, bodies, j->body[side]);
+        find_turn(j, bodies, j->start);
+        for (int side = 0; side < 2; side++) c->reach = fmax(c->reach, vec3_length(j->point[side]));
+    }
+    for (int k = 0; k < c->slots; k++)
+        c->reach = fmax(c->reach, vec3_length(bodies[c->body[k]].rigid.position));
+    return allocate(c, err);
+}
+
+int tobi_constraints_slot(const tobi_constraints *c, int body)
+{
+    int k = 0;
+    while (k < c->slots && c->body[k] != body) k++;
+    return k < c->slots ? k : -1;
+}
+
+void tobi_constraints_free(tobi_constraints *c)
+{
+    free_work(c);
+    free(c->at);
+    memset(c, 0, sizeof *c);
+}
+
+int tobi_constraints_join(const tobi_constraints *c, int a, int b)
+{
+    for (int k = 0; k < c->count; k++) {
+        const int *body = c->at[k].body;
+        if ((body[0] == a && body[1] == b) || (body[0] == b && body[1] == a)) return 1;
+    }
+    return 0;
+}
+
+/* --- rows --------------------------------------------------------------------------------------- */
+
+/* Where one side of a joint is, m from the domain's lower corner, and its axis; next: at the next pose. */
+static void find_end(const tobi_constraint *j, int side, const tobi_body *bodies, int next, double point[3],
+                     double axis[3])
+{
+    const int body = j->body[side];
+    double m[3][3];
+    memcpy(point, j->point[side], 3*sizeof *point);
+    memcpy(axis, j->axis[side], 3*sizeof *axis);
+    if (body < 0) return;
+    const tobi_rigid *r = &bodies[body].rigid;
+    if (next && r->kind == TOBI_PRESCRIBED) {
+        memcpy(point, j->next_point, 3*sizeof *point);
+        memcpy(axis, j->next_axis, 3*sizeof *axis);
+        return;
+    }
+    tobi_quaternion_matrix(next ? r->next_orientation : r->orientation, m);
+    for (int a = 0; a < 3; a++) {
+        point[a] = (next ? r->next_position : r->position)[a] + vec3_dot(m[a], j->point[side]);
+        axis[a] = vec3_dot(m[a], j->axis[side]);
+    }
+}
+
+/* Two directions across n, the same for the same n. */
+static void make_tangents(const double n[3], double out[2][3])
+{
+    const int k = fabs(n[0]) < 0.6 ? 0 : fabs(n[1]) < 0.6 ? 1 : 2;
+    const double e[3] = { k == 0, k == 1, k == 2 };
+    vec3_cross(out[0], n, e);
+    vec3_normalize(out[0]);
+    vec3_cross(out[1], n, out[0]);
+}
+
+/* Along the axes of the domain the places do not part; about two axes across a hinge the bodies do not turn
+   against each other. */
+static void make_rows(const tobi_constraints *c, const tobi_constraint *j, const tobi_body *bodies,
+                      tobi_constraint_row *row, int count)
+{
+    double point[2][3], axis[2][3], across[2][3];
+    for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
+    make_tangents(axis[0], across);
+    for (int i = 0; i < count; i++) {
+        const double along[3] = { i == 0, i == 1, i == 2 };
+        tobi_constraint_row *r = &row[i];
+        r->turns = i >= c->dimension;
+        memcpy(r->axis, r->turns ? across[i - c->dimension] : along, sizeof r->axis);
+        memset(r->jacobian, 0, sizeof r->jacobian);
+        for (int side = 0; side < 2; side++) {
+            double arm[3], lever[3];
+            if (r->slot[side] < 0) continue;
+            vec3_sub(arm, point[side], bodies[j->body[side]].rigid.position);
+            vec3_cross(lever, arm, r->axis);
+            for (int a = 0; a < 3; a++) {
+                r->jacobian[side][a] = r->turns ? 0 : (side ? 1 : -1)*r->axis[a];
+                r->jacobian[side][3 + a] = (side ? 1 : -1)*(r->turns ? r->axis[a] : lever[a]);
+            }
+        }
+    }
+}
+
+/* How far a joint is open at the next pose, in its rows. */
+static void find_gap(const tobi_constraint *j, const tobi_body *bodies, tobi_constraint_row *row, int count)
+{
+    double point[2][3], axis[2][3], apart[3], turned[3];
+    for (int side = 0; side < 2; side++) find_end(j, side, bodies, 1, point[side], axis[side]);
+    vec3_sub(apart, point[1], point[0]);
+    vec3_cross(turned, axis[0], axis[1]);
+    for (int i = 0; i < count; i++) row[i].gap = vec3_dot(row[i].axis, row[i].turns ? turned : apart);
+}
+
+/* --- the equation ----------------------------------------------------------------------------- */
+
+static double dot6(const double a[6], const double b[6])
+{
+    return vec3_dot(a, b) + vec3_dot(a + 3, b + 3);
+}
+
+void tobi_constraints_take_inverse(tobi_constraints *c, const tobi_body *bodies)
+{
+    for (int k = 0; k < c->slots; k++) {
+        const tobi_rigid *r = &bodies[c->body[k]].rigid;
+        double shift[3], turn[3][3], s[6], (*w)[6] = c->inverse[k];
+        tobi_rigid_inverse(r, shift, turn);
+        tobi_joint_freedom(r, s);
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j < 6; j++) w[i][j] = r->joint.kind ? s[i]*s[j] : 0;
+        for (int i = 0; i < 3; i++) {
+            w[i][i] += shift[i];
+            for (int j = 0; j < 3; j++) w[3 + i][3 + j] += turn[i][j];
+        }
+    }
+}
+
+/* J W J^T of two rows. */
+static double couple(const tobi_constraint_row *p, const tobi_constraint_row *q)
+{
+    double sum = 0;
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            if (p->slot[i] >= 0 && p->slot[i] == q->slot[k]) sum += dot6(p->jacobian[i], q->answer[k]);
+    return sum;
+}
+
+/* Cholesky's, by rows; of a chain most of it is zero and left out. */
+static void factorize(tobi_constraints *c)
+{
+    const int n = c->rows;
+    for (int i = 0; i < n; i++) {
+        double *a = c->factor + (size_t)i*(size_t)n;
+        tobi_constraint_row *p = &c->row[i];
+        p->first = i;
+        for (int j = i; j-- > 0;) {
+            a[j] = couple(p, &c->row[j]);
+            if (a[j] != 0) p->first = j;
+        }
+        const double whole = couple(p, p);
+        double left = whole;
+        for (int j = p->first; j < i; j++) {
+            const double *b = c->factor + (size_t)j*(size_t)n;
+            const int first = p->first > c->row[j].first ? p->first : c->row[j].first;
+            for (int k = first; k < j; k++) a[j] -= a[k]*b[k];
+            a[j] *= c->row[j].inverse;
+            left -= a[j]*a[j];
+        }
+        p->inverse = left > DEPENDENT*whole ? 1/sqrt(left) : 0;
+    }
+}
+
+void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies)
+{
+    tobi_constraint_row *row = c->row;
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
+        make_rows(c, &c->at[k], bodies, row, count_rows(c, &c->at[k]));
+    for (int i = 0; i < c->rows; i++)
+        for (int side = 0; side < 2; side++) {
+            tobi_constraint_row *r = &c->row[i];
+            for (int a = 0; a < 6 && r->slot[side] >= 0; a++)
+                r->answer[side][a] = dot6(c->inverse[r->slot[side]][a], r->jacobian[side]);
+        }
+    factorize(c);
+}
+
+/* x = (J W J^T)^-1 x */
+static void solve(const tobi_constraints *c, double *x)
+{
+    const int n = c->rows;
+    for (int i = 0; i < n; i++) {
+        const double *a = c->factor + (size_t)i*(size_t)n;
+        for (int j = c->row[i].first; j < i; j++) x[i] -= a[j]*x[j];
+        x[i] *= c->row[i].inverse;
+    }
+    for (int i = n; i-- > 0;) {
+        const double *a = c->factor + (size_t)i*(size_t)n;
+        x[i] *= c->row[i].inverse;
+        for (int j = c->row[i].first; j < i; j++) x[j] -= a[j]*x[i];
+    }
+}
+
+/* Impulses c->change act on the speeds and count. */
+static void apply_change(tobi_constraints *c)
+{
+    for (int i = 0; i < c->rows; i++) {
+        const tobi_constraint_row *r = &c->row[i];
+        c->impulse[i] += c->change[i];
+        for (int side = 0; side < 2; side++)
+            for (int a = 0; a < 6 && r->slot[side] >= 0; a++)
+                c->speed[r->slot[side]][a] += c->change[i]*r->answer[side][a];
+    }
+}
+
+void tobi_constraints_project(tobi_constraints *c, int moving)
+{
+    for (int i = 0; i < c->rows; i++) {
+        const tobi_constraint_row *r = &c->row[i];
+        c->change[i] = moving ? -r->pace : 0;
+        for (int side = 0; side < 2; side++)
+            if (r->slot[side] >= 0) c->change[i] -= dot6(r->jacobian[side], c->speed[r->slot[side]]);
+    }
+    solve(c, c->change);
+    apply_change(c);
+}
+
+void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6])
+{
+    for (int i = 0; i < c->rows; i++)
+        for (int side = 0; side < 2; side++)
+            for (int a = 0; a < 6 && c->row[i].slot[side] == slot; a++)
+                f[a] += c->impulse[i]*c->row[i].jacobian[side][a];
+}
+
+/* --- poses -------------------------------------------------------------------------------------- */
+
+/* Where the motion of a prescribed body takes a joint, and how fast that opens it. */
+static tobi_status follow_motion(const tobi_constraints *c, tobi_constraint *j, const tobi_body *bodies,
+                                 double t, double dt, tobi_constraint_row *row, tobi_error *err)
+{
+    const tobi_body *b = j->body[1] >= 0 ? &bodies[j->body[1]] : NULL;
+    const int count = count_rows(c, j);
+    double rest[2][3], now[2][3], point[3], axis[3], shift[3], turned[3];
+    for (int i = 0; i < count; i++) row[i].pace = 0;
+    if (!b || b->rigid.kind != TOBI_PRESCRIBED) return TOBI_OK;
+    vec3_add_scaled(rest[0], b->rest.centre, 1, j->point[1]);
+    vec3_add_scaled(rest[1], rest[0], c->reach, j->axis[1]);
+    memcpy(now, rest, sizeof now);
+    if (b->motion) TOBI_TRY(tobi_body_ask_motion(b, t + dt, 2, (const double (*)[3])rest, now, err));
+    vec3_sub(j->next_point, now[0], b->lower);
+    vec3_sub(j->next_axis, now[1], now[0]);
+    vec3_normalize(j->next_axis);
+    find_end(j, 1, bodies, 0, point, axis);
+    vec3_sub(shift, j->next_point, point);
+    vec3_cross(turned, axis, j->next_axis);
+    for (int i = 0; i < count; i++) row[i].pace = vec3_dot(row[i].axis, row[i].turns ? turned : shift)/dt;
+    return TOBI_OK;
+}
+
+/* The largest gap at the next pose, in units of CLOSED. */
+static double find_gaps(tobi_constraints *c, const tobi_body *bodies)
+{
+    tobi_constraint_row *row = c->row;
+    double most = 0;
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
+        find_gap(&c->at[k], bodies, row, count_rows(c, &c->at[k]));
+    for (int i = 0; i < c->rows; i++) most = fmax(most, fabs(c->row[i].gap)/(c->row[i].turns ? 1 : c->reach));
+    return most/CLOSED;
+}
+
+/* The next poses by the impulses so far. driven: by velocities in `speed`, which have them. */
+static void drift(const tobi_constraints *c, tobi_body *bodies, double dt, int driven)
+{
+    for (int k = 0; k < c->slots; k++) {
+        tobi_rigid *r = &bodies[c->body[k]].rigid;
+        memset(r->constraint, 0, sizeof r->constraint);
+        tobi_constraints_add_load(c, k, r->constraint);
+        if (driven) tobi_rigid_drift_by(r, c->speed[k], c->speed[k] + 3, dt);
+        else tobi_rigid_drift(r, dt);
+    }
+}
+
+/* Newton's method with the matrix of the present pose: each round leaves a share of the gaps that is of the
+   order of the angle turned in the step. It ends where rounding does. */
+static void close_gaps(tobi_constraints *c, tobi_body *bodies, double dt, int driven)
+{
+    double before = INFINITY;
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        drift(c, bodies, dt, driven);
+        const double now = find_gaps(c, bodies);
+        if (now <= 1e-2 || (now <= 1 && now > 0.5*before)) break;
+        before = now;
+        for (int i = 0; i < c->rows; i++) c->change[i] = -c->row[i].gap/dt;
+        solve(c, c->change);
+        apply_change(c);
+    }
+    for (int k = 0; k < c->slots; k++) tobi_body_place_next(&bodies[c->body[k]]);
+}
+
+static void forget_impulses(tobi_constraints *c)
+{
+    for (int k = 0; k < c->count; k++) memset(c->at[k].impulse, 0, sizeof c->at[k].impulse);
+    memset(c->impulse, 0, (size_t)c->rows*sizeof *c->impulse);
+}
+
+tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, double t, double dt,
+                                   tobi_error *err)
+{
+    tobi_constraint_row *row = c->row;
+    if (c->count == 0) return TOBI_OK;
+    tobi_constraints_take_inverse(c, bodies);
+    tobi_constraints_factor(c, bodies);
+    for (int k = 0; k < c->count; row += count_rows(c, &c->at[k]), k++)
+        TOBI_TRY(follow_motion(c, &c->at[k], bodies, t, dt, row, err));
+    forget_impulses(c);
+    close_gaps(c, bodies, dt, 0);
+    tobi_constraints_count(c);
+    return TOBI_OK;
+}
+
+void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt)
+{
+    forget_impulses(c);
+    tobi_constraints_project(c, 1);
+    close_gaps(c, bodies, dt, 1);
+    tobi_constraints_count(c);
+}
+
+void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies)
+{
+    for (int again = 1; again;) {
+        again = 0;
+        for (int k = 0; k < c->count; k++) {
+            const int *body = c->at[k].body;
+            if (!moves(bodies, body[0]) || !moves(bodies, body[1])) continue;
+            tobi_rigid *a = &bodies[body[0]].rigid, *b = &bodies[body[1]].rigid;
+            if (tobi_rigid_has_pull(a) == tobi_rigid_has_pull(b)) continue;
+            tobi_rigid_drop_pull(a);
+            tobi_rigid_drop_pull(b);
+            again = 1;
+        }
+    }
+}
+
+/* --- what is told ------------------------------------------------------------------------------- */
+
+void tobi_constraints_count(tobi_constraints *c)
+{
+    const double *impulse = c->impulse;
+    const tobi_constraint_row *row = c->row;
+    for (int k = 0; k < c->count; k++)
+        for (int i = count_rows(c, &c->at[k]); i > 0; i--, row++, impulse++)
+            vec3_add_scaled(c->at[k].impulse + 3*row->turns, c->at[k].impulse + 3*row->turns, -*impulse,
+                            row->axis);
+}
+
+void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, double dt)
+{
+    const double degree = acos(-1)/180;
+    for (int k = 0; k < c->count; k++) {
+        tobi_constraint *j = &c->at[k];
+        double point[2][3], axis[2][3], q[4], back[4];
+        for (int side = 0; side < 2; side++) find_end(j, side, bodies, 0, point[side], axis[side]);
+        for (int a = 0; a < 3; a++) {
+            j->info.force[a] = dt > 0 ? j->impulse[a]/dt : 0;
+            j->info.moment[a] = dt > 0 ? j->impulse[3 + a]/dt : 0;
+        }
+        j->info.gap = sqrt(vec3_distance2(point[0], point[1]));
+        find_turn(j, bodies, q);
+        for (int a = 0; a < 4; a++) back[a] = a ? -j->start[a] : j->start[a];
+        tobi_quaternion_product(q, back, q);
+        const int hinge = c->dimension == 2 || j->kind == TOBI_BETWEEN_HINGE;
+        const double sine = hinge ? vec3_dot(q + 1, j->axis[1]) : vec3_length(q + 1);
+        j->info.angle = remainder(2*atan2(sine, q[0]), 2*acos(-1))/degree;
+    }
+}

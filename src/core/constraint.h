@@ -1,0 +1,79 @@
+/* Joints between two bodies, or of a body and the domain, as constraints: rows of a matrix J. With W, the
+   inverse mass and inertia of the bodies, impulses l = -(J W J^T)^-1 (J v - pace) make velocities obey.
+   docs/decisions/0074-joints-between-bodies.md, docs/theory/rigid.md, "Joints between bodies". */
+#pragma once
+#include "core/body.h"
+
+enum { TOBI_CONSTRAINT_ROWS = 5 };       /* of a hinge in 3-D */
+
+/* A row: the change of one number by velocity and angular velocity of both bodies. */
+typedef struct tobi_constraint_row {
+    double axis[3];                      /* of length 1                                                 */
+    int turns;                           /* 1: about the axis, 0: along it                              */
+    int slot[2];                         /* of the bodies, -1: none that moves by forces                */
+    double jacobian[2][6], answer[2][6]; /* J and W J^T                                                 */
+    double pace;                         /* m/s, rad/s: what the motion of the other side asks for      */
+    double gap;                          /* m, rad, of the next pose                                    */
+    int first;                           /* first column of this row of the factor that is not 0        */
+    double inverse;                      /* of the factor's diagonal; 0: others determine this row      */
+} tobi_constraint_row;
+
+typedef struct tobi_constraint {
+    char name[64];
+    int kind;                            /* tobi_joint_between                                          */
+    int body[2];                         /* that is joined, and to which; -1: the domain                */
+    double point[2][3], axis[2][3];      /* m, in rest axes about the bodies' centres; of the domain from
+                                            its lower corner                                            */
+    double start[4];                     /* how the body is turned against the other at the start       */
+    double next_point[3], next_axis[3];  /* at the end of the step, of a body that is prescribed        */
+    double impulse[6];                   /* N s, N m s at the joint: on the body, in this step          */
+    tobi_joint_info info;
+} tobi_constraint;
+
+typedef struct tobi_constraints {
+    tobi_constraint *at;
+    int count, dimension;
+    int *body;                           /* [slots] bodies that joints hold and forces move             */
+    int slots;
+    double (*inverse)[6][6];             /* [slots] W                                                   */
+    double (*speed)[6];                  /* [slots] m/s, rad/s: what is projected                       */
+    tobi_constraint_row *row;
+    int rows;
+    double *factor;                      /* [rows][rows] of J W J^T, lower triangle                     */
+    double *impulse, *change;            /* [rows] N s, N m s                                           */
+    double reach;                        /* m, to compare gaps with                                     */
+} tobi_constraints;
+
+/* Takes constraints whose names, kinds, bodies, points and axes are given, over; then `at` is the list's. */
+tobi_status tobi_constraints_start(tobi_constraints *c, const tobi_body *bodies, int dimension,
+                                   tobi_error *err);
+void tobi_constraints_free(tobi_constraints *c);
+/* Whether a joint holds both bodies: then they do not touch each other. */
+int tobi_constraints_join(const tobi_constraints *c, int a, int b);
+
+/* Of a body, -1: no joint holds it, or no force moves it. */
+int tobi_constraints_slot(const tobi_constraints *c, int body);
+
+/* W of the bodies as they are. */
+void tobi_constraints_take_inverse(tobi_constraints *c, const tobi_body *bodies);
+/* J at the present pose and the factor of J W J^T, for W in `inverse`. */
+void tobi_constraints_factor(tobi_constraints *c, const tobi_body *bodies);
+/* Makes `speed` obey; impulses are added to `impulse`. moving: 0 for accelerations, that bodies with a motion
+   do not have in this step. */
+void tobi_constraints_project(tobi_constraints *c, int moving);
+/* Adds J^T impulse to f, N s and N m s about the centre of the body in a slot. */
+void tobi_constraints_add_load(const tobi_constraints *c, int slot, double f[6]);
+
+/* After all bodies were predicted from t to t + dt: joints are closed at the next pose, too; the impulses for
+   that are in tobi_rigid.constraint. */
+tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, double t, double dt,
+                                   tobi_error *err);
+/* The same where a liquid lets them drift by velocities of its own, in `speed`, which then obey; after
+   tobi_constraints_factor. */
+void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt);
+/* What contact holds on one side of a joint drifts without the pull on the other side, too. */
+void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies);
+/* Adds the impulses of the last projections to what the joints did in this step. */
+void tobi_constraints_count(tobi_constraints *c);
+/* Force, moment, angle and gap after a step of dt, s; 0: force and moment are not known. */
+void tobi_constraints_report(tobi_constraints *c, const tobi_body *bodies, double dt);

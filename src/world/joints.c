@@ -1,0 +1,102 @@
+/* Joints between bodies: added by definition after the bodies that they hold, read by number. Drawback: what
+   a body's own hinge or guide leaves it may contradict a joint, which then gives way and is told as a gap. */
+#include "base/error.h"
+#include "base/param.h"
+#include "core/constraint.h"
+#include "geom/vec3.h"
+#include "world/world.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, tobi_constraint *j,
+                                tobi_error *err)
+{
+    const char *names[2] = { def->body, def->to_body };
+    for (int side = 0; side < 2; side++) {
+        j->body[side] = names[side] ? tobi_world_find_body(w, names[side]) : -1;
+        if (names[side] && j->body[side] < 0)
+            return tobi_fail(err, TOBI_INVALID, "joint '%s': there is no body '%s'", def->name, names[side]);
+        const tobi_body *b = j->body[side] >= 0 ? &w->sim.bodies[j->body[side]] : NULL;
+        if (b && b->deforms)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' deforms; a joint holds rigid ones",
+                             def->name, names[side]);
+        if (b && b->absent[0] > 0)
+            return tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' is absent at times; a joint holds "
+                             "bodies that stay", def->name, names[side]);
+    }
+    if (j->body[0] == j->body[1])
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': both sides are body '%s'", def->name, def->body);
+    if (w->sim.bodies[j->body[0]].rigid.kind == TOBI_PRESCRIBED)
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': body '%s' is prescribed; a joint holds a free or "
+                         "controlled one, and may go to a prescribed one", def->name, def->body);
+    return TOBI_OK;
+}
+
+static tobi_status check_axis(const tobi_joint_def *def, int dimension, tobi_constraint *j, double axis[3],
+                              tobi_error *err)
+{
+    memcpy(axis, def->axis, sizeof def->axis);
+    const int given = vec3_dot(axis, axis) > 0;
+    j->kind = def->kind;
+    if (dimension == 2 && (axis[0] != 0 || axis[1] != 0))
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': its axis is along z in 2-D", def->name);
+    if (dimension == 2 && !given) axis[2] = 1;
+    if (dimension == 3 && def->kind == TOBI_BETWEEN_HINGE && !given)
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': a hinge has an axis", def->name);
+    if (def->kind == TOBI_BETWEEN_BALL && given)
+        return tobi_fail(err, TOBI_INVALID, "joint '%s': a ball joint has no axis", def->name);
+    vec3_normalize(axis);
+    return TOBI_OK;
+}
+
+/* A place and a direction at the start into rest axes about a body's centre, or from the lower corner. */
+static void localize(const tobi_world *w, const double place[3], const double axis[3], int side,
+                     tobi_constraint *j)
+{
+    double arm[3], turn[3][3];
+    vec3_sub(arm, place, w->system[0].box.lower);
+    memcpy(j->point[side], arm, sizeof arm);
+    memcpy(j->axis[side], axis, 3*sizeof *axis);
+    if (j->body[side] < 0) return;
+    const tobi_rigid *r = &w->sim.bodies[j->body[side]].rigid;
+    vec3_sub(arm, arm, r->position);
+    if (w->system[0].box.dimension == 2) arm[2] = 0;
+    tobi_quaternion_matrix(r->orientation, turn);
+    for (int a = 0; a < 3; a++) {
+        j->point[side][a] = turn[0][a]*arm[0] + turn[1][a]*arm[1] + turn[2][a]*arm[2];
+        j->axis[side][a] = turn[0][a]*axis[0] + turn[1][a]*axis[1] + turn[2][a]*axis[2];
+    }
+}
+
+tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_error *err)
+{
+    TOBI_NEED_WORLD(w);
+    TOBI_NEED(def, "the definition");
+    TOBI_TRY(tobi_param_check(&tobi_joint_table, def, err));
+    TOBI_NEED(def->name, "the name of the joint");
+    tobi_constraints *c = &w->sim.constraints;
+    tobi_constraint j = { 0 };
+    double axis[3];
+    if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more joints");
+    if (c->count == TOBI_JOINT_LIMIT)
+        return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d joints", TOBI_JOINT_LIMIT);
+    TOBI_TRY(check_bodies(w, def, &j, err));
+    TOBI_TRY(check_axis(def, w->system[0].box.dimension, &j, axis, err));
+    snprintf(j.name, sizeof j.name, "%s", def->name);
+    for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
+    tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);
+    if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a joint");
+    c->at = more;
+    c->at[c->count++] = j;
+    return TOBI_OK;
+}
+
+int tobi_world_joint_count(const tobi_world *w) { return w ? w->sim.constraints.count : 0; }
+
+const char *tobi_world_joint(const tobi_world *w, int joint, tobi_joint_info *info)
+{
+    if (!w || joint < 0 || joint >= w->sim.constraints.count) return NULL;
+    if (info) *info = w->sim.constraints.at[joint].info;
+    return w->sim.constraints.at[joint].name;
+}
