@@ -120,7 +120,7 @@ struct tobi_run {
     int series;
     int64_t listed, missing;              /* outputs in the lists; files that should be there */
 
-    tobi_csv *history, *bodies, *probes, *lines;        /* NULL where the scene has none */
+    tobi_csv *history, *bodies, *probes, *lines, *joints;        /* NULL where the scene has none */
     int64_t outputs;                      /* taken so far = number of the next       */
     tobi_tally since, total;              /* since the last output; of the run       */
     tobi_body_tally *body_since;          /* one per body                            */
@@ -176,6 +176,9 @@ bool tobi_record_is_due(double every, double before, double now);
 /* record/lines.c: lines.csv, as often as probes.csv. */
 tobi_status tobi_lines_open(tobi_run *run, bool continued, tobi_error *err);
 tobi_status tobi_lines_write(tobi_run *run, double before, tobi_error *err);
+/* record/joints.c: joints.csv, likewise. */
+tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err);
+tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to the world's time. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);

@@ -103,7 +103,7 @@ static void tell_losses(tobi_run *run)
 {
     const struct { const tobi_csv *csv; const char *name; } tables[] = {
         { run->history, "history.csv" }, { run->bodies, "bodies.csv" }, { run->probes, "probes.csv" },
-        { run->lines, "lines.csv" } };
+        { run->lines, "lines.csv" }, { run->joints, "joints.csv" } };
     char *at = run->losses, *end = at + sizeof run->losses;
     *at = '\0';
     if (run->lost_dir) at += snprintf(at, (size_t)(end - at), "the directory was deleted and made again; ");
@@ -248,6 +248,7 @@ static tobi_status step_towards(tobi_run *run, double target, double end, tobi_e
     tobi_tally_bodies(run, sim->info.dt);
     tobi_tally_add(&run->total, &sim->info);
     TOBI_TRY(tobi_lines_write(run, start, err));
+    TOBI_TRY(tobi_joints_write(run, start, err));
     return tobi_tables_write_probes(run, start, err);
 }
 
@@ -336,6 +337,7 @@ void tobi_run_free(tobi_run *run)
     tobi_csv_close(run->bodies);
     tobi_csv_close(run->probes);
     tobi_csv_close(run->lines);
+    tobi_csv_close(run->joints);
     if (run->lock >= 0) close(run->lock);
     tobi_series_free(run);
     tobi_snapshot_free_skins(run);

@@ -89,7 +89,7 @@ tobi_status tobi_run_estimate(tobi_world *world, const tobi_output_def *output, 
                       (output->surfaces + output->tractions)*bodies +
                       output->surfaces*tobi_world_line_count(world),
               tables = 1 + (bodies > 0) + (tobi_world_probe_count(world) > 0) +
-                       (tobi_world_line_count(world) > 0);
+                       (tobi_world_line_count(world) > 0) + (tobi_world_joint_count(world) > 0);
     *size = size_output(&run, (double)particles, (double)body_particles, lists);
     size->outputs = tobi_record_count(output->interval, end);
     /* Besides: the list of all, resolved.json, summary.json. */

@@ -109,6 +109,7 @@ tobi_status tobi_tables_open(tobi_run *run, bool continued, tobi_error *err)
         TOBI_TRY(tobi_table_open(run, "bodies.csv", continued, body_columns,
                             tables[TOBI_TABLE_BODIES].count, &run->bodies, err));
     TOBI_TRY(tobi_lines_open(run, continued, err));
+    TOBI_TRY(tobi_joints_open(run, continued, err));
     return tobi_probes_open(run, continued, err);
 }
 

@@ -48,6 +48,8 @@ static const char head[] =
     "| `bodies.csv` | each output and body | where the scene has bodies |\n"
     "| `lines.csv` | each step, or each `output.probe_interval`: `NAME_tension [N]`, "
     "`NAME_distance [m]` | where the scene has lines |\n"
+    "| `joints.csv` | the same: `NAME_force_x [N]` ..., `NAME_moment_x [N m]` ..., "
+    "`NAME_angle [degrees]`, `NAME_gap [m]` | where the scene has joints |\n"
     "| `probes.csv` | each step, or each `output.probe_interval` | where the scene has probes |\n"
     "\n"
     "- Units are SI. In 2-D masses, forces, torques and energies are per metre of depth.\n"

@@ -122,6 +122,7 @@ char *tobi_scene_resolved(const tobi_scene *scene)
     if (scene->plane_count) failed |= json_object_set(root, "planes", planes);
     failed |= tobi_interfaces_write(scene, root) | tobi_openings_write(scene, root);
     if (scene->line_count) failed |= json_object_set_new(root, "lines", tobi_lines_write_json(scene));
+    if (scene->joint_count) failed |= json_object_set_new(root, "joints", tobi_joint_list_write_json(scene));
     if (scene->probe_count) failed |= json_object_set(root, "probes", probes);
     failed |= json_object_set_new(root, "output", tobi_output_write(scene));
     if (scene->reference_count) failed |= json_object_set(root, "references", references);

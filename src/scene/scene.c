@@ -269,6 +269,7 @@ static tobi_status read_scene(tobi_scene *scene, tobi_source *source)
     TOBI_TRY(read_planes(scene, &binder, &root));
     TOBI_TRY(tobi_openings_read(scene, &binder, &root));
     TOBI_TRY(tobi_lines_bind(scene, &binder, &root));
+    TOBI_TRY(tobi_joint_list_bind(scene, &binder, &root));
     TOBI_TRY(read_probes(scene, &binder, &root));
     TOBI_TRY(tobi_output_bind(scene, &binder, &root));
     TOBI_TRY(read_references(scene, &binder, &root));
@@ -395,6 +396,7 @@ void tobi_scene_free(tobi_scene *scene)
     free(scene->planes_bound);
     free(scene->interfaces);
     free(scene->lines);
+    free(scene->joints);
     free(scene->probes);
     free(scene->probes_bound);
     tobi_openings_clear(scene);
@@ -477,6 +479,8 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     if (status == TOBI_OK) status = tobi_openings_build(scene, world, err);
     for (int i = 0; i < scene->line_count && status == TOBI_OK; i++)
         status = tobi_world_add_line(world, &scene->lines[i], err);
+    for (int i = 0; i < scene->joint_count && status == TOBI_OK; i++)
+        status = tobi_world_add_joint(world, &scene->joints[i], err);
     for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
         status = tobi_world_add_probe(world, &scene->probes[i], err);
     if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);

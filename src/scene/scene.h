@@ -64,6 +64,8 @@ struct tobi_scene {
     int interface_count;
     tobi_line_def *lines;
     int line_count;
+    tobi_joint_def *joints;
+    int joint_count;
     tobi_probe_def *probes;
     tobi_bound *probes_bound;
     int probe_count;
@@ -93,6 +95,10 @@ json_t *tobi_scene_list(const tobi_binder *binder, json_t *object, const tobi_pl
 tobi_status tobi_lines_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
 void tobi_lines_check(const tobi_scene *scene, tobi_source *source);
 json_t *tobi_lines_write_json(const tobi_scene *scene);      /* NULL: no memory */
+/* joint_list.c: the same of the key joints. */
+tobi_status tobi_joint_list_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of);
+void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source);
+json_t *tobi_joint_list_write_json(const tobi_scene *scene);
 
 /* joints.c: the hinge of a 2-D body has its axis along z; what is wrong with hinge and guide of a body. */
 void tobi_joints_complete(const json_t *body, int dimension, tobi_body_def *def);

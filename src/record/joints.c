@@ -1,0 +1,60 @@
+/* joints.csv: of each joint between bodies the force and moment on its body, the angle and the gap, as often
+   as the probes are read. Drawback: a mean over one step each, so that impacts scatter. */
+#include "record/record.h"
+#include "world/world.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { VALUES = 8 };
+
+static const struct { const char *name, *unit; int solid; } values[VALUES] = {
+    { "force_x", "N", 0 },  { "force_y", "N", 0 },    { "force_z", "N", 1 },   { "moment_x", "N m", 1 },
+    { "moment_y", "N m", 1 }, { "moment_z", "N m", 1 }, { "angle", "degrees", 0 }, { "gap", "m", 0 },
+};
+
+/* In 2-D a joint has neither a force along z nor a moment. */
+static int is_told(const tobi_run *run, int value)
+{
+    return !values[value].solid || run->world->sim.def.dimension == 3;
+}
+
+tobi_status tobi_joints_open(tobi_run *run, bool continued, tobi_error *err)
+{
+    enum { NAME = 128 };
+    const int joints = tobi_world_joint_count(run->world);
+    int count = 1;
+    if (joints == 0) return TOBI_OK;
+    tobi_csv_column *columns = calloc((size_t)joints*VALUES + 1, sizeof *columns);
+    char (*names)[NAME] = calloc((size_t)joints*VALUES + 1, sizeof *names);
+    tobi_status status = columns && names ? TOBI_OK : tobi_fail(err, TOBI_NO_MEMORY, "run: out of memory");
+    for (int k = 0; status == TOBI_OK && k < joints; k++)
+        for (int v = 0; v < VALUES; v++) {
+            if (!is_told(run, v)) continue;
+            snprintf(names[count], NAME, "%s_%s", tobi_world_joint(run->world, k, NULL), values[v].name);
+            columns[count] = (tobi_csv_column){ names[count], values[v].unit };
+            count++;
+        }
+    if (status == TOBI_OK) columns[0] = (tobi_csv_column){ "time", "s" };
+    if (status == TOBI_OK)
+        status = tobi_table_open(run, "joints.csv", continued, columns, count, &run->joints, err);
+    free(columns);
+    free(names);
+    return status;
+}
+
+tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err)
+{
+    const double now = tobi_world_time(run->world);
+    if (!run->joints || !tobi_record_is_due(run->output.probe_interval, before, now)) return TOBI_OK;
+    if (tobi_csv_is_gone(run->joints)) TOBI_TRY(tobi_record_keep_dir(run, err));
+    tobi_csv_add_real(run->joints, now);
+    for (int k = 0; k < tobi_world_joint_count(run->world); k++) {
+        tobi_joint_info i;
+        tobi_world_joint(run->world, k, &i);
+        const double row[VALUES] = { i.force[0], i.force[1], i.force[2], i.moment[0], i.moment[1],
+                                     i.moment[2], i.angle, i.gap };
+        for (int v = 0; v < VALUES; v++)
+            if (is_told(run, v)) tobi_csv_add_real(run->joints, row[v]);
+    }
+    return tobi_csv_end_row(run->joints, err);
+}

@@ -1,0 +1,84 @@
+/* The joints between bodies of a scene. Drawback: which bodies deform, the world alone sees. */
+#include "scene/scene.h"
+#include "scene/parts.h"
+#include "scene/write.h"
+#include "base/param.h"
+#include <stdlib.h>
+#include <string.h>
+
+tobi_status tobi_joint_list_bind(tobi_scene *scene, const tobi_binder *binder, const tobi_place *of)
+{
+    tobi_place place = { of, "joints", 0 };
+    json_t *list = tobi_scene_list(binder, scene->root, &place, "world");
+    if (!list) return TOBI_OK;
+    scene->joints = calloc(json_array_size(list) + 1, sizeof *scene->joints);
+    if (!scene->joints) return TOBI_NO_MEMORY;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        tobi_place entry = { &place, NULL, i };
+        tobi_joint_def *joint = &scene->joints[scene->joint_count++];
+        *joint = tobi_default_joint_def();
+        tobi_bind(binder, &tobi_joint_table, json_array_get(list, i), &entry, NULL, joint);
+    }
+    return TOBI_OK;
+}
+
+static void check_bodies(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
+                         const tobi_place *entry)
+{
+    tobi_place body = { entry, "body", 0 }, to_body = { entry, "to_body", 0 };
+    const tobi_body_def *held = joint->body ? tobi_scene_find_body(scene, joint->body) : NULL;
+    const tobi_body_def *other = joint->to_body ? tobi_scene_find_body(scene, joint->to_body) : NULL;
+    if (joint->body && !held)
+        tobi_source_mistake(source, &body, "\"%s\" is no body of the scene", joint->body);
+    if (held && held->dynamics == TOBI_PRESCRIBED)
+        tobi_source_mistake(source, &body, "\"%s\" is prescribed; a joint holds a free or controlled body, "
+                            "and may go to a prescribed one", joint->body);
+    if (joint->to_body && !other)
+        tobi_source_mistake(source, &to_body, "\"%s\" is no body of the scene", joint->to_body);
+    else if (joint->to_body && joint->body && strcmp(joint->body, joint->to_body) == 0)
+        tobi_source_mistake(source, &to_body, "is the body at the other side too");
+    if (other && other->absent_from > 0)
+        tobi_source_mistake(source, &to_body, "\"%s\" is absent at times; a joint holds bodies that stay",
+                            joint->to_body);
+}
+
+static void check_axis(const tobi_scene *scene, tobi_source *source, const tobi_joint_def *joint,
+                       const tobi_place *entry)
+{
+    tobi_place axis = { entry, "axis", 0 };
+    const double *a = joint->axis;
+    const int given = a[0] != 0 || a[1] != 0 || a[2] != 0;
+    if (joint->kind == TOBI_BETWEEN_BALL && given)
+        tobi_source_mistake(source, &axis, "is of a hinge, a ball joint has none");
+    else if (scene->world.dimension == 2 && (a[0] != 0 || a[1] != 0))
+        tobi_source_mistake(source, &axis, "must be along z in a 2-D scene");
+    else if (scene->world.dimension == 3 && joint->kind == TOBI_BETWEEN_HINGE && !given)
+        tobi_source_mistake(source, entry, "must have an axis, or be of kind ball");
+}
+
+void tobi_joint_list_check(const tobi_scene *scene, tobi_source *source)
+{
+    static const tobi_place root = { 0 };
+    tobi_place joints = { &root, "joints", 0 };
+    for (int i = 0; i < scene->joint_count && !tobi_report_full(source->report); i++) {
+        const tobi_joint_def *joint = &scene->joints[i];
+        tobi_place entry = { &joints, NULL, (size_t)i }, name = { &entry, "name", 0 };
+        for (int k = 0; joint->name && k < i; k++)
+            if (scene->joints[k].name && strcmp(joint->name, scene->joints[k].name) == 0)
+                tobi_source_mistake(source, &name, "\"%s\" is already the name of joints[%d]", joint->name,
+                                    k);
+        check_bodies(scene, source, joint, &entry);
+        check_axis(scene, source, joint, &entry);
+    }
+}
+
+json_t *tobi_joint_list_write_json(const tobi_scene *scene)
+{
+    json_t *list = json_array();
+    int failed = 0;
+    for (int k = 0; k < scene->joint_count; k++)
+        failed |= json_array_append_new(list, tobi_write_def(&tobi_joint_table, &scene->joints[k]));
+    if (!failed) return list;
+    json_decref(list);
+    return NULL;
+}

@@ -1,0 +1,43 @@
+#!/bin/bash
+# joints between bodies: their table, the same bits after a resume and for other numbers of threads, messages.
+# usage: joints.sh PROGRAM     works in a fresh folder that it removes; last line: "N passed, N failed"
+set -uo pipefail
+. "$(dirname "$0")/checks.sh" "$1"
+
+cat > rafts.json <<'END2'
+{ "dimension": 2, "domain": { "min": [0, 0], "max": [1, 0.6] }, "spacing": 0.025, "end_time": 0.1,
+  "fluids": [ { "name": "water", "fill": [ { "box": { "min": [0, 0], "max": [1, 0.3] } } ] } ],
+  "bodies": [ { "name": "left", "box": { "min": [0.2, 0.2], "max": [0.45, 0.4] }, "dynamics": "free", "density": 300 },
+              { "name": "right", "box": { "min": [0.55, 0.2], "max": [0.8, 0.4] }, "dynamics": "free",
+                "density": 700 },
+              { "name": "mast", "box": { "min": [0.3, 0.35], "max": [0.32, 0.58] }, "dynamics": "free" } ],
+  "joints": [ { "name": "hinge", "body": "left", "to_body": "right", "point": [0.5, 0.3] },
+              { "name": "foot", "kind": "ball", "body": "mast", "to_body": "left", "point": [0.31, 0.36] } ],
+  "output": { "interval": 0.05 } }
+END2
+for method in dfsph wcsph isph eisph; do
+    expect 0 "" run rafts.json --out whole --quiet --force --threads 1 --set method=$method
+    check "$method: a table of forces, angles and gaps" \
+        test "$(head -1 whole/joints.csv | cut -d, -f1-6)" = \
+        "time [s],hinge_force_x [N],hinge_force_y [N],hinge_angle [degrees],hinge_gap [m],foot_force_x [N]"
+    check "$method: the joints are closed" \
+        awk -F, 'NR > 1 && ($5 > 1e-12 || $9 > 1e-12 || $0 ~ /nan/) { bad = 1 } END { exit bad || NR < 8 }' \
+        whole/joints.csv
+    expect 0 "" run rafts.json --out parts --quiet --force --threads 2 --until 0.05 --set method=$method
+    expect 0 "" resume parts --quiet --threads 2 --until 0.1
+    check "$method: the same forces after a resume, with two threads" cmp whole/joints.csv parts/joints.csv
+done
+check "resolved.json has the joints" grep -q '"to_body": "right"' whole/resolved.json
+expect 0 "" run whole/resolved.json --out again --quiet
+check "and runs alike" cmp whole/joints.csv again/joints.csv
+
+refuse() { expect 1 "$1" check rafts.json --set "$2"; }
+refuse '"ship" is no body of the scene' joints.hinge.body=ship
+refuse '"pier" is no body of the scene' joints.hinge.to_body=pier
+refuse 'is the body at the other side too' joints.hinge.to_body=left
+refuse '"left" is prescribed; a joint holds a free or controlled body' bodies.left.dynamics=prescribed
+refuse '"foot" is already the name of joints[0]' joints.hinge.name=foot
+refuse 'axis: must be along z in a 2-D scene' joints.hinge.axis='[1,0,0]'
+refuse 'axis: is of a hinge, a ball joint has none' joints.foot.axis='[0,0,1]'
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
