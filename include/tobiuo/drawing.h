@@ -15,6 +15,10 @@ typedef struct tobi_material_look {
     double color[3], core_color[3];    /* RGB, 0 to 255; -1 = none given                              */
     int    visible, liquid;
     int    kind;                       /* the first material with the same properties and colours     */
+    tobi_picture_skin skin;            /* of a solid with a texture; image NULL = none                */
+    tobi_image *image;                 /* owned, and what the skin looks in                           */
+    void  *skin_user;
+    void (*free_skin)(void *user);
 } tobi_material_look;
 
 /* A body, or a line that holds one. */
@@ -24,6 +28,9 @@ typedef struct tobi_body_look {
     double color[3], opacity;          /* RGB, 0 to 255; -1 = by its number                           */
     double rest[3];                    /* m, mean of its vertices at rest                             */
     int    visible, hollow, is_line;
+    tobi_image *image;                 /* owned; NULL = none                                          */
+    float  (*uv)[3][2];                /* owned: of the corners of the triangles of its surface       */
+    int64_t triangle_count;
 } tobi_body_look;
 
 /* What of a world pictures need and does not change. Lists owned: tobi_looks_free. */

@@ -15,6 +15,32 @@
 extern "C" {
 #endif
 
+/* An image for skins. TOBI_INVALID for what is no PNG or larger than 8192 x 8192 pixels. */
+typedef struct tobi_image tobi_image;
+TOBI_API tobi_status tobi_image_read(const char *path, tobi_image **image, tobi_error *err);
+/* rgb: sRGB, row by row from the top, copied. */
+TOBI_API tobi_status tobi_image_make(int width, int height, const uint8_t *rgb, tobi_image **image,
+                                     tobi_error *err);
+/* One more user, who frees it, too. */
+TOBI_API tobi_image *tobi_image_share(tobi_image *image);
+TOBI_API void tobi_image_free(tobi_image *image);             /* NULL is fine */
+/* sRGB, 0 to 1, at texture coordinates: v rises from the lower edge. */
+TOBI_API void tobi_image_color(const tobi_image *image, const float uv[2], float rgb[3]);
+TOBI_API void tobi_image_size(const tobi_image *image, int *width, int *height, const uint8_t **rgb);
+
+/* An image on the skin of a solid, found by where its particles were at rest. Calls come from any thread. */
+typedef struct tobi_picture_skin {
+    const tobi_image *image;           /* NULL: no image                                                */
+    /* Coordinates of the place of the skin nearest to x, m; returns its distance, m. */
+    double (*look)(const void *user, const double x[3], float uv[2]);
+    /* Those of three corners, all in the plane of what of the skin is nearest to their middle. */
+    void (*look_flat)(const void *user, const double corner[3][3], float uv[3][2]);
+    const void *user;
+    double stretch;                    /* 1/m, of coordinates along the skin, at most mostly            */
+    double depth;                      /* m; deeper below the skin things have the colour `inside`      */
+    float inside[3];                   /* sRGB, 0 to 1                                                  */
+} tobi_picture_skin;
+
 typedef struct tobi_picture_mesh {
     int64_t vertex_count;
     const double (*vertices)[3];       /* m                            */
@@ -23,6 +49,8 @@ typedef struct tobi_picture_mesh {
     float color[3];                    /* sRGB, 0 to 1                 */
     float transparency;                /* 0 to 1; above 0 like glass   */
     int hollow;                        /* not 0: a clip plane opens it, else its cut is filled */
+    const tobi_image *image;           /* instead of the colour, not on glass; NULL = none     */
+    const float (*uv)[3][2];           /* with an image: of the corners of each triangle       */
 } tobi_picture_mesh;
 
 /* A line through points, seen through water, hidden by what is opaque. */
@@ -52,6 +80,10 @@ typedef struct tobi_picture {
     const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
     const int32_t *group;              /* one surface around each group; NULL = all are one            */
+    const tobi_picture_skin *skins;    /* with rest, in 3-D and the look NATURAL: instead of colours    */
+    int skin_count;
+    const int16_t *skin;               /* of each particle, -1 = none; of a group all have one          */
+    const double (*rest)[3];           /* m, where particles with a skin were at rest                   */
     const float (*palette)[3];         /* sRGB, the colour map from value_min to value_max; NULL = blue */
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */

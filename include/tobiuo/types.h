@@ -184,6 +184,7 @@ typedef struct tobi_solid_def {
     int    bonded;                    /* 1: sticks to other bonded solids that it touches              */
     double color[3];                  /* RGB, 0 to 255, in pictures; all -1 = by its speed            */
     double core_color[3];             /* RGB of what was below the surface at the start; all -1 = color */
+    const char *texture;              /* path: PNG on the skin of its meshes in pictures; NULL = none  */
     int    visible;                   /* 0: left out of pictures                                      */
 } tobi_solid_def;
 
@@ -233,8 +234,7 @@ typedef tobi_status (*tobi_motion_fn)(void *user, double t, int64_t n, const dou
 /* Hands to a motion what a control program steers it with, before each call of it. */
 typedef void (*tobi_steer_fn)(void *user, const double steer[3]);
 
-/* Prescribed: at rest or moved by a motion, whatever pushes. Free: moved by the forces on it. Controlled:
-   free, and a program adds a force and a torque each step. */
+/* At rest or moved by a motion, whatever pushes; by forces; by forces and a program's force and torque. */
 typedef enum tobi_dynamics { TOBI_PRESCRIBED, TOBI_FREE, TOBI_CONTROLLED } tobi_dynamics;
 
 /* What a control program sees of its body, in world axes, and what it answers. */
@@ -286,6 +286,7 @@ typedef struct tobi_body_def {
     int    friction;            /* tobi_friction felt by the fluid                                   */
     int    visible;             /* 0: left out of pictures                                           */
     double color[3];            /* RGB, 0 to 255, in pictures; all -1 = by its number                */
+    const char *texture;        /* path: PNG that pictures put on a mesh with coordinates; NULL = none */
     double opacity;             /* 1, 0 to 1, of its surface in pictures; below 1 it looks like glass */
     double contact_angle;       /* degrees, in the liquid                                            */
     tobi_motion_fn motion;      /* NULL = fixed                                                      */
@@ -588,8 +589,7 @@ typedef struct tobi_body_info {
     double pressure_torque[3], viscous_torque[3];    /* N m                                           */
     double contact_force[3], contact_torque[3];      /* N, N m: of bodies and sides that touch it     */
     double edge_force[3];         /* N, the part of pressure_force that a blade's edge takes to cut   */
-    double mass, volume;          /* kg, m3 by exact integrals of the mesh                            */
-    double inertia[9];            /* kg m2 about the centre of mass, row-major                        */
+    double mass, volume, inertia[9];    /* kg, m3, kg m2 about the centre, by integrals of the mesh   */
     int64_t particles;            /* body particles                                                   */
     double sampled_volume;        /* m3, number of body particles times spacing^3                     */
 } tobi_body_info;

@@ -108,6 +108,83 @@ static void look_corners(const tobi_texture *texture, const double corner[3][3],
     }
 }
 
+/* Shares of the corners at a point of the plane, below 0 beside the triangle. */
+static void find_plane_shares(const double corner[3][3], const double x[3], double share[3])
+{
+    double e[3][3], n[3];
+    for (int k = 0; k < 3; k++) vec3_sub(e[k], corner[(k + 2)%3], corner[(k + 1)%3]);
+    vec3_cross(n, e[2], e[0]);
+    const double square = vec3_dot(n, n);
+    for (int k = 0; k < 3; k++) {
+        double d[3], c[3];
+        vec3_sub(d, x, corner[(k + 1)%3]);
+        vec3_cross(c, e[k], d);
+        share[k] = square > 0 ? vec3_dot(c, n)/square : 1.0/3;
+    }
+}
+
+void tobi_texture_look_flat(const tobi_texture *texture, const double corner[3][3], float uv[3][2])
+{
+    double middle[3], share[3];
+    tobi_bvh_hit hit;
+    memset(uv, 0, 3*sizeof *uv);
+    for (int a = 0; a < 3; a++) middle[a] = (corner[0][a] + corner[1][a] + corner[2][a])/3;
+    if (!tobi_bvh_closest(texture->tree, middle, INFINITY, &hit)) return;
+    for (int k = 0; k < 3; k++) {
+        find_plane_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], share);
+        mix((const float (*)[2])texture->uv[hit.triangle], share, uv[k]);
+    }
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+tobi_status tobi_texture_stretch(const tobi_texture *texture, double *stretch, tobi_error *err)
+{
+    double *each = malloc((size_t)texture->count*sizeof *each);
+    if (!each)
+        return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates",
+                         (long long)texture->count);
+    for (int64_t t = 0; t < texture->count; t++) {
+        each[t] = 0;
+        for (int k = 0; k < 3; k++) {
+            double d[3];
+            const float *p = texture->uv[t][k], *q = texture->uv[t][(k + 1)%3];
+            vec3_sub(d, texture->corner[t][k], texture->corner[t][(k + 1)%3]);
+            const double way = sqrt(vec3_dot(d, d)), change = fmax(fabsf(p[0] - q[0]), fabsf(p[1] - q[1]));
+            if (way > 0) each[t] = fmax(each[t], change/way);
+        }
+    }
+    qsort(each, (size_t)texture->count, sizeof *each, compare_numbers);
+    *stretch = each[(texture->count - 1)*99/100];
+    free(each);
+    return TOBI_OK;
+}
+
+tobi_status tobi_texture_copy(const tobi_texture *texture, tobi_texture **copy, tobi_error *err)
+{
+    tobi_texture *t = *copy = calloc(1, sizeof *t);
+    const size_t n = (size_t)texture->count;
+    if (t) t->corner = malloc(n*sizeof *t->corner);
+    if (t) t->uv = malloc(n*sizeof *t->uv);
+    tobi_status status = TOBI_OK;
+    if (t && t->corner && t->uv) {
+        t->count = texture->count;
+        memcpy(t->corner, texture->corner, n*sizeof *t->corner);
+        memcpy(t->uv, texture->uv, n*sizeof *t->uv);
+        status = tobi_texture_prepare(t, err);
+    } else {
+        status = tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld texture coordinates", (long long)n);
+    }
+    if (status == TOBI_OK) return TOBI_OK;
+    tobi_texture_free(t);
+    *copy = NULL;
+    return status;
+}
+
 /* The copy of a vertex with these coordinates, a new one if there is none; next chains the copies. */
 static int32_t find_copy(tobi_skin *skin, int32_t *head, int32_t *next, int32_t vertex, const float uv[2])
 {

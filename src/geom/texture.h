@@ -22,6 +22,14 @@ tobi_status tobi_texture_prepare(tobi_texture *texture, tobi_error *err);
 /* The coordinates at the point of the surface nearest to x; returns its distance, m. Any thread. */
 double tobi_texture_look(const tobi_texture *texture, const double x[3], float uv[2]);
 
+/* Coordinates at three places, all in the plane of the triangle that is nearest to their middle: no seam is
+   crossed. Any thread. */
+void tobi_texture_look_flat(const tobi_texture *texture, const double corner[3][3], float uv[3][2]);
+/* A texture of its own, prepared. */
+tobi_status tobi_texture_copy(const tobi_texture *texture, tobi_texture **copy, tobi_error *err);
+/* By how much coordinates change along the surface, 1/m: of 99 of 100 triangles at most. */
+tobi_status tobi_texture_stretch(const tobi_texture *texture, double *stretch, tobi_error *err);
+
 /* A mesh with as many copies of each vertex as it has different coordinates: one more along a seam. */
 typedef struct tobi_skin {
     int64_t vertex_count;

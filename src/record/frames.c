@@ -90,11 +90,12 @@ static tobi_status add_materials(tobi_run *run, tobi_moment *m, tobi_error *err)
 static tobi_status take_fields(tobi_run *run, tobi_moment *m, tobi_error *err)
 {
     const tobi_world *w = run->world;
-    m->fields = calloc(8 + (size_t)run->view_count, sizeof *m->fields);
+    m->fields = calloc(9 + (size_t)run->view_count, sizeof *m->fields);
     if (!m->fields) return tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     TOBI_TRY(add_field(run, "velocity", 3, m, err));
     TOBI_TRY(add_materials(run, m, err));
     if (tobi_world_solids(w)) TOBI_TRY(add_field(run, "part", 1, m, err));
+    if (w->solid_images > 0) TOBI_TRY(add_field(run, "rest_position", 3, m, err));
     if (tobi_record_has_pieces(w)) {
         TOBI_TRY(add_field(run, "piece", 1, m, err));
         TOBI_TRY(add_field(run, "particle_id", 1, m, err));

@@ -14,7 +14,8 @@ static int is_same_fluid(const tobi_fluid *a, const tobi_fluid *b)
 }
 
 /* Fluids that differ in nothing are one kind, which has one surface. */
-static void add_materials(const tobi_world *w, const tobi_system *s, tobi_looks *looks)
+static tobi_status add_materials(const tobi_world *w, const tobi_system *s, tobi_looks *looks,
+                                 tobi_error *err)
 {
     const int first = tobi_world_first_material(w, s);
     for (int k = 0; k < s->fluid_count; k++) {
@@ -32,10 +33,13 @@ static void add_materials(const tobi_world *w, const tobi_system *s, tobi_looks 
                                    .kind = first + k };
         memcpy(m->color, def->color, sizeof m->color);
         memcpy(m->core_color, def->core_color, sizeof m->core_color);
+        TOBI_TRY(tobi_skins_of_solid(w, k, looks->material_count - 1, looks, err));
     }
+    return TOBI_OK;
 }
 
-static void add_bodies(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks)
+static tobi_status add_bodies(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks,
+                              tobi_error *err)
 {
     for (int k = 0; k < w->sim.body_count; k++) {
         const tobi_body *b = &w->sim.bodies[k];
@@ -47,7 +51,9 @@ static void add_bodies(const tobi_world *w, const tobi_record_name *names, tobi_
         for (int64_t i = 0; i < b->mesh.vertex_count; i++)
             for (int a = 0; a < 3; a++)
                 look->rest[a] += b->mesh.vertices[i][a]/(double)b->mesh.vertex_count;
+        TOBI_TRY(tobi_skins_of_body(w, k, look, err));
     }
+    return TOBI_OK;
 }
 
 static void add_lines(const tobi_world *w, const tobi_record_name *names, tobi_looks *looks)
@@ -79,11 +85,10 @@ tobi_status tobi_world_looks(const tobi_world *w, tobi_looks *looks, tobi_error 
     if (status == TOBI_OK && (!looks->materials || !looks->bodies))
         status = tobi_fail(err, TOBI_NO_MEMORY, "picture: out of memory");
     for (int k = 0; status == TOBI_OK && k < w->system_count; k++)
-        add_materials(w, &w->system[k], looks);
-    if (status == TOBI_OK) {
-        add_bodies(w, body, looks);
-        add_lines(w, line, looks);
-    } else tobi_looks_free(looks);
+        status = add_materials(w, &w->system[k], looks, err);
+    if (status == TOBI_OK) status = add_bodies(w, body, looks, err);
+    if (status == TOBI_OK) add_lines(w, line, looks);
+    else tobi_looks_free(looks);
     free(body);
     free(traction);
     free(line);

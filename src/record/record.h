@@ -246,6 +246,12 @@ tobi_status tobi_frames_take(tobi_run *run, tobi_snapshot *snapshot, tobi_error 
 tobi_status tobi_frames_write(tobi_run *run, const tobi_snapshot *snapshot, int view, tobi_error *err);
 void tobi_frames_free(tobi_snapshot *snapshot);
 
+/* record/skins.c: the image and coordinates of a solid or body, if it has a texture. On failure the looks are
+   still to be freed. */
+tobi_status tobi_skins_of_solid(const tobi_world *world, int solid, int material, tobi_looks *looks,
+                                tobi_error *err);
+tobi_status tobi_skins_of_body(const tobi_world *world, int body, tobi_body_look *look, tobi_error *err);
+
 /* record/surface.c: the surface of fluids and solids of an output, which has its particles already. */
 /* Reads output.surface_fields. */
 tobi_status tobi_record_surface_fields(tobi_run *run, tobi_error *err);

@@ -207,6 +207,7 @@ static void check_solids(const tobi_scene *scene, tobi_source *source)
         check_name(scene, source, &entry, SOLIDS);
         check_solid(scene, source, &entry);
         check_cells(scene, source, &entry);
+        tobi_check_file(source, &(tobi_place){ &entry, "texture", 0 }, scene->solids[i].def.texture);
         tobi_check_fills(scene, source, &entry, scene->solids[i].fills, scene->solids[i].fill_count);
     }
 }
@@ -284,6 +285,7 @@ static void check_bodies(const tobi_scene *scene, tobi_source *source)
         tobi_place rotation = { &entry, "rotation", 0 }, axis = { &rotation, "axis", 0 };
         check_name(scene, source, &entry, BODIES);
         tobi_check_file(source, &mesh, body->def.mesh);
+        tobi_check_file(source, &(tobi_place){ &entry, "texture", 0 }, body->def.texture);
         check_shape(scene, source, i, &entry);
         check_dynamics(scene, source, i, &entry);
         tobi_joints_check(scene, source, i, &entry);

@@ -1,7 +1,7 @@
 /* The clip plane, or the two of a slice: triangles of bodies are cut along it, and the surface of particles
    ends in it. Where the eye looks into a body that is not hollow, its back faces are drawn in the plane
    (tiles of what is opaque), so that the cut is filled. Drawback: a mesh that is open is filled wrongly. */
-#include "view/draw.h"
+#include "view/image.h"
 
 /* In metres, of the normal's length 1. */
 static double distance_of(const tobi_picture *f, const double p[3])
@@ -39,11 +39,12 @@ void view_find_cut(canvas *c, const tobi_picture *f)
     }
 }
 
-typedef struct corner { vec place, normal; } corner;
+typedef struct corner { vec place, normal, color; } corner;
 
 static corner mix_corners(const corner *a, const corner *b, float t)
 {
-    return (corner){ vec_mix(a->place, b->place, t), vec_mix(a->normal, b->normal, t) };
+    return (corner){ vec_mix(a->place, b->place, t), vec_mix(a->normal, b->normal, t),
+                     is_image_mark(a->color.z) ? vec_mix(a->color, b->color, t) : a->color };
 }
 
 /* What of a polygon is on this side of a plane (Sutherland, Hodgman 1974); returns its corners. */
@@ -59,11 +60,12 @@ static int cut_polygon(const corner *in, int count, vec normal, float offset, co
     return n;
 }
 
-void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const vec normal[3], vec color)
+void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const vec normal[3],
+                       const vec color[3])
 {
     corner a[CUT_CORNERS], b[CUT_CORNERS];
     int n = 3;
-    for (int k = 0; k < 3; k++) a[k] = (corner){ place[k], normal[k] };
+    for (int k = 0; k < 3; k++) a[k] = (corner){ place[k], normal[k], color[k] };
     for (int k = 0; k < cut->count && n > 0; k++) {
         n = cut_polygon(a, n, cut->normal[k], cut->offset[k], b);
         for (int i = 0; i < n; i++) a[i] = b[i];
@@ -71,7 +73,7 @@ void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const ve
     const int64_t first = g->vertices;
     for (int k = 0; k < n; k++) {
         const int64_t i = g->vertices++;
-        g->place[i] = a[k].place, g->normal[i] = a[k].normal, g->color[i] = color;
+        g->place[i] = a[k].place, g->normal[i] = a[k].normal, g->color[i] = a[k].color;
     }
     for (int k = 2; k < n; k++) {
         int32_t *face = g->face[g->faces++];

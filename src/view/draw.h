@@ -106,6 +106,9 @@ typedef struct canvas {
     float  *nearness;            /* of samples, tile by tile, of what is opaque; NULL: no water    */
     uint8_t *covered;            /* of tiles: 1 if nearness is set there, else nothing is opaque   */
     bool    submerged;           /* the eye is in the water                                        */
+    const tobi_image **images;   /* of meshes, then of skins; NULL where there is none             */
+    vec    *inside;              /* of things with an image: the colour of cuts                    */
+    int     mesh_count;
     float   clarity;             /* m after which 1/e of the light is left in water                */
 } canvas;
 
@@ -165,13 +168,15 @@ void view_geometry_free(geometry *g);
 /* Places all vertices on the canvas; faces that reach behind the eye are cut there. */
 tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *err);
 /* fills: its cut is filled; depth: optical, of glass, else 1. */
-bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, bool fills, float depth);
+bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int number, bool fills,
+                   float depth);
 
 /* cut.c */
 enum { CUT_CORNERS = 8 };        /* of a triangle that two planes have cut: more than it can have */
 void view_find_cut(canvas *c, const tobi_picture *f);
 /* Adds what the planes leave of a triangle; there is room for CUT_CORNERS vertices and faces. */
-void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const vec normal[3], vec color);
+void view_add_triangle(geometry *g, const cut *cut, const vec place[3], const vec normal[3],
+                       const vec color[3]);
 /* m beyond the plane, or beyond `half` a slice; -INFINITY without a plane. */
 double view_beyond(const tobi_picture *f, const double p[3], double half);
 
@@ -204,19 +209,31 @@ typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
 bool view_add_segment(segments *s, vec from, vec to);
 bool view_find_isolines(const canvas *c, const tobi_picture *f, double low, double high, segments *out);
 
+/* skin.c: from now to rest: a map of a group, and what each of its particles differs from it, m. */
+typedef struct rest_map { double from[3], to[3], by[3][3]; } rest_map;
+void view_fit_rest(const tobi_picture *f, const int32_t *row, int64_t count, rest_map *map, vec *rest);
+/* Colours that are such differences become marks of images, from a vertex and a face on; false: no
+   memory. The colour of one place. */
+typedef struct surface_request surface_request;
+bool view_put_skin(const canvas *c, const surface_request *r, geometry *g, int64_t vertex, int64_t face);
+vec view_skin_color(const surface_request *r, int64_t particle);
+
 /* isosurface.c */
-typedef struct surface_request {
+struct surface_request {
     const tobi_picture *f;
     const int32_t *row;          /* particles that the surface is around                           */
     int64_t count;
     const vec *color;            /* linear, of all particles; NULL = one colour for all            */
     const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
     segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
+    const tobi_picture_skin *skin;      /* not NULL: colours are what view_fit_rest finds      */
+    const rest_map *map;         /* with a skin                                                    */
+    int     skin_number;         /* of its image                                                   */
     vec     plain;
     float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */
     float   drop;                /* m, radius of a ball for a particle of its own; 0 = none        */
     bool    joins;               /* particles that touch others are within the surface             */
-} surface_request;
+};
 /* Particles outside of the surface become balls of drops. *around: 1 if the eye is inside of it. */
 tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
                              bool *around,

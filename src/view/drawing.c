@@ -20,6 +20,9 @@ void tobi_drawing_free(tobi_drawing *d)
     free(d->group);
     free(d->meshes);
     free(d->paths);
+    free(d->skins);
+    free(d->skin);
+    free(d->rest);
     free(d);
 }
 
@@ -28,6 +31,15 @@ tobi_picture *tobi_drawing_picture(tobi_drawing *d) { return d ? &d->picture : N
 void tobi_looks_free(tobi_looks *looks)
 {
     if (!looks) return;
+    for (int k = 0; looks->materials && k < looks->material_count; k++) {
+        tobi_material_look *m = &looks->materials[k];
+        tobi_image_free(m->image);
+        if (m->free_skin) m->free_skin(m->skin_user);
+    }
+    for (int k = 0; looks->bodies && k < looks->body_count; k++) {
+        tobi_image_free(looks->bodies[k].image);
+        free(looks->bodies[k].uv);
+    }
     free(looks->materials);
     free(looks->bodies);
     *looks = (tobi_looks){ 0 };
@@ -63,8 +75,37 @@ static float value_at(const tobi_moment_field *f, int64_t i)
 
 static const tobi_material_look *look_of(const tobi_looks *s, int material)
 {
-    static const tobi_material_look plain = { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 };
+    static const tobi_material_look plain = { .color = { -1, -1, -1 }, .core_color = { -1, -1, -1 },
+                                              .visible = 1, .liquid = 1 };
     return material >= 0 && material < s->material_count ? &s->materials[material] : &plain;
+}
+
+/* Of solids with a texture, if the output says where their particles were at rest. */
+static tobi_status make_skins(tobi_drawing *d, tobi_error *err)
+{
+    const tobi_looks *s = d->looks;
+    const size_t n = (size_t)d->moment->count + 1;
+    int images = 0;
+    for (int k = 0; k < s->material_count; k++) images += s->materials[k].skin.image != NULL;
+    if (images == 0 || !d->has_palette || !d->at_rest || d->at_rest->components != 3) return TOBI_OK;
+    d->skins = calloc((size_t)s->material_count, sizeof *d->skins);
+    d->skin = malloc(n*sizeof *d->skin);
+    d->rest = malloc(n*sizeof *d->rest);
+    if (!d->skins || !d->skin || !d->rest) return no_memory(err);
+    for (int k = 0; k < s->material_count; k++) {
+        float color[4];
+        d->skins[k] = s->materials[k].skin;
+        tobi_looks_color(s, k, 1, color);      /* of the core */
+        memcpy(d->skins[k].inside, color, sizeof d->skins[k].inside);
+    }
+    return TOBI_OK;
+}
+
+static void take_skin(tobi_drawing *d, int64_t i, int64_t to, int material)
+{
+    const int known = material >= 0 && material < d->looks->material_count;
+    d->skin[to] = (int16_t)(known && d->skins[material].image ? material : -1);
+    memcpy(d->rest[to], d->at_rest->values + 3*i, sizeof d->rest[to]);
 }
 
 /* A value for each particle that is shown, its place and velocity. */
@@ -85,6 +126,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
     if (arrows) d->velocities = malloc(n*sizeof *d->velocities);
     if (!d->positions || !d->values || !d->opaque || !d->group || (arrows && !d->velocities))
         return no_memory(err);
+    TOBI_TRY(make_skins(d, err));
     for (int64_t i = 0; i < m->count; i++) {
         const int material = number_at(d->material, i, 0), piece = number_at(d->piece, i, -1);
         const tobi_material_look *look = look_of(d->looks, material);
@@ -93,6 +135,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
         memcpy(d->positions[to], m->positions[i], sizeof *d->positions);
         for (int k = 0; arrows && k < 3; k++) d->velocities[to][k] = (float)velocity->values[3*i + k];
         d->opaque[to] = !look->liquid;
+        if (d->skin) take_skin(d, i, to, material);
         d->group[to] = look->liquid ? -look->kind : piece >= 0 ? 1 + piece : -material;
         d->values[to] = !d->has_palette ? field ? value_at(field, i) : 0
             : (float)tobi_drawing_color(d, material, number_at(d->part, i, 0), piece);
@@ -135,6 +178,8 @@ static void take_bodies(tobi_drawing *d)
                                      .triangles = (const int32_t (*)[3])s->triangles,
                                      .transparency = look ? (float)(1 - look->opacity) : 0,
                                      .hollow = look && look->hollow };
+        if (look && look->image && look->triangle_count == s->triangle_count)
+            mesh->image = look->image, mesh->uv = (const float (*)[3][2])look->uv;
         find_color(d->looks, b, k, mesh->color);
     }
     d->picture.meshes = d->meshes;
@@ -247,6 +292,10 @@ static void set_picture(tobi_drawing *d)
     if (d->has_palette) p->palette = (const float (*)[3])d->palette, p->palette_count = d->colors;
     snprintf(d->title, sizeof d->title, "t = %.4f s", d->moment->time);
     p->title = d->title;
+    if (d->skin) {
+        p->skins = d->skins, p->skin_count = s->material_count;
+        p->skin = d->skin, p->rest = (const double (*)[3])d->rest;
+    }
     p->threads = s->threads;
     /* Water in 3-D looks like water; what else has no colour of its own shows its speed. */
     const int natural = s->dimension == 3 && !d->has_palette && !solids;
@@ -261,6 +310,7 @@ static tobi_status make(tobi_drawing *d, tobi_error *err)
     d->material = find_field(m, "material");
     d->part = find_field(m, "part");
     d->piece = find_field(m, "piece");
+    d->at_rest = find_field(m, "rest_position");
     d->meshes = calloc((size_t)m->surface_count + 1, sizeof *d->meshes);
     if (!d->meshes) return no_memory(err);
     TOBI_TRY(tobi_drawing_make_palette(d, find_field(m, "particle_id"), err));

@@ -7,7 +7,7 @@ struct tobi_drawing {
     const tobi_looks *looks;
     const tobi_moment *moment;
     const tobi_view_def *view;
-    const tobi_moment_field *material, *part, *piece;      /* of the moment, or NULL    */
+    const tobi_moment_field *material, *part, *piece, *at_rest;      /* of the moment, or NULL */
     char title[64], label[160];
     int64_t count;                     /* particles that are shown                      */
     double (*positions)[3], (*velocities)[3];
@@ -21,6 +21,9 @@ struct tobi_drawing {
     int64_t pieces;
     tobi_picture_mesh *meshes;
     tobi_picture_path *paths;
+    tobi_picture_skin *skins;          /* of materials with a texture                   */
+    int16_t *skin;                     /* of particles, or NULL                         */
+    double (*rest)[3];
 };
 
 /* The colours of all materials, if any has one or if there are several liquids. */

@@ -1,7 +1,7 @@
 /* Triangles and balls in view space, from the meshes of bodies. Corners get the mean normal of their
    vertex where the surface is smooth there, and the triangle's own at edges, so that balls are round and
    boxes sharp. Drawback: the vertices of bodies are kept once for each triangle. */
-#include "view/draw.h"
+#include "view/image.h"
 #include <stdlib.h>
 
 static bool grow_vertices(geometry *g, int64_t room)
@@ -65,7 +65,8 @@ static vec *make_normals(const tobi_picture_mesh *m, const vec *p)
     return normal;
 }
 
-bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, bool fills, float depth)
+bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int number, bool fills,
+                   float depth)
 {
     const float smooth = 0.8f;      /* cosine between a corner's mean normal and the triangle's */
     const int64_t room = c->cut.count ? CUT_CORNERS : 3;
@@ -86,7 +87,9 @@ bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, boo
         vec face = vec_unit(vec_cross(vec_sub(place[1], place[0]), vec_sub(place[2], place[0]))), n[3];
         for (int k = 0; k < 3; k++)
             n[k] = vec_scale(depth, vec_dot(face, normal[v[k]]) > smooth ? normal[v[k]] : face);
-        view_add_triangle(g, &cut, place, n, color);
+        vec colors[3] = { color, color, color };
+        for (int k = 0; k < 3 && number >= 0; k++) colors[k] = image_mark(m->uv[t][k], number);
+        view_add_triangle(g, &cut, place, n, colors);
     }
     free(p);
     free(normal);

@@ -2,6 +2,7 @@
    tile is drawn by one thread, item by item, then its pixels are lit: each once where its samples see one
    surface, else for each surface. Drawback: light is computed pixel by pixel, not eight at once. */
 #include "view/glass.h"
+#include "view/image.h"
 #include <string.h>
 
 #define JOIN_(a, b) a##_##b
@@ -70,14 +71,26 @@ static void draw_items(const painting *p, int64_t tile, const square *q, layer *
     if (!filled) fill_cuts(c, g, q, l);
 }
 
-/* The point of the plane for one of a back face that fill_cuts has seen. */
-static void move_to_cut(const canvas *c, batch *b, int i)
+/* A mark becomes the colour of its image, whose pixels are about as large as those of the face. */
+static void look_at_image(const canvas *c, const geometry *g, batch *b, int i, const int32_t v[3], float area)
+{
+    const tobi_image *m = c->images[image_number(b->b[i])];
+    const vec *p = &g->color[v[0]], *q = &g->color[v[1]], *r = &g->color[v[2]];
+    const float turn = (q->x - p->x)*(r->y - p->y) - (q->y - p->y)*(r->x - p->x);
+    const float pixels = (float)m->width[0]*(float)m->height[0]*fabsf(turn);
+    const vec color = image_color(m, image_level(m, pixels/(area > 1e-6f ? area : 1e-6f)), b->r[i], b->g[i]);
+    b->r[i] = color.x, b->g[i] = color.y, b->b[i] = color.z;
+}
+
+/* The point of the plane for one of a back face that fill_cuts has seen. inside: its colour, or NULL. */
+static void move_to_cut(const canvas *c, batch *b, int i, const vec *inside)
 {
     const vec n = c->cut.normal[c->cut.faced - 1];
     const float to = n.x*b->x[i] + n.y*b->y[i] + n.z*b->z[i], t = c->cut.offset[c->cut.faced - 1]/to;
     if (!(t > 0 && t <= 1)) return;
     b->x[i] *= t, b->y[i] *= t, b->z[i] *= t;
     b->nx[i] = n.x, b->ny[i] = n.y, b->nz[i] = n.z;
+    if (inside) b->r[i] = inside->x, b->g[i] = inside->y, b->b[i] = inside->z;
     b->r[i] *= 0.8f, b->g[i] *= 0.8f, b->b[i] *= 0.8f;      /* a cut is a little darker */
 }
 
@@ -125,7 +138,9 @@ static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item
     b->r[i] = s0*color[v[0]].x + s1*color[v[1]].x + s2*color[v[2]].x;
     b->g[i] = s0*color[v[0]].y + s1*color[v[1]].y + s2*color[v[2]].y;
     b->b[i] = s0*color[v[0]].z + s1*color[v[1]].z + s2*color[v[2]].z;
-    if (item < g->filled && c->cut.faced && sign > 0) move_to_cut(c, b, i);
+    const vec *inside = is_image_mark(b->b[i]) ? &c->inside[image_number(b->b[i])] : NULL;
+    if (inside) look_at_image(c, g, b, i, v, area);
+    if (item < g->filled && c->cut.faced && sign > 0) move_to_cut(c, b, i, inside);
 }
 
 /* Of a pixel: its different surfaces, each with its number of samples and the sum of their places. */

@@ -80,6 +80,7 @@ bool view_add_drops(const grid *s, const surface_request *r, geometry *g)
         g->balls[g->ball_count++] = (ball){ view_point(&s->c->camera, p),
                                             r->drop*clampf(1.5f - 1.25f*sum/r->level, 0.5f, 1),
                                             !r->color ? r->plain
+                                            : r->skin ? view_skin_color(r, r->row[i])
                                             : r->scale ? view_scaled(r->scale, r->color[r->row[i]].x)
                                             : r->color[r->row[i]] };
     }

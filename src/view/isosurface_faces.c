@@ -131,5 +131,6 @@ bool view_add_faces(const grid *s, const surface_request *r, geometry *g)
     }
     free(copy);
     for (int64_t v = first; v < first + vertices; v++) g->normal[v] = vec_unit(g->normal[v]);
+    if (r->skin) return view_put_skin(s->c, r, g, first, first_face);
     return !r->scale || apply_scale(r, g, first, first_face);
 }

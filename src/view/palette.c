@@ -144,7 +144,7 @@ tobi_status tobi_drawing_make_palette(tobi_drawing *d, const tobi_moment_field *
         const tobi_material_look *look = &s->materials[m];
         const int kind = count_kinds(s, look);
         if (look->liquid && kind + 1 > kinds) kinds = kind + 1;
-        colored |= look->color[0] >= 0 || look->core_color[0] >= 0;
+        colored |= look->color[0] >= 0 || look->core_color[0] >= 0 || look->skin.image;
         for (int c = 0; c < PARTS*TINTS; c++)
             find_color(look, kind, c%PARTS, c/PARTS, d->palette[m*PARTS*TINTS + c]);
     }

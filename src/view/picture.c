@@ -116,6 +116,7 @@ typedef struct scene {
     vec scale[SCALE_STEPS + 1];  /* of values, for surfaces in their colours    */
     segments isolines;
     int32_t *row;                /* of particles                                */
+    vec *rest;                   /* of particles, see view_fit_rest; NULL: no skin */
     double low, high;            /* values of the colour map's ends             */
     double clock;                /* s, when the stage began                     */
 } scene;
@@ -153,6 +154,9 @@ static void free_scene(scene *s)
     view_geometry_free(&s->glass);
     free(s->color);
     free(s->row);
+    free(s->rest);
+    free(s->c.images);
+    free(s->c.inside);
     free(s->isolines.end);
 }
 
@@ -167,6 +171,28 @@ static bool is_scaled(const tobi_picture *f)
     return f->dimension == 3 && f->look == TOBI_LOOK_SURFACE && f->values && f->particle_count > 0;
 }
 
+/* Of meshes and skins, and where particles were at rest. */
+static tobi_status take_images(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    canvas *c = &s->c;
+    const bool skins = f->skin_count > 0 && f->skin && f->rest && f->dimension == 3 && !f->look;
+    const size_t count = (size_t)f->mesh_count + (skins ? (size_t)f->skin_count : 0) + 1;
+    c->images = calloc(count, sizeof *c->images);
+    c->inside = calloc(count, sizeof *c->inside);
+    if (skins) s->rest = malloc(((size_t)f->particle_count + 1)*sizeof *s->rest);
+    if (!c->images || !c->inside || (skins && !s->rest)) return no_memory(f, err);
+    for (int k = 0; k < f->mesh_count; k++) {
+        c->images[k] = f->meshes[k].uv ? f->meshes[k].image : NULL;
+        c->inside[k] = linear_color(f->meshes[k].color);
+    }
+    for (int k = 0; skins && k < f->skin_count; k++) {
+        c->images[f->mesh_count + k] = f->skins[k].image;
+        c->inside[f->mesh_count + k] = linear_color(f->skins[k].inside);
+    }
+    return TOBI_OK;
+}
+
 static tobi_status make_canvas(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
@@ -179,6 +205,7 @@ static tobi_status make_canvas(scene *s, tobi_error *err)
     double size = 0;
     for (int k = 0; k < 3; k++) size += (f->box_max[k] - f->box_min[k])*(f->box_max[k] - f->box_min[k]);
     c->clarity = f->clarity > 0 ? (float)f->clarity : (float)(0.16*sqrt(size));
+    TOBI_TRY(take_images(s, err));
     const size_t n = (size_t)c->width*(size_t)c->height;
     c->color = malloc(n*sizeof *c->color);
     c->depth = malloc(n*sizeof *c->depth);
@@ -238,6 +265,12 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
             if (f->group && f->group[s->row[end]] != f->group[s->row[begin]]) break;
         surface_request r = all;
         r.row += begin, r.count = end - begin;
+        const int skin = s->rest ? f->skin[r.row[0]] : -1;
+        rest_map map;
+        if (skin >= 0 && skin < f->skin_count && f->skins[skin].image) {
+            view_fit_rest(f, r.row, r.count, &map, s->rest);
+            r.skin = &f->skins[skin], r.skin_number = f->mesh_count + skin, r.color = s->rest, r.map = &map;
+        }
         TOBI_TRY(view_add_surface(g, drops, &s->c, &r, &around, err));
         *within |= around;
     }
@@ -280,7 +313,8 @@ static tobi_status add_bodies(scene *s, tobi_error *err)
             const bool clear = m->transparency > 0;
             const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
             if ((m->hollow != 0) == hollow &&
-                !view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, !hollow && !clear, depth))
+                !view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m,
+                               clear || !s->c.images[i] ? -1 : i, !hollow && !clear, depth))
                 return no_memory(f, err);
         }
         if (!hollow) s->solids.filled = s->solids.faces;

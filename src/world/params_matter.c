@@ -148,6 +148,9 @@ static const tobi_param solid_rows[] = {
     { .key = "core_color", COLOR, AT(tobi_solid_def, core_color), .text = "color",
       .doc = "Colour in pictures of what lay deeper than 1.75 spacings below the surface of its region "
              "at the start, and of the faces of cuts: an apple is red outside and cream where it is cut." },
+    { .key = "texture", TEXT, AT(tobi_solid_def, texture), .unit = "path",
+      .doc = "A PNG image on its skin in 3-D pictures; a mesh that fills it needs texture coordinates (vt of "
+             "an OBJ file). Inside it has its core_color." },
     { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },
       .doc = "Whether pictures show the solid." },
     { 0 }

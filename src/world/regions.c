@@ -172,6 +172,14 @@ tobi_status tobi_world_add_solid(tobi_world *w, const tobi_solid_def *def, const
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for a solid");
     s->solids = more;
     TOBI_TRY(add_regions(w, s, "solid", def->name, fills, fill_count, &volume, err));
+    const struct tobi_texture *coordinates = NULL;
+    for (int k = w->region_count - fill_count; k < w->region_count; k++)
+        if (w->regions[k].shape.texture) coordinates = w->regions[k].shape.texture;
+    const tobi_status status =
+        tobi_world_read_image(w, "solid", def->name ? def->name : "", def->texture, coordinates, err);
+    for (int k = 0; k < fill_count && status != TOBI_OK; k++)
+        tobi_mesh_free(&w->regions[--w->region_count].shape);
+    TOBI_TRY(status);
     tobi_solid *solid = &s->solids[s->solid_count++];
     solid->def = *def;
     snprintf(solid->name, sizeof solid->name, "%s", def->name ? def->name : "solid");

@@ -1,10 +1,14 @@
-/* Texture coordinates of particles: of where they started, on the meshes that fill their solid. */
+/* Texture coordinates of particles: of where they started, on the meshes that fill their solid. And images on
+   bodies and solids. Drawback: an image that two bodies have is read twice. */
 #include "base/error.h"
 #include "geom/texture.h"
 #include "mpm/particle_fields.h"
+#include "tobiuo/picture.h"
 #include "world/world.h"
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 int tobi_world_has_textures(const tobi_world *w)
 {
@@ -55,4 +59,42 @@ tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err)
     const looking view = { w, s };
     tobi_loop(w->sim.exec.threads, p->count, 0, look_range, &view);
     return TOBI_OK;
+}
+
+tobi_status tobi_world_read_image(tobi_world *w, const char *kind, const char *name, const char *path,
+                                  const struct tobi_texture *coordinates, tobi_error *err)
+{
+    const tobi_system *solids = tobi_world_solids(w);
+    const bool body = strcmp(kind, "body") == 0;
+    struct tobi_image ***list = body ? &w->body_image : &w->solid_image;
+    int *room = body ? &w->body_images : &w->solid_images;
+    const int number = body ? w->sim.body_count : solids ? solids->solid_count : 0;
+    if (!path) return TOBI_OK;
+    if (!coordinates)
+        return tobi_fail(err, TOBI_INVALID, "%s '%s' has a texture, but no mesh with texture coordinates (vt "
+                         "of an OBJ file)", kind, name);
+    if (number >= *room) {
+        struct tobi_image **more = realloc(*list, (size_t)(number + 1)*sizeof *more);
+        if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the texture of '%s'", name);
+        for (*list = more; *room <= number;) more[(*room)++] = NULL;
+    }
+    return tobi_image_read(path, &(*list)[number], err);
+}
+
+struct tobi_image *tobi_world_body_image(const tobi_world *w, int body)
+{
+    return body < w->body_images ? w->body_image[body] : NULL;
+}
+
+struct tobi_image *tobi_world_solid_image(const tobi_world *w, int solid)
+{
+    return solid < w->solid_images ? w->solid_image[solid] : NULL;
+}
+
+void tobi_world_free_images(tobi_world *w)
+{
+    for (int k = 0; k < w->body_images; k++) tobi_image_free(w->body_image[k]);
+    for (int k = 0; k < w->solid_images; k++) tobi_image_free(w->solid_image[k]);
+    free(w->body_image);
+    free(w->solid_image);
 }

@@ -92,6 +92,7 @@ void tobi_world_destroy(tobi_world *w)
     for (int k = 0; k < w->note_count; k++) free(w->notes[k]);
     free(w->notes);
     free(w->texture);
+    tobi_world_free_images(w);
     tobi_world_free_grid(w);
     tobi_pieces_free(&w->pieces);
     tobi_exec_free(&w->sim.exec);
@@ -175,6 +176,8 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = tobi_body_plan_absence(b, &placed, &s->box, err);
     if (status == TOBI_OK) status = check_body(w, b, err);
+    if (status == TOBI_OK)
+        status = tobi_world_read_image(w, "body", b->name, def->texture, b->mesh.texture, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);
     if (status != TOBI_OK) tobi_body_free(b);
     else s->sim->body_count++;

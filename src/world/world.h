@@ -39,6 +39,8 @@ struct tobi_world {
     int idle_steps;                /* in a row that were too short to lead anywhere           */
     tobi_grid grid;                /* owned: of the last tobi_world_grid                      */
     tobi_piece_list pieces;        /* of the present state, empty until somebody asks          */
+    struct tobi_image **body_image, **solid_image;      /* owned: of those with a texture; NULL = none */
+    int body_images, solid_images; /* room of the lists                                          */
     float (*texture)[2];           /* of particles by id, from the first read on; NULL = none   */
 };
 
@@ -108,6 +110,13 @@ void tobi_world_free_grid(tobi_world *w);
 
 /* textures.c: whether a mesh with texture coordinates fills a solid; finds those of all particles, once. */
 int tobi_world_has_textures(const tobi_world *w);
+/* Reads the image of the next body, or solid, if path is not NULL; the mesh needs coordinates. */
+tobi_status tobi_world_read_image(tobi_world *w, const char *kind, const char *name, const char *path,
+                                  const struct tobi_texture *coordinates, tobi_error *err);
+/* The image of a body or solid, or NULL. */
+struct tobi_image *tobi_world_body_image(const tobi_world *w, int body);
+struct tobi_image *tobi_world_solid_image(const tobi_world *w, int solid);
+void tobi_world_free_images(tobi_world *w);
 tobi_status tobi_world_find_texture(tobi_world *w, tobi_error *err);
 
 /* Reads a probe of a world that has just stepped. */

@@ -45,7 +45,7 @@ static void try_all(const tobi_picture *p)
     assert_true(needed > 5);
     for (long n = 1; n <= needed; n++) {
         size_t in_use = 0;
-        for (int turn = 0; turn < 4; turn++) {      /* the allocator keeps some of what is freed, once */
+        for (int turn = 0; turn < 9; turn++) {      /* the allocator keeps up to seven of a size */
             in_use = mallinfo2().uordblks;
             allocations = 0, fail_at = n;
             const tobi_status status = draw(p, &err);
@@ -57,6 +57,47 @@ static void try_all(const tobi_picture *p)
     }
 }
 
+static double look(const void *user, const double x[3], float uv[2])
+{
+    (void)user;
+    uv[0] = (float)x[0], uv[1] = (float)x[1];
+    return 0;
+}
+
+static void look_flat(const void *user, const double corner[3][3], float uv[3][2])
+{
+    for (int k = 0; k < 3; k++) look(user, corner[k], uv[k]);
+}
+
+/* Images on a body and on the solids, made and shown. */
+static void try_images(tobi_picture *p, const tobi_picture_mesh *mesh)
+{
+    static const float uv[4][3][2] = { { { 0, 0 }, { 1, 0 }, { 0, 1 } } };
+    static const uint8_t pixels[4*4*3];
+    static int16_t skin[N];
+    tobi_error err = { 0 };
+    tobi_image *image = NULL;
+    tobi_picture_mesh textured = *mesh;
+    const long before = allocations;
+    assert_int_equal(tobi_image_make(4, 4, pixels, &image, &err), TOBI_OK);
+    const long needed = allocations - before;
+    tobi_image_free(image);
+    for (long n = 1; n <= needed; n++) {
+        allocations = 0, fail_at = n;
+        assert_int_equal(tobi_image_make(4, 4, pixels, &image, &err), TOBI_NO_MEMORY);
+        fail_at = 0;
+        assert_null(image);
+    }
+    assert_int_equal(tobi_image_make(4, 4, pixels, &image, &err), TOBI_OK);
+    const tobi_picture_skin one = { .image = image, .look = look, .look_flat = look_flat, .depth = 1 };
+    textured.image = image, textured.uv = uv;
+    p->meshes = &textured, p->skins = &one, p->skin_count = 1, p->skin = skin;
+    p->rest = (const double (*)[3])position;
+    try_all(p);
+    p->meshes = mesh, p->skins = NULL, p->skin_count = 0, p->skin = NULL, p->rest = NULL;
+    tobi_image_free(image);
+}
+
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -64,7 +105,7 @@ static void every_allocation_may_fail(void **state)
     static const double corner[4][3] = { { 0.2, 0.2, 0.1 }, { 0.4, 0.2, 0.1 }, { 0.2, 0.4, 0.1 },
                                          { 0.2, 0.2, 0.8 } };
     static const int32_t side[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } };
-    const tobi_picture_mesh mesh = { 4, corner, 4, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
+    const tobi_picture_mesh mesh = { 4, corner, 4, side, { 0.9f, 0.1f, 0.1f }, 0, 0, NULL, NULL };
     tobi_picture p = tobi_default_picture();
     fill();
     p.width = W, p.height = H, p.threads = 1;
@@ -76,6 +117,9 @@ static void every_allocation_may_fail(void **state)
     try_all(&p);
     p.look = TOBI_LOOK_PARTICLES;
     try_all(&p);
+    p.look = TOBI_LOOK_NATURAL;
+    try_images(&p, &mesh);
+    p.look = TOBI_LOOK_PARTICLES;
     p.dimension = 2;
     try_all(&p);
 }

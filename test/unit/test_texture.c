@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <png.h>
 #include "geom/texture.h"
+#include "tobiuo/drawing.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
 
@@ -210,12 +212,183 @@ static void test_files(void **state)
     }
 }
 
+/* Six stripes of one colour each, 60 pixels wide. */
+static const uint8_t stripe[6][3] = { { 230, 20, 20 }, { 20, 200, 20 }, { 20, 20, 230 },
+                                      { 220, 220, 20 }, { 220, 20, 220 }, { 20, 220, 220 } };
+static const double core[3] = { 120, 120, 120 };
+
+static void write_stripes(const char *path)
+{
+    enum { W = 360, H = 40 };
+    static uint8_t rgb[H][W][3];
+    png_image image = { .version = PNG_IMAGE_VERSION, .width = W, .height = H, .format = PNG_FORMAT_RGB };
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) memcpy(rgb[y][x], stripe[x/60], 3);
+    assert_true(png_image_write_to_file(&image, path, 0, rgb, 0, NULL));
+}
+
+static void test_images(void **state)
+{
+    (void)state;
+    static const struct { const char *path, *says; } bad[] = {
+        { "nothing.png", "nothing.png" }, { "cube.obj", "texture 'cube.obj' is no PNG file" },
+        { "cut.png", "texture 'cut.png' cannot be read: it ends early" } };
+    const uint8_t four[4][3] = { { 255, 0, 0 }, { 0, 255, 0 }, { 0, 0, 255 }, { 255, 255, 255 } };
+    tobi_image *image;
+    tobi_error err = { 0 };
+    float color[3];
+    assert_int_equal(tobi_image_make(2, 2, four[0], &image, &err), TOBI_OK);
+    for (int k = 0; k < 4; k++) {      /* the middles of the pixels, rows from the top; and one turn on */
+        const float uv[2] = { 0.25f + 0.5f*(float)(k%2) + 3, 0.75f - 0.5f*(float)(k/2) - 2 };
+        tobi_image_color(image, uv, color);
+        for (int c = 0; c < 3; c++) assert_true(fabs(color[c] - four[k][c]/255.0) < 0.01);
+    }
+    tobi_image_free(image);
+    assert_int_equal(tobi_image_make(0, 2, four[0], &image, &err), TOBI_INVALID);
+    assert_non_null(strstr(err.text, "an image of 0 x 2 pixels, allowed are 1 to 8192"));
+    write_stripes("stripes.png");
+    write_cube("cube.obj", 6);
+    assert_int_equal(system("head -c 200 stripes.png > cut.png"), 0);
+    for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
+        assert_int_not_equal(tobi_image_read(bad[k].path, &image, &err), TOBI_OK);
+        if (!strstr(err.text, bad[k].says)) fail_msg("%s", err.text);
+        assert_null(image);
+    }
+}
+
+/* A cube as a body at 2.2 .. 3.2 m along x, and one as a solid at 0.5 .. 1.5 m. */
+static tobi_world *make_textured(int faces, tobi_status expected, tobi_error *err)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_world *w;
+    write_stripes("stripes.png");
+    write_cube("cube.obj", faces);
+    def.method = "mlsmpm";
+    def.spacing = 0.1;
+    for (int a = 0; a < 3; a++) def.domain_max[a] = 4, fill.translation[a] = 0.5;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, err), TOBI_OK);
+    solid.name = "cube";
+    solid.texture = body.texture = "stripes.png";
+    memcpy(solid.core_color, core, sizeof core);
+    memcpy(fill.scale, one, sizeof one);
+    fill.mesh = body.mesh = "cube.obj";
+    body.name = "box";
+    body.translation[0] = 2.2, body.translation[1] = 0.5, body.translation[2] = 0.5;
+    assert_int_equal(tobi_world_add_solid(w, &solid, &fill, 1, err), expected);
+    if (expected == TOBI_OK) assert_int_equal(tobi_world_add_body(w, &body, err), TOBI_OK);
+    return w;
+}
+
+/* The stripe that a colour is of, by its direction; -1: gray, a core. */
+static int find_stripe(const uint8_t *rgb)
+{
+    double best = 0, size = sqrt((double)rgb[0]*rgb[0] + rgb[1]*rgb[1] + rgb[2]*rgb[2]);
+    int found = -1;
+    const int most = rgb[0] > rgb[1] ? rgb[0] > rgb[2] ? rgb[0] : rgb[2] : rgb[1] > rgb[2] ? rgb[1] : rgb[2];
+    const int least = rgb[0] < rgb[1] ? rgb[0] < rgb[2] ? rgb[0] : rgb[2] : rgb[1] < rgb[2] ? rgb[1] : rgb[2];
+    if (most - least < 30) return -1;
+    for (int k = 0; k < 6; k++) {
+        double dot = 0, own = 0;
+        for (int c = 0; c < 3; c++) {
+            dot += (double)rgb[c]*stripe[k][c];
+            own += (double)stripe[k][c]*stripe[k][c];
+        }
+        if (dot/(size*sqrt(own)) > best) best = dot/(size*sqrt(own)), found = k;
+    }
+    return found;
+}
+
+static void add_field(tobi_world *w, tobi_moment *m, const char *name, int components)
+{
+    tobi_moment_field *f = &m->fields[m->field_count++];
+    tobi_error err = { 0 };
+    *f = (tobi_moment_field){ strdup(name), components,
+                              calloc((size_t)(m->count*components), sizeof(double)) };
+    if (tobi_world_read(w, TOBI_FLUID, name, f->values, m->count*components, &err)) fail_msg("%s", err.text);
+}
+
+/* What stands in the picture at the middle of the cube that an eye sees from -y; half: only particles with x
+   below 1 m were at rest, seen from +x. turned: the solid has turned by 90 degrees about z. */
+static int see(tobi_world *w, int turned, int half, const double eye[3], const double target[3])
+{
+    enum { SIDE = 64 };
+    tobi_looks looks;
+    tobi_drawing *d;
+    tobi_error err = { 0 };
+    const tobi_view_def view = tobi_default_output_def().view;
+    tobi_moment m = { .count = tobi_world_count(w, TOBI_FLUID) };
+    tobi_moment_surface surface = { .name = "box" };
+    static uint8_t rgb[SIDE][SIDE][3];
+    m.fields = calloc(4, sizeof *m.fields);
+    m.positions = calloc((size_t)m.count, sizeof *m.positions);
+    add_field(w, &m, "material", 1);
+    add_field(w, &m, "part", 1);
+    add_field(w, &m, "rest_position", 3);
+    const double (*rest)[3] = (const double (*)[3])m.fields[2].values;
+    for (int64_t i = 0; i < m.count; i++) {
+        const double x = rest[i][0] - 1, y = rest[i][1] - 1;
+        m.positions[i][0] = 1 + (turned ? -y : x), m.positions[i][1] = 1 + (turned ? x : y);
+        m.positions[i][2] = half && x > 0 ? NAN : rest[i][2];
+    }
+    const double (*vertices)[3];
+    const int32_t (*triangles)[3];
+    assert_int_equal(tobi_world_surface(w, 0, &surface.vertex_count, &vertices, &surface.triangle_count,
+                                        &triangles), TOBI_OK);
+    surface.vertices = (double (*)[3])vertices, surface.triangles = (int32_t (*)[3])triangles;
+    m.surfaces = &surface, m.surface_count = 1;
+    assert_int_equal(tobi_world_looks(w, &looks, &err), TOBI_OK);
+    if (tobi_drawing_make(&looks, &m, &view, &d, &err)) fail_msg("%s", err.text);
+    tobi_picture *p = tobi_drawing_picture(d);
+    p->width = p->height = SIDE;
+    p->has_camera = 1, p->field_of_view = 10;
+    memcpy(p->eye, eye, sizeof p->eye);
+    memcpy(p->target, target, sizeof p->target);
+    p->title = NULL;
+    if (tobi_picture_draw(p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+    tobi_drawing_free(d);
+    tobi_looks_free(&looks);
+    m.surfaces = NULL, m.surface_count = 0;
+    tobi_moment_free(&m);
+    return find_stripe(rgb[SIDE/2][SIDE/2]);
+}
+
+/* A face in a picture has the stripe of the face that it was at rest; a cut shows the core. */
+static void test_pictures(void **state)
+{
+    (void)state;
+    static const double body[3] = { 2.7, 1, 1 }, solid[3] = { 1, 1, 1 };
+    tobi_error err = { 0 };
+    tobi_world *w = make_textured(6, TOBI_OK, &err);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
+    for (int k = 0; k < 6; k++) {      /* faces -x, +x, -y, +y, -z, +z */
+        double eye[2][3];
+        memcpy(eye[0], body, sizeof body);
+        memcpy(eye[1], solid, sizeof solid);
+        for (int n = 0; n < 2; n++) eye[n][k/2] += k%2 ? 1.1 : -1.1;
+        for (int n = 0; n < 2; n++) eye[n][(k/2 + 1)%3] += 0.1, eye[n][(k/2 + 2)%3] += 0.07;
+        assert_int_equal(see(w, 0, 0, eye[0], body), k);
+        assert_int_equal(see(w, 0, 0, eye[1], solid), k);
+        /* turned: at -x is what was at +y, at +x -y, at -y -x, at +y +x */
+        static const int was[6] = { 3, 2, 0, 1, 4, 5 };
+        assert_int_equal(see(w, 1, 0, eye[1], solid), was[k]);
+        if (k == 1) assert_int_equal(see(w, 0, 1, eye[1], solid), -1);
+    }
+    tobi_world_destroy(w);
+    w = make_textured(0, TOBI_INVALID, &err);
+    if (!strstr(err.text, "solid 'cube' has a texture, but no mesh with texture coordinates"))
+        fail_msg("%s", err.text);
+    tobi_world_destroy(w);
+}
+
 int main(void)
 {
     char folder[] = "/tmp/tobiuo_texture_XXXXXX", command[100];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reading), cmocka_unit_test(test_skin), cmocka_unit_test(test_particles),
-        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_files), cmocka_unit_test(test_images), cmocka_unit_test(test_pictures),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,9 +14,12 @@
 enum { N = 40 };
 
 static double place[N][3], material[N], speed[3*N];
+#define LOOK(...) { .core_color = { -1, -1, -1 }, __VA_ARGS__ }
 static tobi_material_look looks_of[4] = {
-    { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 }, { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 0 },
-    { { -1, -1, -1 }, { -1, -1, -1 }, 1, 1, 2 }, { { 200, 0, 0 }, { -1, -1, -1 }, 0, 0, 3 }
+    LOOK(.color = { -1, -1, -1 }, .visible = 1, .liquid = 1),
+    LOOK(.color = { -1, -1, -1 }, .visible = 1, .liquid = 1),
+    LOOK(.color = { -1, -1, -1 }, .visible = 1, .liquid = 1, .kind = 2),
+    LOOK(.color = { 200, 0, 0 }, .kind = 3)
 };
 static tobi_body_look body = { .name = "a_box", .body = "a box", .color = { 255, 0, 0 }, .opacity = 0.25,
                                .visible = 1, .hollow = 1 };

@@ -32,7 +32,7 @@ static const int32_t side[12][3] = {
     { 0, 2, 1 }, { 1, 2, 3 }, { 4, 5, 6 }, { 5, 7, 6 }, { 0, 1, 4 }, { 1, 5, 4 },
     { 2, 6, 3 }, { 3, 6, 7 }, { 0, 4, 2 }, { 2, 4, 6 }, { 1, 3, 5 }, { 3, 7, 5 }
 };
-static const tobi_picture_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
+static const tobi_picture_mesh red_cube = { 8, cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0, NULL, NULL };
 
 /* A unit box, half full of water, cube through the surface. */
 static tobi_picture make_frame(void)
@@ -376,7 +376,7 @@ static void place_does_not_matter(void **state)
         for (int i = 0; i < N; i++) moved[i][k] = position[i][k] + far_away[k];
         for (int i = 0; i < 8; i++) moved_cube[i][k] = cube[i][k] + far_away[k];
     }
-    tobi_picture_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0 };
+    tobi_picture_mesh m = { 8, moved_cube, 12, side, { 0.9f, 0.1f, 0.1f }, 0, 0, NULL, NULL };
     f.positions = moved, f.meshes = &m;
     unsigned char *there = draw(&f);
     double difference = mean_difference(here, there);
@@ -455,7 +455,7 @@ static void strange_input_is_drawn(void **state)
     double wild_cube[8][3];
     memcpy(wild_cube, cube, sizeof cube);
     wild_cube[0][0] = NAN, wild_cube[1][1] = 1e300, wild_cube[2][2] = -INFINITY, wild_cube[3][0] = 1e8;
-    tobi_picture_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN }, 0, 0 };
+    tobi_picture_mesh m = { 8, wild_cube, 12, side, { 2, -1, NAN }, 0, 0, NULL, NULL };
     f.meshes = &m;
     free(draw(&f));
     f = make_frame();
@@ -502,7 +502,7 @@ static void wrong_arguments_are_refused(void **state)
     REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "101 isolines, allowed are 0 to 100");
     f = make_frame(), f.path_count = 2;
     REFUSED(tobi_picture_write(path, &f, &err), TOBI_INVALID, "2 paths cannot be drawn");
-    tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 }, 0, 0 };
+    tobi_picture_mesh m = { 7, cube, 12, side, { 0, 0, 0 }, 0, 0, NULL, NULL };
     f = make_frame(), f.meshes = &m;
     assert_int_equal(tobi_picture_write(path, &f, &err), TOBI_INVALID);
     assert_non_null(strstr(err.text, "uses vertex 7 of 7"));
