@@ -46,7 +46,8 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err)
 {
     const double now = tobi_world_time(run->world);
     if (!run->joints || !tobi_record_is_due(run->output.probe_interval, before, now)) return TOBI_OK;
-    if (tobi_csv_is_gone(run->joints)) TOBI_TRY(tobi_record_keep_dir(run, err));
+    if (tobi_csv_is_gone(run->joints))
+        TOBI_TRY(tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_record_keep_dir(run, err), err));
     tobi_csv_add_real(run->joints, now);
     for (int k = 0; k < tobi_world_joint_count(run->world); k++) {
         tobi_joint_info i;
@@ -56,5 +57,5 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err)
         for (int v = 0; v < VALUES; v++)
             if (is_told(run, v)) tobi_csv_add_real(run->joints, row[v]);
     }
-    return tobi_csv_end_row(run->joints, err);
+    return tobi_trouble_pass(run, TOBI_KIND_TABLES, run->outputs, tobi_csv_end_row(run->joints, err), err);
 }

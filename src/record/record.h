@@ -182,6 +182,9 @@ tobi_status tobi_joints_write(tobi_run *run, double before, tobi_error *err);
 /* A table of the run: new, or continued after the rows up to the world's time. */
 tobi_status tobi_table_open(const tobi_run *run, const char *name, bool continued,
                             const tobi_csv_column *columns, int count, tobi_csv **csv, tobi_error *err);
+enum { TOBI_TABLES = 5 };
+/* All tables, NULL where there is none. */
+void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES]);
 /* Tries to write rows that wait; how many do. */
 tobi_status tobi_tables_flush(tobi_run *run, tobi_error *err);
 int64_t tobi_tables_waiting(const tobi_run *run);

@@ -153,18 +153,26 @@ tobi_status tobi_tables_write(tobi_run *run, tobi_snapshot *snapshot, tobi_error
     return tobi_trouble_pass(run, TOBI_KIND_TABLES, snapshot->number, status, err);
 }
 
+void tobi_tables_list(const tobi_run *run, tobi_csv *tables[TOBI_TABLES])
+{
+    tobi_csv *const all[TOBI_TABLES] = { run->history, run->bodies, run->probes, run->lines, run->joints };
+    for (int k = 0; k < TOBI_TABLES; k++) tables[k] = all[k];
+}
+
 tobi_status tobi_tables_flush(tobi_run *run, tobi_error *err)
 {
-    tobi_csv *const all[] = { run->history, run->bodies, run->probes, run->lines };
-    for (size_t k = 0; k < sizeof all/sizeof *all; k++)
+    tobi_csv *all[TOBI_TABLES];
+    tobi_tables_list(run, all);
+    for (int k = 0; k < TOBI_TABLES; k++)
         if (all[k]) TOBI_TRY(tobi_csv_flush(all[k], err));
     return TOBI_OK;
 }
 
 int64_t tobi_tables_waiting(const tobi_run *run)
 {
-    const tobi_csv *const all[] = { run->history, run->bodies, run->probes, run->lines };
+    tobi_csv *all[TOBI_TABLES];
     int64_t sum = 0;
-    for (size_t k = 0; k < sizeof all/sizeof *all; k++) sum += all[k] ? tobi_csv_waiting(all[k]) : 0;
+    tobi_tables_list(run, all);
+    for (int k = 0; k < TOBI_TABLES; k++) sum += all[k] ? tobi_csv_waiting(all[k]) : 0;
     return sum;
 }

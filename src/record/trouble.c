@@ -84,9 +84,10 @@ int tobi_trouble_write(tobi_run *run, char *text, size_t room)
 
 void tobi_run_go_on(tobi_run *run, int on)
 {
-    tobi_csv *const tables[] = { run->history, run->bodies, run->probes, run->lines };
+    tobi_csv *tables[TOBI_TABLES];
+    tobi_tables_list(run, tables);
     run->goes_on = on != 0;
-    for (size_t k = 0; k < sizeof tables/sizeof *tables; k++)
+    for (int k = 0; k < TOBI_TABLES; k++)
         if (tables[k]) tobi_csv_set_patient(tables[k], on);
 }
 
