@@ -1,6 +1,6 @@
 /* tobiuo surface DIR: the surfaces of fluids and solids of a finished run, from its particles: a file for
-   each output, or one glTF with all of them as an animation. Drawback: colours of skins are means of
-   particles, so that their edges are a spacing wide. */
+   each output, or one glTF with all of them as an animation. Drawback: colours of skins without an image
+   are means of particles, so that their edges are a spacing wide. */
 #define _GNU_SOURCE
 #include "app.h"
 #include "tobiuo/results.h"
@@ -16,6 +16,7 @@ typedef struct surface_options {
     const char *dir, *format, *field;
     double cell, slow;
     int smooth, threads, last;
+    int images;         /* glb in the colours of things */
 } surface_options;
 
 enum { KEY_CELL = 256, KEY_SMOOTH, KEY_FIELD, KEY_THREADS, KEY_LAST, KEY_SLOW };
@@ -73,6 +74,8 @@ typedef struct input {
     double *speed, *color;
     int32_t *group;
     tobi_looks looks;
+    tobi_picture_skin *skins;          /* of materials with a texture, or NULL */
+    int16_t *skin;
 } input;
 
 static const tobi_moment_field *find_field(const tobi_moment *m, const char *name)
@@ -99,6 +102,8 @@ static void free_input(input *in)
     free(in->speed);
     free(in->color);
     free(in->group);
+    free(in->skin);
+    in->skin = NULL;
     in->speed = in->color = NULL;
     in->group = NULL;
 }
@@ -184,12 +189,50 @@ static int read_input(const surface_options *o, const tobi_results *results, int
     return code == 0 ? take_fields(o, in) : code;
 }
 
+/* Of all materials, once. */
+static int make_skins(input *in)
+{
+    int images = 0;
+    for (int k = 0; k < in->looks.material_count; k++) images += in->looks.materials[k].image != NULL;
+    if (images == 0) return 0;
+    in->skins = calloc((size_t)in->looks.material_count, sizeof *in->skins);
+    for (int k = 0; in->skins && k < in->looks.material_count; k++) {
+        float color[4];
+        in->skins[k] = in->looks.materials[k].skin;
+        tobi_looks_color(&in->looks, k, 1, color);      /* of the core */
+        memcpy(in->skins[k].inside, color, sizeof in->skins[k].inside);
+    }
+    return in->skins ? 0 : complain("out of memory");
+}
+
+/* With images, if there are any and the output says where particles were at rest. */
+static tobi_status make_surface(input *in, tobi_surface **s, tobi_error *err)
+{
+    const tobi_moment *m = &in->moment;
+    const tobi_moment_field *material = find_field(m, "material"), *rest = find_field(m, "rest_position");
+    if (!in->skins || !rest || rest->components != 3) return tobi_surface_make(&in->def, s, err);
+    in->skin = malloc((size_t)m->count*sizeof *in->skin + 1);
+    if (!in->skin) {
+        snprintf(err->text, sizeof err->text, "out of memory");
+        return err->status = TOBI_NO_MEMORY;
+    }
+    for (int64_t i = 0; i < m->count; i++) {
+        const double number = material ? material->values[i] : 0;
+        const int known = number >= 0 && number < in->looks.material_count;
+        in->skin[i] = (int16_t)(known && in->skins[(int)number].image ? number : -1);
+    }
+    const tobi_surface_skins skins = { in->skins, in->looks.material_count, in->skin,
+                                       (const double (*)[3])rest->values };
+    return tobi_surface_make_skinned(&in->def, &skins, s, err);
+}
+
 static tobi_surface *make_one(const surface_options *o, const tobi_results *results, int64_t k, input *in)
 {
     tobi_surface *s = NULL;
     tobi_error err = { 0 };
     if (read_input(o, results, k, in) != 0) return NULL;
-    if (tobi_surface_make(&in->def, &s, &err) != TOBI_OK) complain("%s", err.text);
+    if ((o->images ? make_surface(in, &s, &err) : tobi_surface_make(&in->def, &s, &err)) != TOBI_OK)
+        complain("%s", err.text);
     return s;
 }
 
@@ -257,7 +300,8 @@ static int write_movie(const surface_options *o, const tobi_results *results, co
     }
     if (code == 0 && tobi_surface_movie_finish(movie, &err) != TOBI_OK) code = complain("%s", err.text);
     tobi_surface_movie_free(movie);
-    if (code == 0) printf("surface: %s, %lld frames", path, (long long)t->files);
+    if (code == 0)
+        printf("surface: %s, %lld %s", path, (long long)t->files, t->files == 1 ? "frame" : "frames");
     free(path);
     return code;
 }
@@ -310,7 +354,8 @@ static int write_files(const surface_options *o, const tobi_results *results, in
         free(path);
     }
     if (code == 0 && strcmp(o->format, "vtp") == 0) code = write_list(o->dir, results, first);
-    if (code == 0) printf("surface: %s, %lld files", folder, (long long)t->files);
+    if (code == 0)
+        printf("surface: %s, %lld %s", folder, (long long)t->files, t->files == 1 ? "file" : "files");
     free(folder);
     return code;
 }
@@ -357,6 +402,9 @@ int tobiuo_surface(int argc, char **argv)
     int code = read_scene(&o, &in, up);
     if (code != 0) return code;
     if (tobi_results_open(o.dir, &results, &err) != TOBI_OK) return complain("%s", err.text);
+    o.images = strcmp(o.format, "glb") == 0 && !o.field;
+    if (o.images) code = make_skins(&in);
+    if (code != 0) return code;
     const double begun = wall_clock();
     const int64_t first = o.last ? tobi_results_count(results) - 1 : 0;
     code = strcmp(o.format, "glb") == 0 ? write_movie(&o, results, up, first, &in, &t)
@@ -365,6 +413,7 @@ int tobiuo_surface(int argc, char **argv)
         printf(", %.3g million triangles, %.3g million particles in %.3g s\n", 1e-6*(double)t.triangles,
                1e-6*t.particles, wall_clock() - begun);
     free_input(&in);
+    free(in.skins);
     tobi_looks_free(&in.looks);
     tobi_results_free(results);
     return code;

@@ -11,6 +11,7 @@
 #ifndef TOBIUO_SURFACE_H
 #define TOBIUO_SURFACE_H
 #include "tobiuo/base.h"
+#include "tobiuo/picture.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +59,9 @@ typedef struct tobi_surface {
     char field_names[TOBI_SURFACE_FIELD_LIMIT][40];
     int field_components[TOBI_SURFACE_FIELD_LIMIT];
     float *fields[TOBI_SURFACE_FIELD_LIMIT];     /* vertex_count x components each                       */
+    const tobi_picture_skin *skins;    /* of tobi_surface_make_skinned, borrowed; NULL = none            */
+    int16_t *skin;                     /* of each vertex, -1 = none                                      */
+    float (*uv)[2];                    /* of each vertex: coordinates in the image of its skin           */
 } tobi_surface;
 
 TOBI_API tobi_surface_def tobi_default_surface(void);
@@ -65,6 +69,19 @@ TOBI_API tobi_surface_def tobi_default_surface(void);
 /* TOBI_INVALID for numbers out of range and for NULL where something must stand, TOBI_NO_MEMORY with the
    bytes that the grid would need. On failure *surface is NULL. */
 TOBI_API tobi_status tobi_surface_make(const tobi_surface_def *def, tobi_surface **surface, tobi_error *err);
+/* Images on the surfaces of solids. */
+typedef struct tobi_surface_skins {
+    const tobi_picture_skin *skins;    /* must outlive the surface                                       */
+    int count;
+    const int16_t *skin;               /* of each particle, -1 = none; of a group all have one           */
+    const double (*rest)[3];           /* m, where particles with a skin were at rest                    */
+} tobi_surface_skins;
+
+/* The same with texture coordinates. Vertices are doubled along seams and where the inside begins, so that
+   the mesh is no longer closed there. Of a field "color" of 4 components skins become white, what was inside
+   gets the colour of the inside. TOBI_INVALID: there are as many fields as there may be. */
+TOBI_API tobi_status tobi_surface_make_skinned(const tobi_surface_def *def, const tobi_surface_skins *skins,
+                                               tobi_surface **surface, tobi_error *err);
 /* NULL is fine. */
 TOBI_API void tobi_surface_free(tobi_surface *surface);
 
@@ -81,7 +98,8 @@ typedef struct tobi_surface_movie tobi_surface_movie;
 TOBI_API tobi_status tobi_surface_movie_create(const char *path, int frames, const double up[3],
                                                tobi_surface_movie **movie, tobi_error *err);
 /* The colours of vertices: those of a field (by number; of 3 components its size) from low to high, or, with
-   field -1, one for each group. Times rise. */
+   field -1, the surface's own, or one for each group; then images are shown, too, 16 of them at most.
+   Times rise. */
 TOBI_API tobi_status tobi_surface_movie_add(tobi_surface_movie *movie, double time,
                                             const tobi_surface *surface,
                                             int field, double low, double high, tobi_error *err);

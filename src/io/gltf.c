@@ -12,12 +12,15 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <png.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FRAME_ROOM = 2700, HEAD_ROOM = 2800, VIEWS = 4 };
+enum { IMAGES = 16, CLASSES = 2 + IMAGES };        /* triangles: opaque, clear, with the first image ... */
+enum { OPAQUE, CLEAR, SKIN };
+enum { FRAME_ROOM = 2900 + 260*IMAGES, HEAD_ROOM = 2800 + 400*IMAGES };
 /* of GLB and glTF */
 enum { MAGIC = 0x46546c67, JSON_PART = 0x4e4f534a, BINARY_PART = 0x004e4942,
        FLOAT_NUMBERS = 5126, WORD_NUMBERS = 5125, BYTE_NUMBERS = 5121, VERTEX_DATA = 34962,
@@ -25,8 +28,8 @@ enum { MAGIC = 0x46546c67, JSON_PART = 0x4e4f534a, BINARY_PART = 0x004e4942,
 
 typedef struct frame {
     double time;
-    int64_t vertices, triangles;
-    int64_t opaque;              /* triangles that come first; the rest lets light through */
+    int64_t vertices, triangles, of_class[CLASSES];
+    int coordinates;             /* 1: vertices have a place in an image */
     uint64_t at;                 /* of its bytes in the binary part */
     float low[3], high[3];
 } frame;
@@ -38,6 +41,9 @@ struct tobi_surface_movie {
     int count, room;
     double up[3], middle[3];
     uint64_t bytes;              /* of the binary part so far */
+    tobi_image *image[IMAGES];   /* owned */
+    int images;
+    uint64_t image_at[IMAGES], image_bytes[IMAGES];
     char *text;                  /* of the JSON part */
     size_t length, limit;
 };
@@ -86,6 +92,7 @@ void tobi_surface_movie_free(tobi_surface_movie *m)
 {
     if (!m) return;
     tobi_file_abandon(&m->file);
+    for (int k = 0; k < m->images; k++) tobi_image_free(m->image[k]);
     free(m->path);
     free(m->frame);
     free(m->text);
@@ -122,21 +129,42 @@ static void find_color(const tobi_surface *s, int64_t i, int field, double low, 
     out[3] = (uint8_t)lrintf(255*opacity);
 }
 
-/* Particles of a group are of one material, so a triangle is opaque as its first vertex is. */
-static bool is_opaque(const tobi_surface *s, int64_t triangle, int field)
+/* The number of an image, which the movie keeps from now on; -1: it has as many as it takes. */
+static int find_image(tobi_surface_movie *m, const tobi_image *image)
 {
+    for (int k = 0; k < m->images; k++)
+        if (m->image[k] == image) return k;
+    if (m->images == IMAGES) return -1;
+    m->image[m->images] = tobi_image_share((tobi_image *)image);
+    return m->images++;
+}
+
+/* Particles of a group are of one material, so a triangle is opaque as its first vertex is. */
+static int class_of(tobi_surface_movie *m, const tobi_surface *s, int64_t triangle, int field)
+{
+    const int64_t first = s->triangles[triangle][0];
     const float *own = field < 0 ? tobi_surface_colors(s) : NULL;
-    return !own || own[4*(int64_t)s->triangles[triangle][0] + 3] > 0.99f;
+    const int skin = s->skin && field < 0 ? s->skin[first] : -1;
+    const int image = skin >= 0 ? find_image(m, s->skins[skin].image) : -1;
+    return image >= 0 ? SKIN + image : !own || own[4*first + 3] > 0.99f ? OPAQUE : CLEAR;
 }
 
 static void write_triangles(tobi_surface_movie *m, frame *f, const tobi_surface *s, int field)
 {
-    for (int opaque = 1; opaque >= 0; opaque--)
-        for (int64_t t = 0; t < s->triangle_count && !m->file.error; t++) {
-            if (is_opaque(s, t, field) != opaque) continue;
-            f->opaque += opaque;
-            tobi_file_write(&m->file, s->triangles[t], sizeof *s->triangles);
-        }
+    for (int64_t t = 0; t < s->triangle_count; t++) f->of_class[class_of(m, s, t, field)]++;
+    for (int c = 0; c < CLASSES; c++)
+        for (int64_t t = 0; t < s->triangle_count && f->of_class[c] > 0 && !m->file.error; t++)
+            if (class_of(m, s, t, field) == c)
+                tobi_file_write(&m->file, s->triangles[t], sizeof *s->triangles);
+}
+
+/* glTF counts rows from the top. */
+static void write_coordinates(tobi_surface_movie *m, const tobi_surface *s)
+{
+    for (int64_t i = 0; i < s->vertex_count && !m->file.error; i++) {
+        const float uv[2] = { s->uv[i][0], 1 - s->uv[i][1] };
+        tobi_file_write(&m->file, uv, sizeof uv);
+    }
 }
 
 static void write_frame(tobi_surface_movie *m, frame *f, const tobi_surface *s, int field, double low,
@@ -158,6 +186,7 @@ static void write_frame(tobi_surface_movie *m, frame *f, const tobi_surface *s, 
         find_color(s, i, field, low, high, color);
         tobi_file_write(&m->file, color, sizeof color);
     }
+    if (f->coordinates) write_coordinates(m, s);
     write_triangles(m, f, s, field);
 }
 
@@ -174,7 +203,7 @@ static tobi_status check_frame(const tobi_surface_movie *m, double time, const t
     if (field < -1 || field >= s->field_count)
         return tobi_fail(err, TOBI_INVALID, "%s: the surface has no field %d, but %d", m->path, field,
                          s->field_count);
-    const uint64_t bytes = m->bytes + (uint64_t)s->vertex_count*28 + (uint64_t)s->triangle_count*12;
+    const uint64_t bytes = m->bytes + (uint64_t)s->vertex_count*36 + (uint64_t)s->triangle_count*12;
     if (bytes + m->limit + 28 > UINT32_MAX)
         return tobi_fail(err, TOBI_INVALID,
                          "%s: more than 4 GB at %g s, which a .glb cannot hold; a larger cell "
@@ -190,9 +219,10 @@ tobi_status tobi_surface_movie_add(tobi_surface_movie *m, double time, const tob
     TOBI_TRY(check_frame(m, time, s, field, err));
     for (int a = 0; a < 3 && m->bytes == 0 && s->vertex_count > 0; a++) m->middle[a] = s->vertices[0][a];
     frame *f = &m->frame[m->count++];
-    *f = (frame){ .time = time, .vertices = s->vertex_count, .triangles = s->triangle_count, .at = m->bytes };
+    *f = (frame){ .time = time, .vertices = s->vertex_count, .triangles = s->triangle_count, .at = m->bytes,
+                  .coordinates = s->uv && field < 0 && s->triangle_count > 0 };
     write_frame(m, f, s, field, low, high);
-    m->bytes += (uint64_t)s->vertex_count*28 + (uint64_t)s->triangle_count*12;
+    m->bytes += (uint64_t)s->vertex_count*(f->coordinates ? 36 : 28) + (uint64_t)s->triangle_count*12;
     return TOBI_OK;
 }
 
@@ -214,10 +244,14 @@ static void put(tobi_surface_movie *m, const char *format, ...)
 
 static bool is_empty(const frame *f) { return f->triangles == 0; }
 
-/* Positions, normals, colours; triangles that are opaque, and others. */
+/* Positions, normals, colours, places in images; triangles by class. */
+static int count_views(const frame *f) { return is_empty(f) ? 0 : 4 + f->coordinates; }
+
 static int count_accessors(const frame *f)
 {
-    return is_empty(f) ? 0 : 3 + (f->opaque > 0) + (f->opaque < f->triangles);
+    int n = count_views(f) - 1;
+    for (int c = 0; c < CLASSES && !is_empty(f); c++) n += f->of_class[c] > 0;
+    return is_empty(f) ? 0 : n;
 }
 
 /* Turns up to y, and moves the frames back to where they are. */
@@ -253,9 +287,14 @@ static void put_meshes(tobi_surface_movie *m)
         const frame *f = &m->frame[k];
         if (is_empty(f)) continue;
         put(m, "%s{\"name\":\"surface_%06d\",\"primitives\":[", n ? "," : "", k);
-        for (int i = 3; i < count_accessors(f); i++)
-            put(m, "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"COLOR_0\":%d},\"indices\":%d,"
-                "\"material\":%d}", i > 3 ? "," : "", n, n + 1, n + 2, n + i, i > 3 || f->opaque == 0);
+        const int first = count_views(f) - 1;
+        for (int c = 0, i = first; c < CLASSES; c++) {
+            if (f->of_class[c] == 0) continue;
+            put(m, "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"COLOR_0\":%d", i > first ? "," : "", n,
+                n + 1, n + 2);
+            if (f->coordinates) put(m, ",\"TEXCOORD_0\":%d", n + 3);
+            put(m, "},\"indices\":%d,\"material\":%d}", n + i++, c);
+        }
         put(m, "]}");
         n += count_accessors(f);
     }
@@ -270,7 +309,7 @@ static void put_indices(tobi_surface_movie *m, int view, int64_t first, int64_t 
 
 static void put_accessors(tobi_surface_movie *m)
 {
-    int n = 0;
+    int n = 0;       /* views */
     for (int k = 0; k < m->count; k++) {
         const frame *f = &m->frame[k];
         if (is_empty(f)) continue;
@@ -282,24 +321,27 @@ static void put_accessors(tobi_surface_movie *m)
             FLOAT_NUMBERS, f->vertices);
         put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"normalized\":true,\"count\":%" PRId64
             ",\"type\":\"VEC4\"}", n + 2, BYTE_NUMBERS, f->vertices);
-        put_indices(m, n + 3, 0, f->opaque);
-        put_indices(m, n + 3, f->opaque, f->triangles - f->opaque);
-        n += VIEWS;
+        if (f->coordinates)
+            put(m, ",{\"bufferView\":%d,\"componentType\":%d,\"count\":%" PRId64 ",\"type\":\"VEC2\"}", n + 3,
+                FLOAT_NUMBERS, f->vertices);
+        n += count_views(f);
+        int64_t first = 0;
+        for (int c = 0; c < CLASSES; first += f->of_class[c++]) put_indices(m, n - 1, first, f->of_class[c]);
     }
 }
 
-/* Four views of each frame; behind them the times and scales of the animation. */
+/* The views of each frame; behind them the times and scales of the animation. */
 static void put_views(tobi_surface_movie *m)
 {
     int n = 0;
     for (int k = 0; k < m->count; k++) {
         const frame *f = &m->frame[k];
-        const uint64_t v = (uint64_t)f->vertices, size[VIEWS] = { 12*v, 12*v, 4*v,
-                                                                  12*(uint64_t)f->triangles };
+        const uint64_t v = (uint64_t)f->vertices, indices = 12*(uint64_t)f->triangles;
+        const uint64_t size[5] = { 12*v, 12*v, 4*v, f->coordinates ? 8*v : indices, indices };
         uint64_t at = f->at;
-        for (int q = 0; q < VIEWS && !is_empty(f); q++, n++) {
+        for (int q = 0; q < count_views(f); q++, n++) {
             put(m, "%s{\"buffer\":0,\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 ",\"target\":%d}",
-                n ? "," : "", at, size[q], q == 3 ? INDEX_DATA : VERTEX_DATA);
+                n ? "," : "", at, size[q], q == count_views(f) - 1 ? INDEX_DATA : VERTEX_DATA);
             at += size[q];
         }
     }
@@ -356,6 +398,43 @@ static void write_animation(tobi_surface_movie *m, int accessors, int views)
             at + 4*n, 12*n);
         at += 16*n;
     }
+    for (int k = 0; k < m->images; k++)
+        put(m, ",{\"buffer\":0,\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 "}", m->image_at[k],
+            m->image_bytes[k]);
+}
+
+/* PNG files, in whole words. */
+static tobi_status write_images(tobi_surface_movie *m, tobi_error *err)
+{
+    for (int k = 0; k < m->images; k++) {
+        png_image png = { .version = PNG_IMAGE_VERSION, .format = PNG_FORMAT_RGB };
+        const uint8_t *rgb;
+        int width, height;
+        tobi_image_size(m->image[k], &width, &height, &rgb);
+        png.width = (png_uint_32)width, png.height = (png_uint_32)height;
+        png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png), padded;
+        uint8_t *data = calloc(bytes + 4, 1);
+        const int good = data && png_image_write_to_memory(&png, data, &bytes, 0, rgb, 0, NULL);
+        padded = (bytes + 3)/4*4;
+        m->image_at[k] = m->bytes, m->image_bytes[k] = bytes;
+        if (good) tobi_file_write(&m->file, data, padded);
+        free(data);
+        if (!good) return tobi_fail(err, TOBI_NO_MEMORY, "%s: no memory for an image", m->path);
+        m->bytes += padded;
+        if (m->bytes + m->limit + 28 > UINT32_MAX) m->file.error = EFBIG;
+    }
+    return TOBI_OK;
+}
+
+static void put_images(tobi_surface_movie *m, int views)
+{
+    if (m->images == 0) return;
+    put(m, ",\"images\":[");
+    for (int k = 0; k < m->images; k++)
+        put(m, "%s{\"bufferView\":%d,\"mimeType\":\"image/png\"}", k ? "," : "", views + k);
+    put(m, "],\"textures\":[");
+    for (int k = 0; k < m->images; k++) put(m, "%s{\"source\":%d}", k ? "," : "", k);
+    put(m, "]");
 }
 
 tobi_status tobi_surface_movie_finish(tobi_surface_movie *m, tobi_error *err)
@@ -363,16 +442,22 @@ tobi_status tobi_surface_movie_finish(tobi_surface_movie *m, tobi_error *err)
     TOBI_NEED(m, "movie");
     if (m->count == 0) return tobi_fail(err, TOBI_INVALID, "%s: a movie without a frame", m->path);
     int accessors = 0, views = 0;
+    TOBI_TRY(write_images(m, err));
     for (int k = 0; k < m->count; k++) {
         accessors += count_accessors(&m->frame[k]);
-        views += is_empty(&m->frame[k]) ? 0 : VIEWS;
+        views += count_views(&m->frame[k]);
     }
     put(m, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tobiuo %s\"},\"scene\":0,"
         "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[", TOBI_VERSION);
     put_nodes(m);
     put(m, "],\"materials\":[{\"name\":\"surface\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
         "\"roughnessFactor\":0.15}},{\"name\":\"liquid\",\"alphaMode\":\"BLEND\","
-        "\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.05}}]");
+        "\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.05}}");
+    for (int k = 0; k < m->images; k++)
+        put(m, ",{\"name\":\"skin_%d\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+            "\"roughnessFactor\":0.4,\"baseColorTexture\":{\"index\":%d}}}", k, k);
+    put(m, "]");
+    put_images(m, views + 2*m->count);
     if (accessors > 0) {
         put(m, ",\"meshes\":[");
         put_meshes(m);

@@ -209,11 +209,8 @@ typedef struct segments { vec (*end)[2]; int64_t count, room; } segments;
 bool view_add_segment(segments *s, vec from, vec to);
 bool view_find_isolines(const canvas *c, const tobi_picture *f, double low, double high, segments *out);
 
-/* skin.c: from now to rest: a map of a group, and what each of its particles differs from it, m. */
-typedef struct rest_map { double from[3], to[3], by[3][3]; } rest_map;
-void view_fit_rest(const tobi_picture *f, const int32_t *row, int64_t count, rest_map *map, vec *rest);
-/* Colours that are such differences become marks of images, from a vertex and a face on; false: no
-   memory. The colour of one place. */
+/* skin.c: colours that are what view_fit_rest finds become marks of images, from a vertex and a face on;
+   false: no memory. The colour of one place. */
 typedef struct surface_request surface_request;
 bool view_put_skin(const canvas *c, const surface_request *r, geometry *g, int64_t vertex, int64_t face);
 vec view_skin_color(const surface_request *r, int64_t particle);
@@ -227,7 +224,7 @@ struct surface_request {
     const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
     segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
     const tobi_picture_skin *skin;      /* not NULL: colours are what view_fit_rest finds      */
-    const rest_map *map;         /* with a skin                                                    */
+    const struct rest_map *map;  /* with a skin                                                    */
     int     skin_number;         /* of its image                                                   */
     vec     plain;
     float   level;               /* of the kernel sum, 1 inside: small keeps what is thin          */

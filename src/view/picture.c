@@ -2,6 +2,7 @@
    over one canvas in memory. Drawback: everything is drawn on the processor. */
 #define _GNU_SOURCE 1
 #include "view/draw.h"
+#include "view/skin.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -268,7 +269,7 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
         const int skin = s->rest ? f->skin[r.row[0]] : -1;
         rest_map map;
         if (skin >= 0 && skin < f->skin_count && f->skins[skin].image) {
-            view_fit_rest(f, r.row, r.count, &map, s->rest);
+            view_fit_rest(f->positions, f->rest, r.row, r.count, &map, s->rest);
             r.skin = &f->skins[skin], r.skin_number = f->mesh_count + skin, r.color = s->rest, r.map = &map;
         }
         TOBI_TRY(view_add_surface(g, drops, &s->c, &r, &around, err));

@@ -2,6 +2,7 @@
    group says, and the mean of what the particles around differ from it. Coordinates are looked up there, not
    averaged, so that seams stay seams. Faces across a seam read all corners in one plane of the skin; faces
    from deep below have a plain colour. Drawback: vertices are copied along seams and rims. */
+#include "view/skin.h"
 #include "view/image.h"
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +34,7 @@ static void invert(const double m[3][3], double out[3][3])
         for (int j = 0; j < 3; j++) out[i][j] = det > 0 ? c[j][i]/det : i == j;
 }
 
-static void apply(const rest_map *m, const double x[3], double out[3])
+void view_apply_map(const rest_map *m, const double x[3], double out[3])
 {
     for (int a = 0; a < 3; a++) {
         out[a] = m->to[a];
@@ -42,17 +43,18 @@ static void apply(const rest_map *m, const double x[3], double out[3])
 }
 
 /* Least squares: rest - x is fitted, so that what has no extent is not turned or stretched. */
-void view_fit_rest(const tobi_picture *f, const int32_t *row, int64_t count, rest_map *m, vec *rest)
+void view_fit_rest(const double (*positions)[3], const double (*rest)[3], const int32_t *row, int64_t count,
+                   rest_map *m, vec *off)
 {
     double square[3][3] = { { 0 } }, mixed[3][3] = { { 0 } }, inverse[3][3];
     *m = (rest_map){ .by = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
     for (int64_t i = 0; i < count; i++)
         for (int a = 0; a < 3; a++) {
-            m->from[a] += f->positions[row[i]][a]/(double)count;
-            m->to[a] += f->rest[row[i]][a]/(double)count;
+            m->from[a] += positions[row[i]][a]/(double)count;
+            m->to[a] += rest[row[i]][a]/(double)count;
         }
     for (int64_t i = 0; i < count; i++) {
-        const double *x = f->positions[row[i]], *r = f->rest[row[i]];
+        const double *x = positions[row[i]], *r = rest[row[i]];
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++) {
                 const double xa = x[a] - m->from[a], xb = x[b] - m->from[b];
@@ -68,9 +70,9 @@ void view_fit_rest(const tobi_picture *f, const int32_t *row, int64_t count, res
             for (int c = 0; c < 3; c++) m->by[a][b] += mixed[a][c]*inverse[c][b];
     for (int64_t i = 0; i < count; i++) {
         double at[3];
-        const double *r = f->rest[row[i]];
-        apply(m, f->positions[row[i]], at);
-        rest[row[i]] = (vec){ (float)(r[0] - at[0]), (float)(r[1] - at[1]), (float)(r[2] - at[2]) };
+        const double *r = rest[row[i]];
+        view_apply_map(m, positions[row[i]], at);
+        off[row[i]] = (vec){ (float)(r[0] - at[0]), (float)(r[1] - at[1]), (float)(r[2] - at[2]) };
     }
 }
 
@@ -84,42 +86,45 @@ static void look_range(const void *view, int64_t begin, int64_t end)
         double x[3], *at = l->at[i];
         for (int a = 0; a < 3; a++)
             x[a] = c->eye[a] + (double)p.x*c->right[a] + (double)p.y*c->up[a] + (double)p.z*c->forward[a];
-        apply(l->r->map, x, at);
+        view_apply_map(l->r->map, x, at);
         at[0] += (double)rest.x, at[1] += (double)rest.y, at[2] += (double)rest.z;
         l->depth[i] = (float)s->look(s->user, at, l->uv[i]);
     }
 }
 
-static bool jumps(const looking *l, const int64_t v[3])
+static bool jumps(const tobi_picture_skin *skin, const double at[3][3], const float uv[3][2])
 {
     for (int k = 0; k < 3; k++) {
-        const int64_t a = v[k], b = v[(k + 1)%3];
-        const double *p = l->at[a], *q = l->at[b];
+        const double *p = at[k], *q = at[(k + 1)%3];
         const double way = fabs(p[0] - q[0]) + fabs(p[1] - q[1]) + fabs(p[2] - q[2]);
-        const double most = JUMP*l->r->skin->stretch*way + 1e-4;
+        const double most = JUMP*skin->stretch*way + 1e-4;
         for (int c = 0; c < 2; c++)
-            if (!(fabs((double)l->uv[a][c] - (double)l->uv[b][c]) <= most)) return true;
+            if (!(fabs((double)uv[k][c] - (double)uv[(k + 1)%3][c]) <= most)) return true;
     }
     return false;
+}
+
+bool view_skin_face(const tobi_picture_skin *skin, const double at[3][3], const float depth[3],
+                    float uv[3][2])
+{
+    if (!((depth[0] + depth[1] + depth[2])/3 <= (float)skin->depth)) return false;
+    if (jumps(skin, at, (const float (*)[2])uv)) skin->look_flat(skin->user, at, uv);
+    return true;
 }
 
 /* The colours, or marks of the image, of a face's corners. */
 static void find_colors(const canvas *c, const looking *l, const int64_t v[3], vec out[3])
 {
-    const surface_request *r = l->r;
-    const float depth = (l->depth[v[0]] + l->depth[v[1]] + l->depth[v[2]])/3;
-    float uv[3][2];
-    if (!(depth <= (float)r->skin->depth)) {
-        for (int k = 0; k < 3; k++) out[k] = c->inside[r->skin_number];
-        return;
+    const int number = l->r->skin_number;
+    double at[3][3];
+    float depth[3], uv[3][2];
+    for (int k = 0; k < 3; k++) {
+        memcpy(at[k], l->at[v[k]], sizeof at[k]);
+        memcpy(uv[k], l->uv[v[k]], sizeof uv[k]);
+        depth[k] = l->depth[v[k]];
     }
-    for (int k = 0; k < 3; k++) memcpy(uv[k], l->uv[v[k]], sizeof uv[k]);
-    if (jumps(l, v)) {
-        double corner[3][3];
-        for (int k = 0; k < 3; k++) memcpy(corner[k], l->at[v[k]], sizeof corner[k]);
-        r->skin->look_flat(r->skin->user, (const double (*)[3])corner, uv);
-    }
-    for (int k = 0; k < 3; k++) out[k] = image_mark(uv[k], r->skin_number);
+    const bool skin = view_skin_face(l->r->skin, (const double (*)[3])at, depth, uv);
+    for (int k = 0; k < 3; k++) out[k] = skin ? image_mark(uv[k], number) : c->inside[number];
 }
 
 /* Gives a corner its colour; a vertex that has another one already is copied. */

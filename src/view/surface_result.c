@@ -110,5 +110,7 @@ void tobi_surface_free(tobi_surface *s)
     tobi_array_free(s->group);
     tobi_array_free(s->sides);
     for (int f = 0; f < TOBI_SURFACE_FIELD_LIMIT; f++) tobi_array_free(s->fields[f]);
+    free(s->skin);
+    free(s->uv);
     free(s);
 }

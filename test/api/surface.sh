@@ -54,6 +54,7 @@ cat > two.json <<'END'
 END
 expect 0 "" run two.json --out two --quiet
 for format in obj ply glb; do expect 0 "" surface two --last --format $format; done
+check "one frame is no frames" grep -q "glb, 1 frame, " out.txt
 check "two liquids, their colours" $python - <<'END'
 import json, struct
 lines = open("two/surface/surface_000001.obj").read().splitlines()

@@ -108,6 +108,11 @@ static void test_mistakes(void **state)
     REFUSED(tobi_surface_write(NULL, s, &err), TOBI_INVALID, "path is NULL");
     REFUSED(tobi_surface_write("a.obj", NULL, &err), TOBI_INVALID, "surface is NULL");
     REFUSED(tobi_surface_write("nowhere/a.obj", s, &err), TOBI_IO, "nowhere/a.obj");
+    tobi_surface *s2;
+    tobi_surface_def many = tobi_default_surface();
+    many.field_count = TOBI_SURFACE_FIELD_LIMIT;
+    REFUSED(tobi_surface_make_skinned(&many, &(tobi_surface_skins){ .count = 0 }, &s2, &err), TOBI_INVALID,
+            "32 fields, with skins allowed are 0 to 31");
     REFUSED(tobi_surface_movie_create("m.glb", 0, up, &movie, &err), TOBI_INVALID,
             "0 frames, allowed are 1 to");
     REFUSED(tobi_surface_movie_create("m.glb", 1, (const double[3]){ 0, 0, 0 }, &movie, &err), TOBI_INVALID,

@@ -10,8 +10,12 @@
 #include <string.h>
 #include <unistd.h>
 #include <png.h>
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include "geom/texture.h"
 #include "tobiuo/drawing.h"
+#include "tobiuo/surface.h"
 #include "tobiuo/run.h"
 #include "world/world.h"
 
@@ -383,12 +387,127 @@ static void test_pictures(void **state)
     tobi_world_destroy(w);
 }
 
+/* The stripe of a face by its image, as assimp reads the file. */
+static int stripe_of(const struct aiMesh *m, const struct aiFace *f, const tobi_image *image)
+{
+    float uv[2] = { 0, 0 }, color[3];
+    uint8_t rgb[3];
+    for (int k = 0; k < 3; k++) {
+        uv[0] += m->mTextureCoords[0][f->mIndices[k]].x/3;
+        uv[1] += m->mTextureCoords[0][f->mIndices[k]].y/3;
+    }
+    tobi_image_color(image, uv, color);
+    for (int c = 0; c < 3; c++) rgb[c] = (uint8_t)(255*color[c]);
+    return find_stripe(rgb);
+}
+
+/* Faces -x, +x, -y, +y, -z, +z by their normal, with y upwards; -1: none of them quite. */
+static int side_of(const struct aiMesh *m, const struct aiFace *f)
+{
+    double p[3][3], n[3];
+    for (int k = 0; k < 3; k++) {
+        const struct aiVector3D *v = &m->mVertices[f->mIndices[k]];
+        p[k][0] = v->x, p[k][1] = v->y, p[k][2] = v->z;
+    }
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1)%3, c = (a + 2)%3;
+        n[a] = (p[1][b] - p[0][b])*(p[2][c] - p[0][c]) - (p[1][c] - p[0][c])*(p[2][b] - p[0][b]);
+    }
+    const double size = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    for (int a = 0; a < 3; a++)
+        if (fabs(n[a]) > 0.97*size) return 2*a + (n[a] > 0);
+    return -1;
+}
+
+static void judge_gltf(void)
+{
+    static const int was[6] = { 3, 2, 0, 1, 4, 5 };
+    tobi_error err = { 0 };
+    tobi_image *image;
+    const struct aiScene *scene = aiImportFile("cube.glb", 0);
+    if (!scene) fail_msg("%s", aiGetErrorString());
+    assert_int_equal(scene->mNumTextures, 1);
+    const struct aiTexture *t = scene->mTextures[0];
+    FILE *f = fopen("glb.png", "wb");
+    assert_true(t->mHeight == 0 && f && fwrite(t->pcData, 1, t->mWidth, f) == t->mWidth && fclose(f) == 0);
+    if (tobi_image_read("glb.png", &image, &err)) fail_msg("%s", err.text);
+    int count[6] = { 0 }, right[6] = { 0 }, inside = 0;
+    for (unsigned k = 0; k < scene->mNumMeshes; k++) {
+        const struct aiMesh *m = scene->mMeshes[k];
+        const struct aiMaterial *material = scene->mMaterials[m->mMaterialIndex];
+        const int has = aiGetMaterialTextureCount(material, aiTextureType_DIFFUSE) > 0;
+        assert_non_null(m->mTextureCoords[0]);
+        for (unsigned q = 0; q < m->mNumFaces; q++) {
+            const int side = side_of(m, &m->mFaces[q]);
+            const struct aiColor4D *c = &m->mColors[0][m->mFaces[q].mIndices[0]];
+            assert_true(has ? c->r == 1 && c->g == 1 && c->b == 1 : c->r == 0 && c->g == 1 && c->b == 0);
+            inside += !has && side == 5;
+            if (side < 0 || !has) continue;
+            count[side]++;
+            right[side] += stripe_of(m, &m->mFaces[q], image) == was[side];
+        }
+    }
+    for (int k = 0; k < 6; k++) {
+        print_message("side %d: %d of %d\n", k, right[k], count[k]);
+        if (k != 5) assert_true(count[k] > 25 && right[k] > 0.98*count[k]);
+    }
+    assert_true(inside > 50);
+    aiReleaseImport(scene);
+    tobi_image_free(image);
+}
+
+/* The surface of the turned cube as glTF: assimp finds the image and, on each side, the stripe that was there
+   at rest; half of the cube has a side of the inside, without an image. */
+static void test_gltf(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_looks looks;
+    tobi_surface *s;
+    tobi_surface_movie *movie;
+    tobi_world *w = make_textured(6, TOBI_OK, &err);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
+    assert_int_equal(tobi_world_looks(w, &looks, &err), TOBI_OK);
+    const int64_t n = tobi_world_count(w, TOBI_FLUID);
+    double (*rest)[3] = calloc((size_t)n, sizeof *rest), (*at)[3] = calloc((size_t)n, sizeof *at);
+    int16_t *skin = calloc((size_t)n, sizeof *skin);
+    double *white = malloc(4*(size_t)n*sizeof *white);
+    assert_int_equal(tobi_world_read(w, TOBI_FLUID, "rest_position", rest[0], 3*n, &err), TOBI_OK);
+    for (int64_t i = 0; i < n; i++) {
+        at[i][0] = 1 - rest[i][1], at[i][1] = rest[i][0] - 1, at[i][2] = rest[i][2];
+        if (at[i][2] > 1) at[i][2] = NAN;      /* the upper half is gone */
+        for (int c = 0; c < 4; c++) white[4*i + c] = 0.25;
+    }
+    tobi_picture_skin one_skin = looks.materials[0].skin;
+    memcpy(one_skin.inside, (float[3]){ 0, 1, 0 }, sizeof one_skin.inside);
+    const tobi_surface_skins skins = { &one_skin, 1, skin, (const double (*)[3])rest };
+    const tobi_surface_field color = { "color", 4, white };
+    tobi_surface_def d = tobi_default_surface();
+    d.particle_count = n, d.positions = (const double (*)[3])at, d.spacing = looks.spacing;
+    d.fields = &color, d.field_count = 1;
+    if (tobi_surface_make_skinned(&d, &skins, &s, &err)) fail_msg("%s", err.text);
+    assert_int_equal(tobi_surface_movie_create("cube.glb", 1, (const double[3]){ 0, 1, 0 }, &movie, &err),
+                     TOBI_OK);
+    assert_int_equal(tobi_surface_movie_add(movie, 0, s, -1, 0, 1, &err), TOBI_OK);
+    if (tobi_surface_movie_finish(movie, &err)) fail_msg("%s", err.text);
+    tobi_surface_movie_free(movie);
+    tobi_surface_free(s);
+    judge_gltf();
+    tobi_looks_free(&looks);
+    tobi_world_destroy(w);
+    free(rest);
+    free(at);
+    free(skin);
+    free(white);
+}
+
 int main(void)
 {
     char folder[] = "/tmp/tobiuo_texture_XXXXXX", command[100];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reading), cmocka_unit_test(test_skin), cmocka_unit_test(test_particles),
         cmocka_unit_test(test_files), cmocka_unit_test(test_images), cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_gltf),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
