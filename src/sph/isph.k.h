@@ -44,6 +44,9 @@
 #define ISPH_CORE 0.8f
 #define ISPH_PUSH 0.25f
 #define ISPH_SHIFT_MAX 0.1
+/* Over what a gradient taken at the begin of the shift amplifies, by Lax and Wendroff: 1 is not enough where
+   particles are disordered. */
+#define ISPH_SHIFT_DAMPING 2.0
 /* The same in full vessels, where only particles that are next to alone in a cavity are a surface. */
 #define ISPH_CAVITY_BEGIN 0.6
 #define ISPH_CAVITY_OPEN 0.8
@@ -467,13 +470,13 @@ TOBI_FN void isph_projection_finish(const isph_view *v, int64_t i, isph_projecti
 }
 
 /* The shift of positions, eq. (10), as an acceleration over `way` in accel, and the change of velocity that
-   goes with it. totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
-typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9]; } isph_shift_acc;
+   goes with it, eq. (10a). totals: [0] sum, [6] largest of |div v|, 1/s, away from a free surface. */
+typedef struct isph_shift_acc { lane ux, uy, uz, core[3], normal[3], slope[9], bend[3]; } isph_shift_acc;
 
 /* Points of soft solids push by their core, and mirror velocities. */
 TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
 {
-    double n[3], core[3] = {0, 0, 0}, slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    double n[3], core[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, slope[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     isph_soft_normal(v, i, n);
     ISPH_SOFT_LINKS(v, i, k) {
         const sph_soft_link *l = &v->soft[k];
@@ -483,10 +486,12 @@ TOBI_FN void isph_shift_soft(const isph_view *v, int64_t i, isph_shift_acc *a)
         const double r = sqrt(r2), push = ISPH_PUSH*isph_larger(ISPH_CORE*v->spacing - r, 0)/(r + 1e-20);
         for (int b = 0; b < 3; b++) {
             core[b] -= push*l->gradient[b]/l->rate;
+            bend[b] += speed*n[b]*l->rate;
             for (int c = 0; c < 3; c++) slope[3*b + c] -= speed*n[b]*l->gradient[c];
         }
     }
     for (int b = 0; b < 3; b++) a->core[b] = isph_first(core[b]);
+    for (int b = 0; b < 3; b++) a->bend[b] = isph_first(bend[b]);
     for (int k = 0; k < 9; k++) a->slope[k] = isph_first(slope[k]);
 }
 
@@ -494,7 +499,7 @@ TOBI_FN void isph_shift_start(const isph_view *v, int64_t i, isph_shift_acc *a)
 {
     const tobi_float4 u = v->velocity[i];
     a->ux = lane_set(u.x); a->uy = lane_set(u.y); a->uz = lane_set(u.z);
-    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = lane_set(0);
+    for (int k = 0; k < 3; k++) a->core[k] = a->normal[k] = a->bend[k] = lane_set(0);
     for (int k = 0; k < 9; k++) a->slope[k] = lane_set(0);
     if (isph_soft_last(v, i) >= 0) isph_shift_soft(v, i, a);
 }
@@ -510,6 +515,7 @@ TOBI_FN void isph_shift_pair(const isph_view *v, int64_t i, const tobi_neighbors
     u[0] = f*(u[0] - a->ux); u[1] = f*(u[1] - a->uy); u[2] = f*(u[2] - a->uz);
     for (int b = 0; b < 3; b++) {
         a->core[b] += push*x[b];
+        a->bend[b] += u[b];
         for (int c = 0; c < 3; c++) a->slope[3*b + c] += u[b]*x[c];
     }
     if (kind != ISPH_PLAIN) return;
@@ -560,9 +566,12 @@ TOBI_FN void isph_shift_finish(const isph_view *v, int64_t i, isph_shift_acc *s,
     const double most = ISPH_SHIFT_MAX*d, keep = size > most*most ? most/sqrt(size) : 1;
     const double part = v->open && full < ISPH_DROP ? 0 : keep;
     isph_apply(&v->inverse[i], x, along);
+    const double damping = ISPH_SHIFT_DAMPING*part*v->slope*
+                           (along[0]*along[0] + along[1]*along[1] + along[2]*along[2]);
     for (int a = 0; a < 3; a++) {
-        const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2];
-        (&v->shift_velocity[i].x)[a] = (float)(part*change);
+        const double change = g[3*a]*along[0] + g[3*a + 1]*along[1] + g[3*a + 2]*along[2] +
+                              damping*lane_sum(s->bend[a]);
+        (&v->shift_velocity[i].x)[a] = a < v->dimension ? (float)(part*change) : 0;
         (&v->accel[i].x)[a] = (float)(keep*x[a]/(v->way*v->way));
     }
 }

@@ -394,6 +394,7 @@ TOBI_FN void sph_advance(const sph_view *v, int64_t i, double *totals)
                    v->position[i].y + (double)v->dt*(u.y + v->dt*shift.y),
                    v->position[i].z + (double)v->dt*(u.z + v->dt*shift.z)};
     float w[3] = {u.x, u.y, u.z};
+    if (v->dimension == 2) x[2] = w[2] = 0;      /* normals of bodies have some 1e-17 */
     double least = 0.2*v->spacing;
     for (int p = 0; p < v->plane_count; p++) {
         const tobi_plane *pl = &v->plane[p];

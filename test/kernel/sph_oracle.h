@@ -415,6 +415,7 @@ static void oracle_advance(const oracle *o, const row *in, row *out, double *t)
             out[i][VEL + a] *= slow;
             out[i][POS + a] += o->dt*out[i][VEL + a] + o->dt*o->dt*in[i][ACC + a];
         }
+        if (o->dimension == 2) out[i][POS + 2] = out[i][VEL + 2] = 0;
         for (int k = 0; k < o->plane_count; k++) {
             int a = o->plane[k].axis;
             double sign = o->plane[k].sign;

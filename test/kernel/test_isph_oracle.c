@@ -135,7 +135,8 @@ static void run(tobi_kernel k, double *totals)
 typedef struct image { int64_t j; double x[3], r, displacement[3]; int flip[3]; int self; } image;
 typedef struct sums {
     double moment[6], concentration, gradient_c[3], product, divergence, difference, rest, row,
-           gradient[3], force[3], core[3], normal[3], slope[9], count, cone, mean[3], all[3], plain[3];
+           gradient[3], force[3], core[3], normal[3], slope[9], bend[3], count, cone, mean[3], all[3],
+           plain[3];
 } sums;
 static void add_choices(int64_t i, const image *m, const double u[3], double f, int plain, sums *s);
 
@@ -190,6 +191,7 @@ static void add_pair(int64_t i, const image *m, sums *s)
         s->gradient[k] -= (p - own)*f*x[k];
         if (side && !face) s->force[k] -= view.volume*(p + own)*f*x[k];
         if (m->r < 0.8*view.spacing) s->core[k] += 0.25*(0.8*view.spacing - m->r)*x[k]/m->r;
+        s->bend[k] += jump*f;
         for (int c = 0; c < 3; c++) s->slope[3*k + c] -= jump*f*x[c];
         const tobi_float4 *of = &view.concentration_gradient[m->j];
         if (!image) s->normal[k] += (double)of->w*(&of->x)[k];
@@ -332,29 +334,6 @@ static void oracle_isph_projection(check *c, int64_t i, const sums *s)
     }
 }
 
-static void oracle_isph_shift(check *c, int64_t i, const sums *s)
-{
-    const double full = 1 - loss_of(s), d = view.spacing;
-    double x[3], along[3], size = 0, n2 = 0, at = 0;
-    const int surface = gate_of(i, s) > 0, fades = view.fades && !(view.last_link && view.last_link[i] >= 0);
-    for (int a = 0; a < 3; a++) x[a] = surface && full < 0.6 ? 0 : -view.shifting*d*d*s->gradient_c[a];
-    for (int a = 0; a < 3; a++) { n2 += s->normal[a]*s->normal[a]; at += x[a]*s->normal[a]; }
-    for (int a = 0; a < 3; a++) {
-        const double lost = surface ? full >= 0.6 : fades ? clip((sqrt(n2) - 0.3)/0.5) : 0;
-        if (n2 > 1e-24) x[a] -= lost*at/n2*s->normal[a];
-        x[a] = a < view.dimension ? x[a] + s->core[a] : 0;
-        size += x[a]*x[a];
-    }
-    const double keep = size > 0.01*d*d ? 0.1*d/sqrt(size) : 1;
-    isph_apply(&view.inverse[i], x, along);
-    for (int a = 0; a < 3; a++) {
-        double change = 0;
-        for (int b = 0; b < 3; b++) change += s->slope[3*a + b]*along[b];
-        compare(c, (&view.accel[i].x)[a]*view.way*view.way, keep*x[a], d);
-        compare(c, (&view.shift_velocity[i].x)[a], view.open && full < 0.6 ? 0 : keep*change, 1);
-    }
-}
-
 static void oracle_isph_add_shift_velocity(check *c, int64_t i, const sums *s)
 {
     (void)s;
@@ -394,6 +373,7 @@ static void oracle_isph_add_answer(check *c, int64_t i, const sums *s)
 }
 
 #include "kernel/isph_choices_oracle.h"
+#include "kernel/isph_shift_oracle.h"
 #include "kernel/isph_time_oracle.h"
 
 typedef struct entry {
