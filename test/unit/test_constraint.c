@@ -390,6 +390,34 @@ static void a_body_that_rests_carries_another(void **state)
     rig_close(&g);
 }
 
+/* P W of two bodies, column by column: symmetric, at most W, and it obeys. */
+static void answers_to_forces_are_symmetric(void **state)
+{
+    (void)state;
+    rig g;
+    double answer[12][12];
+    rig_open(&g, 8, weightless);
+    tobi_body_def def = rig_def();
+    rig_box(&g, def, (double[3]){ 0.4, 0.3, 0.2 }, (double[3]){ 4, 4, 4 });
+    def.density = 300;
+    rig_box(&g, def, (double[3]){ 0.5, 0.2, 0.3 }, (double[3]){ 4.5, 4.1, 4 });
+    join(&g, TOBI_BETWEEN_HINGE, 0, 1, (double[3]){ 4.22, 4.05, 4.1 }, (double[3]){ 0.6, 0, 0.8 });
+    rig_start(&g);
+    tobi_constraints *c = &g.joints;
+    for (int i = 0; i < 12; i++) {
+        for (int k = 0; k < 12; k++) c->speed[k/6][k%6] = k/6 == i/6 ? c->inverse[k/6][k%6][i%6] : 0;
+        tobi_constraints_project(c, 0);
+        for (int k = 0; k < 12; k++) answer[i][k] = c->speed[k/6][k%6];
+        assert_true(answer[i][i] > 0 && answer[i][i] <= c->inverse[i/6][i%6][i%6]*(1 + 1e-12));
+        tobi_constraints_project(c, 0);                          /* once more changes nothing */
+        for (int k = 0; k < 12; k++) assert_true(fabs(c->speed[k/6][k%6] - answer[i][k]) < 1e-12);
+    }
+    for (int i = 0; i < 12; i++)
+        for (int k = 0; k < i; k++) assert_true(fabs(answer[i][k] - answer[k][i]) < 1e-12);
+    assert_true(fabs(answer[0][6]) > 1e-3);                      /* they do answer each other */
+    rig_close(&g);
+}
+
 /* --- definitions ---------------------------------------------------------------------------------- */
 
 static void refuse(tobi_world *w, const tobi_joint_def *def, tobi_status status, const char *words)
@@ -491,6 +519,7 @@ int main(void)
         cmocka_unit_test(a_closed_loop_moves_as_one),
         cmocka_unit_test(joined_bars_come_to_rest_on_the_floor),
         cmocka_unit_test(a_body_that_rests_carries_another),
+        cmocka_unit_test(answers_to_forces_are_symmetric),
         cmocka_unit_test(wrong_joints_are_refused)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
