@@ -397,6 +397,22 @@ void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt)
     tobi_constraints_count(c);
 }
 
+void tobi_constraints_settle(tobi_constraints *c, tobi_body *bodies, double dt)
+{
+    int any = 0;
+    for (int k = 0; k < c->slots; k++) {
+        const tobi_rigid *r = &bodies[c->body[k]].rigid;
+        any |= r->is_corrected;
+        memcpy(c->speed[k], r->velocity, sizeof r->velocity);
+        memcpy(c->speed[k] + 3, r->angular_velocity, sizeof r->angular_velocity);
+        if (r->is_corrected) memcpy(c->speed[k], r->corrected, sizeof r->corrected);
+    }
+    if (!any) return;
+    tobi_constraints_take_inverse(c, bodies);
+    tobi_constraints_factor(c, bodies);
+    tobi_constraints_drive(c, bodies, dt);
+}
+
 void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies)
 {
     for (int again = 1; again;) {

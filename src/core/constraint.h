@@ -71,6 +71,9 @@ tobi_status tobi_constraints_close(tobi_constraints *c, tobi_body *bodies, doubl
 /* The same where a liquid lets them drift by velocities of its own, in `speed`, which then obey; after
    tobi_constraints_factor. */
 void tobi_constraints_drive(tobi_constraints *c, tobi_body *bodies, double dt);
+/* After the systems: where solids have corrected the drift of a joined body, all joined ones drift by their
+   velocities, closed. */
+void tobi_constraints_settle(tobi_constraints *c, tobi_body *bodies, double dt);
 /* What contact holds on one side of a joint drifts without the pull on the other side, too. */
 void tobi_constraints_hold(const tobi_constraints *c, tobi_body *bodies);
 /* Adds the impulses of the last projections to what the joints did in this step. */

@@ -237,6 +237,7 @@ static tobi_status take_step(tobi_world *w, double max_dt, tobi_error *err)
     s->changed = 1;
     remember_swimmers(w);
     TOBI_TRY(step_systems(w, substeps, err));
+    tobi_constraints_settle(&s->constraints, s->bodies, s->dt);
     if (s->soft.solids) s->body_speed = fmax(s->body_speed, s->soft.speed);
     TOBI_TRY(move_bodies(w, err));
     s->time += s->dt;

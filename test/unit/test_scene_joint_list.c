@@ -43,23 +43,43 @@ static const char *const expected[] = {
     "joints[4]: must have an axis",
 };
 
-static void every_mistake_is_told(void **state)
+static const char with_solids[] =
+    "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.1, \"end_time\": 1,"
+    "  \"fluids\": [ { \"name\": \"water\","
+    "    \"fill\": [ { \"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 0.2] } } ] } ],"
+    "  \"solids\": [ { \"name\": \"jelly\", \"youngs_modulus\": 1e5,"
+    "    \"fill\": [ { \"box\": { \"min\": [0, 0, 0.2], \"max\": [1, 1, 0.5] } } ] } ],"
+    "  \"bodies\": [ { \"name\": \"boat\", \"box\": { \"min\": [0.4, 0, 0.6], \"max\": [1, 1, 1] },"
+    "    \"dynamics\": \"free\" } ],"
+    "  \"joints\": [ { \"name\": \"a\", \"kind\": \"ball\", \"body\": \"boat\","
+    "    \"point\": [0.4, 0, 1] } ] }";
+
+static const char *const both[] = {
+    "joints: are not known yet where a liquid and solids of mlsmpm are in one scene",
+};
+
+static void expect(const char *scene_text, const char *const *lines, int count)
 {
-    (void)state;
-    const int count = sizeof expected/sizeof *expected;
     tobi_scene *scene;
     tobi_report *report;
     tobi_error err = { 0 };
-    assert_int_equal(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, &report, &err),
+    assert_int_equal(tobi_scene_parse("s.json", scene_text, strlen(scene_text), NULL, &scene, &report, &err),
                      TOBI_INVALID);
     for (int k = 0; k < count; k++) {
         int found = 0;
         for (int i = 0; i < tobi_report_count(report); i++)
-            found += strstr(tobi_report_line(report, i), expected[k]) != NULL;
-        if (found != 1) fail_msg("%d times: %s", found, expected[k]);
+            found += strstr(tobi_report_line(report, i), lines[k]) != NULL;
+        if (found < 1) fail_msg("not told: %s", lines[k]);
     }
     assert_int_equal(tobi_report_count(report), count);
     tobi_report_free(report);
+}
+
+static void every_mistake_is_told(void **state)
+{
+    (void)state;
+    expect(text, expected, sizeof expected/sizeof *expected);
+    expect(with_solids, both, 1);
 }
 
 int main(void)
