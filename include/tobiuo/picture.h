@@ -94,6 +94,8 @@ typedef struct tobi_picture {
     double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */
     const double (*velocities)[3];     /* m/s, drawn as arrows; NULL = none                             */
     int isolines;                      /* lines of equal value on surfaces, 0 to 100                     */
+    int streamlines;                   /* so many side by side along the longest edge, 0 to 200          */
+    const double (*flow)[3];           /* m/s, that streamlines of what is not opaque follow             */
     const tobi_picture_path *paths;
     int path_count;
     int axes;                          /* not 0: ticks along edges of the box                           */

@@ -442,7 +442,7 @@ typedef struct tobi_view_def {
     int         width, height;        /* pixels                                                       */
     int         samples;              /* per pixel and axis                                           */
     int         arrows;               /* 1: velocities as arrows                                      */
-    int         isolines;             /* lines of equal value on surfaces                             */
+    int         isolines, streamlines;      /* of equal value; so many along the longest edge         */
     int         paths;                /* 1: where the centres of bodies have been                     */
     int         axes;                 /* 1: ticks along edges of the domain                           */
     int         transparent;          /* 1: nothing behind                                            */

@@ -118,7 +118,7 @@ static tobi_status take_particles(tobi_drawing *d, tobi_error *err)
     if (d->view->field && !field)
         return tobi_fail(err, TOBI_NOT_FOUND, "the output has no field '%s'; output.fields of the scene "
                          "writes it", d->view->field);
-    const int arrows = d->view->arrows && velocity;
+    const int arrows = (d->view->arrows || d->view->streamlines > 0) && velocity;
     d->positions = malloc(n*sizeof *d->positions);
     d->values = malloc(n*sizeof *d->values);
     d->opaque = malloc(n);
@@ -260,7 +260,8 @@ static void set_view(tobi_drawing *d)
 {
     tobi_picture *p = &d->picture;
     tobi_picture_set_view(p, d->view);
-    p->velocities = (const double (*)[3])d->velocities;
+    if (d->view->arrows) p->velocities = (const double (*)[3])d->velocities;
+    if (d->view->streamlines > 0) p->flow = (const double (*)[3])d->velocities;
     if (d->view->follow && p->has_camera) follow_body(d);
     if (d->has_palette) p->isolines = 0;      /* values are numbers of colours */
     if (!d->view->field && p->look == TOBI_LOOK_NATURAL) return;

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE 1
 #include "view/draw.h"
 #include "view/skin.h"
+#include "view/streamlines.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,7 @@ void tobi_picture_set_view(tobi_picture *p, const tobi_view_def *view)
     p->look = view->look;
     p->axes = view->axes;
     p->isolines = view->isolines;
+    p->streamlines = view->streamlines;
     p->transparent = view->transparent;
     p->slice = view->slice;
     for (int a = 0; a < 3; a++) {
@@ -79,6 +81,8 @@ static tobi_status check_frame(const char *path, const tobi_picture *f, tobi_err
         return tobi_fail(err, TOBI_INVALID, "%s: the normal of the clip plane has no direction", path);
     if (f->isolines < 0 || f->isolines > 100)
         return tobi_fail(err, TOBI_INVALID, "%s: %d isolines, allowed are 0 to 100", path, f->isolines);
+    if (f->streamlines < 0 || f->streamlines > 200)
+        return tobi_fail(err, TOBI_INVALID, "%s: %d streamlines, allowed are 0 to 200", path, f->streamlines);
     if (f->path_count < 0 || (f->path_count > 0 && !f->paths))
         return tobi_fail(err, TOBI_INVALID, "%s: %d paths cannot be drawn", path, f->path_count);
     if (f->palette && f->palette_count < 1)
@@ -439,6 +443,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     if (c->front) view_draw_box(c, f, true);
     if (s->glass.faces > 0) TOBI_TRY(view_paint_glass(c, &s->glass, water, true, err));
     draw_lines(s);
+    if (f->streamlines > 0 && f->flow && !view_draw_streamlines(c, f)) return no_memory(f, err);
     if (f->velocities && !view_draw_arrows(c, f)) return no_memory(f, err);
     if (f->axes) view_draw_axes(c, f);
     if (f->title) view_draw_title(c, f->title);

@@ -81,6 +81,9 @@ const tobi_param_table tobi_probe_table = {
     { .key = "picture.isolines", INT, AT(type, in isolines), RANGE(0, 100), .unit = "1", \
       .doc = "How many lines of equal value to draw, in 3-D on surfaces in the colours of " \
              "picture.field, at equal steps between the ends of the colours." }, \
+    { .key = "picture.streamlines", INT, AT(type, in streamlines), RANGE(0, 200), .unit = "1", \
+      .doc = "How many lines along the velocity of liquids have room side by side on the longest edge of " \
+             "the domain; with a clip_normal they lie in its plane." }, \
     { .key = "picture.paths", BOOL, AT(type, in paths), \
       .doc = "Draw where the centre of mass of each body has been, from output to output." }, \
     { .key = "picture.axes", BOOL, AT(type, in axes), \

@@ -112,6 +112,7 @@ static void every_allocation_may_fail(void **state)
     for (int k = 0; k < 3; k++) p.box_max[k] = 1;
     p.particle_count = N, p.positions = position, p.values = value, p.radius = 0.5/SIDE;
     p.velocities = velocity, p.opaque = opaque, p.group = group, p.axes = 1, p.label = "speed [m/s]";
+    p.flow = velocity, p.streamlines = 4;
     p.palette = tobi_color_map("viridis", &p.palette_count);
     p.meshes = &mesh, p.mesh_count = 1;
     try_all(&p);
