@@ -115,14 +115,15 @@ def float_pair(method, spacing, densities):
     return name, joints["time"], joints["hinge_force_y"], False
 
 
-def move_pair(method, spacing):
-    label, densities = f"moving_{method}", (300, 700)
+def move_pair(method, spacing, densities):
+    label = f"moving_{method}_{densities[0]}_{1000*spacing:.0f}"
     folder = case.run(label, scene=write_scene(label, method, spacing, densities, 0.5, velocity=[0.3, 0])[0])
     history, bodies = read_table(folder/"history.csv"), read_table(folder/"bodies.csv")
     mass, start = dict(zip("ab", (d*L*H for d in densities))), 0.3*sum(densities)*L*H
     total = history["momentum_x"][-1] + sum(mass[n]*u for n, u in list(zip(bodies["name"], bodies["velocity_x"]))[-2:])
     off = total/start - 1
-    case.figure(f"{method}, moving: momentum, deviation after 0.5 s", off, "within 0.002", abs(off) <= 0.002)
+    case.figure(f"{method}, {densities[0]} and {densities[1]} kg/m3, {1000*spacing:.0f} mm, moving: "
+                "momentum after 0.5 s, deviation", off, "within 0.001", abs(off) <= 0.001)
 
 
 curves = []
@@ -131,6 +132,8 @@ for method in case.pick(("dfsph", "isph"), METHODS):
         case_curves = [float_pair(method, spacing, densities) for densities in ((500, 500), (300, 700))]
     curves.append(case_curves[1])
 for method in case.pick(("dfsph",), METHODS):
-    move_pair(method, 0.02)
+    for spacing in case.pick((0.02,), (0.02, 0.01)):
+        for densities in ((500, 500), (300, 700)):
+            move_pair(method, spacing, densities)
 case.plot("Vertical force of the hinge on the lighter pontoon", "t, s", "N/m", curves)
 case.finish()
