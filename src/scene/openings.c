@@ -1,5 +1,5 @@
 /* The lists "inlets" and "outlets" of a scene, by their tables. Drawback: what needs the domain or bodies is
-   checked where the world takes them, without a line. */
+   checked where the world takes them, one mistake at a time. */
 #include "scene/openings.h"
 #include "scene/parts.h"
 #include "scene/write.h"
@@ -55,15 +55,6 @@ tobi_status tobi_openings_read(tobi_scene *scene, const tobi_binder *binder, con
     defs = NULL;
     TOBI_TRY(read_list(binder, scene->root, &outlets, root, &defs, &scene->outlet_count));
     scene->outlets = defs;
-    return TOBI_OK;
-}
-
-tobi_status tobi_openings_build(const tobi_scene *scene, tobi_world *world, tobi_error *err)
-{
-    for (int i = 0; i < scene->inlet_count; i++)
-        TOBI_TRY(tobi_world_add_inlet(world, &scene->inlets[i], err));
-    for (int i = 0; i < scene->outlet_count; i++)
-        TOBI_TRY(tobi_world_add_outlet(world, &scene->outlets[i], err));
     return TOBI_OK;
 }
 

@@ -3,7 +3,6 @@
 #include "scene/scene.h"
 
 tobi_status tobi_openings_read(tobi_scene *scene, const tobi_binder *binder, const tobi_place *root);
-tobi_status tobi_openings_build(const tobi_scene *scene, tobi_world *world, tobi_error *err);
 /* Into a resolved scene; 1 without memory. */
 int tobi_openings_write(const tobi_scene *scene, json_t *root);
 void tobi_openings_clear(tobi_scene *scene);

@@ -149,7 +149,7 @@ static int put_value(tobi_source *source, const char *text, json_t *steps, json_
     return 1;
 }
 
-static void apply_one(tobi_source *source, const char *text)
+static tobi_status apply_one(tobi_source *source, const char *text)
 {
     const char *equals = strchr(text, '=');
     json_t *steps = equals ? split_path(text, (size_t)(equals - text)) : NULL;
@@ -158,14 +158,18 @@ static void apply_one(tobi_source *source, const char *text)
                         "--set %s: must be path=value, such as dfsph.support=3 or "
                         "fluids[0].viscosity=0.1",
                         text);
-        return;
+        return TOBI_OK;
     }
     json_t *value = read_value(equals + 1);
     if (!value) tobi_report_add(source->report, 0, "--set %s: the value is not UTF-8", text);
-    if (value && put_value(source, text, steps, value))
-        source->overrides[source->override_count++] = (tobi_override){ text, steps };
-    else
+    if (!value || !put_value(source, text, steps, value)) {
         json_decref(steps);
+        return TOBI_OK;
+    }
+    char *kept = strdup(text);
+    if (kept) source->overrides[source->override_count++] = (tobi_override){ kept, steps };
+    else json_decref(steps);
+    return kept ? TOBI_OK : TOBI_NO_MEMORY;
 }
 
 tobi_status tobi_override_apply(tobi_source *source, const char *const *overrides, tobi_error *err)
@@ -174,6 +178,8 @@ tobi_status tobi_override_apply(tobi_source *source, const char *const *override
     while (overrides && overrides[count]) count++;
     source->overrides = calloc(count + 1, sizeof *source->overrides);
     if (!source->overrides) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
-    for (size_t i = 0; i < count; i++) apply_one(source, overrides[i]);
+    for (size_t i = 0; i < count; i++)
+        if (apply_one(source, overrides[i]) != TOBI_OK)
+            return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the scene");
     return TOBI_OK;
 }

@@ -334,18 +334,17 @@ tobi_status tobi_scene_parse(const char *path, const char *text, size_t size,
                          (int)TOBI_SOURCE_LIMIT);
     tobi_scene *scene = calloc(1, sizeof *scene);
     tobi_report *report = tobi_report_create();
-    tobi_source source = { 0 };
     if (scene) scene->directory = tobi_scene_find_directory(path);
     if (scene && scene->directory) scene->name = name_scene(scene->directory, path);
     tobi_status status = TOBI_NO_MEMORY;
     if (!scene || !report || !scene->name) tobi_fail(err, status, "no memory for the scene");
-    else status = tobi_source_parse(&source, path, text, size, report, err);
-    if (status == TOBI_OK) status = parse_source(scene, &source, overrides, err);
+    else status = tobi_source_parse(&scene->source, path, text, size, report, err);
+    if (status == TOBI_OK) status = parse_source(scene, &scene->source, overrides, err);
     if (status == TOBI_INVALID) {
         tobi_report_close(report);
         status = tobi_report_fail(report, err);
     }
-    tobi_source_clear(&source);
+    if (scene) scene->source.report = NULL;
     if (status == TOBI_INVALID && report_out) {
         *report_out = report;
         report = NULL;
@@ -406,6 +405,7 @@ void tobi_scene_free(tobi_scene *scene)
     tobi_texts_free(&scene->texts);
     json_decref(scene->stand_ins);
     json_decref(scene->root);
+    tobi_source_clear(&scene->source);
     free(scene->directory);
     free(scene->import_table);
     free(scene->name);
@@ -457,6 +457,28 @@ int tobi_scene_has_both(const tobi_scene *scene)
     return scene->solid_count > 0 && scene->method && strcmp(scene->method->name, TOBI_METHOD_OF_SOLIDS) != 0;
 }
 
+/* What a call answers that adds entry i of a list to the world; a refusal gets its place in the file. */
+static tobi_status place_error(tobi_scene *scene, const char *list, int i, tobi_status status,
+                               tobi_error *err)
+{
+    static const tobi_place root = { 0 };
+    tobi_place all = { &root, list, 0 }, entry = { &all, NULL, (size_t)i };
+    tobi_report *report = status == TOBI_OK || !err ? NULL : tobi_report_create();
+    if (!report) return status;
+    scene->source.report = report;
+    tobi_source_mistake(&scene->source, &entry, "%s", err->text);
+    scene->source.report = NULL;
+    const char *told = tobi_report_line(report, 0);
+    if (told) snprintf(err->text, sizeof err->text, "%s", told);
+    tobi_report_free(report);
+    return status;
+}
+
+/* Adds the entries of a list until one is refused. */
+#define ADD(list, count, call)                                         \
+    for (int i = 0; i < scene->count && status == TOBI_OK; i++)        \
+    status = place_error(scene, list, i, call, err)
+
 tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *err)
 {
     tobi_world *world;
@@ -466,23 +488,16 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     TOBI_TRY(tobi_world_create(&scene->world, scene->method_def, &world, err));
     tobi_status status = TOBI_OK;
     if (tobi_scene_has_both(scene)) status = tobi_world_use_solids(world, &scene->solids_def, err);
-    for (int i = 0; i < scene->body_count && status == TOBI_OK; i++)
-        status = add_body(scene, world, &scene->bodies[i].def, err);
-    for (int i = 0; i < scene->fluid_count && status == TOBI_OK; i++)
-        status = add_fluid(world, &scene->fluids[i], err);
-    for (int i = 0; i < scene->interface_count && status == TOBI_OK; i++)
-        status = tobi_world_add_interface(world, &scene->interfaces[i], err);
-    for (int i = 0; i < scene->solid_count && status == TOBI_OK; i++)
-        status = add_solid(world, &scene->solids[i], err);
-    for (int i = 0; i < scene->plane_count && status == TOBI_OK; i++)
-        status = tobi_world_add_plane(world, &scene->planes[i], err);
-    if (status == TOBI_OK) status = tobi_openings_build(scene, world, err);
-    for (int i = 0; i < scene->line_count && status == TOBI_OK; i++)
-        status = tobi_world_add_line(world, &scene->lines[i], err);
-    for (int i = 0; i < scene->joint_count && status == TOBI_OK; i++)
-        status = tobi_world_add_joint(world, &scene->joints[i], err);
-    for (int i = 0; i < scene->probe_count && status == TOBI_OK; i++)
-        status = tobi_world_add_probe(world, &scene->probes[i], err);
+    ADD("bodies", body_count, add_body(scene, world, &scene->bodies[i].def, err));
+    ADD("fluids", fluid_count, add_fluid(world, &scene->fluids[i], err));
+    ADD("interfaces", interface_count, tobi_world_add_interface(world, &scene->interfaces[i], err));
+    ADD("solids", solid_count, add_solid(world, &scene->solids[i], err));
+    ADD("planes", plane_count, tobi_world_add_plane(world, &scene->planes[i], err));
+    ADD("inlets", inlet_count, tobi_world_add_inlet(world, &scene->inlets[i], err));
+    ADD("outlets", outlet_count, tobi_world_add_outlet(world, &scene->outlets[i], err));
+    ADD("lines", line_count, tobi_world_add_line(world, &scene->lines[i], err));
+    ADD("joints", joint_count, tobi_world_add_joint(world, &scene->joints[i], err));
+    ADD("probes", probe_count, tobi_world_add_probe(world, &scene->probes[i], err));
     if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);

@@ -2,6 +2,7 @@
 #pragma once
 #include "scene/controls.h"
 #include "scene/motions.h"
+#include "scene/source.h"
 #include "scene/tank.h"
 #include "tobiuo/scene.h"
 
@@ -38,6 +39,7 @@ typedef struct tobi_scene_body {
 struct tobi_scene {
     char *name;
     char *directory;               /* absolute                                    */
+    tobi_source source;            /* for the places of what the world refuses    */
     json_t *root;                  /* owner of names                              */
     tobi_texts texts;              /* owner of paths and lists                    */
     tobi_world_def world;

@@ -365,7 +365,10 @@ tobi_status tobi_source_parse(tobi_source *source, const char *name, const char 
 
 void tobi_source_clear(tobi_source *source)
 {
-    for (int i = 0; i < source->override_count; i++) json_decref(source->overrides[i].steps);
+    for (int i = 0; i < source->override_count; i++) {
+        json_decref(source->overrides[i].steps);
+        free(source->overrides[i].text);
+    }
     for (int i = 0; i < source->origin_count; i++) {
         free(source->origins[i].native);
         free(source->origins[i].old);

@@ -17,7 +17,7 @@ enum { TOBI_PATH_TEXT = 256, TOBI_SOURCE_LIMIT = 16*1024*1024 };
 
 /* Values that came from the command line and not from the file. */
 typedef struct tobi_override {
-    const char *text;              /* "path=value"                    */
+    char *text;                    /* "path=value", owned             */
     json_t *steps;                 /* list of keys and indices        */
 } tobi_override;
 

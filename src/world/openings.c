@@ -157,6 +157,42 @@ static tobi_status check_place(const tobi_opening *o, const tobi_box *box, doubl
     return TOBI_OK;
 }
 
+/* Particles of a column between the plane and the end of the buffer. */
+static int64_t count_layers(const tobi_opening *o) { return (int64_t)(o->depth/o->step + 0.5); }
+
+/* How far from the plane a particle of a column starts. */
+static double start_of(const tobi_opening *o, const tobi_inlet_column *c, int64_t layer)
+{
+    return ((double)layer + c->phase)*o->step - o->depth;
+}
+
+static tobi_status check_point(const tobi_world *w, const tobi_opening *o, const double x[3],
+                               tobi_error *err)
+{
+    char text[200];
+    for (int b = 0; b < w->sim.body_count; b++) {
+        if (!tobi_bvh_inside(w->sim.bodies[b].bvh, x)) continue;
+        const double *lower = w->system[0].box.lower;
+        snprintf(text, sizeof text, "lies inside body '%s' with its buffer, at (%.4g, %.4g, %.4g) m",
+                 w->sim.bodies[b].name, x[0] + lower[0], x[1] + lower[1], x[2] + lower[2]);
+        return refuse(o, text, err);
+    }
+    return TOBI_OK;
+}
+
+/* No particle of the buffer starts inside a body: those that the world has already. */
+static tobi_status check_bodies(const tobi_world *w, const tobi_opening *o, tobi_error *err)
+{
+    const int64_t layers = o->outlet ? 0 : count_layers(o);
+    for (int64_t c = 0; c < o->column_count; c++)
+        for (int64_t l = 0; l < layers; l++) {
+            double x[3];
+            place(o, start_of(o, &o->columns[c], l), o->columns[c].along, o->columns[c].across, x);
+            TOBI_TRY(check_point(w, o, x, err));
+        }
+    return TOBI_OK;
+}
+
 static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_error *err)
 {
     tobi_simulation *s = &w->sim;
@@ -169,6 +205,7 @@ static tobi_status add(tobi_world *w, const tobi_opening *o, int limit, tobi_err
     if (same >= limit) return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d %s", limit,
                                         o->outlet ? "outlets" : "inlets");
     TOBI_TRY(check_place(o, &w->system[0].box, w->system[0].smoothing.h, err));
+    TOBI_TRY(check_bodies(w, o, err));
     tobi_opening *more = realloc(s->openings, (size_t)(s->opening_count + 1)*sizeof *more);
     if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for an opening");
     s->openings = more;
@@ -279,9 +316,6 @@ double tobi_openings_peak(const tobi_simulation *s)
 
 /* --- the start ------------------------------------------------------------------------------- */
 
-/* Particles of a column between the plane and the end of the buffer. */
-static int64_t count_layers(const tobi_opening *o) { return (int64_t)(o->depth/o->step + 0.5); }
-
 int64_t tobi_openings_count(const tobi_world *w)
 {
     int64_t count = 0;
@@ -301,20 +335,6 @@ int tobi_openings_cover(const tobi_simulation *s, const double x[3])
         if (!o->outlet && at[0] < 0 && at[0] >= -BEHIND*o->depth) return 1;
     }
     return 0;
-}
-
-static tobi_status check_bodies(const tobi_world *w, const tobi_opening *o, const double x[3],
-                                tobi_error *err)
-{
-    char text[200];
-    for (int b = 0; b < w->sim.body_count; b++) {
-        if (!tobi_bvh_inside(w->sim.bodies[b].bvh, x)) continue;
-        const double *lower = w->system[0].box.lower;
-        snprintf(text, sizeof text, "lies inside body '%s' with its buffer, at (%.4g, %.4g, %.4g) m",
-                 w->sim.bodies[b].name, x[0] + lower[0], x[1] + lower[1], x[2] + lower[2]);
-        return refuse(o, text, err);
-    }
-    return TOBI_OK;
 }
 
 /* A new particle of a column at a distance from the plane. */
@@ -360,15 +380,12 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)
         }
         TOBI_TRY(make_columns(o, &s->smoothing, err));
         TOBI_TRY(check_place(o, &s->box, s->smoothing.h, err));
+        TOBI_TRY(check_bodies(w, o, err));
         const int64_t layers = count_layers(o);
         for (int64_t c = 0; c < o->column_count; c++)
-            for (int64_t l = 0; l < layers; l++) {
-                double x[3];
-                const double at = ((double)l + o->columns[c].phase)*o->step - o->depth;
-                place(o, at, o->columns[c].along, o->columns[c].across, x);
-                TOBI_TRY(check_bodies(w, o, x, err));
-                put(s, o, &o->columns[c], at, w->sim.time, tobi_particles_add(&s->particles));
-            }
+            for (int64_t l = 0; l < layers; l++)
+                put(s, o, &o->columns[c], start_of(o, &o->columns[c], l), w->sim.time,
+                    tobi_particles_add(&s->particles));
     }
     return TOBI_OK;
 }

@@ -196,7 +196,8 @@ static void test_mistakes(void **state)
     refuse(IN "\"flow_rate\": 1e6 }", "", "", "inlet 'in' needs 5e+06 m/s at its fastest place");
     refuse(IN "\"speed\": 1, \"start\": 0.5, \"stop\": 0.2 }", "", "", "inlet 'in' stops before it starts");
     refuse(IN "\"speed\": 1, \"fluid\": \"oil\" }", "", "", "inlet 'in' lets 'oil' in, which is no fluid");
-    refuse(IN "\"speed\": 1 }", "", block, "inlet 'in' lies inside body 'block' with its buffer, at (");
+    refuse(IN "\"speed\": 1 }", "", block,
+           "s.json:4:13: inlets[0]: inlet 'in' lies inside body 'block' with its buffer, at (");
     refuse(PATCH "\"centre\": [0.01, 0.1], \"normal\": [1, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
            "inlet 'in' reaches out of the domain at x = ");
     refuse(PATCH "\"centre\": [0.2, 0.1], \"normal\": [0, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
@@ -209,6 +210,26 @@ static void test_mistakes(void **state)
            "outlet 'out' faces inwards: liquid lies on the side that its normal points to");
 }
 
+/* What --set gave is told as that, after the caller's texts are gone. */
+static void test_set(void **state)
+{
+    (void)state;
+    const char *text = "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.05, "
+                       "\"end_time\": 1, \"fluids\": [ { \"name\": \"water\" } ], \"inlets\": [ ] }";
+    char set[] =
+        "inlets=[{\"centre\":[0,0,0],\"normal\":[1,0,0],\"radius\":0.1,\"speed\":1,\"name\":\"in\"}]";
+    const char *const overrides[] = { set, NULL };
+    tobi_scene *scene;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    must(tobi_scene_parse("s.json", text, strlen(text), overrides, &scene, NULL, &err), &err);
+    memset(set, '?', sizeof set - 1);
+    assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_INVALID);
+    assert_ptr_equal(strstr(err.text, "--set inlets=[{"), err.text);
+    assert_non_null(strstr(err.text, ": inlets[0]: inlet 'in' reaches out of the domain at "));
+    tobi_scene_free(scene);
+}
+
 static void test_wrong_tables(void **state)
 {
     (void)state;
@@ -217,6 +238,7 @@ static void test_wrong_tables(void **state)
         { "time, speed\n0, 0\n1, 0\n", "", "has a file in which nothing flows" },
         { "time, speed\n0, 1\n1, -1\n", "", "the flow is below 0: an inlet lets nothing out" },
         { "time, speed\n1, 1\n0, 1\n", "", "time 0 s does not come after 1 s of the row before" },
+        { "time, speed\n1, 1\n0, 1\n", "", "s.json:4:13: inlets[0]: " },
         { "time, x\n0, 1\n", "", "a flow has the columns time (s) and one of speed (m/s) and flow_rate" },
         { "time, speed, flow_rate\n0, 1, 1\n", "", "and one of speed (m/s) and flow_rate (m3/s)" },
         { "time, flow_rate [l/s]\n0, 1\n", "", "column flow_rate is in [l/s]; allowed is [m3/s]" },
@@ -280,6 +302,37 @@ static void test_wrong_calls(void **state)
     tobi_world_destroy(w);
 }
 
+/* A body that comes after the inlet: the start finds it. */
+static void test_body_later(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    tobi_world_def def = tobi_default_world_def();
+    tobi_fluid_def water = tobi_default_fluid_def();
+    tobi_inlet_def in = tobi_default_inlet_def();
+    tobi_body_def block = tobi_default_body_def();
+    tobi_world *w;
+    in.name = "in";
+    block.name = "block";
+    def.spacing = 0.05;
+    def.end_time = 1;
+    in.normal[0] = in.speed = 1;
+    in.radius = 0.1;
+    for (int a = 0; a < 3; a++) {
+        def.domain_max[a] = 1;
+        in.centre[a] = 0.5;
+        block.box_min[a] = 0.2;
+        block.box_max[a] = 0.8;
+    }
+    must(tobi_world_create(&def, NULL, &w, &err), &err);
+    must(tobi_world_add_fluid(w, &water, NULL, 0, &err), &err);
+    must(tobi_world_add_inlet(w, &in, &err), &err);
+    must(tobi_world_add_body(w, &block, &err), &err);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_INVALID);
+    assert_ptr_equal(strstr(err.text, "inlet 'in' lies inside body 'block' with its buffer, at ("), err.text);
+    tobi_world_destroy(w);
+}
+
 static void test_lists(void **state)
 {
     (void)state;
@@ -296,6 +349,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bits), cmocka_unit_test(test_disc),  cmocka_unit_test(test_mistakes),
         cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_set), cmocka_unit_test(test_body_later),
         cmocka_unit_test(test_damaged), cmocka_unit_test(test_flow_in_time),
         cmocka_unit_test(test_wrong_tables),
     };
