@@ -107,6 +107,18 @@ tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err)
     return TOBI_OK;
 }
 
+tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = tobi_world_solids(w);
+    static const char text[] = "a liquid of mlsmpm does not keep its volume well and carries what is "
+                               "heavier; unless it soaks sand or snow, write it into fluids, with dfsph or "
+                               "isph, beside the solids\n";
+    for (int k = 0; s && k < s->solid_count; k++)
+        if (s->solids[k].def.model == TOBI_LIQUID)
+            TOBI_TRY(tobi_world_add_notes(w, "solid", s->solids[k].name, text, err));
+    return TOBI_OK;
+}
+
 /* How far a body reaches into the domain from a side, m. */
 static double find_reach(const tobi_box *box, const tobi_body *b, int axis, int upper)
 {

@@ -86,6 +86,8 @@ double tobi_world_start_speed(const tobi_world *w, const tobi_system *s);
 tobi_status tobi_world_note_thin_bodies(tobi_world *w, tobi_error *err);
 /* Adds a note for each stationary solid that is too light to clamp what is bonded to it. */
 tobi_status tobi_world_note_clamps(tobi_world *w, tobi_error *err);
+/* Adds a note for each solid that is a liquid, which the SPH methods compute better. */
+tobi_status tobi_world_note_liquids(tobi_world *w, tobi_error *err);
 /* Adds a note for each body that sets off at once in a liquid at rest and each fill of liquid that begins
    beside a wall. */
 tobi_status tobi_world_note_starts(tobi_world *w, tobi_error *err);

@@ -122,6 +122,28 @@ static void a_long_time_step_is_told(void **state)
     tobi_scene_free(scene);
 }
 
+/* Only of liquids, and what to write instead. */
+static void liquids_are_told(void **state)
+{
+    (void)state;
+    for (int liquid = 0; liquid < 2; liquid++) {
+        char text[200];
+        snprintf(text, sizeof text, "%s%s", liquid ? "\"model\": \"liquid\", " : "", ball);
+        tobi_scene *scene = parse(make(text, ""));
+        tobi_world *world;
+        tobi_error err = { 0 };
+        assert_int_equal(tobi_scene_build(scene, &world, &err), TOBI_OK);
+        assert_int_equal(tobi_world_start(world, &err), TOBI_OK);
+        const char *note = tobi_world_note(world, 0);
+        assert_int_equal(note != NULL, liquid);
+        if (note) assert_ptr_equal(strstr(note, "solid 'it': a liquid of mlsmpm does not keep its "), note);
+        if (note) assert_non_null(strstr(note, "write it into fluids, with dfsph or isph, beside the "));
+        assert_null(tobi_world_note(world, 1));
+        tobi_world_destroy(world);
+        tobi_scene_free(scene);
+    }
+}
+
 /* A body in the middle of the ball: what it takes away is told. */
 static void bodies_in_solids_are_told(void **state)
 {
@@ -308,6 +330,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scenes_have_solids),
         cmocka_unit_test(a_long_time_step_is_told),
+        cmocka_unit_test(liquids_are_told),
         cmocka_unit_test(bodies_in_solids_are_told),
         cmocka_unit_test(solids_without_particles_are_refused),
         cmocka_unit_test(useless_keys_are_refused),
