@@ -15,7 +15,7 @@ middle of its floor, with a period of 1 s: near the first mode of 1.07 s, so tha
 the floor, of the second half of the outputs: water that keeps its volume does not lie below half the still depth, here 1.""")
 
 L, HEIGHT, DEPTH, SPACING, ROLL, PERIOD, MARGIN = 0.5, 0.3, 0.1, 0.0125, math.radians(8), 1.0, 0.12
-END = {"dfsph": 216, "wcsph": 26, "isph": 220, "eisph": 33}          # s, for 100 000 steps
+END = {"dfsph": 216, "wcsph": 26, "isph": 330, "eisph": 33}          # s, for 100 000 steps
 
 
 def compute(method, end):
