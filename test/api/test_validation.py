@@ -9,7 +9,7 @@ import tempfile
 PHYSICS = pathlib.Path(__file__).resolve().parents[1] / "physics"
 TREE = {
     "src/world/methods.def": "METHOD(dfsph)\nMETHOD(mlsmpm)\n",
-    "test/golden/hashes.csv": "scene,state,files\ndam,aa,1\nblock,bb,2\n",
+    "test/golden/hashes.csv": "scene,state,files,added\ndam,aa,1,0\nblock,bb,2,0\n",
     "test/golden/dam.json": "{}",
     "test/golden/block.json": '{ "method": "mlsmpm" }',
     "test/physics/coarse.csv": "case,figure\n",
@@ -90,13 +90,16 @@ def check_age(root):
     expect("nothing to do", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
     change(root, "test/golden/hashes.csv", "bb", "cc")
     expect("results of another method", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
-    change(root, "test/golden/hashes.csv", "aa", "dd")
+    (root / "test/golden/later.json").write_text("{}")
+    change(root, "test/golden/hashes.csv", "block", "later,ee,3,1\nblock")
+    expect("a golden scene that came later", tool(root, "list")[0].strip().startswith("0 of 1 pages"))
+    change(root, "test/golden/hashes.csv", "aa", "ff")
     text, code = tool(root, "check")
     expect("only a warning", code == 0 and "warning: 1 pages" in text and "1 of 1 pages are to be made anew: 0.0 hours" in text)
     tool(root, "mark")
     expect("the page says so", "\n> **This page is older than its method dfsph.**\n" in read(root))
     expect("so does the index", "| abc, older |" in (root / "docs/validation/README.md").read_text())
-    change(root, "test/golden/hashes.csv", "dd", "aa")
+    change(root, "test/golden/hashes.csv", "ff", "aa")
     tool(root, "mark")
     expect("taken back", "older" not in read(root))
     change(root, "test/physics/wave/run.py", "A wave.", "The wave.")

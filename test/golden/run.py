@@ -8,7 +8,8 @@ Each scene runs with the kernels of x86-64-v2, v3 and v4 (on older processors th
 and 4 threads, once in two parts (run, then resume), and once as on a processor without fused multiply-add,
 where the C library computes sines and powers in another way. All must agree with the table in two numbers:
 `state`, the state_hash of summary.json, and `files`, the names and bytes of all files but summary.json
-(times), resolved.json (paths) and checkpoints.
+(times), resolved.json (paths) and checkpoints. `added` counts when scenes came: pages of docs/validation that
+are older than a scene do not know it.
 A commit that changes the table says why. Prints one line per difference; exits 1 if there was one.
 """
 import argparse, concurrent.futures, csv, hashlib, json, os, pathlib, shutil, subprocess, sys
@@ -62,14 +63,17 @@ def run(program, scene, variant):
 
 def read_table():
     with TABLE.open(newline="") as file:
-        return {row["scene"]: {"state": row["state"], "files": row["files"]} for row in csv.DictReader(file)}
+        return {row["scene"]: row for row in csv.DictReader(file)}
 
 
 def write_table(found):
+    known = read_table()
+    latest = 1 + max((int(row["added"]) for row in known.values()), default=-1)
     with TABLE.open("w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["scene", "state", "files"])
-        rows.writerows([name, result["state"], result["files"]] for name, result in sorted(found.items()))
+        rows.writerow(["scene", "state", "files", "added"])
+        rows.writerows([name, result["state"], result["files"], known[name]["added"] if name in known else latest]
+                       for name, result in sorted(found.items()))
 
 
 def compare(scene, known, results):

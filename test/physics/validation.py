@@ -7,7 +7,8 @@ usage: validation.py list     cases to be made anew, a line each; on stderr how 
 
 A page records two kinds of stamps. Case: the files of test/physics/CASE and of the folders that its run.py names.
 Method: the state hashes of the golden scenes of that method (test/golden), which change exactly when its
-results do. Drawback: a change that no golden scene sees is not seen here either (decision 47).
+results do. A scene that came after the page says nothing about it. Drawback: a change that no golden scene
+sees is not seen here either (decision 47).
 """
 import csv
 import fnmatch
@@ -47,7 +48,7 @@ class Tree:
         self.root, self.pages = root, root / "docs" / "validation"
         self.methods = re.findall(r"^METHOD\((\w+)\)$", (root / "src/world/methods.def").read_text(), re.M)
         with (root / "test/golden/hashes.csv").open(newline="") as file:
-            self.states = {row["scene"]: row["state"] for row in csv.DictReader(file)}
+            self.golden = {row["scene"]: row for row in csv.DictReader(file)}
 
     def cases(self):
         return sorted(path.parent.name for path in (self.root / "test/physics").glob("*/run.py"))
@@ -65,26 +66,29 @@ class Tree:
                  if path.is_file() and path.suffix not in (".md", ".png", ".pyc")]
         return digest(part for path in files for part in (path.name.encode(), path.read_bytes()))
 
-    def method_stamp(self, method):
-        """Scenes without "method" are of the first one."""
+    def method_stamps(self, method):
+        """The stamp that a page made now gets, then those of the times when there were fewer scenes. Scenes without
+        "method" are of the first one."""
         rows = []
         for path in sorted((self.root / "test/golden").glob("*.json")):
             named = re.search(r'"method": "(\w+)"', path.read_text())
             if (named.group(1) if named else self.methods[0]) == method:
-                rows.append(f"{path.stem} {self.states.get(path.stem)}".encode())
-        return digest(rows)
+                row = self.golden.get(path.stem, {"state": None, "added": 0})
+                rows.append((int(row["added"]), f"{path.stem} {row['state']}".encode()))
+        return [digest(row for added, row in rows if added <= last) for last in sorted({r[0] for r in rows} or {0}, reverse=True)]
 
     def stamps(self, case, methods):
         """Of a case that ran these methods; one that ran none judges the kernels of all."""
         found = {"case": self.case_stamp(case)}
-        found.update({f"method {m}": self.method_stamp(m) for m in sorted(methods) or self.methods})
+        found.update({f"method {m}": self.method_stamps(m)[0] for m in sorted(methods) or self.methods})
         return found
 
     def now(self, case, name):
+        """The stamps that a page of today may have."""
         if name == "case":
-            return self.case_stamp(case)
+            return [self.case_stamp(case)]
         method = name.split()[1]
-        return self.method_stamp(method) if method in self.methods else None
+        return self.method_stamps(method) if method in self.methods else []
 
 
 class Page:
@@ -107,7 +111,7 @@ class Page:
             return None
         if not self.stamps or self.commit.endswith("+changes"):
             return "This page may be older than its method or case, which it does not record"
-        changed = [name for name, stamp in self.stamps.items() if self.tree.now(self.case, name) != stamp]
+        changed = [name for name, stamp in self.stamps.items() if stamp not in self.tree.now(self.case, name)]
         return "This page is older than its " + " and its ".join(changed) if changed else ""
 
     def marked(self):
