@@ -109,14 +109,14 @@ static double normal_acceleration(const body_points *q, int64_t k)
 }
 
 /* totals: the force of what pressure the surface has beyond that of the particles: of water at rest, and of
-   that which the surface of a driven body accelerates. */
+   that which the surface of a driven body accelerates. Points that no particle sees are left out. */
 static void weigh_points(const void *view, int64_t begin, int64_t end, double *totals)
 {
     const body_points *q = view;
     const tobi_body *b = body_of(q);
     for (int64_t k = begin; k < end; k++) {
         isph_point *p = &q->point[k];
-        *p = b->area[k] > 0 ? sum_particles(q, k) : (isph_point){ 0, 0, 0 };
+        *p = b->area[k] > 0 && b->wet[k] ? sum_particles(q, k) : (isph_point){ 0, 0, 0 };
         if (!(p->weight > DRY)) p->weight = INFINITY;
         const double more = p->hydrostatic + q->v->density*p->distance*normal_acceleration(q, k);
         add_push(b, k, -b->area[k]*more/p->weight, totals);
@@ -132,7 +132,7 @@ static int add_coupling(void *user, int32_t k)
     const tobi_body *b = body_of(&g->q);
     double x[3];
     measure(&g->q, k, g->at, x);
-    const double w = b->area[k] > 0 ? weigh(&g->q, k, x) : 0;
+    const double w = b->area[k] > 0 && g->q.point[k].weight < INFINITY ? weigh(&g->q, k, x) : 0;
     if (w > 0) add_push(b, k, -b->area[k]*w/g->q.point[k].weight, g->coupling.f);
     return 0;
 }
