@@ -575,6 +575,7 @@ int main(void)
         cmocka_unit_test(instruction_sets_give_the_same_bits), cmocka_unit_test(the_matrix_is_symmetric),
         cmocka_unit_test(linear_pressures_are_exact), cmocka_unit_test(linear_flows_are_exact),
         cmocka_unit_test(full_viscosity_is_exact), cmocka_unit_test(surfaces_are_marked),
+        cmocka_unit_test(shifts_do_not_amplify),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
