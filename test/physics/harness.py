@@ -291,7 +291,7 @@ class Case:
             lines += ["", f"![plot]({self.name}.svg)"]
         option = " --reference DIR" if self.referred else ""
         lines += ["", f"Command: `./test.sh --slow {self.name}{option}`, which runs", "",
-                  *["    " + c for c in self.commands]]
+                  *[validation.fold(c) for c in self.commands]]
         if self.writes_scenes:
             lines += ["", "The scenes that it writes are left in DIR by", "",
                       f"    test/physics/{self.name}/run.py --tobiuo PROGRAM --size reference --out DIR"]

@@ -34,6 +34,16 @@ def fill(text):
                        for part in parts)
 
 
+def fold(command):
+    """A command as a block of a page, in lines of at most 100 columns that a shell takes as one."""
+    lines = [""]
+    for word in re.findall(r"(?:--set )?(?:'[^']*'|[^\s'])+", command):
+        if lines[-1] and len(lines[-1]) + len(word) > 92:
+            lines.append("   ")
+        lines[-1] += f" {word}" if lines[-1] else word
+    return " \\\n".join("    " + line for line in lines)
+
+
 def digest(parts):
     total = hashlib.sha256()
     for part in parts:
