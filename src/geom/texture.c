@@ -77,25 +77,36 @@ double tobi_texture_look(const tobi_texture *texture, const double x[3], float u
     return hit.distance;
 }
 
-/* Shares of the corners at a point of the triangle's plane; beside the triangle those of its border. */
-static void find_shares(const double corner[3][3], const double x[3], double share[3])
+/* Twice the areas between a point of a triangle's plane and its sides, each across from a corner and below 0
+   beside it, times the length of n; returns n2, what they add up to. */
+static double find_areas(const double corner[3][3], const double x[3], double area[3])
 {
-    double e[3][3], n[3], sum = 0;
+    double e[3][3], n[3];
     for (int k = 0; k < 3; k++) vec3_sub(e[k], corner[(k + 2)%3], corner[(k + 1)%3]);
     vec3_cross(n, e[2], e[0]);
     for (int k = 0; k < 3; k++) {
         double d[3], c[3];
         vec3_sub(d, x, corner[(k + 1)%3]);
         vec3_cross(c, e[k], d);
-        share[k] = fmax(0, vec3_dot(c, n));
-        sum += share[k];
+        area[k] = vec3_dot(c, n);
     }
+    return vec3_dot(n, n);
+}
+
+/* Shares of the corners at a point of the plane of a triangle; beside it those of its border, or, as on
+   a plane without end, below 0. */
+static void find_shares(const double corner[3][3], const double x[3], int endless, double share[3])
+{
+    double sum = find_areas(corner, x, share);
+    for (int k = 0; k < 3 && !endless; k++) share[k] = fmax(0, share[k]);
+    if (!endless) sum = share[0] + share[1] + share[2];
     for (int k = 0; k < 3; k++) share[k] = sum > 0 ? share[k]/sum : 1.0/3;
 }
 
 /* The texture's triangle behind the middle of a triangle of the mesh, read at the corners of that one: at a
    seam every side has its own. */
-static void look_corners(const tobi_texture *texture, const double corner[3][3], float uv[3][2])
+static void look_corners(const tobi_texture *texture, const double corner[3][3], int endless,
+                         float uv[3][2])
 {
     double middle[3], share[3];
     tobi_bvh_hit hit;
@@ -103,37 +114,14 @@ static void look_corners(const tobi_texture *texture, const double corner[3][3],
     for (int a = 0; a < 3; a++) middle[a] = (corner[0][a] + corner[1][a] + corner[2][a])/3;
     if (!tobi_bvh_closest(texture->tree, middle, INFINITY, &hit)) return;
     for (int k = 0; k < 3; k++) {
-        find_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], share);
+        find_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], endless, share);
         mix((const float (*)[2])texture->uv[hit.triangle], share, uv[k]);
-    }
-}
-
-/* Shares of the corners at a point of the plane, below 0 beside the triangle. */
-static void find_plane_shares(const double corner[3][3], const double x[3], double share[3])
-{
-    double e[3][3], n[3];
-    for (int k = 0; k < 3; k++) vec3_sub(e[k], corner[(k + 2)%3], corner[(k + 1)%3]);
-    vec3_cross(n, e[2], e[0]);
-    const double square = vec3_dot(n, n);
-    for (int k = 0; k < 3; k++) {
-        double d[3], c[3];
-        vec3_sub(d, x, corner[(k + 1)%3]);
-        vec3_cross(c, e[k], d);
-        share[k] = square > 0 ? vec3_dot(c, n)/square : 1.0/3;
     }
 }
 
 void tobi_texture_look_flat(const tobi_texture *texture, const double corner[3][3], float uv[3][2])
 {
-    double middle[3], share[3];
-    tobi_bvh_hit hit;
-    memset(uv, 0, 3*sizeof *uv);
-    for (int a = 0; a < 3; a++) middle[a] = (corner[0][a] + corner[1][a] + corner[2][a])/3;
-    if (!tobi_bvh_closest(texture->tree, middle, INFINITY, &hit)) return;
-    for (int k = 0; k < 3; k++) {
-        find_plane_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], share);
-        mix((const float (*)[2])texture->uv[hit.triangle], share, uv[k]);
-    }
+    look_corners(texture, corner, 1, uv);
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -215,7 +203,7 @@ tobi_status tobi_skin_build(const tobi_mesh *mesh, tobi_skin *out, tobi_error *e
         float uv[3][2];
         for (int k = 0; k < 3; k++)
             memcpy(corner[k], mesh->vertices[mesh->triangles[t][k]], sizeof corner[k]);
-        look_corners(mesh->texture, (const double (*)[3])corner, uv);
+        look_corners(mesh->texture, (const double (*)[3])corner, 0, uv);
         for (int k = 0; k < 3; k++)
             out->triangles[t][k] = find_copy(out, head, next, mesh->triangles[t][k], uv[k]);
     }
