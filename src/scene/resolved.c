@@ -24,7 +24,7 @@ static json_t *write_fills(json_t *object, const tobi_scene_fill *fills, int cou
     for (int i = 0; i < count; i++) {
         const tobi_fill_def *def = &fills[i].def;
         json_t *fill = tobi_write_def(&tobi_fill_table, def);
-        if (def->mesh || def->radius > 0) json_object_del(fill, "box");
+        if (def->mesh || def->vessel || def->radius > 0) json_object_del(fill, "box");
         if (def->mesh || !(def->radius > 0)) json_object_del(fill, "sphere");
         for (int k = 0; !def->mesh && k < 3; k++)
             json_object_del(fill, (const char *[]){ "scale", "translation", "rotation" }[k]);

@@ -71,6 +71,21 @@ static void write_mesh(const char *name, int holed)
     fclose(f);
 }
 
+/* resolved.json, from which runs are resumed and drawn, is a scene again, and the same. */
+static void read_again(const tobi_scene *scene)
+{
+    tobi_error err = { 0 };
+    tobi_scene *again;
+    char *text = tobi_scene_resolved(scene);
+    if (tobi_scene_parse("resolved.json", text, strlen(text), NULL, &again, NULL, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
+    char *twice = tobi_scene_resolved(again);
+    assert_string_equal(text, twice);
+    free(text);
+    free(twice);
+    tobi_scene_free(again);
+}
+
 static tobi_status start(const char *bodies, const char *fill, const char *more, tobi_world **w,
                          tobi_error *err)
 {
@@ -84,6 +99,7 @@ static tobi_status start(const char *bodies, const char *fill, const char *more,
     TOBI_TRY(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, err));
     tobi_status status = tobi_scene_build(scene, w, err);
     if (status == TOBI_OK) status = tobi_world_start(*w, err);
+    if (status == TOBI_OK) read_again(scene);
     tobi_scene_free(scene);
     return status;
 }
