@@ -170,6 +170,8 @@ tobi_status view_project(geometry *g, const camera *c, int threads, tobi_error *
 /* fills: its cut is filled; depth: optical, of glass, else 1. */
 bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int number, bool fills,
                    float depth);
+/* In 2-D: the section z = 0 of its surface, as lines. */
+bool view_add_outline(geometry *g, const canvas *c, const tobi_picture_mesh *m, float width);
 
 /* cut.c */
 enum { CUT_CORNERS = 8 };        /* of a triangle that two planes have cut: more than it can have */

@@ -96,6 +96,39 @@ bool view_add_mesh(geometry *g, const canvas *c, const tobi_picture_mesh *m, int
     return enough;
 }
 
+/* Where a triangle crosses the plane z = 0. */
+static bool find_crossing(const tobi_picture_mesh *m, const int32_t v[3], double end[2][3])
+{
+    int count = 0;
+    for (int k = 0; k < 3 && count < 2; k++) {
+        const double *a = m->vertices[v[k]], *b = m->vertices[v[(k + 1)%3]];
+        if ((a[2] < 0) == (b[2] < 0)) continue;
+        const double t = a[2]/(a[2] - b[2]);
+        for (int c = 0; c < 3; c++) end[count][c] = c < 2 ? (1 - t)*a[c] + t*b[c] : 0;
+        count++;
+    }
+    return count == 2 && isfinite(end[0][0] + end[0][1] + end[1][0] + end[1][1]);
+}
+
+bool view_add_outline(geometry *g, const canvas *c, const tobi_picture_mesh *m, float width)
+{
+    const vec color = linear_color(m->color), to_eye = { 0, 0, -1 };
+    const vec normal[3] = { to_eye, to_eye, to_eye }, colors[3] = { color, color, color };
+    if (!view_reserve(g, 6*m->triangle_count, 2*m->triangle_count, 0)) return false;
+    for (int64_t t = 0; t < m->triangle_count; t++) {
+        double end[2][3];
+        if (!find_crossing(m, m->triangles[t], end)) continue;
+        const vec a = view_point(&c->camera, end[0]), b = view_point(&c->camera, end[1]);
+        const vec along = vec_scale(0.5f*width, vec_unit(vec_sub(b, a))), across = { -along.y, along.x, 0 };
+        const vec low = vec_sub(a, along), high = vec_add(b, along);      /* they join at corners */
+        const vec q[4] = { vec_sub(low, across), vec_sub(high, across), vec_add(high, across),
+                           vec_add(low, across) };
+        view_add_triangle(g, &c->cut, (vec[3]){ q[0], q[1], q[2] }, normal, colors);
+        view_add_triangle(g, &c->cut, (vec[3]){ q[0], q[2], q[3] }, normal, colors);
+    }
+    return true;
+}
+
 static int64_t add_vertex(geometry *g, int64_t a, int64_t b, float t)
 {
     const int64_t i = g->vertices++;

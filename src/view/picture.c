@@ -308,20 +308,25 @@ static tobi_status add_particles(scene *s, tobi_error *err)
     return TOBI_OK;
 }
 
+/* A vessel would hide its water in 2-D, where all is seen from the front: there it is an outline. */
+static bool add_body(scene *s, int i)
+{
+    const tobi_picture_mesh *m = &s->f->meshes[i];
+    const bool clear = m->transparency > 0;
+    const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
+    if (m->hollow && s->f->dimension == 2)
+        return view_add_outline(&s->solids, &s->c, m, 0.5f*(float)s->f->radius);
+    return view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, clear || !s->c.images[i] ? -1 : i,
+                         !m->hollow && !clear, depth);
+}
+
 /* Those whose cut is filled come first. */
 static tobi_status add_bodies(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
     for (int hollow = 0; hollow < 2; hollow++) {
-        for (int i = 0; i < f->mesh_count; i++) {
-            const tobi_picture_mesh *m = &f->meshes[i];
-            const bool clear = m->transparency > 0;
-            const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
-            if ((m->hollow != 0) == hollow &&
-                !view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m,
-                               clear || !s->c.images[i] ? -1 : i, !hollow && !clear, depth))
-                return no_memory(f, err);
-        }
+        for (int i = 0; i < f->mesh_count; i++)
+            if ((f->meshes[i].hollow != 0) == hollow && !add_body(s, i)) return no_memory(f, err);
         if (!hollow) s->solids.filled = s->solids.faces;
     }
     return view_project(&s->glass, &s->c.camera, f->threads, err);

@@ -407,6 +407,26 @@ static void flat_scenes_are_discs(void **state)
     free(p), free(labelled);
 }
 
+/* Seen from the front a vessel would hide its water: in 2-D it is an outline. */
+static void flat_vessels_are_outlines(void **state)
+{
+    (void)state;
+    tobi_picture f = make_frame();
+    double box[8][3];
+    for (int k = 0; k < 8; k++)
+        for (int a = 0; a < 3; a++) box[k][a] = a < 2 ? cube[k][a] : k/4 - 0.5;
+    tobi_picture_mesh m = red_cube;
+    m.vertices = (const double (*)[3])box;
+    f.dimension = 2, f.particle_count = 0, f.radius = 0.05, f.meshes = &m;
+    const int left = (int)(W/2 - 0.095*0.92*H);
+    for (m.hollow = 0; m.hollow < 2; m.hollow++) {
+        unsigned char *p = draw(&f);
+        assert_int_equal(redness(pixel(p, W/2, H/2)) > 60, !m.hollow);
+        assert_true(redness(pixel(p, left, H/2)) > 60);
+        free(p);
+    }
+}
+
 /* Values rise to the right: lines in 2-D stand where a quarter, a half and three quarters are. */
 static void flat_scenes_have_isolines(void **state)
 {
@@ -570,7 +590,8 @@ int main(void)
         cmocka_unit_test(fields_have_colours), cmocka_unit_test(maps_have_names),
         cmocka_unit_test(background_is_transparent), cmocka_unit_test(glass_lets_light_through),
         cmocka_unit_test(a_plane_cuts_bodies), cmocka_unit_test(lines_are_drawn),
-            cmocka_unit_test(flat_scenes_are_discs), cmocka_unit_test(flat_scenes_have_isolines),
+            cmocka_unit_test(flat_scenes_are_discs),
+        cmocka_unit_test(flat_vessels_are_outlines), cmocka_unit_test(flat_scenes_have_isolines),
         cmocka_unit_test(strange_input_is_drawn), cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(solids_hide_what_is_behind), cmocka_unit_test(full_disk_leaves_nothing)
     };
