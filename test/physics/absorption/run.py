@@ -56,8 +56,9 @@ def flume(method, layers, period, at_end):
     return name, table
 
 
-runs = [("isph", 12, 1.2)] if case.smoke else [("isph", 12, 1.2), ("isph", 20, 0.9), ("isph", 20, 1.2), ("isph", 20, 1.8),
-                                               ("dfsph", 20, 1.2), ("eisph", 20, 1.2), ("wcsph", 20, 1.2)]
+runs = [("isph", 12, 1.2)] if case.smoke else [("isph", 12, 1.2), ("isph", 16, 1.2), ("isph", 20, 1.2), ("isph", 16, 0.9),
+                                               ("isph", 16, 1.8), ("dfsph", 12, 1.2), ("dfsph", 20, 1.2), ("eisph", 10, 1.2),
+                                               ("wcsph", 10, 1.2)]
 curves = []
 for method, layers, period in runs:
     flume(method, layers, period, True)
