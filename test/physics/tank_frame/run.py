@@ -76,7 +76,9 @@ def factor(one, other):
 
 write_ring(case.out/"ring.obj")
 curves = []
-for n in case.pick((25,), (25, 50, 100)):
+# wcsph and eisph take twenty times the steps.
+spacings = (25, 50) if case.args.method in ("wcsph", "eisph") else (25, 50, 100)
+for n in case.pick((25,), spacings):
     for name in MOTIONS:
         (times, moved), (_, framed) = compute(name, "motion", n), compute(name, "frame", n)
         text = f"{name}, L/{n}"
