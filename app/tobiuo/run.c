@@ -60,24 +60,28 @@ char *results_path(const tobi_scene *scene, const char *out)
 }
 
 /* Before anything is made. */
-static int check_size(const tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir)
+static int check_size(const tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir,
+                      tobi_run_size *size)
 {
     tobi_error err = { 0 };
-    tobi_run_size size;
-    char bytes[32];
-    if (tobi_run_estimate(world, tobi_scene_output_def(scene), tobi_scene_world_def(scene)->end_time, &size,
+    if (tobi_run_estimate(world, tobi_scene_output_def(scene), tobi_scene_world_def(scene)->end_time, size,
                           &err) != TOBI_OK)
         return complain("%s", err.text);
-    char *objection = o->force ? NULL : size_objection(&size, dir);
+    char *objection = o->force ? NULL : size_objection(size, dir);
     const int code = objection ? complain("%s", objection) : 0;
     free(objection);
-    if (!code && !o->quiet)
-        printf("%lld outputs, about %s in %.7g files, go to %s\n", (long long)size.outputs,
-               bytes_text(size.bytes, bytes), size.files, dir);
     return code;
 }
 
-static int record(tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir)
+static void print_size(const tobi_run_size *size, const char *dir)
+{
+    char bytes[32];
+    printf("%lld outputs, about %s in %.7g files, go to %s\n", (long long)size->outputs,
+           bytes_text(size->bytes, bytes), size->files, dir);
+}
+
+static int record(tobi_scene *scene, tobi_world *world, const run_options *o, const char *dir,
+                  const tobi_run_size *size)
 {
     tobi_error err = { 0 };
     tobi_run *run = NULL;
@@ -86,6 +90,7 @@ static int record(tobi_scene *scene, tobi_world *world, const run_options *o, co
     tobi_status status =
         tobi_run_create(world, tobi_scene_output_def(scene), dir, o->force, resolved, &run, &err);
     free(resolved);
+    if (!o->quiet && status == TOBI_OK) print_size(size, dir);
     if (!o->quiet) print_notes(world, stderr, "tobiuo: note: ");
     if (status != TOBI_OK) return complain("%s", err.text);
     drive_options d = { .dir = dir, .end = tobi_scene_world_def(scene)->end_time, .quiet = o->quiet };
@@ -116,16 +121,17 @@ static int run_scene(tobi_scene *scene, const run_options *o)
 {
     tobi_error err = { 0 };
     tobi_world *world = NULL;
+    tobi_run_size size = { 0 };
     if (tobi_scene_build(scene, &world, &err) != TOBI_OK) return complain("%s", err.text);
     char *dir = results_path(scene, o->out);
     if (tobi_scene_import_table(scene) && !o->quiet)
         printf("a scene of %s; \"tobiuo check\" lists what became of each of its keys\n",
                tobi_scene_import_program(scene));
-    int code = dir ? check_size(scene, world, o, dir) : complain("out of memory");
+    int code = dir ? check_size(scene, world, o, dir, &size) : complain("out of memory");
     if (code == 0 && o->movie) code = handle_movies(scene, o, dir, PREPARE);
     const int no_movie = code == 0 && o->movie ? check_encoder() : 0;
     if (no_movie) complain("the run goes on and keeps its pictures; later: tobiuo movie %s", dir);
-    if (code == 0) code = record(scene, world, o, dir);
+    if (code == 0) code = record(scene, world, o, dir, &size);
     if ((code == 0 || code == EXIT_UNWRITTEN) && o->movie) {      /* of the pictures that there are */
         const int made = no_movie ? no_movie : handle_movies(scene, o, dir, MAKE);
         if (code == 0) code = made;

@@ -284,6 +284,8 @@ expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/t
 before=$(hash_of $a)
 echo mine > $a/notes.txt
 expect 1 "holds the results of a run" run tank.json --quiet
+expect 1 "holds the results of a run" run tank.json
+check "a refused run announces no outputs" test ! -s out.txt
 check "old results are untouched" test "$(hash_of $a)" = "$before" -a -s $a/history.csv
 expect 1 "broken.json:" run broken.json --quiet --force --out $a
 check "a broken scene costs nothing, even by force" test -s $a/summary.json
