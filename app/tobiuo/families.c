@@ -265,7 +265,7 @@ static const family_option slosh_options[] = {
 static void put_frame(const family_choice *c, FILE *out, const double size[3])
 {
     if (!(chosen(c, "period") > 0)) return;
-    fprintf(out, "  \"frame\": { \"%s\": { \"amplitude\": %.10g, \"period\": %.10g, \"center\": ",
+    fprintf(out, "  \"frame\": { \"%s\": { \"amplitude\": %.10g, \"period\": %.10g, \"centre\": ",
             c->dimension == 2 ? "yaw" : "pitch", chosen(c, "angle"), chosen(c, "period"));
     put_place(c, out, size[0]/2, size[1]/2, 0);
     fputs(" } },\n", out);

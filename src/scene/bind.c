@@ -2,6 +2,7 @@
    places. Drawback: types of the table are all that JSON can say. */
 #define _GNU_SOURCE 1
 #include "scene/bind.h"
+#include "scene/spelling.h"
 #include "tobiuo/scene.h"
 #include "base/param.h"
 #include <math.h>
@@ -231,16 +232,22 @@ static void bind_vector(const slot *s)
     if (good) memcpy(s->member, v, sizeof v);
 }
 
+static int is_word(const char *word, const char *choice, int length)
+{
+    return (int)strlen(word) == length && memcmp(word, choice, (size_t)length) == 0;
+}
+
 static void bind_choice(const slot *s)
 {
     enum { MOST = 16 };
     const char *word = json_string_value(s->value);
     int count = tobi_choice_count(s->row->choices), length;
-    char words[MOST][40];
+    char words[MOST][40], other[TOBI_SPELLING] = "";
     const char *list[MOST];
+    if (word) tobi_spelling_other(word, other);
     for (int i = 0; i < count && i < MOST; i++) {
         const char *choice = tobi_choice_word(s->row->choices, i, &length);
-        if (word && (int)strlen(word) == length && memcmp(word, choice, (size_t)length) == 0) {
+        if (word && (is_word(word, choice, length) || is_word(other, choice, length))) {
             memcpy(s->member, &i, sizeof i);
             return;
         }
@@ -421,11 +428,12 @@ static void bind_row(pass *p, const tobi_param *row, json_t *value, const tobi_p
 }
 
 /* Rows "key[0]", "key[1]": a list with one entry for each, or one value for all. */
-static void bind_entries(pass *p, const char *prefix, json_t *value, const tobi_place *place)
+static void bind_entries(pass *p, const char *prefix, const char *key, json_t *value,
+                         const tobi_place *place)
 {
     size_t count = 0, i = 0;
     const tobi_param *row;
-    for (row = p->table->rows; row->key; row++) count += key_rest(row, prefix, place->key) != NULL;
+    for (row = p->table->rows; row->key; row++) count += key_rest(row, prefix, key) != NULL;
     if (json_is_array(value) && json_array_size(value) != count) {
         tobi_source_mistake(p->binder->source, place,
                             "has %zu entries, must have %zu [lower, upper] or be one "
@@ -434,7 +442,7 @@ static void bind_entries(pass *p, const char *prefix, json_t *value, const tobi_
         return;
     }
     for (row = p->table->rows; row->key; row++) {
-        if (!key_rest(row, prefix, place->key)) continue;
+        if (!key_rest(row, prefix, key)) continue;
         tobi_place entry = { place, NULL, i };
         if (json_is_array(value)) bind_row(p, row, json_array_get(value, i), &entry);
         else if (i == 0) bind_row(p, row, value, place);
@@ -452,26 +460,45 @@ static int is_listed(const char *const *list, const char *key)
     return 0;
 }
 
-static void bind_member(pass *p, const char *prefix, json_t *value, const tobi_place *place)
+/* A key of the object in the spelling of the table. Both spellings in one object are a mistake. */
+static const char *spell_key(const pass *p, const char *prefix, json_t *object, const tobi_place *place,
+                             char other[TOBI_SPELLING])
 {
+    int has_mine = 0, has_other = 0;
+    if (!tobi_spelling_other(place->key, other)) return place->key;
     for (const tobi_param *row = p->table->rows; row->key; row++) {
-        const char *rest = key_rest(row, prefix, place->key);
-        if (!rest || strpbrk(place->key, ".[")) continue;
+        has_mine |= key_rest(row, prefix, place->key) != NULL;
+        has_other |= key_rest(row, prefix, other) != NULL;
+    }
+    if (has_mine || !has_other) return place->key;
+    if (!json_object_get(object, other)) return other;
+    tobi_source_mistake_at_key(p->binder->source, place, "is another spelling of \"%s\", which is given too; "
+                               "one of them is enough", other);
+    return NULL;
+}
+
+static void bind_member(pass *p, const char *prefix, json_t *object, json_t *value, const tobi_place *place)
+{
+    char other[TOBI_SPELLING];
+    const char *key = spell_key(p, prefix, object, place, other);
+    for (const tobi_param *row = p->table->rows; key && row->key; row++) {
+        const char *rest = key_rest(row, prefix, key);
+        if (!rest || strpbrk(key, ".[")) continue;
         if (*rest == '\0') {
             bind_row(p, row, value, place);
         } else if (*rest == '[') {
-            bind_entries(p, prefix, value, place);
+            bind_entries(p, prefix, key, value, place);
         } else if (!json_is_object(value)) {
             tobi_source_mistake(p->binder->source, place, "is %s, must be an object { ... }",
                                 tobi_json_kind(value));
         } else {
             char longer[64];
-            snprintf(longer, sizeof longer, "%s%s.", prefix, place->key);
+            snprintf(longer, sizeof longer, "%s%s.", prefix, key);
             bind_members(p, longer, value, place);
         }
         return;
     }
-    if (prefix[0] || !is_listed(p->also, place->key)) report_unknown(p, prefix, place);
+    if (key && (prefix[0] || !is_listed(p->also, key))) report_unknown(p, prefix, place);
 }
 
 static void bind_members(pass *p, const char *prefix, json_t *object, const tobi_place *place)
@@ -480,7 +507,7 @@ static void bind_members(pass *p, const char *prefix, json_t *object, const tobi
     json_t *value;
     json_object_foreach(object, key, value) {
         tobi_place member = { place, key, 0 };
-        bind_member(p, prefix, value, &member);
+        bind_member(p, prefix, object, value, &member);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "scene/describe.h"
 #include "scene/manual.h"
 #include "scene/parts.h"
+#include "scene/spelling.h"
 #include "tobiuo/run.h"
 #include "tobiuo/scene.h"
 #include <stdlib.h>
@@ -57,13 +58,20 @@ static int find_field(FILE *out, const char *word)
     return 0;
 }
 
-int tobi_describe_find(FILE *out, const char *word)
+static int find_word(FILE *out, const char *word)
 {
     const tobi_param_table *table;
     int found = 0;
     for (int i = 0; (table = tobi_describe_table_at(i)); i++) found += find_in_table(out, table, word, found);
     found += find_field(out, word);
     return found + tobi_tables_find(out, word);
+}
+
+int tobi_describe_find(FILE *out, const char *word)
+{
+    char other[TOBI_SPELLING];
+    const int found = find_word(out, word);
+    return found || !tobi_spelling_other(word, other) ? found : find_word(out, other);
 }
 
 /* --- did you mean ------------------------------------------------------------------------- */

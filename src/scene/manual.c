@@ -37,6 +37,7 @@ static const char head[] =
     "  `deform` and `velocity`: 8192 points), and a script may hold 64 MiB.\n"
     "- `pairs` in a script goes through numbers, then texts, in rising order; `tostring` and\n"
     "  `string.format` show no addresses, and there is no `next`.\n"
+    "- `centre`, `color` and `gray` may be written `center`, `colour` and `grey`.\n"
     "- Unknown keys are mistakes, and so are keys that the method or other keys leave unread. Nothing is\n"
     "  case-insensitive.\n"
     "\n"

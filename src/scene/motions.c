@@ -42,7 +42,7 @@ static const tobi_param translation_rows[] = {
     { 0 }
 };
 static const tobi_param rotation_rows[] = {
-    { .key = "center", VEC3, AT(tobi_rotation_def, center), PLACE, .unit = "m", .required = true,
+    { .key = "centre", VEC3, AT(tobi_rotation_def, center), PLACE, .unit = "m", .required = true,
       .doc = "A point on the axis." },
     { .key = "axis", VEC3, AT(tobi_rotation_def, axis), DIRECTION, .unit = "1", .required = true,
       .doc = "Direction of the axis, of any length." },
@@ -76,7 +76,7 @@ static const tobi_param oscillation_rows[] = {
     RISE(tobi_degree_def)
 static const tobi_param shift_rows[] = { SWING("m"), { 0 } };
 static const tobi_param turn_rows[] = {
-    { .key = "center", VEC3, AT(tobi_degree_def, center), PLACE, .unit = "m",
+    { .key = "centre", VEC3, AT(tobi_degree_def, center), PLACE, .unit = "m",
       .doc = "A point on the axis of the turn." },
     SWING("degrees"),
     { 0 }

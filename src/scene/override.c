@@ -2,6 +2,7 @@
    Drawback: a mistake is told by its path, without a line. */
 #define _GNU_SOURCE 1
 #include "scene/override.h"
+#include "scene/spelling.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -82,13 +83,25 @@ static long long read_index(const char *step)
     return *end || index > TOBI_SOURCE_LIMIT ? -1 : index;
 }
 
+/* A key that the object has in the other spelling is meant. */
+static void respell(const json_t *object, json_t *steps, size_t at)
+{
+    char other[TOBI_SPELLING];
+    const char *key = json_string_value(json_array_get(steps, at));
+    if (!json_object_get(object, key) && tobi_spelling_other(key, other) && json_object_get(object, other))
+        json_array_set_new(steps, at, json_string(other));
+}
+
 /* Checks step `at` against the container `node` and makes it a number where node is a list. */
 static int settle_step(tobi_source *source, const char *text, json_t *node, json_t *steps,
                        size_t at)
 {
     json_t *step = json_array_get(steps, at);
     if (json_is_object(node)) {
-        if (json_is_string(step)) return 1;
+        if (json_is_string(step)) {
+            respell(node, steps, at);
+            return 1;
+        }
         tobi_report_add(source->report, 0, "--set %s: [%lld] stands where a key must stand", text,
                         (long long)json_integer_value(step));
         return 0;

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE 1
 #include "scene/source.h"
 #include "scene/python.h"
+#include "scene/spelling.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +94,14 @@ static int list_steps(const tobi_place *place, const tobi_place *steps[DEPTH_LIM
     return depth < DEPTH_LIMIT ? depth : DEPTH_LIMIT;
 }
 
+/* A member by its key, in either spelling. */
+static int find_member(tobi_source *source, tobi_spot in, const char *key, tobi_spot *found)
+{
+    char other[TOBI_SPELLING];
+    return tobi_spots_member(&source->spots, in, key, found) ||
+           (tobi_spelling_other(key, other) && tobi_spots_member(&source->spots, in, other, found));
+}
+
 /* Where a place is, or as deep on the way to it as the text goes. */
 static tobi_spot locate(tobi_source *source, const tobi_place *place)
 {
@@ -100,7 +109,7 @@ static tobi_spot locate(tobi_source *source, const tobi_place *place)
     int depth = list_steps(place, steps);
     tobi_spot at = tobi_spots_root(&source->spots);
     for (int i = 0; i < depth; i++)
-        if (!(steps[i]->key ? tobi_spots_member(&source->spots, at, steps[i]->key, &at)
+        if (!(steps[i]->key ? find_member(source, at, steps[i]->key, &at)
                             : tobi_spots_entry(&source->spots, at, steps[i]->index, &at))) break;
     return at;
 }

@@ -120,7 +120,7 @@ def full_scene(library):
     motions = [
         {"script": "stay.lua", "params": {"any": 1}},
         {"translation": {"velocity": [0, 0, 0.1]}},
-        {"rotation": {"center": [0, 0, 0], "axis": [0, 0, 1], "rate": 5}},
+        {"rotation": {"centre": [0, 0, 0], "axis": [0, 0, 1], "rate": 5}},
     ]
     for i, motion in enumerate(motions):
         body = copy.deepcopy(scene["bodies"][0])

@@ -217,7 +217,7 @@ static void bodies_and_motions(void **state)
                "\"angel\": 3 } },\n"
                "{ \"name\": \"water\", \"mesh\": \"\", \"motion\": { \"script\": \"no.lua\", "
                "\"params\": 3 } },\n"
-               "{ \"name\": \"b\", \"mesh\": \"/\", \"motion\": { \"rotation\": { \"centre\": [0, "
+               "{ \"name\": \"b\", \"mesh\": \"/\", \"motion\": { \"rotation\": { \"centr\": [0, "
                "0, 0] } } },\n"
                "{ \"name\": \"c\", \"mesh\": \"/\", \"motion\": { \"script\": \"no.lua\", "
                "\"speed\": 3 } },\n"
@@ -232,10 +232,10 @@ static void bodies_and_motions(void **state)
           { "s.json:8:28: bodies[1].mesh: ", "is empty" },
           { "s.json:8:74: bodies[1].motion.params: ", "is a number, must be an object" },
           { "s.json:9:24: bodies[2].mesh: ", "is not a file" },
-          { "s.json:9:53: bodies[2].motion.rotation.center: is missing", "" },
+          { "s.json:9:53: bodies[2].motion.rotation.centre: is missing", "" },
           { "s.json:9:53: bodies[2].motion.rotation.axis: is missing", "" },
           { "s.json:9:53: bodies[2].motion.rotation.rate: is missing", "" },
-          { "s.json:9:55: bodies[2].motion.rotation.centre: ", "did you mean \"center\"?" },
+          { "s.json:9:55: bodies[2].motion.rotation.centr: ", "did you mean \"centre\"?" },
           { "s.json:10:24: bodies[3].mesh: ", "is not a file" },
           { "s.json:10:61: bodies[3].motion.speed: ", "allowed here: script, params" },
           { "s.json:11:24: bodies[4].mesh: ", "is not a file" },
