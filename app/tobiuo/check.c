@@ -135,6 +135,7 @@ static int check_world(tobi_scene *scene)
     tobi_status status = tobi_scene_build(scene, &world, &err);
     if (status == TOBI_OK) status = find_cost(scene, world, &c, &err);
     if (status != TOBI_OK) {
+        tobi_scene_place_error(scene, &err);
         tobi_world_destroy(world);
         return complain("%s", err.text);
     }

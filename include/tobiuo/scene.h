@@ -46,6 +46,10 @@ TOBI_API void tobi_scene_free(tobi_scene *scene);
 /* Creates the world of the scene with its fluids, bodies and motions. On failure *world is NULL. */
 TOBI_API tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **world, tobi_error *err);
 
+/* Puts file, line and column of err->key in front of a text: for what tobi_world_start or tobi_run_create
+   refuses of a world that was built from the scene. Without a key nothing changes. */
+TOBI_API void tobi_scene_place_error(tobi_scene *scene, tobi_error *err);
+
 /* Owned by the scene. The name is that of the scene's directory if the file is scene.json, or else
    the file's name without its extension. */
 TOBI_API const char *tobi_scene_name(const tobi_scene *scene);

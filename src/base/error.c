@@ -8,9 +8,20 @@ tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, .
 {
     if (!err) return status;
     err->status = status;
+    err->key[0] = '\0';
     va_list args;
     va_start(args, format);
     vsnprintf(err->text, sizeof err->text, format, args);
+    va_end(args);
+    return status;
+}
+
+tobi_status tobi_at_key(tobi_error *err, tobi_status status, const char *format, ...)
+{
+    if (!err || status == TOBI_OK || err->key[0]) return status;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(err->key, sizeof err->key, format, args);
     va_end(args);
     return status;
 }

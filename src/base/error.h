@@ -7,6 +7,10 @@
 tobi_status tobi_fail(tobi_error *err, tobi_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Says which key of the definition the failure `status` is about, unless that is known; returns status. */
+tobi_status tobi_at_key(tobi_error *err, tobi_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 enum { TOBI_EXCERPT = 16 };      /* bytes */
 
 /* A piece of a file that may not be what it was taken for, short enough to stand in a message: its first

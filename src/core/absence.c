@@ -13,10 +13,12 @@ tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const
     int axis = 0;
     if (!(def->absent_from > 0)) return TOBI_OK;
     if (def->dynamics != TOBI_PRESCRIBED)
-        return tobi_fail(err, TOBI_INVALID, "body '%s': only a prescribed body can be absent", b->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s': only a prescribed body can be "
+                                          "absent", b->name), "absent");
     if (def->absent_until > 0 && !(def->absent_until > def->absent_from))
-        return tobi_fail(err, TOBI_INVALID, "body '%s' is absent from %g s until %g s; the second must be "
-                         "later", b->name, def->absent_from, def->absent_until);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' is absent from %g s until %g s; the "
+                                          "second must be later", b->name, def->absent_from,
+                                          def->absent_until), "absent.until");
     while (axis < box->dimension && box->periodic[axis]) axis++;
     if (axis == box->dimension)
         return tobi_fail(err, TOBI_UNSUPPORTED, "body '%s': no body can be absent in a domain that is "

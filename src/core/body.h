@@ -139,6 +139,8 @@ void tobi_body_place_next(tobi_body *b);
 void tobi_body_set_velocity(tobi_body *b, const double velocity[3], const double spin[3]);
 /* Its mesh, in the pose of the definition before scale, rotation and translation: the file's or that of its
    one shape. body_shape.c */
+/* Which key of a definition gives the shape: "mesh", "box" ... */
+const char *tobi_body_shape_key(const tobi_body_def *def);
 tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err);
 /* When the body is absent. TOBI_INVALID for bodies that are not prescribed, and times in the wrong order. */
 tobi_status tobi_body_plan_absence(tobi_body *b, const tobi_body_def *def, const tobi_box *box,

@@ -71,19 +71,36 @@ static tobi_status make_plate(tobi_body *b, const tobi_body_def *def, int dimens
     return tobi_mesh_plate(b->name, &plate, &b->mesh, err);
 }
 
-tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+static int find_kind(const tobi_body_def *def, int *shapes)
 {
     const double size[] = { 0, def->sphere_radius, def->cylinder_radius, def->capsule_radius,
                             def->plate_thickness };
-    int shapes = 0, kind = BOX;
+    int kind = BOX;
+    *shapes = def->mesh != NULL;
     for (int k = SPHERE; k <= PLATE; k++)
-        if (size[k] > 0) shapes++, kind = k;
-    if (shapes + (def->mesh != NULL) > 1)
+        if (size[k] > 0) ++*shapes, kind = k;
+    return kind;
+}
+
+const char *tobi_body_shape_key(const tobi_body_def *def)
+{
+    static const char *const keys[] = { "box", "sphere", "cylinder", "capsule", "plate" };
+    int shapes;
+    return def->mesh ? "mesh" : keys[find_kind(def, &shapes)];
+}
+
+tobi_status tobi_body_make_mesh(tobi_body *b, const tobi_body_def *def, int dimension, tobi_error *err)
+{
+    int shapes;
+    const int kind = find_kind(def, &shapes);
+    if (shapes > 1)
         return tobi_fail(err, TOBI_INVALID, "body '%s' has %d shapes; it may have one: a mesh, a box, a "
-                         "sphere, a cylinder, a capsule or a plate", b->name, shapes + (def->mesh != NULL));
-    if (def->mesh) return tobi_mesh_read(def->mesh, &b->mesh, err);
-    if (kind == BOX) return make_box(b, def, dimension, err);
-    return kind == PLATE ? make_plate(b, def, dimension, err) : make_round(b, def, kind, dimension, err);
+                         "sphere, a cylinder, a capsule or a plate", b->name, shapes);
+    if (def->mesh) return tobi_at_key(err, tobi_mesh_read(def->mesh, &b->mesh, err), "mesh");
+    const tobi_status status = kind == BOX     ? make_box(b, def, dimension, err)
+                               : kind == PLATE ? make_plate(b, def, dimension, err)
+                                               : make_round(b, def, kind, dimension, err);
+    return tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
 }
 
 tobi_status tobi_body_build_rest(tobi_body *b, tobi_error *err)

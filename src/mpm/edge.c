@@ -41,9 +41,8 @@ static tobi_status take_given(tobi_body *b, const tobi_body_def *def, int dimens
     TOBI_TRY(check_near(b, "edge_start", ends[0], dimension, err));
     if (dimension == 3) TOBI_TRY(check_near(b, "edge_end", ends[1], dimension, err));
     if (!(vec3_distance2(ends[0], ends[1]) > 0))
-        return tobi_fail(err, TOBI_INVALID,
-                         "body '%s': edge_start and edge_end are the same point; an edge has a length",
-                         b->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s': edge_start and edge_end are the "
+                                          "same point; an edge has a length", b->name), "edge_end");
     b->edge = calloc(1, sizeof *b->edge);
     if (!b->edge) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for an edge");
     b->edge_count = 1;
@@ -60,11 +59,10 @@ static tobi_status look_for_edge(tobi_body *b, double degrees, int dimension, to
     TOBI_TRY(tobi_sharp_find(&b->mesh, degrees, 0.25*thickness, dimension == 2, &found, err));
     if (found.count == 0) {
         free(found.edge);
-        return tobi_fail(err, TOBI_INVALID,
-                         "body '%s' is a blade without an edge: its faces meet at %.3g degrees at the "
-                         "sharpest, edge_angle allows %.3g; a sharper mesh, a larger edge_angle, or "
-                         "edge_start and edge_end give it one",
-                         b->name, found.sharpest, degrees);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "body '%s' is a blade without an edge: its "
+                                          "faces meet at %.3g degrees at the sharpest, edge_angle allows "
+                                          "%.3g; a sharper mesh, a larger edge_angle, or edge_start and "
+                                          "edge_end give it one", b->name, found.sharpest, degrees), "blade");
     }
     double length = 0;
     for (int64_t i = 0; i < found.count; i++)

@@ -457,20 +457,34 @@ int tobi_scene_has_both(const tobi_scene *scene)
     return scene->solid_count > 0 && scene->method && strcmp(scene->method->name, TOBI_METHOD_OF_SOLIDS) != 0;
 }
 
+void tobi_scene_place_error(tobi_scene *scene, tobi_error *err)
+{
+    tobi_place chain[TOBI_PATH_STEPS];
+    char text[TOBI_PATH_TEXT];
+    tobi_report *report = scene && err && err->key[0] ? tobi_report_create() : NULL;
+    if (!report) return;
+    scene->source.report = report;
+    tobi_source_mistake_at_key(&scene->source, tobi_place_read(err->key, chain, text), "%s", err->text);
+    scene->source.report = NULL;
+    const char *told = tobi_report_line(report, 0);
+    if (told) snprintf(err->text, sizeof err->text, "%s", told);
+    err->key[0] = '\0';
+    tobi_report_free(report);
+}
+
 /* What a call answers that adds entry i of a list to the world; a refusal gets its place in the file. */
 static tobi_status place_error(tobi_scene *scene, const char *list, int i, tobi_status status,
                                tobi_error *err)
 {
     static const tobi_place root = { 0 };
     tobi_place all = { &root, list, 0 }, entry = { &all, NULL, (size_t)i };
-    tobi_report *report = status == TOBI_OK || !err ? NULL : tobi_report_create();
-    if (!report) return status;
-    scene->source.report = report;
-    tobi_source_mistake(&scene->source, &entry, "%s", err->text);
-    scene->source.report = NULL;
-    const char *told = tobi_report_line(report, 0);
-    if (told) snprintf(err->text, sizeof err->text, "%s", told);
-    tobi_report_free(report);
+    char path[TOBI_PATH_TEXT + sizeof err->key];
+    if (status == TOBI_OK || !err) return status;
+    tobi_place_text(&entry, path);
+    const size_t used = strlen(path);
+    if (err->key[0]) snprintf(path + used, sizeof path - used, ".%s", err->key);
+    snprintf(err->key, sizeof err->key, "%s", path);
+    tobi_scene_place_error(scene, err);
     return status;
 }
 
@@ -498,6 +512,7 @@ tobi_status tobi_scene_build(tobi_scene *scene, tobi_world **out, tobi_error *er
     ADD("lines", line_count, tobi_world_add_line(world, &scene->lines[i], err));
     ADD("joints", joint_count, tobi_world_add_joint(world, &scene->joints[i], err));
     ADD("probes", probe_count, tobi_world_add_probe(world, &scene->probes[i], err));
+    ADD("damping_zones", tank.damping_count, tobi_world_add_damping(world, &scene->tank.damping[i], err));
     if (status == TOBI_OK) status = tobi_tank_build(&scene->tank, world, err);
     if (status == TOBI_OK) *out = world;
     else tobi_world_destroy(world);

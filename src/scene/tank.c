@@ -51,7 +51,6 @@ void tobi_tank_bind(tobi_scene_tank *t, const tobi_binder *binder, json_t *scene
 
 tobi_status tobi_tank_build(const tobi_scene_tank *t, tobi_world *world, tobi_error *err)
 {
-    for (int k = 0; k < t->damping_count; k++) TOBI_TRY(tobi_world_add_damping(world, &t->damping[k], err));
     if (t->changes) TOBI_TRY(tobi_world_set_gravity_in_time(world, &t->gravity, err));
     return t->frame ? tobi_world_set_frame(world, tobi_motion_positions, t->frame, err) : TOBI_OK;
 }

@@ -33,12 +33,13 @@ tobi_status tobi_world_add_damping(tobi_world *w, const tobi_damping_def *def, t
         zone.lower[a] = def->box_min[a] - box->lower[a];
         zone.upper[a] = def->box_max[a] - box->lower[a];
         if (!(zone.upper[a] > zone.lower[a]))
-            return tobi_fail(err, TOBI_INVALID, "the box of a damping zone reaches from %g to %g m in %c: "
-                             "allowed are upper corners above the lower ones", def->box_min[a],
-                             def->box_max[a], "xyz"[a]);
+            return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the box of a damping zone reaches from %g "
+                                              "to %g m in %c: allowed are upper corners above the lower ones",
+                                              def->box_min[a], def->box_max[a], "xyz"[a]), "box.max");
     }
     if (!(size > 0))
-        return tobi_fail(err, TOBI_INVALID, "the direction of a damping zone has no length");
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "the direction of a damping zone has no length"),
+                           "direction");
     measure(&zone, def->direction, size, box->dimension);
     if (def->length > 0) zone.length = def->length;
     w->sim.damping[w->sim.damping_count++] = zone;

@@ -12,24 +12,28 @@
 static tobi_status check_bodies(const tobi_world *w, const tobi_joint_def *def, tobi_constraint *j,
                                 tobi_error *err)
 {
-    const char *names[2] = { def->body, def->to_body };
+    const char *names[2] = { def->body, def->to_body }, *const keys[2] = { "body", "to_body" };
     for (int side = 0; side < 2; side++) {
         j->body[side] = names[side] ? tobi_world_find_body(w, names[side]) : -1;
         if (names[side] && j->body[side] < 0)
-            return tobi_fail(err, TOBI_INVALID, "joint '%s': there is no body '%s'", def->name, names[side]);
+            return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': there is no body '%s'",
+                                              def->name, names[side]), "%s", keys[side]);
         const tobi_body *b = j->body[side] >= 0 ? &w->sim.bodies[j->body[side]] : NULL;
         if (b && b->deforms)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' deforms; a joint holds rigid ones",
-                             def->name, names[side]);
+            return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' deforms; a joint "
+                                              "holds rigid ones", def->name, names[side]), "%s", keys[side]);
         if (b && b->absent[0] > 0)
-            return tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' is absent at times; a joint holds "
-                             "bodies that stay", def->name, names[side]);
+            return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "joint '%s': body '%s' is absent at "
+                                              "times; a joint holds bodies that stay", def->name,
+                                              names[side]), "%s", keys[side]);
     }
     if (j->body[0] == j->body[1])
-        return tobi_fail(err, TOBI_INVALID, "joint '%s': both sides are body '%s'", def->name, def->body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': both sides are body '%s'",
+                                          def->name, def->body), "to_body");
     if (w->sim.bodies[j->body[0]].rigid.kind == TOBI_PRESCRIBED)
-        return tobi_fail(err, TOBI_INVALID, "joint '%s': body '%s' is prescribed; a joint holds a free or "
-                         "controlled one, and may go to a prescribed one", def->name, def->body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "joint '%s': body '%s' is prescribed; a joint "
+                                          "holds a free or controlled one, and may go to a prescribed one",
+                                          def->name, def->body), "body");
     return TOBI_OK;
 }
 
@@ -82,7 +86,7 @@ tobi_status tobi_world_add_joint(tobi_world *w, const tobi_joint_def *def, tobi_
     if (c->count == TOBI_JOINT_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d joints", TOBI_JOINT_LIMIT);
     TOBI_TRY(check_bodies(w, def, &j, err));
-    TOBI_TRY(check_axis(def, w->system[0].box.dimension, &j, axis, err));
+    TOBI_TRY(tobi_at_key(err, check_axis(def, w->system[0].box.dimension, &j, axis, err), "axis"));
     snprintf(j.name, sizeof j.name, "%s", def->name);
     for (int side = 0; side < 2; side++) localize(w, def->point, axis, side, &j);
     tobi_constraint *more = realloc(c->at, (size_t)(c->count + 1)*sizeof *more);

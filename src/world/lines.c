@@ -14,17 +14,21 @@ static tobi_status check_bodies(const tobi_world *w, const tobi_line_def *def, t
     l->body = tobi_world_find_body(w, def->body);
     l->to_body = def->to_body ? tobi_world_find_body(w, def->to_body) : -1;
     if (l->body < 0)
-        return tobi_fail(err, TOBI_INVALID, "line '%s': there is no body '%s'", def->name, def->body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': there is no body '%s'", def->name,
+                                          def->body), "body");
     if (def->to_body && l->to_body < 0)
-        return tobi_fail(err, TOBI_INVALID, "line '%s': there is no body '%s'", def->name, def->to_body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': there is no body '%s'", def->name,
+                                          def->to_body), "to_body");
     if (l->body == l->to_body)
-        return tobi_fail(err, TOBI_INVALID, "line '%s': both ends are at body '%s'", def->name, def->body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': both ends are at body '%s'",
+                                          def->name, def->body), "to_body");
     if (w->sim.bodies[l->body].rigid.kind == TOBI_PRESCRIBED)
-        return tobi_fail(err, TOBI_INVALID, "line '%s': body '%s' is prescribed; a line holds a free or "
-                         "controlled one, and may go to a prescribed one", def->name, def->body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': body '%s' is prescribed; a line "
+                                          "holds a free or controlled one, and may go to a prescribed one",
+                                          def->name, def->body), "body");
     if (l->to_body >= 0 && w->sim.bodies[l->to_body].deforms)
-        return tobi_fail(err, TOBI_UNSUPPORTED, "line '%s': body '%s' deforms; a line goes to a rigid one",
-                         def->name, def->to_body);
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "line '%s': body '%s' deforms; a line goes "
+                                          "to a rigid one", def->name, def->to_body), "to_body");
     return TOBI_OK;
 }
 
@@ -33,16 +37,19 @@ static tobi_status check_kind(const tobi_world *w, const tobi_line_def *def, con
 {
     const double fall = vec3_length(w->sim.def.gravity);
     if (!(l->length > 0))
-        return tobi_fail(err, TOBI_INVALID, "line '%s': its ends are at one place and it has no length",
-                         def->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': its ends are at one place and it "
+                                          "has no length", def->name), "to");
     if (def->kind != TOBI_LINE_CATENARY)
         return def->weight > 0 || def->rests
-            ? tobi_fail(err, TOBI_INVALID, "line '%s': weight and rests are of a catenary", def->name)
+            ? tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': weight and rests are of a catenary",
+                                         def->name), "%s", def->weight > 0 ? "weight" : "rests")
             : TOBI_OK;
     if (!(def->weight > 0))
-        return tobi_fail(err, TOBI_INVALID, "line '%s': a catenary has a weight above 0 N/m", def->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': a catenary has a weight above 0 N/m",
+                                          def->name), "weight");
     if (def->damping > 0)
-        return tobi_fail(err, TOBI_INVALID, "line '%s': damping is of springs and ropes", def->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "line '%s': damping is of springs and ropes",
+                                          def->name), "damping");
     return fall > 0 ? TOBI_OK
         : tobi_fail(err, TOBI_INVALID, "line '%s': a catenary hangs, and there is no gravity", def->name);
 }

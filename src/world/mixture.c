@@ -57,7 +57,8 @@ tobi_status tobi_mixture_add(const tobi_world *w, const tobi_fluid_def *def, tob
         const tobi_fluid_def other = describe(&s->fluid[k]);
         tobi_error why = { 0 };
         if (tobi_mixture_check(s->method, def, &other, 0, &why) != TOBI_OK)
-            return tobi_fail(err, why.status, "fluid '%s': density %s", def->name ? def->name : "", why.text);
+            return tobi_at_key(err, tobi_fail(err, why.status, "fluid '%s': density %s",
+                                              def->name ? def->name : "", why.text), "density");
     }
     return TOBI_OK;
 }

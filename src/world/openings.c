@@ -23,9 +23,21 @@ static const double BEHIND = 3;
 
 static double dot(const double a[3], const double b[3]) { return vec3_dot(a, b); }
 
-static tobi_status refuse(const tobi_opening *o, const char *why, tobi_error *err)
+static tobi_status refuse(const tobi_opening *o, const char *key, const char *why, tobi_error *err)
 {
-    return tobi_fail(err, TOBI_INVALID, "%s '%s' %s", o->outlet ? "outlet" : "inlet", o->name, why);
+    return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' %s", o->outlet ? "outlet" : "inlet",
+                                      o->name, why), "%s", key);
+}
+
+/* The same when the world starts: the key is that of a scene. */
+static tobi_status refuse_start(const tobi_world *w, const tobi_opening *o, const char *key, const char *why,
+                                tobi_error *err)
+{
+    int number = 0;
+    for (const tobi_opening *k = w->sim.openings; k < o; k++) number += k->outlet == o->outlet;
+    refuse(o, key, why, err);
+    if (err) snprintf(err->key, sizeof err->key, "%s[%d].%s", o->outlet ? "outlets" : "inlets", number, key);
+    return TOBI_INVALID;
 }
 
 /* The unit vectors of a patch. */
@@ -36,7 +48,7 @@ static tobi_status set_axes(tobi_opening *o, const double normal[3], const doubl
     memcpy(o->normal, normal, sizeof o->normal);
     if (dimension == 2) o->normal[2] = 0;
     if (!(vec3_length(o->normal) > 0))
-        return refuse(o, "has a normal of zero; it must have a direction", err);
+        return refuse(o, "normal", "has a normal of zero; it must have a direction", err);
     vec3_normalize(o->normal);
     if (dimension == 2) {
         o->along[0] = -o->normal[1];
@@ -51,7 +63,7 @@ static tobi_status set_axes(tobi_opening *o, const double normal[3], const doubl
     vec3_normalize(o->along);
     vec3_add_scaled(o->along, o->along, -dot(o->along, n), n);
     if (!(vec3_length(o->along) > 1e-6))
-        return refuse(o, "has its width along its normal; allowed is across", err);
+        return refuse(o, "along", "has its width along its normal; allowed is across", err);
     vec3_normalize(o->along);
     vec3_cross(o->across, o->normal, o->along);
     return TOBI_OK;
@@ -63,11 +75,11 @@ static tobi_status set_patch(tobi_opening *o, double width, double height, doubl
     o->half[0] = 0.5*width;
     o->half[1] = dimension == 2 ? 0 : 0.5*height;
     o->radius = dimension == 2 ? 0 : radius;
-    if (dimension == 2) return width > 0 ? TOBI_OK : refuse(o, "has no width", err);
+    if (dimension == 2) return width > 0 ? TOBI_OK : refuse(o, "width", "has no width", err);
     if ((radius > 0) == (width > 0 || height > 0))
-        return refuse(o, "needs a width and a height, or a radius", err);
-    return radius > 0 || (width > 0 && height > 0) ? TOBI_OK
-                                                   : refuse(o, "needs a height beside its width", err);
+        return refuse(o, "radius", "needs a width and a height, or a radius", err);
+    return radius > 0 || (width > 0 && height > 0)
+        ? TOBI_OK : refuse(o, "width", "needs a height beside its width", err);
 }
 
 static double find_area(const tobi_opening *o, int dimension)
@@ -151,7 +163,7 @@ static tobi_status check_place(const tobi_opening *o, const tobi_box *box, doubl
             snprintf(text, sizeof text, "reaches out of the domain at %c = %.4g m: %s its plane it needs "
                      "%.4g m for a buffer of particles", "xyz"[a], x[a] + box->lower[a],
                      o->outlet ? "beyond" : "behind", fabs(far));
-            return refuse(o, text, err);
+            return refuse(o, "centre", text, err);
         }
     }
     return TOBI_OK;
@@ -175,7 +187,7 @@ static tobi_status check_point(const tobi_world *w, const tobi_opening *o, const
         const double *lower = w->system[0].box.lower;
         snprintf(text, sizeof text, "lies inside body '%s' with its buffer, at (%.4g, %.4g, %.4g) m",
                  w->sim.bodies[b].name, x[0] + lower[0], x[1] + lower[1], x[2] + lower[2]);
-        return refuse(o, text, err);
+        return refuse(o, "centre", text, err);
     }
     return TOBI_OK;
 }
@@ -228,7 +240,7 @@ static tobi_status set_fluid(tobi_opening *o, const tobi_world *w, const char *f
             return TOBI_OK;
         }
     snprintf(text, sizeof text, "lets '%s' in, which is no fluid", fluid ? fluid : "");
-    return refuse(o, text, err);
+    return refuse(o, "fluid", text, err);
 }
 
 /* Mean and fastest speed. */
@@ -238,17 +250,19 @@ static tobi_status set_speed(tobi_opening *o, const tobi_world *w, const tobi_in
     const double most = w->sim.def.speed_limit > 0 ? w->sim.def.speed_limit : TOBI_SPEED_LIMIT;
     char text[200];
     if ((def->speed > 0) + (def->flow_rate > 0) + (def->file != NULL) != 1)
-        return refuse(o, "needs a speed, a flow_rate or a file, one of them", err);
+        return refuse(o, "speed", "needs a speed, a flow_rate or a file, one of them", err);
     if (def->file && (def->start > 0 || def->stop > 0 || def->ramp > 0))
-        return refuse(o, "has a file, which has times of its own: start, stop and ramp are not for it", err);
-    if (def->file) TOBI_TRY(tobi_opening_load_flow(o, def->file, find_area(o, dimension), err));
-    else o->speed = def->speed > 0 ? def->speed : def->flow_rate/find_area(o, dimension);
-    if (!(o->speed > 0)) return refuse(o, "has a file in which nothing flows", err);
+        return refuse(o, "file", "has a file, which has times of its own: start, stop and ramp are not for "
+                      "it", err);
+    const double area = find_area(o, dimension);
+    if (def->file) TOBI_TRY(tobi_at_key(err, tobi_opening_load_flow(o, def->file, area, err), "file"));
+    else o->speed = def->speed > 0 ? def->speed : def->flow_rate/area;
+    if (!(o->speed > 0)) return refuse(o, "file", "has a file in which nothing flows", err);
     const double peak = o->speed*(o->parabolic ? o->radius > 0 ? 2 : dimension == 2 ? 1.5 : 2.25 : 1);
     if (peak <= most) return TOBI_OK;
     snprintf(text, sizeof text, "needs %.4g m/s at its fastest place for that flow; the limit is %.4g m/s: a "
              "larger patch or less flow is allowed", peak, most);
-    return refuse(o, text, err);
+    return refuse(o, def->speed > 0 ? "speed" : def->file ? "file" : "flow_rate", text, err);
 }
 
 static tobi_status make_inlet(const tobi_world *w, const tobi_inlet_def *def, tobi_opening *o,
@@ -262,7 +276,7 @@ static tobi_status make_inlet(const tobi_world *w, const tobi_inlet_def *def, to
     TOBI_TRY(set_patch(o, def->width, def->height, def->radius, s->box.dimension, err));
     TOBI_TRY(set_fluid(o, w, def->fluid, err));
     TOBI_TRY(set_speed(o, w, def, err));
-    if (def->stop > 0 && def->stop <= def->start) return refuse(o, "stops before it starts", err);
+    if (def->stop > 0 && def->stop <= def->start) return refuse(o, "stop", "stops before it starts", err);
     return make_columns(o, &s->smoothing, err);
 }
 
@@ -365,8 +379,8 @@ static tobi_status check_outlet(const tobi_world *w, const tobi_opening *o, tobi
         else beyond++;
     }
     if (beyond <= before || before > 0) return TOBI_OK;
-    return refuse(o, "faces inwards: liquid lies on the side that its normal points to, and none on the "
-                  "other", err);
+    return refuse_start(w, o, "normal", "faces inwards: liquid lies on the side that its normal points to, "
+                        "and none on the other", err);
 }
 
 tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err)

@@ -26,7 +26,7 @@ tobi_status tobi_world_add_plane(tobi_world *w, const tobi_plane_def *def, tobi_
         return tobi_fail(err, TOBI_UNSUPPORTED,
                          "%s knows no planes; allowed are sides of the domain and bodies",
                          w->system[0].method->name);
-    TOBI_TRY(check_place(&s->box, def, err));
+    TOBI_TRY(tobi_at_key(err, check_place(&s->box, def, err), "point"));
     for (int a = 0; a < s->box.dimension; a++) size = hypot(size, def->normal[a]);
     if (s->box.dimension == 2 && def->normal[2] != 0)
         return tobi_fail(err, TOBI_INVALID, "the normal of a plane has %g in z, must be 0 in 2-D",

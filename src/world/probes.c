@@ -35,10 +35,12 @@ static tobi_status check_sizes(const tobi_world *w, const tobi_probe_def *def, t
     if (!has_box(def->kind)) return TOBI_OK;
     if (!(def->length > 0) || (!flat && !(def->width > 0)) ||
         (def->kind == TOBI_PROBE_VOLUME && !(def->height > 0)))
-        return tobi_fail(err, TOBI_INVALID, "probe '%s' needs length%s%s, greater than 0 m", def->name,
-                         flat ? "" : ", width", def->kind == TOBI_PROBE_VOLUME ? ", height" : "");
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s' needs length%s%s, greater than 0 m",
+                                          def->name, flat ? "" : ", width",
+                                          def->kind == TOBI_PROBE_VOLUME ? ", height" : ""), "length");
     if (flat && (normal[2] != 0 || def->along[2] != 0))
-        return tobi_fail(err, TOBI_INVALID, "probe '%s': normal and along have no z in 2-D", def->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': normal and along have no z in 2-D",
+                                          def->name), "%s", normal[2] != 0 ? "normal" : "along");
     return TOBI_OK;
 }
 
@@ -48,13 +50,13 @@ static tobi_status check_rate(const tobi_world *w, const tobi_probe_def *def, to
     const double steps = w->sim.def.time_step > 0 ? 1/w->sim.def.time_step : INFINITY;
     const double rate = def->rate > 0 ? def->rate : steps;
     if (def->rate > steps*(1 + 1e-9))
-        return tobi_fail(err, TOBI_INVALID,
-                         "probe '%s': a rate of %g Hz is more than a value per time step, %g Hz",
-                         def->name, def->rate, steps);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': a rate of %g Hz is more than a "
+                                          "value per time step, %g Hz", def->name, def->rate, steps), "rate");
     if (def->cutoff > 0.5*rate)
-        return tobi_fail(err, TOBI_INVALID,
-                         "probe '%s': a filter of %g Hz lets through what %g values per second "
-                         "cannot tell, allowed is up to %g Hz", def->name, def->cutoff, rate, 0.5*rate);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID,
+                                          "probe '%s': a filter of %g Hz lets through what %g values per "
+                                          "second cannot tell, allowed is up to %g Hz", def->name,
+                                          def->cutoff, rate, 0.5*rate), "filter.cutoff");
     return TOBI_OK;
 }
 
@@ -82,13 +84,14 @@ tobi_status tobi_world_add_probe(tobi_world *w, const tobi_probe_def *def, tobi_
     TOBI_NEED(def, "the definition");
     TOBI_NEED(def->name, "the name of the probe");
     TOBI_TRY(tobi_param_check(&tobi_probe_table, def, err));
-    TOBI_TRY(check_place(w, def, def->position, err));
-    if (def->kind == TOBI_PROBE_RUN_UP) TOBI_TRY(check_place(w, def, def->end, err));
+    TOBI_TRY(tobi_at_key(err, check_place(w, def, def->position, err), "position"));
+    if (def->kind == TOBI_PROBE_RUN_UP) TOBI_TRY(tobi_at_key(err, check_place(w, def, def->end, err), "end"));
     if (def->kind == TOBI_PROBE_RUN_UP && vec3_distance2(def->end, def->position) == 0)
-        return tobi_fail(err, TOBI_INVALID, "probe '%s': the run-up ends where it begins", def->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "probe '%s': the run-up ends where it begins",
+                                          def->name), "end");
     TOBI_TRY(check_sizes(w, def, err));
     TOBI_TRY(check_rate(w, def, err));
-    TOBI_TRY(find_body(w, def, &body, err));
+    TOBI_TRY(tobi_at_key(err, find_body(w, def, &body, err), "body"));
     if (w->probe_count == TOBI_PROBE_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d probes", TOBI_PROBE_LIMIT);
     tobi_probe *more = realloc(w->probes, (size_t)(w->probe_count + 1)*sizeof *more);

@@ -97,6 +97,8 @@ static tobi_status add_regions(tobi_world *w, const tobi_system *s, const char *
         r->owner = s->fluid_count + s->solid_count;
         r->number = k;
         tobi_status status = measure_region(s, whose, &fills[k], r, err);
+        const char *shape = fills[k].mesh ? "mesh" : fills[k].radius > 0 ? "sphere" : "box";
+        tobi_at_key(err, status, "fill[%d].%s", k, shape);
         w->region_count++;
         *volume += r->volume;
         if (status == TOBI_OK) status = tobi_world_add_notes(w, kind, name, r->shape.notes, err);
@@ -267,7 +269,9 @@ static tobi_status note_owners(tobi_world *w, const tobi_system *s, tobi_error *
             regions++;
         }
         const int64_t held = solids ? placed : count_fluid(&s->particles, k);
-        if (regions > 0) TOBI_TRY(check_placed(kind, name, held, placed, lost, err));
+        const tobi_status status =
+            regions > 0 ? check_placed(kind, name, held, placed, lost, err) : TOBI_OK;
+        TOBI_TRY(tobi_at_key(err, status, "%ss[%d].fill", kind, k));
         TOBI_TRY(note_losses(w, kind, name, lost, err));
     }
     return TOBI_OK;

@@ -71,14 +71,14 @@ tobi_status tobi_world_read_image(tobi_world *w, const char *kind, const char *n
     const int number = body ? w->sim.body_count : solids ? solids->solid_count : 0;
     if (!path) return TOBI_OK;
     if (!coordinates)
-        return tobi_fail(err, TOBI_INVALID, "%s '%s' has a texture, but no mesh with texture coordinates (vt "
-                         "of an OBJ file)", kind, name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' has a texture, but no mesh with "
+                                          "texture coordinates (vt of an OBJ file)", kind, name), "texture");
     if (number >= *room) {
         struct tobi_image **more = realloc(*list, (size_t)(number + 1)*sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for the texture of '%s'", name);
         for (*list = more; *room <= number;) more[(*room)++] = NULL;
     }
-    return tobi_image_read(path, &(*list)[number], err);
+    return tobi_at_key(err, tobi_image_read(path, &(*list)[number], err), "texture");
 }
 
 struct tobi_image *tobi_world_body_image(const tobi_world *w, int body)

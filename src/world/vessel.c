@@ -412,6 +412,14 @@ static const char *name_owner(const tobi_world *w, const tobi_region *r, char te
     return text;
 }
 
+/* Says which key of the scene a failure is about. */
+static tobi_status blame(const tobi_world *w, const tobi_region *r, const char *key, tobi_status status,
+                         tobi_error *err)
+{
+    const char *list = w->system[r->system].solid_count > 0 ? "solids" : "fluids";
+    return tobi_at_key(err, status, "%s[%d].fill[%d].%s", list, r->owner, r->number, key);
+}
+
 static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const char *whose, flood *f,
                                tobi_error *err)
 {
@@ -422,8 +430,8 @@ static tobi_status find_vessel(const tobi_world *w, const tobi_region *r, const 
     const int body = tobi_world_find_body(w, r->vessel);
     if (body >= 0) f->b = &w->sim.bodies[body];
     if (!f->b || !f->b->vessel)
-        return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills '%s', which is no %s", whose, r->number,
-                         r->vessel, f->b ? "vessel" : "body");
+        return blame(w, r, "vessel", tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills '%s', which is no %s",
+                                               whose, r->number, r->vessel, f->b ? "vessel" : "body"), err);
     for (int a = 0; a < f->dimension; a++) g += w->sim.def.gravity[a]*w->sim.def.gravity[a];
     if (!(g > 0))
         return tobi_fail(err, TOBI_INVALID, "%s: fill[%d] fills a vessel up to a level, and without gravity "
@@ -479,7 +487,7 @@ static tobi_status resolve(tobi_world *w, int number, tobi_error *err)
         if (wanted == 0 || k == wanted) status = check_overlap(&f, k, w, &r, whose, err);
     if (status == TOBI_OK) status = place_all(&f, wanted, w, number, err);
     free_flood(&f);
-    return status;
+    return blame(w, &r, "level", status, err);
 }
 
 tobi_status tobi_vessel_resolve(tobi_world *w, tobi_error *err)

@@ -137,18 +137,19 @@ const char *tobi_world_note(const tobi_world *w, int note)
     return w && note >= 0 && note < w->note_count ? w->notes[note] : NULL;
 }
 
+/* A wall that ends at a side of the domain may miss it by the rounding of its sums. */
 static tobi_status check_body(const tobi_world *w, const tobi_body *b, tobi_error *err)
 {
     const tobi_box *box = &w->system[0].box;
     for (int64_t i = 0; i < b->mesh.vertex_count; i++)
-        for (int a = 0; a < box->dimension; a++)
-            if (!box->periodic[a] && (b->vertex[i][a] < 0 || b->vertex[i][a] > box->size[a]))
-                return tobi_fail(err, TOBI_INVALID,
-                                 "body '%s' sticks out of the domain: a vertex is at %c = %g m, "
-                                 "allowed is %g to %g m",
-                                 b->name, "xyz"[a], b -> vertex[i][a] + box -> lower[a],
-                                 box -> lower[a], box -> lower[a] + box -> size[a]);
-    return tobi_world_check_stroke(w, b, err);
+        for (int a = 0; a < box->dimension; a++) {
+            const double x = b->vertex[i][a], slack = 1e-9*w->sim.def.spacing;
+            if (box->periodic[a] || (x >= -slack && x <= box->size[a] + slack)) continue;
+            return tobi_fail(err, TOBI_INVALID, "body '%s' sticks out of the domain: a vertex%s is at %c = "
+                             "%g m, allowed is %g to %g m", b->name, b->vessel ? " of its walls" : "",
+                             "xyz"[a], x + box->lower[a], box->lower[a], box->lower[a] + box->size[a]);
+        }
+    return tobi_at_key(err, tobi_world_check_stroke(w, b, err), "motion");
 }
 
 tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_error *err)
@@ -159,10 +160,9 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     if (w->started) return tobi_fail(err, TOBI_INVALID, "a started world takes no more bodies");
     TOBI_TRY(tobi_param_check(&tobi_body_table, def, err));
     if (def->blade && !tobi_world_solids(w))
-        return tobi_fail(err, TOBI_UNSUPPORTED,
-                         "body '%s' is a blade, which the method %s does not know; "
-                         "blades cut solids of mlsmpm",
-                         def->name ? def->name : "", w->system[0].method->name);
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' is a blade, which the method %s "
+                                          "does not know; blades cut solids of mlsmpm",
+                                          def->name ? def->name : "", w->system[0].method->name), "blade");
     if (s->sim->body_count == TOBI_BODY_LIMIT)
         return tobi_fail(err, TOBI_UNSUPPORTED, "more than %d bodies", TOBI_BODY_LIMIT);
     tobi_body *more = realloc(s->sim->bodies, (size_t)(s->sim->body_count + 1)*sizeof *more);
@@ -176,6 +176,7 @@ tobi_status tobi_world_add_body(tobi_world *w, const tobi_body_def *def, tobi_er
     TOBI_TRY(tobi_body_create(b, &placed, &s->box, pieces, err));
     tobi_status status = tobi_body_plan_absence(b, &placed, &s->box, err);
     if (status == TOBI_OK) status = check_body(w, b, err);
+    tobi_at_key(err, status, "%s", tobi_body_shape_key(def));
     if (status == TOBI_OK)
         status = tobi_world_read_image(w, "body", b->name, def->texture, b->mesh.texture, err);
     if (status == TOBI_OK) status = tobi_world_add_notes(w, "body", b->name, b->mesh.notes, err);

@@ -197,7 +197,7 @@ static void test_mistakes(void **state)
     refuse(IN "\"speed\": 1, \"start\": 0.5, \"stop\": 0.2 }", "", "", "inlet 'in' stops before it starts");
     refuse(IN "\"speed\": 1, \"fluid\": \"oil\" }", "", "", "inlet 'in' lets 'oil' in, which is no fluid");
     refuse(IN "\"speed\": 1 }", "", block,
-           "s.json:4:13: inlets[0]: inlet 'in' lies inside body 'block' with its buffer, at (");
+           "s.json:4:29: inlets[0].centre: inlet 'in' lies inside body 'block' with its buffer, at (");
     refuse(PATCH "\"centre\": [0.01, 0.1], \"normal\": [1, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
            "inlet 'in' reaches out of the domain at x = ");
     refuse(PATCH "\"centre\": [0.2, 0.1], \"normal\": [0, 0], \"width\": 0.1, \"speed\": 1 }", "", "",
@@ -226,7 +226,7 @@ static void test_set(void **state)
     memset(set, '?', sizeof set - 1);
     assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_INVALID);
     assert_ptr_equal(strstr(err.text, "--set inlets=[{"), err.text);
-    assert_non_null(strstr(err.text, ": inlets[0]: inlet 'in' reaches out of the domain at "));
+    assert_non_null(strstr(err.text, ": inlets[0].centre: inlet 'in' reaches out of the domain at "));
     tobi_scene_free(scene);
 }
 
@@ -238,7 +238,7 @@ static void test_wrong_tables(void **state)
         { "time, speed\n0, 0\n1, 0\n", "", "has a file in which nothing flows" },
         { "time, speed\n0, 1\n1, -1\n", "", "the flow is below 0: an inlet lets nothing out" },
         { "time, speed\n1, 1\n0, 1\n", "", "time 0 s does not come after 1 s of the row before" },
-        { "time, speed\n1, 1\n0, 1\n", "", "s.json:4:13: inlets[0]: " },
+        { "time, speed\n1, 1\n0, 1\n", "", "s.json:4:83: inlets[0].file: flow " },
         { "time, x\n0, 1\n", "", "a flow has the columns time (s) and one of speed (m/s) and flow_rate" },
         { "time, speed, flow_rate\n0, 1, 1\n", "", "and one of speed (m/s) and flow_rate (m3/s)" },
         { "time, flow_rate [l/s]\n0, 1\n", "", "column flow_rate is in [l/s]; allowed is [m3/s]" },

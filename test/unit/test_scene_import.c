@@ -364,14 +364,14 @@ static void mistakes_of_the_configuration(void **state)
     EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
            "\"particleRadius\": 0.1, \"particleRadiusFLuid\": 0.1, \"simulationMethod\": 3,\n"
            "\"invisibleObjects\": [1, \"fish\"], \"densty0\": 1, \"exportPly\": 1, \"viscosity\": -1 },\n"
-           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1], \"colour\": [0, 0, 0] } ] }",
+           "\"FluidBlocks\": [ { \"start\": [0, 0, 0], \"end\": [1, 1, 1], \"colr\": [0, 0, 0] } ] }",
            "old.json:2:47: Configuration.particleRadiusFLuid: says the same as particleRadius",
            "old.json:2:72: Configuration.simulationMethod: is 3; there are 0 (WCSPH) and 4 (DFSPH)",
            "Configuration.invisibleObjects[1]: is a text, must be an objectId",
            "Configuration.densty0: unknown key; did you mean \"density0\"?",
            "Configuration.exportPly: is a number, must be true or false",
            "Configuration.viscosity: is -1, allowed is at least 0 m2/s",
-           "FluidBlocks[0].colour: unknown key; did you mean \"color\"?");
+           "FluidBlocks[0].colr: unknown key; did you mean \"color\"?");
     EXPECT("{ \"Configuration\": { \"domainEnd\": [1, 1, 1], \"gravitation\": [0, 0, 0],\n"
            "\"particleRadius\": 0.1, \"invisibleObjects\": 3 }, \"FluidBlocks\": [] }",
            "Configuration.invisibleObjects: is a number, must be a list", "FluidBlocks: is missing or empty");

@@ -1,0 +1,127 @@
+/* What the world refuses of a scene has file, line and column of the key that is to blame. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/error.h"
+#include "tobiuo/scene.h"
+
+/* A tank of water with a block and a bowl; what is wrong stands from line 4 on. */
+static tobi_scene *parse(const char *rest)
+{
+    char text[2000];
+    tobi_error err = { 0 };
+    tobi_scene *scene;
+    snprintf(text, sizeof text,
+             "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.05, \"end_time\": 1,\n"
+             "\"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"box\": { \"min\": [0, 0, 0],\n"
+             "\"max\": [1, 1, 0.2] } } ] } ],\n%s }", rest);
+    if (tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
+    return scene;
+}
+
+static void expect_start(const char *text, const char *begin)
+{
+    if (strncmp(text, begin, strlen(begin)) != 0) fail_msg("%s\ndoes not begin with\n%s", text, begin);
+}
+
+#define BOX "\"box\": { \"min\": [0.4, 0.4, 0.4], \"max\": [0.6, 0.6, 0.6] }"
+
+static void keys_are_named(void **state)
+{
+    (void)state;
+    static const struct { const char *rest, *begin; } wrong[] = {
+        { "\"bodies\": [ { \"name\": \"b\",\n\"box\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1.1] } } ]",
+          "s.json:5:1: bodies[0].box: body 'b' sticks out of the domain: a vertex is at z = 1.1 m" },
+        { "\"bodies\": [ { \"name\": \"b\", " BOX ",\n"
+          "\"dynamics\": \"free\", \"absent\": { \"from\": 1 } } ]",
+          "s.json:5:21: bodies[0].absent: body 'b': only a prescribed body" },
+        { "\"damping_zones\": [ { \"box\": { \"min\": [0, 0, 0],\n\"max\": [1, 1, 0] }, \"rate\": 1 } ]",
+          "s.json:5:1: damping_zones[0].box.max: the box of a damping zone" },
+        { "\"outlets\": [ { \"name\": \"o\", \"normal\": [1, 0, 0], \"radius\": 0.9,\n"
+          "\"centre\": [0.5, 0.5, 0.5] } ]",
+          "s.json:5:1: outlets[0].centre: outlet 'o' reaches out of the domain" },
+    };
+    for (size_t k = 0; k < sizeof wrong/sizeof *wrong; k++) {
+        tobi_scene *scene = parse(wrong[k].rest);
+        tobi_world *w;
+        tobi_error err = { 0 };
+        assert_int_not_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
+        expect_start(err.text, wrong[k].begin);
+        assert_string_equal(err.key, "");
+        tobi_scene_free(scene);
+    }
+}
+
+/* Known only when the world starts: a level that no vessel holds. */
+static void the_start_names_keys(void **state)
+{
+    (void)state;
+    char text[2000];
+    tobi_error err = { 0 };
+    tobi_scene *scene;
+    tobi_world *w;
+    snprintf(text, sizeof text,
+             "{ \"domain\": { \"min\": [0, 0, 0], \"max\": [1, 1, 1] }, \"spacing\": 0.05, \"end_time\": 1,\n"
+             "\"fluids\": [ { \"name\": \"water\", \"fill\": [ { \"vessel\": \"tub\",\n"
+             "\"level\": 0.1 } ] } ],\n"
+             "\"bodies\": [ { \"name\": \"tub\", \"vessel\": true, " BOX " } ] }");
+    if (tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
+    assert_int_not_equal(tobi_world_start(w, &err), TOBI_OK);
+    assert_string_equal(err.key, "fluids[0].fill[0].level");
+    tobi_scene_place_error(scene, &err);
+    expect_start(err.text, "s.json:3:1: fluids[0].fill[0].level: fluid 'water': fill[0] finds nothing");
+    tobi_scene_place_error(scene, &err);                 /* once is enough */
+    expect_start(err.text, "s.json:3:1: fluids[0]");
+    assert_null(strstr(err.text + 10, "s.json"));
+    tobi_scene_place_error(NULL, &err);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
+static void rounding_is_no_breach(void **state)
+{
+    (void)state;
+    tobi_scene *scene = parse("\"bodies\": [ { \"name\": \"b\", \"box\": { \"min\": [0, 0, -1e-13], "
+                              "\"max\": [0.1, 1, 1] } } ]");
+    tobi_world *w;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_scene_build(scene, &w, &err), TOBI_OK);
+    assert_int_equal(tobi_world_advance(w, 0.01, NULL, &err), TOBI_OK);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
+/* The first key stays: that of the call that knows most. */
+static void keys_of_errors(void **state)
+{
+    (void)state;
+    tobi_error err = { 0 };
+    assert_int_equal(tobi_at_key(&err, tobi_fail(&err, TOBI_IO, "x"), "fill[%d]", 3), TOBI_IO);
+    assert_string_equal(err.key, "fill[3]");
+    tobi_at_key(&err, TOBI_IO, "other");
+    assert_string_equal(err.key, "fill[3]");
+    tobi_fail(&err, TOBI_IO, "y");
+    assert_string_equal(err.key, "");
+    assert_int_equal(tobi_at_key(&err, TOBI_OK, "none"), TOBI_OK);
+    assert_string_equal(err.key, "");
+    assert_int_equal(tobi_at_key(NULL, TOBI_IO, "none"), TOBI_IO);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keys_are_named),
+        cmocka_unit_test(the_start_names_keys),
+        cmocka_unit_test(rounding_is_no_breach),
+        cmocka_unit_test(keys_of_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
