@@ -294,6 +294,34 @@ static void too_many_substeps(void **state)
     tobi_world_destroy(world);
 }
 
+/* No pressure is known yet: that of the depth bounds the first step, which would be 4 times longer. */
+static void first_step_before_a_gate(void **state)
+{
+    (void)state;
+    tobi_world_def w = tobi_default_world_def();
+    tobi_fluid_def fluid = tobi_default_fluid_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def water = tobi_default_fill_def(), gate = tobi_default_fill_def();
+    tobi_world *world;
+    const double deep = 0.15, bound = w.cfl*0.01/(2*sqrt(9.81*deep));
+    w.spacing = 0.01;
+    for (int a = 0; a < 3; a++) {
+        w.domain_max[a] = a ? 0.1 : 0.3;
+        water.box_max[a] = gate.box_max[a] = 0.1;
+    }
+    w.domain_max[2] = 0.2;
+    water.box_max[2] = gate.box_max[2] = deep;
+    gate.box_min[0] = 0.1;
+    gate.box_max[0] = 0.13;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, &gate, 1, &err));
+    OK(tobi_world_step(world, 0, NULL, &err));
+    if (!(tobi_world_time(world) <= 1.001*bound))
+        fail_msg("the first step is %g s, %g s at most are right", tobi_world_time(world), bound);
+    tobi_world_destroy(world);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -305,6 +333,7 @@ int main(void)
         cmocka_unit_test(water_is_cut_out),
         cmocka_unit_test(parameters_of_solids),
         cmocka_unit_test(too_many_substeps),
+        cmocka_unit_test(first_step_before_a_gate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
