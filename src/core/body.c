@@ -34,8 +34,10 @@ static tobi_status allocate(tobi_body *b, tobi_error *err)
     b->weight = calloc(n + 1, sizeof *b->weight);
     b->wet = calloc(n + 1, sizeof *b->wet);
     b->covered = calloc(n + 1, sizeof *b->covered);
+    b->outermost = calloc(n + 1, sizeof *b->outermost);
     b->point_of = calloc(n + 1, sizeof *b->point_of);
-    failed |= !b->piece_area || !b->area || !b->weight || !b->wet || !b->covered || !b->point_of;
+    failed |= !b->piece_area || !b->area || !b->weight || !b->wet || !b->covered || !b->outermost ||
+              !b->point_of;
     if (!failed) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "body '%s': no memory for %zu surface points", b->name, n);
 }
@@ -409,6 +411,7 @@ tobi_status tobi_body_create(tobi_body *b, const tobi_body_def *def, const tobi_
         tobi_body_free(b);
         return status;
     }
+    tobi_body_find_outline(b, point_spacing);
     tell_size(b, dimension);
     return TOBI_OK;
 }
@@ -424,7 +427,7 @@ void tobi_body_free(tobi_body *b)
     free(b->point_before);
     free(b->piece); free(b->piece_normal); free(b->piece_velocity); free(b->piece_area); free(b->point_of);
     free(b->point); free(b->normal); free(b->point_velocity); free(b->area); free(b->weight); free(b->wet);
-    free(b->covered);
+    free(b->covered); free(b->outermost);
     free(b->particle_rest); free(b->particle);
     free(b->rest_vertex);
     free(b->edge);

@@ -36,9 +36,10 @@ double tobi_smoothing_support(int shape, double support) { return table[shape].w
 
 static double positive(double x) { return x > 0 ? x : 0; }
 
-double tobi_smoothing_w(int shape, int dimension, double h, double r)
+/* W at q = r/h, by the norm n. */
+static inline double value(int shape, double n, double q)
 {
-    const double q = r/h, t = 1 - q, u = positive(0.5 - q), n = norm(shape, dimension, h);
+    const double t = 1 - q, u = positive(0.5 - q);
     if (q >= 1) return 0;
     switch (shape) {
     case TOBI_SHAPE_WENDLAND: return n*t*t*t*t*(1 + 4*q);
@@ -50,6 +51,17 @@ double tobi_smoothing_w(int shape, int dimension, double h, double r)
     case TOBI_SHAPE_WENDLAND_C4: return n*pow(t, 6)*(1 + 6*q + 35/3.0*q*q);
     default: return n*pow(t, 8)*(1 + 8*q + 25*q*q + 32*q*q*q);
     }
+}
+
+double tobi_smoothing_w(int shape, int dimension, double h, double r)
+{
+    return value(shape, norm(shape, dimension, h), r/h);
+}
+
+void tobi_smoothing_weigh(int shape, int dimension, double h, int n, const double *square, double *w)
+{
+    const double scale = norm(shape, dimension, h);
+    for (int k = 0; k < n; k++) w[k] = value(shape, scale, sqrt(square[k])/h);
 }
 
 double tobi_smoothing_f(int shape, int dimension, double h, double r)

@@ -23,6 +23,8 @@ void tobi_smoothing_init(tobi_smoothing_constants *c, int shape, int dimension, 
 
 /* W and -dW/dr / r in double with the integral normalisation (1/m^dim); the reference the tests use. */
 double tobi_smoothing_w(int shape, int dimension, double h, double r);
+/* The same W at n distances by their squares. */
+void tobi_smoothing_weigh(int shape, int dimension, double h, int n, const double *square, double *w);
 double tobi_smoothing_f(int shape, int dimension, double h, double r);
 
 /* Support in spacings at which the kernel is as wide, by its second moment, as wendland-c2 is at `support`.

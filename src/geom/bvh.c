@@ -431,3 +431,38 @@ int tobi_bvh_segment_hits(const tobi_bvh *b, const double p[3], const double q[3
     }
     return 0;
 }
+
+/* --- outline ------------------------------------------------------------------------------ */
+
+/* How far the corners of a triangle rise above the plane at most. */
+static double rise_of(const bvh_corners *t, const double p[3], const double n[3])
+{
+    const double *x[3] = {t->a, t->b, t->c};
+    double most = -INFINITY, r[3];
+    for (int k = 0; k < 3; k++) {
+        vec3_sub(r, x[k], p);
+        most = fmax(most, vec3_dot(r, n));
+    }
+    return most;
+}
+
+int tobi_bvh_rises_above(const tobi_bvh *b, const double p[3], const double n[3], double height)
+{
+    int32_t stack[BVH_STACK];
+    int top = 0;
+    stack[top++] = 0;
+    while (top) {
+        const bvh_node *node = &b->nodes[stack[--top]];
+        for (int lane = 0; lane < BVH_WIDTH; lane++) {
+            double rise = 0;
+            if (node->child[lane] < 0) continue;
+            for (int k = 0; k < 3; k++)
+                rise += n[k]*(node->centre[k][lane] + b->origin[k] - p[k]) + fabs(n[k])*node->half[k][lane];
+            if (!(rise > height)) continue;
+            if (node->count[lane] == 0) stack[top++] = node->child[lane];
+            for (int32_t i = node->child[lane]; i < node->child[lane] + node->count[lane]; i++)
+                if (rise_of(&b->corners[i], p, n) > height) return 1;
+        }
+    }
+    return 0;
+}

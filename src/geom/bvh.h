@@ -62,6 +62,10 @@ void tobi_bvh_look_up(const tobi_bvh *bvh, const double p[3], tobi_bvh_crossing_
    arithmetic, so nothing slips through an edge. */
 int tobi_bvh_segment_hits(const tobi_bvh *bvh, const double a[3], const double b[3]);
 
+/* 1 if a corner of a triangle lies more than `height` (m) above the plane through p across the unit vector
+   normal. */
+int tobi_bvh_rises_above(const tobi_bvh *bvh, const double p[3], const double normal[3], double height);
+
 /* Calls visit for every triangle that may touch the box from lower to upper (m), in tree order; some that
    only come near it, too. */
 typedef void tobi_bvh_visit_fn(void *user, int32_t triangle);

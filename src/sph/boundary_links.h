@@ -2,21 +2,17 @@
 #pragma once
 #include "core/body.h"
 #include "core/cells.h"
+#include "sph/boundary_points.h"
 #include "sph/body_tree.h"
 #include "sph/couple.k.h"
-
-/* Points of one body by cell of width h over its box. */
-typedef struct tobi_boundary_bins {
-    int n[3];
-    double lower[3];          /* m                                                                */
-    int64_t start, item;      /* where its own begin in bin_start, bin_item                       */
-} tobi_boundary_bins;
 
 /* Particles of a row of cells near a body. */
 typedef struct tobi_boundary_row { int32_t body, begin, end; int64_t hit; } tobi_boundary_row;
 
 /* The caught particles of a block. */
 typedef struct tobi_caught_block { double lower[3], upper[3]; int32_t count; } tobi_caught_block;
+
+struct tobi_system;
 
 typedef struct tobi_boundary_links {
     tobi_boundary_link *link;     /* by body, then by particle                                        */
@@ -34,13 +30,14 @@ typedef struct tobi_boundary_links {
     /* scratch of the search */
     tobi_boundary_bins *bins;     /* [bodies + 1]                                                     */
     double bin_width;         /* m                                                                */
-    int32_t *bin_start, *bin_item;
+    int32_t *bin_start;
+    tobi_boundary_point *point;   /* of all bodies, by bin                                            */
     tobi_boundary_row *row;
     int64_t row_count;
     int64_t *found;           /* [row_count] particles that see the body, then entries before     */
     int32_t *hit;             /* those particles                                                  */
     int64_t first_capacity, total_capacity, answer_capacity, part_capacity, caught_capacity, blocks_capacity;
-    int64_t bins_capacity, start_capacity, item_capacity, row_capacity, found_capacity;
+    int64_t bins_capacity, start_capacity, point_capacity, row_capacity, found_capacity;
     int64_t hit_capacity;
 } tobi_boundary_links;
 
@@ -51,6 +48,15 @@ static inline const tobi_boundary_entry *tobi_boundary_next(const tobi_boundary_
     const int32_t k = n->link[e - n->entry].previous;
     return k >= 0 ? &n->entry[k] : NULL;
 }
+
+/* Grows an array of the links for `need` items, if it must; what it holds stays. */
+tobi_status tobi_boundary_grow_rows(void **array, int64_t *capacity, int64_t need, size_t size,
+                                    tobi_error *err);
+#define tobi_boundary_grow(array, capacity, need, err) \
+    tobi_boundary_grow_rows((void **)(array), capacity, need, sizeof **(array), err)
+
+/* Puts the points of all bodies into bins, at their present pose; none is wet or covered yet. */
+tobi_status tobi_boundary_place_points(struct tobi_system *s, tobi_error *err);
 
 /* Calls visit for every point of a body in the bins around x, m from the lower corner of the box; stops early
    when it answers nonzero, and answers that. */

@@ -1,6 +1,6 @@
 /* Neighbours near bodies: pairs that a body separates leave the neighbour list, and particles near a body or
-   next to one that is are marked. Most pairs are farther from bodies than from each other, and only the rest
-   asks for the mesh. Drawback: a pair within reach of a mesh costs two walks through it. */
+   next to one that is are marked. Most pairs are farther from bodies than from each other, or see each other
+   past a convex body, and only the rest asks for the mesh. Drawback: that costs two walks through it. */
 #include "sph/boundary.h"
 #include "sph/state.h"
 #include <math.h>
@@ -20,12 +20,10 @@ static void subtract(const tobi_system *s, int64_t i, int64_t j, int32_t d[3])
 /* A body between two particles is not farther from both together than they are from each other. */
 static int may_separate(const tobi_system *s, int64_t i, int64_t j)
 {
-    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
-    const tobi_boundary_link *link = sph_of(s)->links.link;
+    const float *body_distance = sph_fields_of(&s->particles)->body_distance;
     double square = 0;
     int32_t fixed[3];
-    if (last_link[j] < 0) return 0;
-    const double least = (double)link[last_link[i]].nearest + link[last_link[j]].nearest;
+    const double least = (double)body_distance[i] + body_distance[j];
     if (least > 1.001*s->smoothing.h) return 0;
     subtract(s, i, j, fixed);
     for (int a = 0; a < 3; a++) {
@@ -35,6 +33,30 @@ static int may_separate(const tobi_system *s, int64_t i, int64_t j)
     return least*least < 1.001*square;
 }
 
+/* Is a place above the plane across the way from the nearest point of a convex body to a particle? Then the
+   two see each other. What rounding leaves of a way is none. */
+static int is_above(const tobi_system *s, const tobi_boundary_entry *e, const double from_foot[3])
+{
+    const double clear = 0.01*s->smoothing.spacing;
+    return e->distance > clear && dot(from_foot, e->offset) > clear*e->distance;
+}
+
+/* Does the body lie between x and to, as its entries of the particles there have it? */
+static int lies_between(const tobi_system *s, const tobi_body *body, const tobi_boundary_entry *a,
+                        const tobi_boundary_entry *b, const double x[3], const double d[3])
+{
+    double to[3], ra[3], rb[3];
+    if (fabs(a->distance) + fabs(b->distance) >= sqrt(dot(d, d))) return 0;
+    for (int c = 0; c < 3; c++) {
+        to[c] = x[c] - d[c];
+        ra[c] = to[c] - a->foot[c];
+        rb[c] = to[c] + d[c] - b->foot[c];
+    }
+    if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) return 0;
+    if (body->convex && (is_above(s, a, ra) || is_above(s, b, rb))) return 0;
+    return tobi_bvh_segment_hits(body->bvh, x, to);
+}
+
 /* Does a body lie between i and its neighbour at x_i - d? Both ends answer alike: the lower id asks, or
    rounding would let a segment through an edge pass one way only. */
 static int separated(const tobi_system *s, int64_t i, int64_t j)
@@ -42,42 +64,32 @@ static int separated(const tobi_system *s, int64_t i, int64_t j)
     const tobi_particles *p = &s->particles;
     if (p->id[i] > p->id[j]) { int64_t swap = i; i = j; j = swap; }
     const int32_t *last_link = sph_fields_of(p)->last_link;
-    const tobi_boundary_link *link = sph_of(s)->links.link;
-    const tobi_boundary_entry *entry = sph_of(s)->links.entry, *a = &entry[last_link[i]], *b;
+    const tobi_boundary_links *n = &sph_of(s)->links;
     const double x[3] = {p->position[i].x, p->position[i].y, p->position[i].z};
     int32_t fixed[3];
     double d[3];
     subtract(s, i, j, fixed);
     for (int c = 0; c < 3; c++) d[c] = fixed[c]/s->box.to_fixed[c];
-    const double length = sqrt(dot(d, d));
-    for (; a; a = tobi_boundary_next(&sph_of(s)->links, a))
-        for (b = &entry[last_link[j]]; b; b = tobi_boundary_next(&sph_of(s)->links, b)) {
-            const int body = link[a - entry].body;
-            if (body != link[b - entry].body || fabs(a->distance) + fabs(b->distance) >= length) continue;
-            double to[3], ra[3], rb[3];
-            for (int c = 0; c < 3; c++) {
-                to[c] = x[c] - d[c];
-                ra[c] = to[c] - a->foot[c];
-                rb[c] = to[c] + d[c] - b->foot[c];
-            }
-            if (dot(ra, a->foot_normal) >= 0 && dot(rb, b->foot_normal) >= 0) continue;
-            const tobi_bvh *tree = s->sim->bodies[body].bvh;
-            if (tobi_bvh_segment_hits(tree, x, to)) return 1;
+    const float length = 1.001F*(float)sqrt(dot(d, d));
+    for (int32_t a = last_link[i]; a >= 0; a = n->link[a].previous)
+        for (int32_t b = last_link[j]; b >= 0; b = n->link[b].previous) {
+            const int body = n->link[a].body;
+            if (body != n->link[b].body || n->link[a].distance + n->link[b].distance > length) continue;
+            if (lies_between(s, &s->sim->bodies[body], &n->entry[a], &n->entry[b], x, d)) return 1;
         }
     return 0;
 }
 
-static void find_nearest(const void *view, int64_t begin, int64_t end)
+static void find_distances(const void *view, int64_t begin, int64_t end)
 {
     const tobi_system *s = view;
-    const int32_t *last_link = sph_fields_of(&s->particles)->last_link;
+    const sph_fields *f = sph_fields_of(&s->particles);
     const tobi_boundary_links *n = &sph_of(s)->links;
-    for (int64_t k = begin; k < end; k++) {
-        double least = INFINITY;
-        if (last_link[n->link[k].particle] != k) continue; /* once per particle */
-        for (const tobi_boundary_entry *e = &n->entry[k]; e; e = tobi_boundary_next(n, e))
-            least = fmin(least, fabs(e->distance));
-        n->link[k].nearest = (float)least;
+    for (int64_t i = begin; i < end; i++) {
+        float least = INFINITY;
+        for (int32_t k = f->last_link[i]; k >= 0; k = n->link[k].previous)
+            least = fminf(least, n->link[k].distance);
+        f->body_distance[i] = least;
     }
 }
 
@@ -105,7 +117,7 @@ static void cut_pairs(const void *view, int64_t begin, int64_t end)
 void tobi_boundary_cut_pairs(tobi_system *s)
 {
     tobi_boundary_links *n = &sph_of(s)->links;
-    tobi_loop(s->sim->exec.threads, n->count, 0, find_nearest, s);
+    tobi_loop(s->sim->exec.threads, s->particles.count, 0, find_distances, s);
     n->cut_pairs = 0;
     tobi_loop(s->sim->exec.threads, n->count, 64, cut_pairs, s);
     n->cut_pairs /= 2;      /* each was seen from both sides */

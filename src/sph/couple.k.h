@@ -8,7 +8,7 @@ typedef struct tobi_boundary_link {
     int32_t particle;
     int16_t body;
     int32_t previous;         /* the particle's link to an earlier body, -1 = none                */
-    float nearest;            /* m, from the particle to the nearest of its bodies; in its last link */
+    float distance;           /* m, from the particle to the body's surface                       */
     double gradient[3];       /* G = -sum A W n, 1/m                                              */
     double torque_arm[3];     /* -sum A W (x_b - centre) x n                                      */
 } tobi_boundary_link;

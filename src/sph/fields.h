@@ -22,6 +22,7 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "1: it or a neighbour sees a body") \
     X(float,       TOBI_F32, 1, density,      TOBI_SCRATCH, 0, "1",    "density over rest density") \
     X(float,       TOBI_F32, 1, diagonal,     TOBI_SCRATCH, 0, "m/kg", "diagonal of the pressure operator") \
+    X(float,       TOBI_F32, 1, body_distance, SPH_SEE, SPH_NEED_WETTED, "m", "from the nearest body seen") \
     X(float,       TOBI_F32, 1, mean,         SPH_SEE | SPH_DERIVE, 0, "Pa", "kernel average of p") \
     X(float,       TOBI_F32, 1, surface_depth,     SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
     X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, SPH_NEED_WETTED, "1/m", "eq. (13b)") \
