@@ -37,10 +37,20 @@ static const tobi_boundary_entry *entry_of(const pusher *p, int64_t i)
     return k >= 0 && n->entry[k].triangle >= 0 ? &n->entry[k] : NULL;
 }
 
-/* Where a particle began the step, as seen from the body: as far from its nearest point as then. */
-static int find_start(const pusher *p, int64_t i, const double x[3], double start[3])
+/* By how much the body has turned since the particles looked at it: of a unit vector, at most. */
+static double turned(const pusher *p)
+{
+    const double *q = sph_of(p->s)->links.bins[p->body].orientation, *r = p->b->rigid.orientation;
+    const double cosine = q[0]*r[0] + q[1]*r[1] + q[2]*r[2] + q[3]*r[3];
+    return 2*sqrt(fmax(1 - cosine*cosine, 0)) + 1e-6;
+}
+
+/* Where a particle began the step, as seen from the body: as far from its nearest point as then. away: it is
+   at least so far from a rigid body now, m. */
+static int find_start(const pusher *p, int64_t i, const double x[3], double start[3], double *away)
 {
     const tobi_boundary_entry *e = entry_of(p, i);
+    *away = 0;
     if (!e || !(e->distance > 0)) return 0;
     const int32_t *tri = p->b->mesh.triangles[e->triangle];
     double way[3];
@@ -49,6 +59,7 @@ static int find_start(const pusher *p, int64_t i, const double x[3], double star
         for (int c = 0; c < 3; c++) start[a] += e->barycentric[c]*p->b->vertex[tri[c]][a];
         way[a] = x[a] - start[a];
     }
+    if (!p->b->deforms) *away = e->distance*(1 - turned(p)) - sqrt(dot(way, way));
     return 4*dot(way, way) > e->distance*e->distance;      /* else it cannot have reached the surface */
 }
 
@@ -81,11 +92,13 @@ static int find_caught(const pusher *p, int64_t i, touch *t, double *along)
 {
     const tobi_system *s = p->s;
     tobi_double3 q = s->particles.position[i];
-    double x[3] = {q.x, q.y, q.z}, start[3];
+    double x[3] = {q.x, q.y, q.z}, start[3], away;
+    const int came = find_start(p, i, x, start, &away);
+    if (away > LEAST*s->smoothing.spacing) return 0;
     int caught = tobi_bvh_closest(p->b->bvh, x, s->smoothing.h, &t->hit) &&
                  t->hit.signed_distance < LEAST*s->smoothing.spacing;
     if (caught) place_above(p, x, t);
-    if (find_start(p, i, x, start) && tobi_bvh_segment_hits(p->b->bvh, start, caught ? t->target : x))
+    if (came && tobi_bvh_segment_hits(p->b->bvh, start, caught ? t->target : x))
         caught |= stop_before(p, start, caught ? t->target : x, t);
     if (!caught) return 0;
     const int32_t *tri = p->b->mesh.triangles[t->hit.triangle];

@@ -14,6 +14,8 @@ static const double CORE = 0.9;
 static const float PUSH = 0.25f;
 /* Of the mean diagonal: two particles 1.5 d apart that have no other neighbour. */
 static const double ISOLATED = 0.01;
+/* Fewer are worked on one after another: large bodies have parallel loops of their own. */
+enum { FEW_BODIES = 8 };
 
 static void launch(tobi_system *s, sph_view *v, tobi_kernel k, double *totals)
 {
@@ -290,13 +292,20 @@ double sph_move_particles(tobi_system *s, sph_view *v, const sph_kernels *k, dou
     return sqrt(t[6]);
 }
 
+static void update_surfaces(const void *view, int64_t begin, int64_t end)
+{
+    tobi_body *bodies = ((const tobi_system *)view)->sim->bodies;
+    for (int64_t k = begin; k < end; k++) {
+        tobi_body *b = &bodies[k];
+        if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_update_surface(b);
+    }
+}
+
 void sph_finish(tobi_system *s)
 {
     double clock = tobi_clock();
-    for (int k = 0; k < s->sim->body_count; k++) {
-        tobi_body *b = &s->sim->bodies[k];
-        if (!b->deforms && (b->motion || b->rigid.kind != TOBI_PRESCRIBED)) tobi_body_update_surface(b);
-    }
+    const int bodies = s->sim->body_count;
+    tobi_loop(bodies < FEW_BODIES ? 1 : s->sim->exec.threads, bodies, 1, update_surfaces, s);
     if (s->sim->body_count > 0) tobi_push_out(s);
     tobi_couple_finish(s);
     s->info.contacts += sph_of(s)->links.contacts;
