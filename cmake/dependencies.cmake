@@ -30,6 +30,7 @@ tobi_need(hdf5 libhdf5-dev hdf5-serial hdf5)
 tobi_need(zlib zlib1g-dev zlib)
 tobi_need(lz4 liblz4-dev liblz4)
 tobi_need(libpng libpng-dev libpng)
+tobi_need(libjpeg libjpeg-dev libjpeg)
 
 find_package(OpenMP QUIET COMPONENTS C)
 if(NOT OpenMP_C_FOUND)

@@ -172,6 +172,7 @@ char *clear_place(const char *folder, const char *file);
 /* movie.c */
 /* Why a path is not that of a movie, to stand behind its name; NULL if it is. */
 const char *movie_objection(const char *path);
+int is_png(const char *path);        /* by its name */
 /* 0 if no file is in the way, or else EXIT_ERROR after a complaint. */
 int prepare_movie(const char *out, int force);
 /* 0 if there is a program that makes movies, or else EXIT_ERROR after a complaint. */

@@ -29,7 +29,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
     draw_options *o = state->input;
     char *end;
     switch (key) {
-    case 'o': o->out = value; break;
+    case 'o':
+        if (!is_png(value))
+            argp_error(state, "--out: '%s' is no picture that can be made: its name ends in .png", value);
+        o->out = value;
+        break;
     case KEY_OUTPUT:
         o->output = strtoll(value, &end, 10);
         if (end == value || *end || o->output < 0)

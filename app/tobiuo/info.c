@@ -7,6 +7,7 @@
 #include <lz4.h>
 #include <png.h>
 #include <stdio.h>
+#include <jpeglib.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -47,8 +48,8 @@ static void print_libraries(void)
     H5get_libversion(&major, &minor, &release);
     printf("libraries     HDF5 %u.%u.%u, assimp %u.%u.%u,", major, minor, release,
            aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch());
-    printf(" jansson %s, %s, zlib %s, LZ4 %s, libpng %s\n", jansson_version_str(), LUAJIT_VERSION,
-           zlibVersion(), LZ4_versionString(), png_get_libpng_ver(NULL));
+    printf(" jansson %s, %s, zlib %s, LZ4 %s, libpng %s, libjpeg %d\n", jansson_version_str(),
+           LUAJIT_VERSION, zlibVersion(), LZ4_versionString(), png_get_libpng_ver(NULL), JPEG_LIB_VERSION);
 }
 
 const struct argp info_argp = { .doc = "Version, machine, libraries, methods." };

@@ -54,7 +54,7 @@ const char *movie_objection(const char *path)
                            : "is no movie that can be made: its name ends in .mp4, .webm, .webp or .gif";
 }
 
-static int is_sheet(const char *path)
+int is_png(const char *path)
 {
     const char *dot = strrchr(path, '.');
     return dot && strcasecmp(dot, ".png") == 0;
@@ -65,7 +65,7 @@ static error_t parse(int key, char *value, struct argp_state *state)
     movie_options *o = state->input;
     switch (key) {
     case 'o':
-        if (movie_objection(value) && !is_sheet(value))
+        if (movie_objection(value) && !is_png(value))
             argp_error(state, "--out: '%s' %s, that of a sheet in .png", value, movie_objection(value));
         o->out = value;
         break;
@@ -254,7 +254,7 @@ int tobiuo_movie(int argc, char **argv)
     if (asprintf(&own, "%s/movie%s%s.mp4", o.dir, o.view ? "_" : "", o.view ? o.view : "") < 0)
         return complain("out of memory");
     const char *out = o.out ? o.out : own;
-    const int code = is_sheet(out) ? write_sheet(o.dir, o.view, out, o.force)
+    const int code = is_png(out) ? write_sheet(o.dir, o.view, out, o.force)
                                    : make_movie(o.dir, o.view, out, o.slow, o.force);
     free(own);
     return code;

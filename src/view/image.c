@@ -1,5 +1,6 @@
-/* Images for skins: read by libpng, whose errors jump, and halved until one pixel is left. Halves are means
-   of linear light. Drawback: a third more memory than the image alone, in bytes, not in floats. */
+/* Images for skins: PNG by libpng, whose errors jump, JPEG by jpeg.c; and halved until one pixel is
+   left. Halves are means of linear light. Drawback: a third more memory than the image alone, in bytes, not
+   in floats. */
 #define _GNU_SOURCE 1
 #include "view/image.h"
 #include "base/plain.h"
@@ -7,8 +8,6 @@
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MOST_PIXELS = 8192 };
 
 void tobi_image_free(tobi_image *image)
 {
@@ -81,9 +80,9 @@ tobi_status tobi_image_make(int width, int height, const uint8_t *rgb, tobi_imag
     TOBI_NEED(image, "the place for the image");
     *image = NULL;
     TOBI_NEED(rgb, "its pixels");
-    if (width < 1 || height < 1 || width > MOST_PIXELS || height > MOST_PIXELS)
+    if (width < 1 || height < 1 || width > IMAGE_MOST_PIXELS || height > IMAGE_MOST_PIXELS)
         return tobi_fail(err, TOBI_INVALID, "an image of %d x %d pixels, allowed are 1 to %d", width, height,
-                         MOST_PIXELS);
+                         IMAGE_MOST_PIXELS);
     const size_t bytes = (size_t)width*(size_t)height*3;
     uint8_t *copy = malloc(bytes);
     if (copy) memcpy(copy, rgb, bytes);
@@ -102,21 +101,15 @@ static void get_bytes(png_structp png, png_bytep data, png_size_t bytes)
 
 static void stay_silent(png_structp png, png_const_charp text) { (void)png, (void)text; }
 
-typedef struct decoding {
-    char why[100];
-    int width, height;
-    uint8_t *rgb;
-} decoding;
-
 static void leave(png_structp png, png_const_charp text)
 {
-    decoding *d = png_get_error_ptr(png);
+    image_pixels *d = png_get_error_ptr(png);
     snprintf(d->why, sizeof d->why, "%s", text);
     png_longjmp(png, 1);
 }
 
 /* Anything that PNG has becomes three bytes a pixel; what is transparent is seen before white. */
-static void decode(png_structp png, png_infop info, decoding *d)
+static void decode(png_structp png, png_infop info, image_pixels *d)
 {
     const png_color_16 white = { .red = 255, .green = 255, .blue = 255, .gray = 255 };
     png_read_info(png, info);
@@ -137,7 +130,7 @@ static void decode(png_structp png, png_infop info, decoding *d)
 }
 
 /* libpng leaves by longjmp, so nothing here may live in a register across it. */
-static bool read_png(source *from, decoding *d)
+static bool read_png(source *from, image_pixels *d)
 {
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, d, leave, stay_silent);
     png_infop info = png ? png_create_info_struct(png) : NULL;
@@ -146,7 +139,7 @@ static bool read_png(source *from, decoding *d)
         if (!d->why[0]) snprintf(d->why, sizeof d->why, "no memory");
         return false;
     }
-    png_set_user_limits(png, MOST_PIXELS, MOST_PIXELS);
+    png_set_user_limits(png, IMAGE_MOST_PIXELS, IMAGE_MOST_PIXELS);
     png_set_read_fn(png, from, get_bytes);
     decode(png, info, d);
     png_destroy_read_struct(&png, &info, NULL);
@@ -157,18 +150,19 @@ tobi_status tobi_image_read(const char *path, tobi_image **image, tobi_error *er
 {
     char *text;
     size_t size;
-    decoding d = { .width = 0 };
+    image_pixels d = { .width = 0 };
     TOBI_NEED(image, "the place for the image");
     *image = NULL;
     TOBI_NEED(path, "the path");
     TOBI_TRY(tobi_plain_read(path, "texture", (int64_t)1 << 30, &text, &size, err));
     const unsigned char *data = (const unsigned char *)text;
     source from = { data, size };
-    if (size < 8 || png_sig_cmp(data, 0, 8) != 0) {
+    const bool jpeg = image_is_jpeg(data, size);
+    if (!jpeg && (size < 8 || png_sig_cmp(data, 0, 8) != 0)) {
         free(text);
-        return tobi_fail(err, TOBI_INVALID, "texture '%s' is no PNG file", path);
+        return tobi_fail(err, TOBI_INVALID, "texture '%s' is no PNG or JPEG file", path);
     }
-    const bool good = read_png(&from, &d);
+    const bool good = jpeg ? image_read_jpeg(data, size, &d) : read_png(&from, &d);
     free(text);
     if (good) return make(d.width, d.height, d.rgb, image, err);
     free(d.rgb);

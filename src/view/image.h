@@ -3,7 +3,17 @@
 #pragma once
 #include "view/draw.h"
 
-enum { IMAGE_LEVELS = 15 };
+enum { IMAGE_LEVELS = 15, IMAGE_MOST_PIXELS = 8192, IMAGE_WHY = 200 };
+
+/* What a decoder makes: pixels of three bytes, rows from the top, the caller's to free; or why not. */
+typedef struct image_pixels {
+    char why[IMAGE_WHY];
+    int width, height;
+    uint8_t *rgb;
+} image_pixels;
+bool image_is_jpeg(const unsigned char *data, size_t size);
+bool image_read_jpeg(const unsigned char *data, size_t size, image_pixels *out);
+
 struct tobi_image {
     int users;                   /* atomic                                                         */
     int levels;

@@ -73,8 +73,8 @@ static const tobi_param body_rows[] = {
     { .key = "absent.until", REAL, AT(tobi_body_def, absent_until), DURATION, .unit = "s", .text = "the end",
       .doc = "Then it is there again, and liquid in it is pushed out." },
     { .key = "texture", TEXT, AT(tobi_body_def, texture), .unit = "path",
-      .doc = "A PNG image that pictures show on the body instead of its colour; its mesh needs texture "
-             "coordinates (vt of an OBJ file)." },
+      .doc = "A PNG or JPEG image that pictures show on the body instead of its colour; its mesh needs "
+             "texture coordinates (vt of an OBJ file)." },
     { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <png.h>
+#include <jpeglib.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -231,12 +232,65 @@ static void write_stripes(const char *path)
     assert_true(png_image_write_to_file(&image, path, 0, rgb, 0, NULL));
 }
 
+/* The same stripes; of four inks or one gray the first channels. */
+static void write_jpeg(const char *path, J_COLOR_SPACE space, int channels)
+{
+    enum { W = 360, H = 40 };
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    FILE *file = fopen(path, "wb");
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&jpeg);
+    jpeg_stdio_dest(&jpeg, file);
+    jpeg.image_width = W, jpeg.image_height = H;
+    jpeg.input_components = channels;
+    jpeg.in_color_space = space;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, 95, TRUE);
+    if (channels == 1) jpeg_simple_progression(&jpeg);
+    jpeg_start_compress(&jpeg, TRUE);
+    for (int y = 0; y < H; y++) {
+        uint8_t row[4*W] = { 0 };
+        JSAMPROW line = row;
+        for (int x = 0; x < W; x++)
+            memcpy(row + channels*x, stripe[x/60], (size_t)(channels < 3 ? channels : 3));
+        jpeg_write_scanlines(&jpeg, &line, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+    jpeg_destroy_compress(&jpeg);
+    fclose(file);
+}
+
+/* In the middles of the stripes the colours are those that were written, but for the loss of JPEG. */
+static void test_jpeg(void **state)
+{
+    (void)state;
+    for (int channels = 1; channels <= 3; channels += 2) {
+        tobi_image *image;
+        tobi_error err = { 0 };
+        int width, height;
+        const uint8_t *rgb;
+        write_jpeg("stripes.jpg", channels == 1 ? JCS_GRAYSCALE : JCS_RGB, channels);
+        if (tobi_image_read("stripes.jpg", &image, &err)) fail_msg("%s", err.text);
+        tobi_image_size(image, &width, &height, &rgb);
+        assert_int_equal(width, 360);
+        assert_int_equal(height, 40);
+        for (int k = 0; k < 6; k++)
+            for (int c = 0; c < 3; c++)
+                assert_true(abs(rgb[3*(20*360 + 60*k + 30) + c] - stripe[k][channels == 1 ? 0 : c]) <= 8);
+        tobi_image_free(image);
+    }
+}
+
 static void test_images(void **state)
 {
     (void)state;
     static const struct { const char *path, *says; } bad[] = {
-        { "nothing.png", "nothing.png" }, { "cube.obj", "texture 'cube.obj' is no PNG file" },
-        { "cut.png", "texture 'cut.png' cannot be read: it ends early" } };
+        { "nothing.png", "nothing.png" }, { "cube.obj", "texture 'cube.obj' is no PNG or JPEG file" },
+        { "cut.png", "texture 'cut.png' cannot be read: it ends early" },
+        { "cut.jpg", "texture 'cut.jpg' cannot be read: Premature end of JPEG file" },
+        { "head.jpg", "texture 'head.jpg' cannot be read: " },
+        { "inks.jpg", "texture 'inks.jpg' cannot be read: it has 4 inks, as for print" } };
     const uint8_t four[4][3] = { { 255, 0, 0 }, { 0, 255, 0 }, { 0, 0, 255 }, { 255, 255, 255 } };
     tobi_image *image;
     tobi_error err = { 0 };
@@ -252,7 +306,10 @@ static void test_images(void **state)
     assert_non_null(strstr(err.text, "an image of 0 x 2 pixels, allowed are 1 to 8192"));
     write_stripes("stripes.png");
     write_cube("cube.obj", 6);
-    assert_int_equal(system("head -c 200 stripes.png > cut.png"), 0);
+    write_jpeg("inks.jpg", JCS_CMYK, 4);
+    write_jpeg("whole.jpg", JCS_RGB, 3);
+    assert_int_equal(system("head -c 200 stripes.png > cut.png; head -c 700 whole.jpg > cut.jpg;"
+                            "head -c 4 whole.jpg > head.jpg"), 0);
     for (size_t k = 0; k < sizeof bad/sizeof *bad; k++) {
         assert_int_not_equal(tobi_image_read(bad[k].path, &image, &err), TOBI_OK);
         if (!strstr(err.text, bad[k].says)) fail_msg("%s", err.text);
@@ -506,7 +563,8 @@ int main(void)
     char folder[] = "/tmp/tobiuo_texture_XXXXXX", command[100];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reading), cmocka_unit_test(test_skin), cmocka_unit_test(test_particles),
-        cmocka_unit_test(test_files), cmocka_unit_test(test_images), cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_files), cmocka_unit_test(test_images), cmocka_unit_test(test_jpeg),
+        cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_gltf),
     };
     if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
