@@ -29,7 +29,7 @@ BLANK = re.compile(r"\{([^{}|]*)(?:\|([+-]?)(1?%|x))?\}")
 def fill(text):
     """Paragraphs of at most 100 columns; lists and tables stay as they are."""
     parts = text.strip().split("\n\n")
-    return "\n\n".join(part if re.match(r"\s*([-*|]|\d+\.)", part) else
+    return "\n\n".join(part if re.match(r"\s*(\||([-*]|\d+\.)\s)", part) else
                        textwrap.fill(" ".join(part.split()), 100, break_long_words=False, break_on_hyphens=False)
                        for part in parts)
 
