@@ -40,14 +40,16 @@ static void widen_range(viewer *v, int anew)
     const tobi_moment *m = v->moment ? moment_of(v->moment) : NULL;
     const tobi_moment_field *f = m ? find_field(m, v->look.field) : NULL;
     if (anew) v->look.low = INFINITY, v->look.high = -INFINITY;
+    else if (v->flat) v->look.high = v->look.low;
     for (int64_t i = 0; f && i < m->count; i++) {
         const double value = field_value(f, i);
         if (!isfinite(value)) continue;
         v->look.low = fmin(v->look.low, value);
         v->look.high = fmax(v->look.high, value);
     }
-    if (!(v->look.low <= v->look.high)) v->look.low = 0, v->look.high = 1;
-    else if (v->look.low == v->look.high) v->look.high = v->look.low + 1e-9 + 1e-6*fabs(v->look.low);
+    if (!(v->look.low <= v->look.high)) v->look.low = v->look.high = 0;
+    v->flat = v->look.low == v->look.high;
+    if (v->flat) v->look.high = v->look.low + (v->look.low != 0 ? 1e-6*fabs(v->look.low) : 1);
 }
 
 void viewer_adopt(viewer *v, shared_moment *m)

@@ -49,8 +49,12 @@ static void draw_colors(const viewer *v, const canvas *c)
 {
     enum { HIGH = 240, WIDE = 16 };
     const int x = v->width - 90, y = (v->height - HIGH)/2;
-    char text[160];
+    char text[160], label[160];
+    const char *unit = unit_of(v->look.field);
     if (!*v->look.field) return;
+    snprintf(label, sizeof label, "%s%s%s", v->look.field, *unit ? ", " : "", unit);
+    const float left = fminf((float)x, (float)v->width - tobi_overlay_text_width(SIZE, label) - 8);
+    tobi_overlay_box(c, (int)left - 8, y - 32, v->width, HIGH + 48, paper, 0.75f);
     for (int row = 0; row < HIGH; row++) {
         float color[3];
         uint8_t bytes[3];
@@ -60,14 +64,11 @@ static void draw_colors(const viewer *v, const canvas *c)
     }
     for (int k = 0; k <= 4; k++) {
         const float at = (float)(y + HIGH - k*(HIGH - 1)/4);
-        snprintf(text, sizeof text, "%.3g", v->look.low + k*(v->look.high - v->look.low)/4);
+        snprintf(text, sizeof text, "%.4g", v->look.low + k*(v->look.high - v->look.low)/4);
         tobi_overlay_line(c, (float)(x + WIDE), at, (float)(x + WIDE + 4), at, 1, ink);
         tobi_overlay_text(c, (float)(x + WIDE + 7), at + 4, SIZE, text, ink);
     }
-    const char *unit = unit_of(v->look.field);
-    snprintf(text, sizeof text, "%s%s%s", v->look.field, *unit ? ", " : "", unit);
-    const float wide = tobi_overlay_text_width(SIZE, text);
-    tobi_overlay_text(c, fminf((float)x, (float)v->width - wide - 8), (float)y - 12, SIZE, text, ink);
+    tobi_overlay_text(c, left, (float)y - 12, SIZE, label, ink);
 }
 
 static void draw_time_line(const viewer *v, const canvas *c)

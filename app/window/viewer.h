@@ -24,6 +24,7 @@ typedef struct viewer {
     int64_t outputs, shown;             /* shown = outputs: the present of a run that goes on     */
     shared_moment *moment;
     look look;
+    int flat;                           /* the field had one value so far: high is a stand-in        */
     int factor;                         /* pixels of the window per pixel of a picture, each way  */
     int dirty, changed;                 /* a picture is needed; what is over it has changed       */
     int playing, paused, help, asks, ends;      /* playing: results; paused: a run        */

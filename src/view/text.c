@@ -115,11 +115,36 @@ double view_tick_step(double range)
     return n < 2 ? step/2 : n > 5 ? 2*step : step;
 }
 
+/* Ink does not show on dark water: where more than a tenth of a box is dark, the box is made lighter. */
+static void lighten_dark(canvas *i, int x0, int y0, int x1, int y1)
+{
+    const vec paper = { 0.8f, 0.83f, 0.87f };
+    int64_t dark = 0, all = 0;
+    x0 = x0 > 0 ? x0 : 0, y0 = y0 > 0 ? y0 : 0;
+    x1 = x1 < i->width ? x1 : i->width, y1 = y1 < i->height ? y1 : i->height;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++, all++) {
+            const vec c = i->color[(size_t)y*(size_t)i->width + (size_t)x];
+            const int clear = i->alpha && i->alpha[(size_t)y*(size_t)i->width + (size_t)x] < 0.5f;
+            dark += !clear && 0.2126f*c.x + 0.7152f*c.y + 0.0722f*c.z < 0.2f;
+        }
+    if (10*dark <= all) return;
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            const size_t at = (size_t)y*(size_t)i->width + (size_t)x;
+            i->color[at] = vec_mix(i->color[at], paper, 0.75f);
+            if (i->alpha) i->alpha[at] = fmaxf(i->alpha[at], 0.75f);
+        }
+}
+
 /* On the right: colours from low to high, ticks at round values. */
 void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double high)
 {
     float unit = 0.9f*view_letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
     float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
+    float right = (float)i->width - 6*unit, wide = view_text_width(f->label, unit);
+    float left = fminf(x - 2*unit, right - wide);
+    lighten_dark(i, (int)(left - 5*unit), (int)(bottom - height - 20*unit), i->width, (int)(bottom + 8*unit));
     for (int row = 0; row < (int)height; row++)
         for (int column = 0; column < (int)width; column++) {
             int px = (int)x + column, py = (int)bottom - 1 - row;
@@ -139,7 +164,5 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
         view_draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
         view_draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);
     }
-    float right = (float)i->width - 6*unit, wide = view_text_width(f->label, unit);
-    float left = fminf(x - 2*unit, right - wide);
     view_draw_text(i, left, bottom - height - 7*unit, unit, f->label, ink);
 }

@@ -91,10 +91,34 @@ static void a_picture_in_memory_is_that_of_the_file(void **state)
     free(read);
 }
 
+/* One dark disc behind all: around the colour bar it is made lighter, so that dark letters show there. */
+static void scales_show_on_dark_water(void **state)
+{
+    (void)state;
+    enum { ACROSS = 320, DOWN = 180 };
+    const double position[1][3] = { { 0.5, 0.5, 0 } };
+    const float slow[1] = { 0 };
+    tobi_picture f = tobi_default_picture();
+    tobi_error err;
+    uint8_t *bare = malloc(ACROSS*DOWN*3), *with = malloc(ACROSS*DOWN*3);
+    f.width = ACROSS, f.height = DOWN, f.dimension = 2;
+    f.box_max[0] = f.box_max[1] = 1;
+    f.positions = position, f.values = slow, f.particle_count = 1, f.radius = 9, f.value_max = 1;
+    assert_int_equal(tobi_picture_draw(&f, bare, &err), TOBI_OK);
+    f.label = "speed [m/s]";
+    assert_int_equal(tobi_picture_draw(&f, with, &err), TOBI_OK);
+    const int beside = 3*(DOWN/2*ACROSS + (int)(0.92*ACROSS)), far = 3*(DOWN/2*ACROSS + ACROSS/2);
+    assert_true(bare[beside] < 60 && with[beside] > 150);
+    assert_memory_equal(bare + far, with + far, 3);
+    free(bare);
+    free(with);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_and_lines_stay_inside), cmocka_unit_test(lines_are_as_thick_as_asked),
+        cmocka_unit_test(scales_show_on_dark_water),
         cmocka_unit_test(text_is_as_wide_as_said), cmocka_unit_test(a_picture_in_memory_is_that_of_the_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
