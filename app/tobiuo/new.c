@@ -148,8 +148,9 @@ static int set_option(family_choice *c, const char *name, const char *value)
         c->value[k] = strtod(value, &end);
         c->given[k] = 1;
         if (end != value && !*end && c->value[k] >= o->min && c->value[k] <= o->max) return 0;
-        complain("--%s: '%s' is not a number from %g to %g %s", name, value, o->min, o->max,
-                 strcmp(o->unit, "1") ? o->unit : "");
+        const int plain = strcmp(o->unit, "1") == 0 || !*o->unit;
+        complain("--%s: '%s' is not a number from %g to %g%s%s", name, value, o->min, o->max,
+                 plain ? "" : " ", plain ? "" : o->unit);
         return EXIT_USAGE;
     }
     return complain_option(c->family, name);

@@ -71,6 +71,7 @@ static const char *last_key(const char *path)
 static int finish_axes(sweep *s)
 {
     double runs = 1;
+    if (s->axis_count == 0) return complain("a sweep varies something: --set spacing=0.02,0.01");
     for (int k = 0; k < s->axis_count; k++) {
         int alone = 1;
         runs *= s->axes[k].count;

@@ -460,6 +460,19 @@ static int is_listed(const char *const *list, const char *key)
     return 0;
 }
 
+/* A value where keys belong, with those keys. */
+static void report_no_object(const pass *p, const char *prefix, const char *key, const json_t *value,
+                             const tobi_place *place)
+{
+    char longer[64], keys[CANDIDATES][48], all[512] = "";
+    snprintf(longer, sizeof longer, "%s%s.", prefix, key);
+    const size_t count = list_keys(p, longer, keys);
+    for (size_t i = 0, used = 0; i < count && used < sizeof all; i++)
+        used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", keys[i]);
+    tobi_source_mistake(p->binder->source, place, "is %s, must be an object { ... } with %s",
+                        tobi_json_kind(value), all);
+}
+
 /* A key of the object in the spelling of the table. Both spellings in one object are a mistake. */
 static const char *spell_key(const pass *p, const char *prefix, json_t *object, const tobi_place *place,
                              char other[TOBI_SPELLING])
@@ -489,8 +502,7 @@ static void bind_member(pass *p, const char *prefix, json_t *object, json_t *val
         } else if (*rest == '[') {
             bind_entries(p, prefix, key, value, place);
         } else if (!json_is_object(value)) {
-            tobi_source_mistake(p->binder->source, place, "is %s, must be an object { ... }",
-                                tobi_json_kind(value));
+            report_no_object(p, prefix, key, value, place);
         } else {
             char longer[64];
             snprintf(longer, sizeof longer, "%s%s.", prefix, key);

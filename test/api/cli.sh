@@ -280,6 +280,9 @@ rm -rf full full.json streams
 expect 1 "out/tnak: there is no run to resume (no resolved.json); did you mean out/tank?" resume out/tnak
 expect 1 "out/tnak: there is no run to draw (no history.csv); did you mean out/tank?" plot out/tnak
 
+expect 1 "output.surface: is true or false, must be an object { ... } with write, cell, smoothing, fields" \
+    check tank.json --set output.surface=true
+
 # --- never over existing results --------------------------------------------------------------------
 before=$(hash_of $a)
 echo mine > $a/notes.txt

@@ -32,6 +32,8 @@ expect 0 "" run gated --quiet --until 0.01 --out out_gated
 expect 2 "there is no family 'slosing'; did you mean sloshing?" new slosing --spacing 1
 expect 2 "sloshing has no option --spcing; did you mean --spacing?" new sloshing --spcing 0.1
 expect 2 "--spacing wants a value" new sloshing --spacing
+expect 2 "--dimension: '4' is not a number from 2 to 3" new sloshing --dimension 4
+check "no blank at the end of a message" test "$(grep -c ' $' err.txt)" = 0
 expect 2 "--angle: '50' is not a number from -45 to 45 degrees" new sloshing --angle 50
 expect 2 "'isp' is no method of liquids; did you mean isph?" new sloshing --method isp
 expect 2 "one FAMILY and one DIR only" new sloshing --angle 5 a b
@@ -60,6 +62,7 @@ expect 2 "a value is empty" sweep x --set spacing=1,,2
 expect 2 "--set spacing is given twice" sweep x --set spacing=1 --set spacing=2
 expect 2 "--jobs: '0' is not a number from 1 to 256" sweep x --jobs 0
 flat=dam_break_2d_PS0d02_dfsph
+expect 1 "a sweep varies something" sweep $flat
 expect 1 'did you mean "spacing"?' sweep $flat --set spacng=1,2
 check "a wrong sweep runs nothing" test ! -e out/${flat}_sweep
 expect 1 "allowed are 10000" sweep $flat --set spacing=0.02,0.03 $(for k in a b c d e f g h i j k l m n; do
