@@ -5,10 +5,10 @@
 /* Scenes with surface tension; liquids with bodies in them; inlets and outlets; several liquids. */
 enum { SPH_NEED_TENSION = 1, SPH_NEED_WETTED = 2, SPH_NEED_OPENINGS = 4, SPH_NEED_PHASES = 8 };
 
-/* Stages of a step: boundaries and density; forces; the pressure by an equation, or by that of state; the
+/* Stages of a step: boundaries; density; forces; the pressure by an equation, or by that of state; the
    correction of positions; forces on walls and bodies, new positions. Between steps: a derived output. */
 enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 16, SPH_MOVE = 32,
-       SPH_DERIVE = 64,
+       SPH_DERIVE = 64, SPH_BOUNDARIES = 128,
        SPH_AFTER_SEEING = SPH_FORCES | SPH_SOLVE | SPH_TAIT | SPH_CORRECT | SPH_MOVE | SPH_DERIVE };
 
 #define SPH_FIELDS(X) \
@@ -22,7 +22,8 @@ enum { SPH_SEE = 1, SPH_FORCES = 2, SPH_SOLVE = 4, SPH_TAIT = 8, SPH_CORRECT = 1
       "1: it or a neighbour sees a body") \
     X(float,       TOBI_F32, 1, density,      TOBI_SCRATCH, 0, "1",    "density over rest density") \
     X(float,       TOBI_F32, 1, diagonal,     TOBI_SCRATCH, 0, "m/kg", "diagonal of the pressure operator") \
-    X(float,       TOBI_F32, 1, body_distance, SPH_SEE, SPH_NEED_WETTED, "m", "from the nearest body seen") \
+    X(float,       TOBI_F32, 1, body_distance, SPH_BOUNDARIES, SPH_NEED_WETTED, "m", \
+      "from the nearest body seen") \
     X(float,       TOBI_F32, 1, mean,         SPH_SEE | SPH_DERIVE, 0, "Pa", "kernel average of p") \
     X(float,       TOBI_F32, 1, surface_depth,     SPH_SEE, 0, "m", "of the free surface here, 0 = none") \
     X(tobi_float4, TOBI_F32, 4, moment,       SPH_SEE | SPH_FORCES, SPH_NEED_WETTED, "1/m", "eq. (13b)") \

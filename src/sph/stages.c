@@ -159,7 +159,7 @@ tobi_status sph_find_neighbors(tobi_system *s, double *clock, tobi_error *err)
 tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *k, double *clock,
                           tobi_error *err)
 {
-    sph_stage(s, v, SPH_SEE);
+    sph_stage(s, v, SPH_BOUNDARIES);
     launch(s, v, k->sph_walls, NULL);
     if (s->sim->body_count > 0) {
         tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
@@ -172,6 +172,7 @@ tobi_status sph_find_boundaries(tobi_system *s, sph_view *v, const sph_kernels *
     }
     TOBI_TRY(sph_soft_find(s, err));
     sph_soft_add_gradients(s);
+    sph_stage(s, v, SPH_SEE);
     tobi_stage_end(&s->sim->stages, "walls and bodies", clock);
     return TOBI_OK;
 }
