@@ -79,6 +79,7 @@ typedef struct tobi_method {
     int planes;                                                  /* 1: it knows planes in the domain */
     double density_ratio;                                        /* largest over least of its fluids */
     int mixes_with_bodies;                                       /* 1: beside bodies and solids too */
+    int fills_pipes;                             /* 1: inlets and outlets may leave no free surface */
     /* Smoothing kernel and support radius that the parameters ask for; driven: something is moved in a
        vessel full of liquid. */
     void (*smoothing)(const void *def, int driven, int *shape, double *support);

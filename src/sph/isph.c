@@ -326,5 +326,6 @@ const tobi_method tobi_isph = {
     .create = create,
     .max_dt = isph_choose_dt,
     .begin = isph_begin,
+    .fills_pipes = 1,
     ISPH_VERBS
 };

@@ -520,3 +520,19 @@ void tobi_openings_set(tobi_world *w, const double way[TOBI_OPENING_LIMIT])
 {
     for (int k = 0; k < w->sim.opening_count; k++) w->sim.openings[k].way = way[k];
 }
+
+/* Share of the domain from which liquid leaves no room for a free surface, but in the buffers. */
+static const double FULL = 0.8;
+
+tobi_status tobi_openings_note(tobi_world *w, tobi_error *err)
+{
+    const tobi_system *s = &w->system[0];
+    double room = 1;
+    char text[200];
+    if (w->sim.opening_count == 0 || s->method->fills_pipes) return TOBI_OK;
+    for (int a = 0; a < s->box.dimension; a++) room *= s->box.size[a];
+    if ((double)s->particles.count*s->smoothing.volume < FULL*room) return TOBI_OK;
+    snprintf(text, sizeof text, "%s crowds or loses liquid where inlets and outlets leave no free surface, "
+             "as in a full pipe; isph keeps it\n", s->method->name);
+    return tobi_world_add_notes(w, "world", "method", text, err);
+}

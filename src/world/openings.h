@@ -11,6 +11,8 @@ tobi_status tobi_openings_fill(tobi_world *w, tobi_error *err);
 int tobi_openings_cover(const tobi_simulation *s, const double x[3]);
 /* After a step: what has gone out is removed, what follows in the buffers is added. */
 tobi_status tobi_openings_pass(tobi_world *w, tobi_error *err);
+/* A note where they leave no free surface, to a method that needs one. After the fill. */
+tobi_status tobi_openings_note(tobi_world *w, tobi_error *err);
 /* The fastest inlet at its fastest place, m/s. */
 double tobi_openings_peak(const tobi_simulation *s);
 void tobi_openings_free(tobi_world *w);

@@ -260,6 +260,7 @@ tobi_status tobi_world_start(tobi_world *w, tobi_error *err)
     TOBI_TRY(tobi_world_note_thin_bodies(w, err));
     TOBI_TRY(tobi_world_note_clamps(w, err));
     TOBI_TRY(tobi_world_note_liquids(w, err));
+    TOBI_TRY(tobi_openings_note(w, err));
     TOBI_TRY(tobi_overlap_note_solids(w, err));
     TOBI_TRY(tobi_beside_check(w, err));
     TOBI_TRY(tobi_world_note_edges(w, err));

@@ -333,6 +333,35 @@ static void test_body_later(void **state)
     tobi_world_destroy(w);
 }
 
+/* A pipe without a free surface: every method but isph leaves a note. */
+static void test_full_pipe(void **state)
+{
+    static const char *const methods[] = { "dfsph", "wcsph", "isph", "eisph" };
+    const char *scene = "{ \"dimension\": 2, \"method\": \"%s\","
+                        "\"domain\": { \"min\": [0, 0], \"max\": [1, %s] },"
+                        "\"spacing\": 0.02, \"end_time\": 1, \"fluids\": [ { \"name\": \"water\","
+                        "\"fill\": [ { \"box\": { \"min\": [0, 0], \"max\": [1, 0.2] } } ] } ],"
+                        "\"inlets\": [ " IN "\"speed\": 0.1 } ], \"outlets\": [ " OUT " ] }";
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        char text[1000];
+        tobi_error err = { 0 };
+        tobi_scene *parsed;
+        tobi_world *w;
+        int notes = 0;
+        snprintf(text, sizeof text, scene, methods[k/2], k % 2 ? "0.4" : "0.2");
+        must(tobi_scene_parse("s.json", text, strlen(text), NULL, &parsed, NULL, &err), &err);
+        must(tobi_scene_build(parsed, &w, &err), &err);
+        must(tobi_world_start(w, &err), &err);
+        for (int n = 0; tobi_world_note(w, n); n++)
+            notes += strstr(tobi_world_note(w, n), "no free surface") != NULL;
+        if (notes != (k % 2 == 0 && strcmp(methods[k/2], "isph") != 0))
+            fail_msg("%s, %s: %d notes", methods[k/2], k % 2 ? "open" : "full", notes);
+        tobi_world_destroy(w);
+        tobi_scene_free(parsed);
+    }
+}
+
 static void test_lists(void **state)
 {
     (void)state;
@@ -351,7 +380,7 @@ int main(void)
         cmocka_unit_test(test_wrong_calls), cmocka_unit_test(test_lists),
         cmocka_unit_test(test_set), cmocka_unit_test(test_body_later),
         cmocka_unit_test(test_damaged), cmocka_unit_test(test_flow_in_time),
-        cmocka_unit_test(test_wrong_tables),
+        cmocka_unit_test(test_wrong_tables), cmocka_unit_test(test_full_pipe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
