@@ -4,20 +4,23 @@
 #define _GNU_SOURCE
 #include "app.h"
 #include "tobiuo/drawing.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct draw_options {
     const char *dir, *out, *view;
-    int64_t output;                    /* -1: the last */
+    int64_t output;                    /* -1: the last, or that nearest to the time, s */
+    double time;                       /* below 0: none given */
     overrides set;
 } draw_options;
 
-enum { KEY_OUTPUT = KEY_OWN, KEY_VALUE, KEY_VIEW };
+enum { KEY_OUTPUT = KEY_OWN, KEY_TIME, KEY_VALUE, KEY_VIEW };
 
 static const struct argp_option options[] = {
     { "out", 'o', "FILE", 0, "the picture (DIR/picture.png)", 0 },
     { "output", KEY_OUTPUT, "N", 0, "number of the output, from 0 (the last)", 0 },
+    { "time", KEY_TIME, "S", 0, "the output nearest to this simulated time, s", 0 },
     { "view", KEY_VIEW, "NAME", 0, "as this entry of output.views of the scene", 0 },
     { "set", KEY_VALUE, "PATH=VALUE", 0, "change a value of the scene, e.g. output.picture.field=pressure",
       0 },
@@ -38,6 +41,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
         o->output = strtoll(value, &end, 10);
         if (end == value || *end || o->output < 0)
             argp_error(state, "--output: '%s' is not a number from 0 on", value);
+        break;
+    case KEY_TIME:
+        o->time = strtod(value, &end);
+        if (end == value || *end || !(o->time >= 0))
+            argp_error(state, "--time: '%s' is not a number from 0 on", value);
         break;
     case KEY_VIEW: o->view = value; break;
     case KEY_VALUE: overrides_add(&o->set, "%s", value); break;
@@ -63,14 +71,24 @@ static void free_source(source *s)
     tobi_scene_free(s->scene);
 }
 
+/* The output that is asked for: by its number, by its time, or the last. */
+static int64_t find_output(const draw_options *o, const tobi_results *results)
+{
+    const int64_t count = tobi_results_count(results);
+    int64_t best = count - 1;
+    if (o->output >= 0) return o->output;
+    for (int64_t k = 0; o->time >= 0 && k < count; k++)
+        if (fabs(tobi_results_time(results, k) - o->time) < fabs(tobi_results_time(results, best) - o->time))
+            best = k;
+    return best;
+}
+
 static int read_moment(const draw_options *o, source *s)
 {
     tobi_results *results = NULL;
     tobi_error err = { 0 };
     tobi_status status = tobi_results_open(o->dir, &results, &err);
-    const int64_t last = status == TOBI_OK ? tobi_results_count(results) - 1 : 0;
-    if (status == TOBI_OK)
-        status = tobi_results_read(results, o->output >= 0 ? o->output : last, &s->moment, &err);
+    if (status == TOBI_OK) status = tobi_results_read(results, find_output(o, results), &s->moment, &err);
     tobi_results_free(results);
     return status == TOBI_OK ? 0 : complain("%s", err.text);
 }
@@ -113,7 +131,7 @@ const struct argp picture_argp = { .options = options, .parser = parse, .args_do
 
 int tobiuo_picture(int argc, char **argv)
 {
-    draw_options o = { .output = -1 };
+    draw_options o = { .output = -1, .time = -1 };
     source s = { 0 };
     parse_arguments(&picture_argp, argc, argv, &o);
     const int code = draw(&o, &s);

@@ -15,6 +15,13 @@ expect 0 "" run dam.json --out dam --quiet
 expect 0 "" picture dam
 check "a picture in its own size" test "$(head -c 24 dam/picture.png | tail -c 8 | od -An -tx1 | tr -d ' ')" = 00000140000000b4
 expect 0 "" picture dam --output 1 --out a.png --set output.picture.field=pressure --set output.picture.axes=true
+expect 0 "" picture dam --time 0 --out first.png
+expect 0 "" picture dam --output 0 --out zero.png
+check "a picture of a time" cmp first.png zero.png
+expect 0 "" picture dam --time 99 --out late.png
+expect 0 "" picture dam --out last.png
+check "a time behind the end" cmp late.png last.png
+expect 2 "--time: 'x' is not a number from 0 on" picture dam --time x
 expect 2 "'b.jpg' is no picture that can be made: its name ends in .png" picture dam --out b.jpg
 expect 0 "" picture dam --output 1 --out b.png --set output.picture.field=pressure --set output.picture.axes=true
 check "the same picture twice" cmp -s a.png b.png
