@@ -1,5 +1,6 @@
 /* tobiuo check SCENE: what a run would be, from its first steps at most. */
 #include "app.h"
+#include "tobiuo/params.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -127,6 +128,15 @@ static tobi_status find_cost(const tobi_scene *scene, tobi_world *world, cost *c
                              &c->size, err);
 }
 
+/* What the particles are that the methods move. */
+static const char *name_particles(const tobi_scene *scene, const tobi_world *world)
+{
+    tobi_method_info method = { 0 };
+    if (tobi_world_solid_count(world) == 0) return "fluid particles";
+    tobi_method_describe(tobi_scene_world_def(scene)->method, &method);
+    return method.solids ? "solid particles" : "particles";
+}
+
 static int check_world(tobi_scene *scene)
 {
     tobi_error err = { 0 };
@@ -142,7 +152,7 @@ static int check_world(tobi_scene *scene)
     const double step = print_scene(scene, world);
     double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (c.fluid > 0)
-        printf("%s particles  %lld\n", tobi_world_solid_count(world) ? "solid" : "fluid", (long long)c.fluid);
+        printf("%-17s%lld\n", name_particles(scene, world), (long long)c.fluid);
     printf("body particles   %lld\n", (long long)c.bodies);
     printf("memory           %.1f MB of %.0f MB\n", (double)c.bytes * 1e-6, machine * 1e-6);
     print_size(scene, &c.size);

@@ -27,7 +27,8 @@ static tobi_status note_gap(tobi_world *w, const tobi_region *r, tobi_error *err
 {
     const tobi_box *box = &w->system[0].box;
     const double d = w->system[0].smoothing.spacing;
-    if (r->in_vessel) return TOBI_OK;                  /* its walls are no sides of the domain */
+    if (r->system != 0) return TOBI_OK;                /* a solid's                                */
+    if (r->in_vessel) return TOBI_OK;                  /* its walls are no sides of the domain     */
     for (int side = 0; side < 2*box->dimension; side++) {
         const int a = side/2, upper = side%2;
         const double gap = upper ? box->lower[a] + box->size[a] - r->upper[a] : r->lower[a] - box->lower[a];

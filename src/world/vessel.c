@@ -395,7 +395,7 @@ static tobi_status check_overlap(const flood *f, int label, const tobi_world *w,
         place(f, c, x);
         for (int a = 0; a < f->dimension; a++) x[a] += lower[a];
         for (int k = 0; k < w->region_count; k++)
-            if (holds(&w->regions[k], x, f->dimension))
+            if (w->regions[k].system == r->system && holds(&w->regions[k], x, f->dimension))
                 return tobi_fail(err, TOBI_INVALID, "%s: what fill[%d] fills of vessel '%s' overlaps another "
                                  "region, fill[%d] of its owner, at (%.4g, %.4g, %.4g) m", whose, r->number,
                                  f->b->name, w->regions[k].number, x[0], x[1], x[2]);

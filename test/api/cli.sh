@@ -326,6 +326,9 @@ check "a checkpoint without room: no unfinished files" no_parts going
 expect 0 "" resume going --quiet
 check "resumed with room" test -n "$(ls going/checkpoints)"
 
+expect 0 "" check tank.json --set 'solids=[{"name":"s","fill":[{"box":{"min":[0,0,0],"max":[0.1,0.1,0.1]}}]}]'
+check "of water and solids together it counts particles" grep -q "^particles        [1-9]" out.txt
+
 # --- scenes of the Taichi program -------------------------------------------------------------------
 expect 0 "" check "$old/fish.json"
 check "check tells what the old keys became" grep -q "fluids\[0\].viscosity = 2.0 Pa s" out.txt

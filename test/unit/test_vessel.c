@@ -151,6 +151,19 @@ static void test_compartments(void **state)
            "fill[0] finds nothing to fill in vessel 'cup' below a level of 0.5 m at the seed");
 }
 
+/* A block of ice, half in the water of a cup: the water starts around it. */
+static void test_solid_inside(void **state)
+{
+    (void)state;
+    tobi_world *w;
+    tobi_error err = { 0 };
+    if (start(cup, HALF, "\"solids\": [ { \"name\": \"ice\", \"fill\": [ { \"box\": { "
+              "\"min\": [0.3, 0.3, 0.3], \"max\": [0.6, 0.6, 0.6] } } ] } ],", &w, &err) != TOBI_OK)
+        fail_msg("%s", err.text);
+    assert_int_equal(w->system[0].particles.count, 500 - 3*3*2);
+    tobi_world_destroy(w);
+}
+
 static void test_mistakes(void **state)
 {
     (void)state;
@@ -205,6 +218,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_walls),       cmocka_unit_test(test_levels),
         cmocka_unit_test(test_compartments), cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_solid_inside),
         cmocka_unit_test(test_wrong_calls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
