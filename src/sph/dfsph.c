@@ -128,9 +128,7 @@ static double choose_dt(tobi_system *s)
     double d = s->smoothing.spacing, dt, speed = fmax(m->memory.speed, s->sim->body_speed);
     /* never more than depth and bodies explain: the pressure of a sudden change grows as 1/dt */
     const double depth = s->start_head*tobi_system_density_ratio(s), body = s->sim->body_speed;
-    /* what stands before soft solids sets off at once: the first pressure to come is that of the depth */
-    const double known = m->memory.dt > 0 || !s->sim->soft.solids ? m->memory.head : s->start_head;
-    double head = fmin(known, 1.5*depth + body*body + 4*tobi_system_capillary(s));
+    double head = fmin(m->memory.head, 1.5*depth + body*body + 4*tobi_system_capillary(s));
     m->motion_dt = fmin(sph_gravity_dt(s),
                         s->sim->def.cfl*d/sqrt(fmax(fmax(speed*speed, 4*head), 1e-24)));
     if (s->sim->def.time_step > 0) {
@@ -139,6 +137,8 @@ static double choose_dt(tobi_system *s)
         dt = fmin(m->motion_dt, fmin(fmin(sph_viscous_dt(s), sph_tension_dt(s)), tobi_couple_dt(s)));
         if (s->sim->def.time_step_max > 0) dt = fmin(dt, s->sim->def.time_step_max);
         if (m->memory.dt > 0) dt = fmin(dt, 1.1*m->memory.dt);
+        else if (s->sim->soft.solids)      /* liquid before them sets off at once, pressed by its depth */
+            dt = fmin(dt, s->sim->def.cfl*d/(2*sqrt(fmax(s->start_head, 1e-24))));
         m->memory.dt = dt;
     }
     return dt;
