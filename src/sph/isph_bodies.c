@@ -1,7 +1,9 @@
-/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface. How
-   much of the half space behind the plane is body tells edges and tips from faces. Drawback: a particle in a
-   concave corner of one body mirrors at one of its faces only. */
+/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface, and a
+   second one in concave corners (isph_corners.c). How much of the half space behind the plane is body tells
+   edges and tips from faces. Drawback: room for a second plane of every particle beside a body that is not
+   convex. */
 #include "sph/isph_bodies.h"
+#include "sph/isph_corners.h"
 #include "sph/state.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -23,15 +25,6 @@ static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const 
         out[a] = 0;
         for (int c = 0; c < 3; c++) out[a] += e->barycentric[c]*vertex[t[c]][a];
     }
-}
-
-/* Velocity of the closest point of the surface by those of the whole body. */
-static void turn(const tobi_body *b, const tobi_boundary_entry *e, const double u[6], double out[3])
-{
-    double arm[3];
-    for (int a = 0; a < 3; a++) arm[a] = e->foot[a] + b->lower[a] - b->centre[a];
-    vec3_cross(out, u + 3, arm);
-    for (int a = 0; a < 3; a++) out[a] += u[a];
 }
 
 /* The normal of the surface that the kernel sees: it turns steadily where the closest facet changes at once,
@@ -59,7 +52,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     double before[3];
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
     double flow[3] = { 0 };
-    if (b->rigid.kind != TOBI_PRESCRIBED) turn(b, e, b->rigid.before, before);
+    if (b->rigid.kind != TOBI_PRESCRIBED) isph_corner_turn(b, e->foot, b->rigid.before, before);
     else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
     if (b->swimmer) interpolate(b, e, (const double (*)[3])b->vertex_before, flow);
     for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a] - flow[a];
@@ -72,8 +65,12 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
 {
     const mirrors *all = view;
     const tobi_boundary_links *n = &sph_of(all->s)->links;
-    for (int64_t k = begin; k < end; k++)
-        all->m->mirror[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
+    isph_mirror *m = all->m->mirror;
+    for (int64_t k = begin; k < end; k++) {
+        m[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
+        if (all->m->corners && isph_corner_find(all->s, &n->link[k], &n->entry[k], &m[k], &m[n->count + k]))
+            m[k].previous = (int32_t)(n->count + k);
+    }
 }
 
 /* The links of a particle are handled together, where the last of them stands. */
@@ -96,8 +93,11 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
     memset(v->body_share, 0, (size_t)s->particles.count*sizeof *v->body_share);
     v->last_link = s->sim->body_count ? sph_fields_of(&s->particles)->last_link : NULL;
     if (!v->last_link) return TOBI_OK;
-    if (n->count > m->mirrors) {
-        const int64_t room = n->count + n->count/2 + 64;
+    m->corners = 0;
+    for (int b = 0; b < s->sim->body_count; b++) m->corners |= !s->sim->bodies[b].convex;
+    const int64_t need = n->count*(1 + m->corners);
+    if (need > m->mirrors) {
+        const int64_t room = need + need/2 + 64;
         isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
         if (!more) return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld mirrors", (long long)room);
         m->mirror = more;
@@ -128,6 +128,14 @@ void isph_bodies_remove_hydrostatic(tobi_system *s)
     tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, remove_hydrostatic, s);
 }
 
+static void add_velocity(isph_mirror *m, double dt, const double u[3])
+{
+    for (int a = 0; a < 3; a++) {
+        m->velocity[a] += dt*u[a];
+        m->velocity_change[a] += dt*u[a];
+    }
+}
+
 static void accelerate(const void *view, int64_t begin, int64_t end)
 {
     const mirrors *all = view;
@@ -137,11 +145,16 @@ static void accelerate(const void *view, int64_t begin, int64_t end)
         const tobi_body *b = &all->s->sim->bodies[n->link[k].body];
         double u[3];
         if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
-        turn(b, e, n->answer[n->link[k].body], u);
-        for (int a = 0; a < 3; a++) {
-            all->m->mirror[k].velocity[a] += all->dt*u[a];
-            all->m->mirror[k].velocity_change[a] += all->dt*u[a];
-        }
+        const double *answer = n->answer[n->link[k].body];
+        isph_corner_turn(b, e->foot, answer, u);
+        add_velocity(&all->m->mirror[k], all->dt, u);
+        const int64_t second = all->m->mirror[k].previous;
+        if (second != n->count + k) continue;
+        const tobi_double3 *at = &all->s->particles.position[n->link[k].particle];
+        const double *offset = all->m->mirror[second].offset;
+        const double place[3] = { at->x - offset[0], at->y - offset[1], at->z - offset[2] };
+        isph_corner_turn(b, place, answer, u);
+        add_velocity(&all->m->mirror[second], all->dt, u);
     }
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 #include "sph/isph_images.k.h"
 
-enum { ISPH_BODIES = 4 };            /* that a pair sees at once                                    */
+enum { ISPH_PLANES = 6 };            /* that a pair sees at once                                    */
 
 /* The mirror of a pair at one body. */
 typedef struct isph_plane {
@@ -20,7 +20,7 @@ typedef struct isph_walk {
     int64_t i, j, first;
     int k, groups;                   /* the next of the list; before all others i itself            */
     double offset[3];                /* m, x_i - x_j                                                */
-    isph_plane plane[ISPH_BODIES];
+    isph_plane plane[ISPH_PLANES];
     int planes, at;                  /* of the pair: planes, images done                            */
     int used;                        /* images in the group                                         */
     int32_t index[8];
@@ -34,7 +34,12 @@ TOBI_FN void isph_add_plane(isph_walk *w, const isph_mirror *a, const isph_mirro
 {
     isph_plane *p = &w->plane[w->planes];
     const double both = a->share + b->share - 0.5;
-    double size = 0;
+    double size = 0, turn = 0, hollow = 0;
+    for (int c = 0; c < 3; c++) {                    /* two faces of a corner that is concave */
+        turn += a->normal[c]*b->normal[c];
+        hollow += (a->offset[c] - b->offset[c] - w->offset[c])*(a->normal[c] - b->normal[c]);
+    }
+    if (turn < ISPH_TWO_FACES && hollow > 0) return;
     p->weight = both < 0 ? 0 : both < 1 ? both : 1;
     for (int c = 0; c < 3; c++) {
         p->normal[c] = a->normal[c] + b->normal[c];
@@ -61,7 +66,7 @@ TOBI_FN void isph_walk_load_pair(isph_walk *w, int64_t j)
     }
     for (int32_t a = v->last_link[w->i]; a >= 0; a = v->mirror[a].previous)
         for (int32_t b = v->last_link[j]; b >= 0; b = v->mirror[b].previous)
-            if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_BODIES)
+            if (v->mirror[a].body == v->mirror[b].body && w->planes < ISPH_PLANES)
                 isph_add_plane(w, &v->mirror[a], &v->mirror[b]);
 }
 
