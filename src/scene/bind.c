@@ -504,7 +504,7 @@ static void bind_member(pass *p, const char *prefix, json_t *object, json_t *val
         } else if (!json_is_object(value)) {
             report_no_object(p, prefix, key, value, place);
         } else {
-            char longer[64];
+            char longer[128];
             snprintf(longer, sizeof longer, "%s%s.", prefix, key);
             bind_members(p, longer, value, place);
         }
