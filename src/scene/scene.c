@@ -483,7 +483,7 @@ static tobi_status place_error(tobi_scene *scene, const char *list, int i, tobi_
     tobi_place_text(&entry, path);
     const size_t used = strlen(path);
     if (err->key[0]) snprintf(path + used, sizeof path - used, ".%s", err->key);
-    snprintf(err->key, sizeof err->key, "%s", path);
+    snprintf(err->key, sizeof err->key, "%.*s", (int)sizeof err->key - 1, path);
     tobi_scene_place_error(scene, err);
     return status;
 }
