@@ -80,14 +80,6 @@ static void drop_hidden(look *l)
     l->count = kept;
 }
 
-/* A table of a plane, between two of its values. */
-static double plane_value(const float *table, double at)
-{
-    if (at >= TOBI_PLANE_SAMPLES) return 0;
-    int k = (int)at;
-    return table[k] + (at - k)*((double)table[k + 1] - table[k]);
-}
-
 static void sum_points(const look *l)
 {
     const tobi_body *b = l->b;
@@ -103,8 +95,9 @@ static void sum_points(const look *l)
         __atomic_store_n(&b->wet[k], TOBI_WET, __ATOMIC_RELAXED);
         /* whole numbers: the same sum in any order */
         __atomic_fetch_add(&b->covered[k], (uint32_t)(2*c->volume*w*TOBI_COVERED), __ATOMIC_RELAXED);
-        const double at = fmax(s, 0)/c->h*TOBI_PLANE_SAMPLES, sigma = plane_value(c->plane.sigma, at);
-        const double reach = sigma > 0 ? plane_value(c->plane.lambda, at)/sigma : 0;
+        const double at = fmax(s, 0)/c->h*TOBI_PLANE_SAMPLES,
+                     sigma = tobi_wall_table_at(c->plane.sigma, at);
+        const double reach = sigma > 0 ? tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
         double arm[3], gn = g[0]*n[0] + g[1]*n[1] + (c->dimension == 3 ? g[2]*n[2] : 0);
         for (int a = 0; a < 3; a++) arm[a] = p->at[a] + b->lower[a] - b->centre[a];
         for (int a = 0; a < 3; a++) {

@@ -9,14 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-static double behind_plane(const tobi_smoothing_constants *c, double distance)
-{
-    const double at = fmax(distance, 0)/c->h*TOBI_PLANE_SAMPLES;
-    if (at >= TOBI_PLANE_SAMPLES) return 0;
-    const int k = (int)at;
-    return c->plane.lambda[k] + (at - k)*((double)c->plane.lambda[k + 1] - c->plane.lambda[k]);
-}
-
 static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const double (*vertex)[3],
                         double out[3])
 {
@@ -25,6 +17,14 @@ static void interpolate(const tobi_body *b, const tobi_boundary_entry *e, const 
         out[a] = 0;
         for (int c = 0; c < 3; c++) out[a] += e->barycentric[c]*vertex[t[c]][a];
     }
+}
+
+void isph_body_velocity(const tobi_body *b, const double place[3], const double u[6], double out[3])
+{
+    double arm[3];
+    for (int a = 0; a < 3; a++) arm[a] = place[a] + b->lower[a] - b->centre[a];
+    vec3_cross(out, u + 3, arm);
+    for (int a = 0; a < 3; a++) out[a] += u[a];
 }
 
 /* The normal of the surface that the kernel sees: it turns steadily where the closest facet changes at once,
@@ -43,7 +43,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
 {
     isph_mirror m = { .body = link->body, .previous = link->previous };
     const tobi_smoothing_constants *c = &s->smoothing;
-    const double lambda = behind_plane(c, e->distance);
+    const double lambda = tobi_wall_table_at(c->plane.lambda, fmax(e->distance, 0)/c->h*TOBI_PLANE_SAMPLES);
     if (e->triangle < 0) return m;
     m.share = lambda > 1e-6 ? fmin(e->share/lambda, 1) : 0;
     memcpy(m.offset, e->offset, sizeof m.offset);
@@ -52,7 +52,7 @@ static isph_mirror make_mirror(const tobi_system *s, const tobi_boundary_link *l
     double before[3];
     interpolate(b, e, (const double (*)[3])b->vertex_velocity, m.velocity);
     double flow[3] = { 0 };
-    if (b->rigid.kind != TOBI_PRESCRIBED) isph_corner_turn(b, e->foot, b->rigid.before, before);
+    if (b->rigid.kind != TOBI_PRESCRIBED) isph_body_velocity(b, e->foot, b->rigid.before, before);
     else interpolate(b, e, (const double (*)[3])b->vertex_before, before);
     if (b->swimmer) interpolate(b, e, (const double (*)[3])b->vertex_before, flow);
     for (int a = 0; a < 3; a++) m.velocity_change[a] = m.velocity[a] - before[a] - flow[a];
@@ -146,14 +146,14 @@ static void accelerate(const void *view, int64_t begin, int64_t end)
         double u[3];
         if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
         const double *answer = n->answer[n->link[k].body];
-        isph_corner_turn(b, e->foot, answer, u);
+        isph_body_velocity(b, e->foot, answer, u);
         add_velocity(&all->m->mirror[k], all->dt, u);
         const int64_t second = all->m->mirror[k].previous;
         if (second != n->count + k) continue;
         const tobi_double3 *at = &all->s->particles.position[n->link[k].particle];
         const double *offset = all->m->mirror[second].offset;
         const double place[3] = { at->x - offset[0], at->y - offset[1], at->z - offset[2] };
-        isph_corner_turn(b, place, answer, u);
+        isph_body_velocity(b, place, answer, u);
         add_velocity(&all->m->mirror[second], all->dt, u);
     }
 }

@@ -3,6 +3,7 @@
    Without it a tank that is one mesh has an open corner. Drawback: two planes at most, and a corner in 3-D
    has three. */
 #include "sph/isph_corners.h"
+#include "sph/isph_bodies.h"
 #include "sph/state.h"
 #include "geom/vec3.h"
 #include <math.h>
@@ -24,7 +25,7 @@ typedef struct corner_look {
     double share;                    /* 1: sum of area W lambda/sigma of the second                 */
 } corner_look;
 
-/* From a point, if it faces the particle within reach, else 0; the kernel there. */
+/* Whether a point faces the particle within reach. r: from it to the particle. */
 static int faces(const corner_look *l, int32_t k, double r[3])
 {
     const double h = l->s->smoothing.h;
@@ -46,14 +47,6 @@ static int find_second(void *user, int32_t k)
     return 0;
 }
 
-static double table_at(const tobi_smoothing_constants *c, const float *table, double distance)
-{
-    const double at = fmax(distance, 0)/c->h*TOBI_PLANE_SAMPLES;
-    if (at >= TOBI_PLANE_SAMPLES) return 0;
-    const int k = (int)at;
-    return table[k] + (at - k)*((double)table[k + 1] - table[k]);
-}
-
 static int add_face(void *user, int32_t k)
 {
     corner_look *l = user;
@@ -66,34 +59,24 @@ static int add_face(void *user, int32_t k)
     if (vec3_dot(n, l->normal) > ISPH_TWO_FACES)
         for (int a = 0; a < 3; a++) l->first[a] += w*n[a];
     if (vec3_dot(n, l->b->normal[l->point]) < ONE_FACE) return 0;
-    const double s = vec3_dot(r, n), sigma = table_at(c, c->plane.sigma, s);
+    const double at = vec3_dot(r, n)/c->h*TOBI_PLANE_SAMPLES, sigma = tobi_wall_table_at(c->plane.sigma, at);
     for (int a = 0; a < 3; a++) l->second[a] += w*n[a];
-    l->share += sigma > 0 ? w*table_at(c, c->plane.lambda, s)/sigma : 0;
+    l->share += sigma > 0 ? w*tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
     return 0;
 }
 
+/* As of the first mirror: its change is that of the body and of the flow of a swimmer. */
 static void set_velocities(const corner_look *l, isph_mirror *out)
 {
     const tobi_body *b = l->b;
-    memcpy(out->velocity, b->point_velocity[l->point], sizeof out->velocity);
-    if (b->rigid.kind != TOBI_PRESCRIBED) {
-        double place[3], before[3];
-        for (int a = 0; a < 3; a++) place[a] = l->x[a] - out->offset[a];
-        isph_corner_turn(b, place, b->rigid.before, before);
-        for (int a = 0; a < 3; a++) out->velocity_change[a] = out->velocity[a] - before[a];
-    } else {
-        memcpy(out->velocity_change, out->velocity, sizeof out->velocity_change);
+    double place[3], before[3] = { 0 };
+    for (int a = 0; a < 3; a++) place[a] = l->x[a] - out->offset[a];
+    if (b->rigid.kind != TOBI_PRESCRIBED) isph_body_velocity(b, place, b->rigid.before, before);
+    for (int a = 0; a < 3; a++) {
+        out->velocity[a] = b->point_velocity[l->point][a];
+        if (b->swimmer || b->motion) before[a] += b->point_before[l->point][a];
+        out->velocity_change[a] = out->velocity[a] - before[a];
     }
-    for (int a = 0; a < 3 && (b->swimmer || b->motion); a++)
-        out->velocity_change[a] -= b->point_before[l->point][a];
-}
-
-void isph_corner_turn(const tobi_body *b, const double place[3], const double u[6], double out[3])
-{
-    double arm[3];
-    for (int a = 0; a < 3; a++) arm[a] = place[a] + b->lower[a] - b->centre[a];
-    vec3_cross(out, u + 3, arm);
-    for (int a = 0; a < 3; a++) out[a] += u[a];
 }
 
 int isph_corner_find(const tobi_system *s, const tobi_boundary_link *link, const tobi_boundary_entry *e,
@@ -117,8 +100,9 @@ int isph_corner_find(const tobi_system *s, const tobi_boundary_link *link, const
     *out = (isph_mirror){ .body = link->body, .previous = link->previous };
     double distance = 0;
     for (int a = 0; a < 3; a++) distance += (l.x[a] - l.b->point[l.point][a])*l.second[a];
-    const double lambda = table_at(c, c->plane.lambda, distance);
-    if (!(distance > 0) || !(lambda > 1e-6)) return 0;
+    if (!(distance > 0)) return 0;
+    const double lambda = tobi_wall_table_at(c->plane.lambda, distance/c->h*TOBI_PLANE_SAMPLES);
+    if (!(lambda > 1e-6)) return 0;
     out->share = fmin(l.share/lambda, 1);
     for (int a = 0; a < 3; a++) {
         out->normal[a] = l.second[a];

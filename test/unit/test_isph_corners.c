@@ -48,6 +48,7 @@ static void corners_of_a_vessel(void **state)
 {
     (void)state;
     const double sides = sway(0, 0.5, 0.4, ""), vessel = sway(-0.2, 0.7, 0.6, VESSEL);
+    print_message("|div v| at most %g 1/s in a vessel, %g between sides\n", vessel, sides);
     if (!(vessel < 2*sides + 0.5)) fail_msg("|div v| %g 1/s in a vessel, %g between sides", vessel, sides);
 }
 
