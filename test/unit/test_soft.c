@@ -273,25 +273,33 @@ static void parameters_of_solids(void **state)
     tobi_world_destroy(world);
 }
 
-static void too_many_substeps(void **state)
+/* Water and a solid, a box each, with 0.01 m between particles. */
+static tobi_world *make_boxes(double side, const tobi_fill_def *water, const tobi_fill_def *block,
+                              double youngs)
 {
-    (void)state;
     tobi_world_def w = tobi_default_world_def();
     tobi_fluid_def fluid = tobi_default_fluid_def();
     tobi_solid_def solid = tobi_default_solid_def();
-    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
     tobi_world *world;
     w.spacing = 0.01;
-    solid.youngs_modulus = 1e15;
+    solid.youngs_modulus = youngs;
+    for (int a = 0; a < 3; a++) w.domain_max[a] = side;
+    OK(tobi_world_create(&w, NULL, &world, &err));
+    OK(tobi_world_add_fluid(world, &fluid, water, 1, &err));
+    OK(tobi_world_add_solid(world, &solid, block, 1, &err));
+    return world;
+}
+
+static void too_many_substeps(void **state)
+{
+    (void)state;
+    tobi_fill_def water = tobi_default_fill_def(), jelly = tobi_default_fill_def();
     for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = 0.2;
         water.box_max[a] = 0.05;
         jelly.box_min[a] = 0.1;
         jelly.box_max[a] = 0.15;
     }
-    OK(tobi_world_create(&w, NULL, &world, &err));
-    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
-    OK(tobi_world_add_solid(world, &solid, &jelly, 1, &err));
+    tobi_world *world = make_boxes(0.2, &water, &jelly, 1e15);
     REFUSED(tobi_world_step(world, 0, NULL, &err), TOBI_INVALID, "substeps in a step of");
     tobi_world_destroy(world);
 }
@@ -300,24 +308,12 @@ static void too_many_substeps(void **state)
 static void first_step_before_a_gate(void **state)
 {
     (void)state;
-    tobi_world_def w = tobi_default_world_def();
-    tobi_fluid_def fluid = tobi_default_fluid_def();
-    tobi_solid_def solid = tobi_default_solid_def();
     tobi_fill_def water = tobi_default_fill_def(), gate = tobi_default_fill_def();
-    tobi_world *world;
-    const double deep = 0.15, bound = w.cfl*0.01/(2*sqrt(9.81*deep));
-    w.spacing = 0.01;
-    for (int a = 0; a < 3; a++) {
-        w.domain_max[a] = a ? 0.1 : 0.3;
-        water.box_max[a] = gate.box_max[a] = 0.1;
-    }
-    w.domain_max[2] = 0.2;
-    water.box_max[2] = gate.box_max[2] = deep;
+    const double deep = 0.15, bound = tobi_default_world_def().cfl*0.01/(2*sqrt(9.81*deep));
+    for (int a = 0; a < 3; a++) water.box_max[a] = gate.box_max[a] = a == 2 ? deep : 0.1;
     gate.box_min[0] = 0.1;
     gate.box_max[0] = 0.13;
-    OK(tobi_world_create(&w, NULL, &world, &err));
-    OK(tobi_world_add_fluid(world, &fluid, &water, 1, &err));
-    OK(tobi_world_add_solid(world, &solid, &gate, 1, &err));
+    tobi_world *world = make_boxes(0.3, &water, &gate, tobi_default_solid_def().youngs_modulus);
     OK(tobi_world_step(world, 0, NULL, &err));
     if (!(tobi_world_time(world) <= 1.001*bound))
         fail_msg("the first step is %g s, %g s at most are right", tobi_world_time(world), bound);
