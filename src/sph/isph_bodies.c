@@ -1,7 +1,7 @@
-/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface, and a
-   second one in concave corners (isph_corners.c). How much of the half space behind the plane is body tells
-   edges and tips from faces. Drawback: room for a second plane of every particle beside a body that is not
-   convex. */
+/* Bodies as mirrors of isph: a plane per particle and body, through the closest point of its surface, and
+   further ones in concave corners (isph_corners.c). How much of the half space behind the plane is body tells
+   edges and tips from faces. Drawback: room for all planes of a corner for every particle beside a body that
+   is not convex. */
 #include "sph/isph_bodies.h"
 #include "sph/isph_corners.h"
 #include "sph/state.h"
@@ -65,11 +65,17 @@ static void make_mirrors(const void *view, int64_t begin, int64_t end)
 {
     const mirrors *all = view;
     const tobi_boundary_links *n = &sph_of(all->s)->links;
-    isph_mirror *m = all->m->mirror;
+    isph_mirror *m = all->m->mirror, more[ISPH_CORNER_FACES];
     for (int64_t k = begin; k < end; k++) {
         m[k] = make_mirror(all->s, &n->link[k], &n->entry[k]);
-        if (all->m->corners && isph_corner_find(all->s, &n->link[k], &n->entry[k], &m[k], &m[n->count + k]))
-            m[k].previous = (int32_t)(n->count + k);
+        if (!all->m->corners) continue;
+        const int found = isph_corner_find(all->s, &n->link[k], &n->entry[k], &m[k], more);
+        for (int f = 0; f < found; f++) {            /* into the chain of the particle, behind the first */
+            const int64_t at = n->count*(f + 1) + k;
+            m[at] = more[f];
+            m[at].previous = m[k].previous;
+            m[k].previous = (int32_t)at;
+        }
     }
 }
 
@@ -95,7 +101,7 @@ tobi_status isph_bodies_find_mirrors(isph_solver *m, tobi_system *s, tobi_error 
     if (!v->last_link) return TOBI_OK;
     m->corners = 0;
     for (int b = 0; b < s->sim->body_count; b++) m->corners |= !s->sim->bodies[b].convex;
-    const int64_t need = n->count*(1 + m->corners);
+    const int64_t need = n->count*(m->corners ? s->box.dimension : 1);
     if (need > m->mirrors) {
         const int64_t room = need + need/2 + 64;
         isph_mirror *more = tobi_array_grow(m->mirror, 0, room, sizeof *more);
@@ -128,14 +134,6 @@ void isph_bodies_remove_hydrostatic(tobi_system *s)
     tobi_loop(s->sim->exec.threads, sph_of(s)->links.count, 0, remove_hydrostatic, s);
 }
 
-static void add_velocity(isph_mirror *m, double dt, const double u[3])
-{
-    for (int a = 0; a < 3; a++) {
-        m->velocity[a] += dt*u[a];
-        m->velocity_change[a] += dt*u[a];
-    }
-}
-
 static void accelerate(const void *view, int64_t begin, int64_t end)
 {
     const mirrors *all = view;
@@ -143,18 +141,20 @@ static void accelerate(const void *view, int64_t begin, int64_t end)
     for (int64_t k = begin; k < end; k++) {
         const tobi_boundary_entry *e = &n->entry[k];
         const tobi_body *b = &all->s->sim->bodies[n->link[k].body];
-        double u[3];
+        const tobi_double3 *x = &all->s->particles.position[n->link[k].particle];
         if (e->triangle < 0 || b->rigid.kind == TOBI_PRESCRIBED) continue;
-        const double *answer = n->answer[n->link[k].body];
-        isph_body_velocity(b, e->foot, answer, u);
-        add_velocity(&all->m->mirror[k], all->dt, u);
-        const int64_t second = all->m->mirror[k].previous;
-        if (second != n->count + k) continue;
-        const tobi_double3 *at = &all->s->particles.position[n->link[k].particle];
-        const double *offset = all->m->mirror[second].offset;
-        const double place[3] = { at->x - offset[0], at->y - offset[1], at->z - offset[2] };
-        isph_body_velocity(b, place, answer, u);
-        add_velocity(&all->m->mirror[second], all->dt, u);
+        int64_t at = k;
+        do {                                         /* the first, and those of corners behind it */
+            isph_mirror *m = &all->m->mirror[at];
+            const double place[3] = { x->x - m->offset[0], x->y - m->offset[1], x->z - m->offset[2] };
+            double u[3];
+            isph_body_velocity(b, at == k ? e->foot : place, n->answer[n->link[k].body], u);
+            for (int a = 0; a < 3; a++) {
+                m->velocity[a] += all->dt*u[a];
+                m->velocity_change[a] += all->dt*u[a];
+            }
+            at = m->previous;
+        } while (at >= n->count);
     }
 }
 

@@ -1,7 +1,7 @@
-/* The second plane of a particle in a concave corner of one body: the nearest point of the surface whose face
-   turns away from that of the closest point and rises before it (docs/decisions/0082-concave-corners.md).
-   Without it a tank that is one mesh has an open corner. Drawback: two planes at most, and a corner in 3-D
-   has three. */
+/* Further planes of a particle in a concave corner of one body: of the nearest points of the surface whose
+   faces turn away from that of the closest point, and rise before it (decision 82 in docs/decisions).
+   Without them a tank that is one mesh has open corners. Drawback: a walk over the points near the particle
+   for each face. */
 #include "sph/isph_corners.h"
 #include "sph/isph_bodies.h"
 #include "sph/state.h"
@@ -11,18 +11,26 @@
 
 /* Cosine of the angle between the normals of points of one face, at least. */
 static const double ONE_FACE = 0.7;
-/* Spacings that either face must rise before the other: less is what a mesh of flat facets has. */
+/* Spacings that either of two faces must rise before the other: less is what a mesh of flat facets has. */
 static const double RISE = 0.1;
 
-/* A particle's look for a second face, and what the points of both are together. */
+/* A face that the particle stands before. */
+typedef struct corner_face {
+    int32_t point;                   /* nearest; -1: that of the closest point of the surface       */
+    double place[3], normal[3];      /* of a point of the face                                      */
+    double sum[3];                   /* m2/m3: sum of area W n over its points                      */
+    double share;                    /* 1: sum of area W lambda/sigma over them                     */
+} corner_face;
+
+/* A particle's look for faces, the closest first. */
 typedef struct corner_look {
     const tobi_system *s;
     const tobi_body *b;
-    double x[3], foot[3], normal[3];
-    double nearest;                  /* m2, of the point of the second face                         */
-    int32_t point;                   /* -1: there is none                                           */
-    double first[3], second[3];      /* m2/m3: sum of area W n of either face                       */
-    double share;                    /* 1: sum of area W lambda/sigma of the second                 */
+    double x[3];
+    corner_face face[1 + ISPH_CORNER_FACES];
+    int faces;
+    double nearest;                  /* m2, of the next face's point                                */
+    int32_t next;                    /* that point, -1: there is none                               */
 } corner_look;
 
 /* Whether a point faces the particle within reach. r: from it to the particle. */
@@ -33,21 +41,29 @@ static int faces(const corner_look *l, int32_t k, double r[3])
     return l->b->area[k] > 0 && vec3_dot(r, r) < h*h && vec3_dot(r, l->b->normal[k]) > 0;
 }
 
-static int find_second(void *user, int32_t k)
+/* Whether a point is of a face that makes a concave corner with this one. */
+static int meets(const corner_look *l, const corner_face *f, int32_t k)
+{
+    const double least = RISE*l->s->smoothing.spacing, *n = l->b->normal[k];
+    double apart[3];
+    vec3_sub(apart, l->b->point[k], f->place);
+    return vec3_dot(f->normal, n) <= ISPH_TWO_FACES && vec3_dot(apart, f->normal) >= least &&
+           -vec3_dot(apart, n) >= least;
+}
+
+static int find_next(void *user, int32_t k)
 {
     corner_look *l = user;
-    double r[3], apart[3];
-    if (!faces(l, k, r) || vec3_dot(l->normal, l->b->normal[k]) > ISPH_TWO_FACES) return 0;
-    for (int a = 0; a < 3; a++) apart[a] = l->b->point[k][a] - l->foot[a];
-    const double least = RISE*l->s->smoothing.spacing, r2 = vec3_dot(r, r);
-    if (r2 >= l->nearest || vec3_dot(apart, l->normal) < least || -vec3_dot(apart, l->b->normal[k]) < least)
-        return 0;
-    l->nearest = r2;
-    l->point = k;
+    double r[3];
+    if (!faces(l, k, r) || vec3_dot(r, r) >= l->nearest) return 0;
+    for (int f = 0; f < l->faces; f++)
+        if (!meets(l, &l->face[f], k)) return 0;
+    l->nearest = vec3_dot(r, r);
+    l->next = k;
     return 0;
 }
 
-static int add_face(void *user, int32_t k)
+static int add_point(void *user, int32_t k)
 {
     corner_look *l = user;
     const tobi_smoothing_constants *c = &l->s->smoothing;
@@ -56,62 +72,84 @@ static int add_face(void *user, int32_t k)
     if (!faces(l, k, r)) return 0;
     const double w = l->b->area[k]*c->plane_scale*
                      tobi_smoothing_w(c->shape, c->dimension, c->h, sqrt(vec3_dot(r, r)));
-    if (vec3_dot(n, l->normal) > ISPH_TWO_FACES)
-        for (int a = 0; a < 3; a++) l->first[a] += w*n[a];
-    if (vec3_dot(n, l->b->normal[l->point]) < ONE_FACE) return 0;
     const double at = vec3_dot(r, n)/c->h*TOBI_PLANE_SAMPLES, sigma = tobi_wall_table_at(c->plane.sigma, at);
-    for (int a = 0; a < 3; a++) l->second[a] += w*n[a];
-    l->share += sigma > 0 ? w*tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
+    for (int f = 0; f < l->faces; f++) {
+        if (vec3_dot(n, l->face[f].normal) < ONE_FACE) continue;
+        for (int a = 0; a < 3; a++) l->face[f].sum[a] += w*n[a];
+        l->face[f].share += sigma > 0 ? w*tobi_wall_table_at(c->plane.lambda, at)/sigma : 0;
+    }
     return 0;
 }
 
+/* The next face, unless the body is in the way. */
+static int look_for_face(corner_look *l, int body)
+{
+    double ahead[3];
+    l->nearest = INFINITY;
+    l->next = -1;
+    tobi_boundary_visit(&sph_of(l->s)->links, body, l->x, find_next, l);
+    if (l->next < 0) return 0;
+    corner_face *f = &l->face[l->faces];
+    *f = (corner_face){ .point = l->next };
+    memcpy(f->place, l->b->point[l->next], sizeof f->place);
+    memcpy(f->normal, l->b->normal[l->next], sizeof f->normal);
+    vec3_add_scaled(ahead, f->place, 1e-3*l->s->smoothing.spacing, f->normal);
+    if (tobi_bvh_segment_hits(l->b->bvh, l->x, ahead)) return 0;
+    l->faces++;
+    return 1;
+}
+
 /* As of the first mirror: its change is that of the body and of the flow of a swimmer. */
-static void set_velocities(const corner_look *l, isph_mirror *out)
+static void set_velocities(const corner_look *l, const corner_face *f, isph_mirror *out)
 {
     const tobi_body *b = l->b;
     double place[3], before[3] = { 0 };
-    for (int a = 0; a < 3; a++) place[a] = l->x[a] - out->offset[a];
+    vec3_sub(place, l->x, out->offset);
     if (b->rigid.kind != TOBI_PRESCRIBED) isph_body_velocity(b, place, b->rigid.before, before);
     for (int a = 0; a < 3; a++) {
-        out->velocity[a] = b->point_velocity[l->point][a];
-        if (b->swimmer || b->motion) before[a] += b->point_before[l->point][a];
+        out->velocity[a] = b->point_velocity[f->point][a];
+        if (b->swimmer || b->motion) before[a] += b->point_before[f->point][a];
         out->velocity_change[a] = out->velocity[a] - before[a];
     }
 }
 
-int isph_corner_find(const tobi_system *s, const tobi_boundary_link *link, const tobi_boundary_entry *e,
-                     isph_mirror *first, isph_mirror *out)
+/* The plane of a face; 0: it is out of reach. */
+static int make_plane(const corner_look *l, const corner_face *f, int body, isph_mirror *out)
 {
-    const tobi_smoothing_constants *c = &s->smoothing;
-    const tobi_double3 *at = &s->particles.position[link->particle];
-    corner_look l = { .s = s, .b = &s->sim->bodies[link->body], .x = { at->x, at->y, at->z },
-                      .nearest = INFINITY, .point = -1 };
-    double ahead[3];
-    if (l.b->convex || e->triangle < 0 || !(e->distance > 0)) return 0;
-    memcpy(l.foot, e->foot, sizeof l.foot);
-    for (int a = 0; a < 3; a++) l.normal[a] = e->offset[a]/e->distance;
-    tobi_boundary_visit(&sph_of(s)->links, link->body, l.x, find_second, &l);
-    if (l.point < 0) return 0;
-    for (int a = 0; a < 3; a++)
-        ahead[a] = l.b->point[l.point][a] + 1e-3*c->spacing*l.b->normal[l.point][a];
-    if (tobi_bvh_segment_hits(l.b->bvh, l.x, ahead)) return 0;
-    tobi_boundary_visit(&sph_of(s)->links, link->body, l.x, add_face, &l);
-    vec3_normalize(l.second);
-    *out = (isph_mirror){ .body = link->body, .previous = link->previous };
-    double distance = 0;
-    for (int a = 0; a < 3; a++) distance += (l.x[a] - l.b->point[l.point][a])*l.second[a];
+    const tobi_smoothing_constants *c = &l->s->smoothing;
+    double from[3];
+    *out = (isph_mirror){ .body = body };
+    memcpy(out->normal, f->sum, sizeof out->normal);
+    vec3_normalize(out->normal);
+    vec3_sub(from, l->x, f->place);
+    const double distance = vec3_dot(from, out->normal);
     if (!(distance > 0)) return 0;
     const double lambda = tobi_wall_table_at(c->plane.lambda, distance/c->h*TOBI_PLANE_SAMPLES);
     if (!(lambda > 1e-6)) return 0;
-    out->share = fmin(l.share/lambda, 1);
-    for (int a = 0; a < 3; a++) {
-        out->normal[a] = l.second[a];
-        out->offset[a] = distance*l.second[a];
-    }
-    set_velocities(&l, out);
-    if (vec3_dot(l.first, l.first) > 0) {          /* the first normal is of its own face alone */
-        vec3_normalize(l.first);
-        memcpy(first->normal, l.first, sizeof first->normal);
-    }
+    out->share = fmin(f->share/lambda, 1);
+    for (int a = 0; a < 3; a++) out->offset[a] = distance*out->normal[a];
+    set_velocities(l, f, out);
     return 1;
+}
+
+int isph_corner_find(const tobi_system *s, const tobi_boundary_link *link, const tobi_boundary_entry *e,
+                     isph_mirror *first, isph_mirror more[ISPH_CORNER_FACES])
+{
+    const tobi_double3 *at = &s->particles.position[link->particle];
+    const int most = s->box.dimension;
+    corner_look l = { .s = s, .b = &s->sim->bodies[link->body], .x = { at->x, at->y, at->z }, .faces = 1 };
+    int found = 0;
+    if (l.b->convex || e->triangle < 0 || !(e->distance > 0)) return 0;
+    l.face[0].point = -1;
+    memcpy(l.face[0].place, e->foot, sizeof e->foot);
+    for (int a = 0; a < 3; a++) l.face[0].normal[a] = e->offset[a]/e->distance;
+    while (l.faces < most && look_for_face(&l, link->body)) { }
+    if (l.faces == 1) return 0;
+    tobi_boundary_visit(&sph_of(s)->links, link->body, l.x, add_point, &l);
+    for (int f = 1; f < l.faces; f++) found += make_plane(&l, &l.face[f], link->body, &more[found]);
+    if (found > 0 && vec3_dot(l.face[0].sum, l.face[0].sum) > 0) {   /* its normal is of its own face alone */
+        memcpy(first->normal, l.face[0].sum, sizeof first->normal);
+        vec3_normalize(first->normal);
+    }
+    return found;
 }

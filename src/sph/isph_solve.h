@@ -39,7 +39,7 @@ typedef struct isph_solver {
     int64_t entries;                 /* room for them                                               */
     isph_mirror *mirror;             /* of s->links, see isph_bodies.h                              */
     int64_t mirrors;                 /* room for them                                               */
-    int corners;                     /* 1: the second of an entry is as many behind it as there are entries */
+    int corners;                     /* 1: those of corners, further faces, follow all of the entries */
     isph_sweeps sweeps;
     int coupled;                     /* 1: bodies move by forces                                    */
     isph_coupling *coupling;         /* of s->links, see isph_forces.h                              */

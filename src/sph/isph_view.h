@@ -16,8 +16,8 @@ typedef struct isph_tensor { float xx, yy, zz, xy, yz, zx; } isph_tensor;
 
 /* The plane in which a particle sees a body. */
 typedef struct isph_mirror {
-    int32_t body, previous;          /* previous: the particle's next plane, of the second face of the body
-                                        or of an earlier body, -1 = none                            */
+    int32_t body, previous;          /* previous: the particle's next plane, of another face of the body or
+                                        of an earlier body, -1 = none                               */
     double offset[3];                /* m, from the closest point of the surface to the particle    */
     double normal[3], velocity[3];   /* 1, m/s, of the surface there                                */
     double velocity_change[3];       /* m/s, of that velocity since the step before                 */

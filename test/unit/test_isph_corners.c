@@ -7,6 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "scene/scene.h"
+#include "sph/isph_verbs.h"
 #include "world/world.h"
 
 #define VESSEL "\"bodies\": [ { \"name\": \"tank\", \"vessel\": true, \"box\": { \"min\": [0, 0],"  \
@@ -52,8 +53,48 @@ static void corners_of_a_vessel(void **state)
     if (!(vessel < 2*sides + 0.5)) fail_msg("|div v| %g 1/s in a vessel, %g between sides", vessel, sides);
 }
 
+/* A plane for every wall within reach; beyond it none. */
+static void planes_of_a_vessel(void **state)
+{
+    const char *text = "{ \"method\": \"isph\", \"spacing\": 0.01, \"end_time\": 1,"
+                       "\"domain\": { \"min\": [-0.05, -0.05, -0.05], \"max\": [0.15, 0.15, 0.15] },"
+                       "\"bodies\": [ { \"name\": \"tank\", \"vessel\": true,"
+                       "\"box\": { \"min\": [0, 0, 0], \"max\": [0.1, 0.1, 0.1] } } ],"
+                       "\"fluids\": [ { \"name\": \"water\","
+                       "\"fill\": [ { \"vessel\": \"tank\", \"level\": 0.06 } ] } ] }";
+    tobi_error err = { 0 };
+    tobi_scene *scene;
+    tobi_world *w;
+    int seen[4] = { 0 };
+    (void)state;
+    must(tobi_scene_parse("s.json", text, strlen(text), NULL, &scene, NULL, &err), &err);
+    must(tobi_scene_build(scene, &w, &err), &err);
+    must(tobi_world_start(w, &err), &err);
+    const tobi_system *s = &w->system[0];
+    must(s->method->begin(&w->system[0], &err), &err);
+    const isph_view *v = &((const isph *)s->state)->solver.view;
+    for (int64_t i = 0; i < s->particles.count; i++) {
+        const tobi_double3 *p = &s->particles.position[i];
+        const double x[3] = { p->x + s->box.lower[0], p->y + s->box.lower[1], p->z + s->box.lower[2] };
+        int near = 0, within = 0, planes = 0;
+        for (int a = 0; a < 3; a++) {
+            const double away = fmin(x[a], 0.1 - x[a]);
+            near += away < 0.7*s->smoothing.h;
+            within += away < s->smoothing.h;
+        }
+        for (int32_t k = v->last_link[i]; k >= 0; k = v->mirror[k].previous) planes++;
+        if (planes < near || planes > within)
+            fail_msg("%d planes at %g %g %g, %d to %d walls", planes, x[0], x[1], x[2], near, within);
+        seen[planes]++;
+    }
+    for (int k = 0; k < 4; k++) assert_true(seen[k] > 0);
+    tobi_world_destroy(w);
+    tobi_scene_free(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(corners_of_a_vessel) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(corners_of_a_vessel),
+                                        cmocka_unit_test(planes_of_a_vessel) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
