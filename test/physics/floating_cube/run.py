@@ -15,8 +15,7 @@ less the cube's centre of mass, plus half a side; mean over the last fifth. Arch
 What holds a cube off it is the water: each particle keeps a volume of its own, J, and patterns of J within a cell, which the nodes hardly
 feel as pressure, hold small shears as a paste does, the more the stiffer the water (rows with 2e6 Pa). They last: with three times the
 time, a quarter of the step, 4 x 4 particles in a cell, FLIP or no damping drafts from 0.5 and 1 stay 0.03 to 0.06 apart, and as much without tension
-(J never above 1). With J made smooth (every 40 steps, by linear fits over the cells, a throw-away program) they were 0.002 apart instead of 0.04, but
-water then did not come to rest: it flowed on at 8 mm/s and gathered at the surface and the sides.""")
+(J never above 1).""")
 
 SIDE, TANK, DEEP = 0.1, 0.4, 0.2
 
