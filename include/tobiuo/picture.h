@@ -49,7 +49,7 @@ typedef struct tobi_picture_mesh {
     float color[3];                    /* sRGB, 0 to 1                 */
     float transparency;                /* 0 to 1; above 0 like glass   */
     int hollow;                        /* not 0: a clip plane opens it, else its cut is filled */
-    const tobi_image *image;           /* instead of the colour, not on glass; NULL = none     */
+    const tobi_image *image;           /* instead of the colour; NULL = none                   */
     const float (*uv)[3][2];           /* with an image: of the corners of each triangle       */
 } tobi_picture_mesh;
 
@@ -80,7 +80,7 @@ typedef struct tobi_picture {
     const float *values;               /* colour of each particle, e.g. speed; NULL = that of water     */
     const uint8_t *opaque;             /* not 0: the particle belongs to a solid; NULL = all are water  */
     const int32_t *group;              /* one surface around each group; NULL = all are one            */
-    const tobi_picture_skin *skins;    /* with rest, in 3-D and the look NATURAL: instead of colours    */
+    const tobi_picture_skin *skins;    /* with rest, in the look NATURAL: instead of colours            */
     int skin_count;
     const int16_t *skin;               /* of each particle, -1 = none; of a group all have one          */
     const double (*rest)[3];           /* m, where particles with a skin were at rest                   */
@@ -88,7 +88,7 @@ typedef struct tobi_picture {
     int palette_count;                 /* at least 1 with a palette                                     */
     double radius;                     /* m, half the particle spacing                                  */
     double value_min, value_max;       /* of the colour map; equal = found from the values, from zero   */
-    int look;                          /* TOBI_LOOK_*, 3-D only                                         */
+    int look;                          /* TOBI_LOOK_*; in 2-D NATURAL is SURFACE                        */
     int clip;                          /* not 0: what is beyond a plane is not drawn                    */
     double clip_point[3], clip_normal[3];        /* m; from what is drawn to what is not                */
     double slice;                      /* m, > 0: what is within half of it from the plane is drawn     */

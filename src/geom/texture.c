@@ -68,11 +68,46 @@ static void mix(const float corner[3][2], const double share[3], float uv[2])
         uv[c] = (float)(share[0]*corner[0][c] + share[1]*corner[1][c] + share[2]*corner[2][c]);
 }
 
+/* The highest triangle on a line along z. */
+typedef struct seeing { const tobi_texture *t; double x[3], top; tobi_bvh_hit *hit; int found; } seeing;
+
+static void see_triangle(void *user, int32_t triangle, int turn)
+{
+    seeing *s = user;
+    const double (*p)[3] = (const double (*)[3])s->t->corner[triangle];
+    double share[3], sum = 0, z = 0;
+    (void)turn;
+    for (int k = 0; k < 3; k++) {
+        const double *a = p[(k + 1)%3], *b = p[(k + 2)%3];
+        share[k] = (a[0] - s->x[0])*(b[1] - s->x[1]) - (b[0] - s->x[0])*(a[1] - s->x[1]);
+        sum += share[k];
+    }
+    if (sum == 0) return;
+    for (int k = 0; k < 3; k++) share[k] /= sum, z += share[k]*p[k][2];
+    if (s->found && !(z > s->top)) return;
+    s->found = 1;
+    s->top = z;
+    s->hit->triangle = triangle;
+    s->hit->distance = 0;
+    memcpy(s->hit->barycentric, share, sizeof share);
+}
+
+static int find(const tobi_texture *texture, const double x[3], tobi_bvh_hit *hit)
+{
+    seeing s = { .t = texture, .x = { x[0], x[1] }, .hit = hit };
+    double low[3], high[3];
+    if (!texture->front) return tobi_bvh_closest(texture->tree, x, INFINITY, hit);
+    tobi_bvh_box(texture->tree, low, high);
+    s.x[2] = low[2] - 1 - (high[2] - low[2]);
+    tobi_bvh_look_up(texture->tree, s.x, see_triangle, &s);
+    return s.found || tobi_bvh_closest(texture->tree, x, INFINITY, hit);
+}
+
 double tobi_texture_look(const tobi_texture *texture, const double x[3], float uv[2])
 {
     tobi_bvh_hit hit;
     uv[0] = uv[1] = 0;
-    if (!tobi_bvh_closest(texture->tree, x, INFINITY, &hit)) return INFINITY;
+    if (!find(texture, x, &hit)) return INFINITY;
     mix(texture->uv[hit.triangle], hit.barycentric, uv);
     return hit.distance;
 }
@@ -112,7 +147,7 @@ static void look_corners(const tobi_texture *texture, const double corner[3][3],
     tobi_bvh_hit hit;
     memset(uv, 0, 3*sizeof *uv);
     for (int a = 0; a < 3; a++) middle[a] = (corner[0][a] + corner[1][a] + corner[2][a])/3;
-    if (!tobi_bvh_closest(texture->tree, middle, INFINITY, &hit)) return;
+    if (!find(texture, middle, &hit)) return;
     for (int k = 0; k < 3; k++) {
         find_shares((const double (*)[3])texture->corner[hit.triangle], corner[k], endless, share);
         mix((const float (*)[2])texture->uv[hit.triangle], share, uv[k]);
@@ -161,6 +196,7 @@ tobi_status tobi_texture_copy(const tobi_texture *texture, tobi_texture **copy, 
     tobi_status status = TOBI_OK;
     if (t && t->corner && t->uv) {
         t->count = texture->count;
+        t->front = texture->front;
         memcpy(t->corner, texture->corner, n*sizeof *t->corner);
         memcpy(t->uv, texture->uv, n*sizeof *t->uv);
         status = tobi_texture_prepare(t, err);

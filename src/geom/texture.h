@@ -10,6 +10,7 @@ typedef struct tobi_texture {
     double  (*corner)[3][3];       /* m, of each triangle; tobi_mesh_transform moves them */
     float   (*uv)[3][2];           /* 1, at its corners                                   */
     tobi_bvh *tree;                /* NULL before tobi_texture_prepare                    */
+    int     front;                 /* 1: places are looked at along -z, as pictures in 2-D show them */
 } tobi_texture;
 
 /* Keeps those triangles of a raw mesh whose six coordinates uv are finite; *out is NULL if there are none. */
@@ -19,7 +20,8 @@ void tobi_texture_free(tobi_texture *texture);
 
 /* Builds the tree that looking needs, once, when nothing moves the mesh any more. */
 tobi_status tobi_texture_prepare(tobi_texture *texture, tobi_error *err);
-/* The coordinates at the point of the surface nearest to x; returns its distance, m. Any thread. */
+/* The coordinates at the point of the surface nearest to x; returns its distance, m. With `front` those of
+   the highest z above x, at no distance, if there are any. Any thread. */
 double tobi_texture_look(const tobi_texture *texture, const double x[3], float uv[2]);
 
 /* Coordinates at three places, all in the plane of the triangle that is nearest to their middle: no seam is

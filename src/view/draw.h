@@ -225,6 +225,7 @@ struct surface_request {
     const vec *color;            /* linear, of all particles; NULL = one colour for all            */
     const vec *scale;            /* not NULL: x of a colour is a value, 0 to 1, on this scale      */
     segments *isolines;           /* gets lines at f->isolines values; NULL = none                  */
+    segments *outline;           /* of regions: gets where they end                                */
     const tobi_picture_skin *skin;      /* not NULL: colours are what view_fit_rest finds      */
     const struct rest_map *map;  /* with a skin                                                    */
     int     skin_number;         /* of its image                                                   */
@@ -237,6 +238,9 @@ struct surface_request {
 tobi_status view_add_surface(geometry *g, geometry *drops, const canvas *c, const surface_request *r,
                              bool *around,
                              tobi_error *err);
+
+/* region.c, of 2-D: its faces lie behind bodies. */
+tobi_status view_add_region(geometry *g, const canvas *c, const surface_request *r, tobi_error *err);
 
 enum { BLOCK_EDGE = 8, BLOCK_NODES = BLOCK_EDGE*BLOCK_EDGE*BLOCK_EDGE };
 /* What the kernels over blocks of nodes need. Lengths are in cells. */

@@ -138,6 +138,7 @@ static void add_point(const canvas *c, const geometry *g, batch *b, int32_t item
     b->r[i] = s0*color[v[0]].x + s1*color[v[1]].x + s2*color[v[2]].x;
     b->g[i] = s0*color[v[0]].y + s1*color[v[1]].y + s2*color[v[2]].y;
     b->b[i] = s0*color[v[0]].z + s1*color[v[1]].z + s2*color[v[2]].z;
+    b->plain[i] = c->camera.orthographic && b->nx[i] == 0 && b->ny[i] == 0 && b->nz[i] == 0;
     const vec *inside = is_image_mark(b->b[i]) ? &c->inside[image_number(b->b[i])] : NULL;
     if (inside) look_at_image(c, g, b, i, v, area);
     if (item < g->filled && c->cut.faced && sign > 0) move_to_cut(c, b, i, inside);

@@ -119,7 +119,7 @@ typedef struct scene {
     geometry solids, water, drops, glass;
     vec *color;                  /* of particles; NULL: water in its own colour */
     vec scale[SCALE_STEPS + 1];  /* of values, for surfaces in their colours    */
-    segments isolines;
+    segments isolines, outline;
     int32_t *row;                /* of particles                                */
     vec *rest;                   /* of particles, see view_fit_rest; NULL: no skin */
     double low, high;            /* values of the colour map's ends             */
@@ -163,6 +163,7 @@ static void free_scene(scene *s)
     free(s->c.images);
     free(s->c.inside);
     free(s->isolines.end);
+    free(s->outline.end);
 }
 
 static tobi_status no_memory(const tobi_picture *f, tobi_error *err)
@@ -181,7 +182,7 @@ static tobi_status take_images(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
     canvas *c = &s->c;
-    const bool skins = f->skin_count > 0 && f->skin && f->rest && f->dimension == 3 && !f->look;
+    const bool skins = f->skin_count > 0 && f->skin && f->rest && !f->look;
     const size_t count = (size_t)f->mesh_count + (skins ? (size_t)f->skin_count : 0) + 1;
     c->images = calloc(count, sizeof *c->images);
     c->inside = calloc(count, sizeof *c->inside);
@@ -257,7 +258,10 @@ static bool sort_by_group(const tobi_picture *f, surface_request *r, int32_t *ro
     return true;
 }
 
-/* A surface around each group of particles; *within: the eye is in one. */
+/* Of solids: what is stretched keeps together. */
+static const float solid_level = 0.38f;
+
+/* A surface around each group of particles, in 2-D a region; *within: the eye is in one. */
 static tobi_status add_groups(scene *s, surface_request all, geometry *g, geometry *drops, bool *within,
                               tobi_error *err)
 {
@@ -276,6 +280,11 @@ static tobi_status add_groups(scene *s, surface_request all, geometry *g, geomet
             view_fit_rest(f->positions, f->rest, r.row, r.count, &map, s->rest);
             r.skin = &f->skins[skin], r.skin_number = f->mesh_count + skin, r.color = s->rest, r.map = &map;
         }
+        if (f->dimension == 2) {
+            if (f->opaque && f->opaque[r.row[0]]) r.level = solid_level;
+            TOBI_TRY(view_add_region(g, &s->c, &r, err));
+            continue;
+        }
         TOBI_TRY(view_add_surface(g, drops, &s->c, &r, &around, err));
         *within |= around;
     }
@@ -287,7 +296,7 @@ static tobi_status add_solids(scene *s, tobi_error *err)
     surface_request all = choose(s, true);
     bool within;
     all.plain = (vec){ 0.20f, 0.30f, 0.45f };
-    all.level = 0.38f;
+    all.level = solid_level;
     all.drop = 1.1f*(float)s->f->radius;
     return add_groups(s, all, &s->solids, &s->solids, &within, err);
 }
@@ -316,7 +325,7 @@ static bool add_body(scene *s, int i)
     const float depth = clear ? -logf(clampf(m->transparency, 0.004f, 0.996f)) : 1;
     if (m->hollow && s->f->dimension == 2)
         return view_add_outline(&s->solids, &s->c, m, 0.5f*(float)s->f->radius);
-    return view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, clear || !s->c.images[i] ? -1 : i,
+    return view_add_mesh(clear ? &s->glass : &s->solids, &s->c, m, s->c.images[i] ? i : -1,
                          !m->hollow && !clear, depth);
 }
 
@@ -349,7 +358,7 @@ static tobi_status add_surfaces(scene *s, tobi_error *err)
     return view_project(&s->water, &s->c.camera, f->threads, err);
 }
 
-/* Discs over larger, darker ones that close the gaps. */
+/* Every particle as a disc over a larger, darker one that closes the gaps. */
 static tobi_status add_discs(scene *s, tobi_error *err)
 {
     const tobi_picture *f = s->f;
@@ -366,10 +375,29 @@ static tobi_status add_discs(scene *s, tobi_error *err)
                                                 vec_scale(k ? 0.8f : 1, color) };
         }
     }
+    return TOBI_OK;
+}
+
+static tobi_status add_regions(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
+    surface_request all = { .f = f, .row = s->row, .color = s->color, .level = 0.5f, .outline = &s->outline };
+    bool within;
+    all.plain = view_color_of(f, 0);
+    for (int64_t i = 0; i < f->particle_count; i++)
+        if (view_beyond(f, f->positions[i], 0.5*f->slice) <= 12*f->radius)
+            s->row[all.count++] = (int32_t)i;
+    return add_groups(s, all, &s->solids, &s->solids, &within, err);
+}
+
+static tobi_status add_flat(scene *s, tobi_error *err)
+{
+    const tobi_picture *f = s->f;
     TOBI_TRY(add_bodies(s, err));
+    TOBI_TRY(f->look == TOBI_LOOK_PARTICLES ? add_discs(s, err) : add_regions(s, err));
     if (f->isolines > 0 && f->values && f->particle_count > 0
         && !view_find_isolines(&s->c, f, s->low, s->high, &s->isolines)) return no_memory(f, err);
-    return view_project(g, &s->c.camera, f->threads, err);
+    return view_project(&s->solids, &s->c.camera, f->threads, err);
 }
 
 typedef struct copying { canvas *c; const vec *from; } copying;
@@ -413,6 +441,8 @@ static void draw_lines(scene *s)
 {
     const tobi_picture *f = s->f;
     const vec dark = { 0.01f, 0.01f, 0.02f };
+    for (int64_t k = 0; k < s->outline.count; k++)
+        view_draw_line(&s->c, s->outline.end[k][0], s->outline.end[k][1], 1, dark, 0.35f, false);
     for (int64_t k = 0; k < s->isolines.count; k++)
         view_draw_line(&s->c, s->isolines.end[k][0], s->isolines.end[k][1], 1.2f, dark, 0.8f, false);
     for (int n = 0; n < f->path_count; n++) {
@@ -430,7 +460,7 @@ static tobi_status draw(scene *s, const char *path, tobi_error *err)
     canvas *c = &s->c;
     TOBI_TRY(view_aim(c, path, f, err));
     view_find_cut(c, f);
-    TOBI_TRY(f->dimension == 3 ? add_surfaces(s, err) : add_discs(s, err));
+    TOBI_TRY(f->dimension == 3 ? add_surfaces(s, err) : add_flat(s, err));
     if (has_water(s)) TOBI_TRY(make_water_planes(s, err));
     end_stage(s, STAGE_SURFACE);
     if (f->dimension == 3) TOBI_TRY(view_make_shadow(c, f, &s->solids, err));

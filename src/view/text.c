@@ -137,13 +137,33 @@ static void lighten_dark(canvas *i, int x0, int y0, int x1, int y1)
         }
 }
 
-/* On the right: colours from low to high, ticks at round values. */
+static void write_tick(double v, double step, char text[32])
+{
+    snprintf(text, 32, "%.6g", fabs(v) < 1e-9*step ? 0 : v);
+}
+
+static float widest_tick(double low, double high, double step, float unit)
+{
+    char text[32];
+    float widest = 0;
+    for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
+        write_tick(v, step, text);
+        widest = fmaxf(widest, view_text_width(text, unit));
+    }
+    return widest;
+}
+
+/* On the right: colours from low to high, ticks at round values. Numbers and label end before the picture
+   does; a long label has smaller letters. */
 void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double high)
 {
+    const double step = view_tick_step(high - low);
     float unit = 0.9f*view_letter_unit(i), width = 0.014f*(float)i->width, height = 0.40f*(float)i->height;
-    float x = 0.935f*(float)i->width, bottom = 0.5f*(float)i->height + 0.5f*height;
-    float right = (float)i->width - 6*unit, wide = view_text_width(f->label, unit);
-    float left = fminf(x - 2*unit, right - wide);
+    const float room = 0.12f*(float)i->width, all = view_text_width(f->label, unit);
+    if (all > room) unit = fmaxf(unit*room/all, 0.65f*unit);
+    float right = (float)i->width - 4*unit, wide = view_text_width(f->label, unit);
+    float x = fminf(0.935f*(float)i->width, right - widest_tick(low, high, step, unit) - 4*unit - width);
+    float bottom = 0.5f*(float)i->height + 0.5f*height, left = fminf(x - 2*unit, right - wide);
     lighten_dark(i, (int)(left - 5*unit), (int)(bottom - height - 20*unit), i->width, (int)(bottom + 8*unit));
     for (int row = 0; row < (int)height; row++)
         for (int column = 0; column < (int)width; column++) {
@@ -156,10 +176,9 @@ void view_draw_color_bar(canvas *i, const tobi_picture *f, double low, double hi
         const float y = bottom - height*(float)k/(float)(f->isolines + 1);
         view_draw_stroke(i, (float[2]){ x, y }, (float[2]){ x + width, y }, 1, ink);
     }
-    double step = view_tick_step(high - low);
     for (double v = ceil(low/step - 1e-9)*step; v <= high + 1e-9*step; v += step) {
         char text[32];
-        snprintf(text, sizeof text, "%.4g", fabs(v) < 1e-9*step ? 0 : v);
+        write_tick(v, step, text);
         float y = bottom - (float)((v - low)/(high - low))*height;
         view_draw_stroke(i, (float[2]){ x + width, y }, (float[2]){ x + width + 2*unit, y }, 1, ink);
         view_draw_text(i, x + width + 4*unit, y + 3*unit, unit, text, ink);

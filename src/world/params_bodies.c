@@ -74,7 +74,8 @@ static const tobi_param body_rows[] = {
       .doc = "Then it is there again, and liquid in it is pushed out." },
     { .key = "texture", TEXT, AT(tobi_body_def, texture), .unit = "path",
       .doc = "A PNG or JPEG image that pictures show on the body instead of its colour; its mesh needs "
-             "texture coordinates (vt of an OBJ file)." },
+             "texture coordinates (vt of an OBJ file). With an opacity below 1 it is like "
+             "stained glass. A vessel in 2-D, drawn as an outline, takes none." },
     { .key = "visible", BOOL, AT(tobi_body_def, visible), .def = { 1 },
       .doc = "Whether pictures show the body." },
     { .key = "color", COLOR, AT(tobi_body_def, color), .text = "automatic",

@@ -149,8 +149,9 @@ static const tobi_param solid_rows[] = {
       .doc = "Colour in pictures of what lay deeper than 1.75 spacings below the surface of its region "
              "at the start, and of the faces of cuts: an apple is red outside and cream where it is cut." },
     { .key = "texture", TEXT, AT(tobi_solid_def, texture), .unit = "path",
-      .doc = "A PNG or JPEG image on its skin in 3-D pictures; a mesh that fills it needs texture "
-             "coordinates (vt of an OBJ file). Inside it has its core_color." },
+      .doc = "A PNG or JPEG image on its skin in pictures; a mesh that fills it needs texture "
+             "coordinates (vt of an OBJ file). Inside it has its core_color; in 2-D all of it has the "
+             "image of the side that faces +z." },
     { .key = "visible", BOOL, AT(tobi_solid_def, visible), .def = { 1 },
       .doc = "Whether pictures show the solid." },
     { 0 }

@@ -49,8 +49,9 @@ const tobi_param_table tobi_probe_table = {
       .unit = "degrees", .text = "fit", \
       .doc = "Vertical field of view; fit shows the whole domain from where it looks best." }, \
     { .key = "picture.look", CHOICE("natural|surface|particles", 3), AT(type, in look), \
-      .doc = "What pictures of a 3-D scene show: water and solids as they look, or, in the colours of " \
-             "picture.field, their surface or each particle. With a field, natural is surface." }, \
+      .doc = "What pictures show: water and solids as they look, or, in the colours of picture.field, " \
+             "their surface or each particle. With a field, natural is surface. Surfaces in 2-D are " \
+             "regions." }, \
     { .key = "picture.field", TEXT, AT(type, in field), .unit = "name", \
       .doc = "The field that colours the pictures, as in fields; of a vector its length. 2-D scenes " \
              "without it show the speed." }, \

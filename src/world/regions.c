@@ -1,6 +1,7 @@
 /* What fills the world at the start: fluids and solids with their regions. */
 #include "base/error.h"
 #include "base/param.h"
+#include "geom/texture.h"
 #include "world/mixture.h"
 #include "world/world.h"
 #include <math.h>
@@ -31,6 +32,7 @@ static tobi_status load_shape(const tobi_fill_def *f, int dimension, tobi_region
     TOBI_TRY(dimension == 3 ? tobi_massprops_volume(&r->shape, &props, err)
                             : tobi_massprops_section(&r->shape, &props, err));
     r->volume = props.volume;
+    if (r->shape.texture) r->shape.texture->front = dimension == 2;
     return TOBI_OK;
 }
 

@@ -70,6 +70,9 @@ tobi_status tobi_world_read_image(tobi_world *w, const char *kind, const char *n
     int *room = body ? &w->body_images : &w->solid_images;
     const int number = body ? w->sim.body_count : solids ? solids->solid_count : 0;
     if (!path) return TOBI_OK;
+    if (body && w->sim.def.dimension == 2 && w->sim.bodies[number].vessel)
+        return tobi_at_key(err, tobi_fail(err, TOBI_UNSUPPORTED, "body '%s' is a vessel in 2-D, which "
+                                          "pictures show as an outline: it has no texture", name), "texture");
     if (!coordinates)
         return tobi_at_key(err, tobi_fail(err, TOBI_INVALID, "%s '%s' has a texture, but no mesh with "
                                           "texture coordinates (vt of an OBJ file)", kind, name), "texture");

@@ -83,6 +83,11 @@ static void test_reading(void **state)
     expect(&mesh, 5, 0.5, 1, 0.25/6, 0.5);
     expect(&mesh, 4.9, 0.5, 1, 0.25/6, 0.5);
     expect(&mesh, 9, 0.5, 1, 0.25/6, 0.5);
+    /* from the front the face +z: y turns into u, x into v from 5 m down; beside it the nearest again */
+    mesh.texture->front = 1;
+    expect(&mesh, 3.5, 0.5, 0.1, (5 + 0.25)/6, 0.75);
+    expect(&mesh, 3.5, 0.5, 9, (5 + 0.25)/6, 0.75);
+    expect(&mesh, 9, 0.5, 1, 0.25/6, 0.5);
     tobi_mesh_free(&mesh);
     read_cube(&mesh, 2);
     assert_int_equal(mesh.texture->count, 4);
@@ -318,7 +323,7 @@ static void test_images(void **state)
 }
 
 /* A cube as a body at 2.2 .. 3.2 m along x, and one as a solid at 0.5 .. 1.5 m. */
-static tobi_world *make_textured(int faces, tobi_status expected, tobi_error *err)
+static tobi_world *make_textured(int faces, double opacity, tobi_status expected, tobi_error *err)
 {
     tobi_world_def def = tobi_default_world_def();
     tobi_solid_def solid = tobi_default_solid_def();
@@ -337,6 +342,7 @@ static tobi_world *make_textured(int faces, tobi_status expected, tobi_error *er
     memcpy(fill.scale, one, sizeof one);
     fill.mesh = body.mesh = "cube.obj";
     body.name = "box";
+    body.opacity = opacity;
     body.translation[0] = 2.2, body.translation[1] = 0.5, body.translation[2] = 0.5;
     assert_int_equal(tobi_world_add_solid(w, &solid, &fill, 1, err), expected);
     if (expected == TOBI_OK) assert_int_equal(tobi_world_add_body(w, &body, err), TOBI_OK);
@@ -422,7 +428,11 @@ static void test_pictures(void **state)
     (void)state;
     static const double body[3] = { 2.7, 1, 1 }, solid[3] = { 1, 1, 1 };
     tobi_error err = { 0 };
-    tobi_world *w = make_textured(6, TOBI_OK, &err);
+    tobi_world *w = make_textured(6, 0.97, TOBI_OK, &err);      /* of glass: mixes front and back */
+    assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
+    assert_true(see(w, 0, 0, (const double[3]){ 2.8, 1.07, 2.1 }, body) >= 4);
+    tobi_world_destroy(w);
+    w = make_textured(6, 1, TOBI_OK, &err);
     assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
     for (int k = 0; k < 6; k++) {      /* faces -x, +x, -y, +y, -z, +z */
         double eye[2][3];
@@ -438,7 +448,7 @@ static void test_pictures(void **state)
         if (k == 1) assert_int_equal(see(w, 0, 1, eye[1], solid), -1);
     }
     tobi_world_destroy(w);
-    w = make_textured(0, TOBI_INVALID, &err);
+    w = make_textured(0, 1, TOBI_INVALID, &err);
     if (!strstr(err.text, "solid 'cube' has a texture, but no mesh with texture coordinates"))
         fail_msg("%s", err.text);
     tobi_world_destroy(w);
@@ -522,7 +532,7 @@ static void test_gltf(void **state)
     tobi_looks looks;
     tobi_surface *s;
     tobi_surface_movie *movie;
-    tobi_world *w = make_textured(6, TOBI_OK, &err);
+    tobi_world *w = make_textured(6, 1, TOBI_OK, &err);
     assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
     assert_int_equal(tobi_world_looks(w, &looks, &err), TOBI_OK);
     const int64_t n = tobi_world_count(w, TOBI_FLUID);

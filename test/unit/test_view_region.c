@@ -1,0 +1,270 @@
+/* Regions of particles in 2-D: where they end, their colours, and images on solids and on glass. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <png.h>
+#include "tobiuo/drawing.h"
+#include "tobiuo/run.h"
+#include "world/world.h"
+
+enum { FLAT_SIDE = 200 };
+
+/* Six stripes of one colour each, 60 pixels wide. */
+static const uint8_t stripe[6][3] = { { 230, 20, 20 }, { 20, 200, 20 }, { 20, 20, 230 },
+                                      { 220, 220, 20 }, { 220, 20, 220 }, { 20, 220, 220 } };
+
+static void write_stripes(const char *path)
+{
+    enum { W = 360, H = 40 };
+    static uint8_t rgb[H][W][3];
+    png_image image = { .version = PNG_IMAGE_VERSION, .width = W, .height = H, .format = PNG_FORMAT_RGB };
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) memcpy(rgb[y][x], stripe[x/60], 3);
+    assert_true(png_image_write_to_file(&image, path, 0, rgb, 0, NULL));
+}
+
+/* The stripe that a colour is of, by its direction; -1: gray, a core. */
+static int find_stripe(const uint8_t *rgb)
+{
+    double best = 0, size = sqrt((double)rgb[0]*rgb[0] + rgb[1]*rgb[1] + rgb[2]*rgb[2]);
+    int found = -1;
+    const int most = rgb[0] > rgb[1] ? rgb[0] > rgb[2] ? rgb[0] : rgb[2] : rgb[1] > rgb[2] ? rgb[1] : rgb[2];
+    const int least = rgb[0] < rgb[1] ? rgb[0] < rgb[2] ? rgb[0] : rgb[2] : rgb[1] < rgb[2] ? rgb[1] : rgb[2];
+    if (most - least < 30) return -1;
+    for (int k = 0; k < 6; k++) {
+        double dot = 0, own = 0;
+        for (int c = 0; c < 3; c++) {
+            dot += (double)rgb[c]*stripe[k][c];
+            own += (double)stripe[k][c]*stripe[k][c];
+        }
+        if (dot/(size*sqrt(own)) > best) best = dot/(size*sqrt(own)), found = k;
+    }
+    return found;
+}
+
+static void add_field(tobi_world *w, tobi_moment *m, const char *name, int components)
+{
+    tobi_moment_field *f = &m->fields[m->field_count++];
+    tobi_error err = { 0 };
+    *f = (tobi_moment_field){ strdup(name), components,
+                              calloc((size_t)(m->count*components), sizeof(double)) };
+    if (tobi_world_read(w, TOBI_FLUID, name, f->values, m->count*components, &err)) fail_msg("%s", err.text);
+}
+
+/* A box with six stripes from x = 0 to 1 m, on all sides that are seen along z. */
+static void write_plate(const char *path)
+{
+    static const int corner[6][4] = { { 1, 3, 7, 5 }, { 2, 6, 8, 4 }, { 1, 5, 6, 2 },
+                                      { 3, 4, 8, 7 }, { 1, 2, 4, 3 }, { 5, 7, 8, 6 } };
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    for (int k = 0; k < 8; k++) fprintf(f, "v %d %d %g\n", k & 1, k >> 1 & 1, (k >> 2) - 0.5);
+    for (int k = 0; k < 8; k++) fprintf(f, "vt %d %d\n", k & 1, k >> 1 & 1);
+    for (int k = 0; k < 6; k++) {
+        fprintf(f, "f");
+        for (int c = 0; c < 4; c++) fprintf(f, " %d/%d", corner[k][c], corner[k][c]);
+        fprintf(f, "\n");
+    }
+    fclose(f);
+}
+
+/* In 2-D, in a domain of 4 m: a plate of glass at 2.5 .. 3.5 m, a solid at 0.5 .. 1.5 m. */
+static tobi_world *make_flat(int vessel, tobi_status expected, tobi_error *err)
+{
+    tobi_world_def def = tobi_default_world_def();
+    tobi_solid_def solid = tobi_default_solid_def();
+    tobi_fill_def fill = tobi_default_fill_def();
+    tobi_body_def body = tobi_default_body_def();
+    tobi_world *w;
+    write_stripes("stripes.png");
+    write_plate("plate.obj");
+    def.method = "mlsmpm";
+    def.dimension = 2;
+    def.spacing = 0.05;
+    def.domain_max[0] = def.domain_max[1] = 4;
+    assert_int_equal(tobi_world_create(&def, NULL, &w, err), TOBI_OK);
+    solid.name = "sheet";
+    solid.texture = body.texture = "stripes.png";
+    for (int a = 0; a < 3; a++) fill.scale[a] = 1;
+    fill.mesh = body.mesh = "plate.obj";
+    fill.translation[0] = fill.translation[1] = body.translation[1] = 0.5;
+    body.name = "pane";
+    body.translation[0] = 2.5;
+    body.opacity = 0.7;
+    body.vessel = vessel;
+    if (tobi_world_add_solid(w, &solid, &fill, 1, err)) fail_msg("%s", err->text);
+    assert_int_equal(tobi_world_add_body(w, &body, err), expected);
+    return w;
+}
+
+
+/* What stands in a picture in 2-D at a place. */
+static int see_flat(const uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3], double x, double y)
+{
+    const double scale = 0.92*FLAT_SIDE/4;
+    return find_stripe(rgb[(int)(FLAT_SIDE/2 - scale*(y - 2))][(int)(FLAT_SIDE/2 + scale*(x - 2))]);
+}
+
+/* In 2-D the image of the side in front, on glass too; that of a solid turns with it. */
+static void test_flat_pictures(void **state)
+{
+    (void)state;
+    static uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3];
+    const tobi_view_def view = tobi_default_output_def().view;
+    tobi_error err = { 0 };
+    tobi_world *w = make_flat(0, TOBI_OK, &err);
+    assert_int_equal(tobi_world_start(w, &err), TOBI_OK);
+    for (int turned = 0; turned < 2; turned++) {
+        tobi_looks looks;
+        tobi_drawing *d;
+        const double (*vertices)[3];
+        const int32_t (*triangles)[3];
+        char name[] = "pane";
+        tobi_moment m = { .count = tobi_world_count(w, TOBI_FLUID) };
+        tobi_moment_surface surface = { .name = name };
+        m.fields = calloc(4, sizeof *m.fields);
+        m.positions = calloc((size_t)m.count, sizeof *m.positions);
+        add_field(w, &m, "material", 1);
+        add_field(w, &m, "part", 1);
+        add_field(w, &m, "rest_position", 3);
+        const double (*rest)[3] = (const double (*)[3])m.fields[2].values;
+        for (int64_t i = 0; i < m.count; i++) {
+            const double x = rest[i][0] - 1, y = rest[i][1] - 1;
+            m.positions[i][0] = 1 + (turned ? -y : x), m.positions[i][1] = 1 + (turned ? x : y);
+        }
+        assert_int_equal(tobi_world_surface(w, 0, &surface.vertex_count, &vertices, &surface.triangle_count,
+                                            &triangles), TOBI_OK);
+        surface.vertices = (double (*)[3])vertices, surface.triangles = (int32_t (*)[3])triangles;
+        m.surfaces = &surface, m.surface_count = 1;
+        assert_int_equal(tobi_world_looks(w, &looks, &err), TOBI_OK);
+        if (tobi_drawing_make(&looks, &m, &view, &d, &err)) fail_msg("%s", err.text);
+        tobi_picture *p = tobi_drawing_picture(d);
+        p->width = p->height = FLAT_SIDE;
+        p->title = p->label = NULL;
+        if (tobi_picture_draw(p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+        for (int k = 0; k < 6; k++) {
+            const double along = 0.5 + (k + 0.5)/6;
+            assert_int_equal(see_flat(rgb, 2 + along, 1.2), k);
+            assert_int_equal(turned ? see_flat(rgb, 0.8, along) : see_flat(rgb, along, 0.8), k);
+        }
+        assert_int_equal(see_flat(rgb, 2, 2), -1);      /* nothing is there */
+        tobi_drawing_free(d);
+        tobi_looks_free(&looks);
+        m.surfaces = NULL, m.surface_count = 0;
+        tobi_moment_free(&m);
+    }
+    tobi_world_destroy(w);
+    w = make_flat(1, TOBI_UNSUPPORTED, &err);
+    if (!strstr(err.text, "body 'pane' is a vessel in 2-D, which pictures show as an outline: it has no "
+                "texture")) fail_msg("%s", err.text);
+    tobi_world_destroy(w);
+}
+
+/* Water between walls on three sides, 0.6 m wide and 0.4 m high; one particle alone. */
+enum { ACROSS = 60, UP = 40, MANY = ACROSS*UP + 1 };
+
+static void draw_water(int look, int clip, uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3])
+{
+    static double place[MANY][3];
+    static float value[MANY];
+    static const float map[2][3] = { { 1, 0, 0 }, { 0, 0, 1 } };
+    tobi_error err = { 0 };
+    tobi_picture p = tobi_default_picture();
+    for (int i = 0; i < MANY - 1; i++) {
+        place[i][0] = 0.01*(i%ACROSS + 0.5), place[i][1] = 0.01*(i/ACROSS + 0.5);
+        value[i] = i%ACROSS >= ACROSS/2;
+    }
+    place[MANY - 1][0] = 0.3, place[MANY - 1][1] = 0.8;
+    p.width = p.height = FLAT_SIDE;
+    p.dimension = 2;
+    p.box_max[0] = p.box_max[1] = 1;
+    p.particle_count = MANY;
+    p.positions = (const double (*)[3])place;
+    p.values = value;
+    p.palette = map, p.palette_count = 2;
+    p.value_max = 1;
+    p.radius = 0.005;
+    p.look = look;
+    p.clip = clip;
+    p.clip_point[1] = 0.2, p.clip_normal[1] = 1;
+    if (tobi_picture_draw(&p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+}
+
+/* 1: the colour of the lower value, 2: of the higher, 0: neither. */
+static int value_at(const uint8_t *rgb)
+{
+    return rgb[0] > 240 && rgb[1] < 20 && rgb[2] < 20 ? 1 : rgb[2] > 240 && rgb[0] < 20 ? 2 : 0;
+}
+
+/* As many pixels have a colour as the particles' area is worth, in their own halves, up to the walls. */
+static void test_regions(void **state)
+{
+    (void)state;
+    static uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3], discs[FLAT_SIDE][FLAT_SIDE][3];
+    const double pixels = 0.92*FLAT_SIDE*0.92*FLAT_SIDE;      /* of a square metre */
+    for (int clip = 0; clip < 2; clip++) {
+        double sum[3] = { 0, 0, 0 };
+        draw_water(TOBI_LOOK_NATURAL, clip, rgb);
+        for (int y = 0; y < FLAT_SIDE; y++)
+            for (int x = 0; x < FLAT_SIDE; x++) {
+                const int v = value_at(rgb[y][x]);
+                const double at = (x + 0.5 - 0.5*FLAT_SIDE)/(0.92*FLAT_SIDE) + 0.5;
+                sum[v]++;
+                if (v && fabs(at - 0.3) > 0.01) assert_int_equal(v, at < 0.3 ? 1 : 2);
+            }
+        print_message("%g and %g of %g pixels\n", sum[1], sum[2], 0.12*pixels/(1 + clip));
+        for (int k = 1; k < 3; k++)      /* but for lines of the box and pixels of two colours */
+            assert_true(fabs(sum[k]*(1 + clip)/(0.12*pixels) - 0.96) < 0.05);
+    }
+    draw_water(TOBI_LOOK_NATURAL, 0, rgb);
+    const int low = (int)(FLAT_SIDE*(0.5 + 0.92*0.5)) - 3, left = (int)(FLAT_SIDE*(0.5 - 0.92*0.5)) + 2;
+    assert_int_equal(value_at(rgb[low - 10][left]), 1);
+    assert_int_equal(value_at(rgb[low][left + 20]), 1);
+    const int drop = (int)(FLAT_SIDE*(0.5 - 0.92*0.3)), across = (int)(FLAT_SIDE*(0.5 - 0.92*0.2));
+    assert_int_not_equal(rgb[drop][across][0], rgb[drop - 20][across][0]);      /* a disc */
+    draw_water(TOBI_LOOK_PARTICLES, 0, discs);
+    assert_memory_not_equal(rgb, discs, sizeof rgb);
+}
+
+/* Numbers of the colour bar and its label end before the picture does. */
+static void test_color_bar(void **state)
+{
+    (void)state;
+    static uint8_t rgb[FLAT_SIDE][FLAT_SIDE][3];
+    static const double top[] = { 33000, 1.5, 123.456, 1e-5 };
+    for (int k = 0; k < 4; k++) {
+        tobi_error err = { 0 };
+        tobi_picture p = tobi_default_picture();
+        int drawn = 0;
+        p.width = p.height = FLAT_SIDE;
+        p.dimension = 2;
+        p.box_max[0] = p.box_max[1] = 1;
+        p.value_max = top[k];
+        p.label = k%2 ? "acceleration of all [m/s2]" : "pressure [Pa]";
+        if (tobi_picture_draw(&p, &rgb[0][0][0], &err)) fail_msg("%s", err.text);
+        for (int y = 0; y < FLAT_SIDE; y++) {
+            assert_memory_equal(rgb[y][FLAT_SIDE - 1], rgb[y][0], 3);
+            assert_memory_equal(rgb[y][FLAT_SIDE - 2], rgb[y][0], 3);
+            drawn += memcmp(rgb[y][FLAT_SIDE - 8], rgb[y][0], 3) != 0;
+        }
+        assert_true(drawn > 3);
+    }
+}
+
+int main(void)
+{
+    char folder[] = "/tmp/tobiuo_region_XXXXXX", command[100];
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_regions), cmocka_unit_test(test_flat_pictures),
+                                        cmocka_unit_test(test_color_bar) };
+    if (!mkdtemp(folder) || chdir(folder) != 0) return 1;
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    if (chdir("/") == 0) snprintf(command, sizeof command, "rm -r %s", folder);
+    return system(command) != 0 || failed;
+}
