@@ -75,6 +75,9 @@ int write_family(int argc, char **argv);
 /* The family that a misspelt name may mean, or NULL. */
 const char *near_family(const char *name);
 
+/* check.c: whether a run would take the scene: it is built, and started unless that takes long. */
+tobi_status try_scene(tobi_scene *scene, tobi_error *err);
+
 /* complain.c: "tobiuo: ..." on stderr, one line; returns EXIT_ERROR. */
 int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* A scene's mistakes, or the error's text; frees the report. Returns EXIT_ERROR. */

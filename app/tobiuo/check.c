@@ -128,6 +128,17 @@ static tobi_status find_cost(const tobi_scene *scene, tobi_world *world, cost *c
                              &c->size, err);
 }
 
+tobi_status try_scene(tobi_scene *scene, tobi_error *err)
+{
+    tobi_world *world = NULL;
+    cost c;
+    tobi_status status = tobi_scene_build(scene, &world, err);
+    if (status == TOBI_OK) status = find_cost(scene, world, &c, err);
+    if (status != TOBI_OK) tobi_scene_place_error(scene, err);
+    tobi_world_destroy(world);
+    return status;
+}
+
 /* What the particles are that the methods move. */
 static const char *name_particles(const tobi_scene *scene, const tobi_world *world)
 {

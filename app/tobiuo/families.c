@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define SPACING(d) { "spacing", "m", d, 1e-7, 1e5, "particle spacing" }
-#define UNTIL(t) { "until", "s", t, 1e-6, 1e9, "simulated time at which the run ends" }
+#define UNTIL(t) { "until", "s", t, 1e-6, 1e5, "simulated time at which the run ends" }
 #define LENGTH(name_, def_, doc_) { name_, "m", def_, 1e-6, 1e5, doc_ }
 #define TANK(l, w, h) \
     LENGTH("length", l, "of the tank, along x"), LENGTH("width", w, "of the tank, along y"), \

@@ -228,7 +228,48 @@ static char *name_choice(const family_choice *c)
     return text;
 }
 
-static int write_scene(const family_choice *c, const char *dir)
+/* Without the place in front, which is one in a file that nobody will see. */
+static void complain_line(const family_choice *c, const char *line)
+{
+    const size_t head = strlen(c->family->name);
+    if (strncmp(line, c->family->name, head) == 0 && line[head] == ':')
+        line += head + strspn(line + head, ":0123456789 ");
+    complain("%s: %s", c->family->name, line);
+}
+
+static int complain_choice(const family_choice *c, tobi_report *report, const tobi_error *err)
+{
+    const family_option *o;
+    const int count = tobi_report_count(report);
+    for (int k = 0; k < count; k++) complain_line(c, tobi_report_line(report, k));
+    if (count == 0) complain_line(c, err->text);
+    char *given = NULL;
+    size_t size;
+    FILE *out = open_memstream(&given, &size);
+    if (!out) exit(complain("out of memory"));
+    for (int k = 0; (o = family_option_at(c->family, k)); k++)
+        if (c->given[k]) fprintf(out, " --%s %.10g", o->name, c->value[k]);
+    if (fclose(out) != 0) exit(complain("out of memory"));
+    complain("no scene is written; given:%s", given);
+    free(given);
+    tobi_report_free(report);
+    return EXIT_ERROR;
+}
+
+/* What `tobiuo check` would refuse is not written: a family knows its dimensions, not all rules of scenes. */
+static int prove(const family_choice *c, const char *text, size_t size)
+{
+    tobi_scene *scene = NULL;
+    tobi_report *report = NULL;
+    tobi_error err = { 0 };
+    tobi_status status = tobi_scene_parse(c->family->name, text, size, NULL, &scene, &report, &err);
+    if (status == TOBI_OK) status = try_scene(scene, &err);
+    const int code = status == TOBI_OK ? 0 : complain_choice(c, report, &err);
+    tobi_scene_free(scene);
+    return code;
+}
+
+static int write_text(const char *dir, const char *text, size_t size)
 {
     char *path = NULL;
     if (asprintf(&path, "%s/scene.json", dir) < 0) return complain("out of memory");
@@ -236,10 +277,23 @@ static int write_scene(const family_choice *c, const char *dir)
              : errno == EEXIST ? complain("%s is there already; name another folder", dir)
                                : complain("%s: %s", dir, strerror(errno));
     FILE *out = code ? NULL : fopen(path, "wx");
-    if (out) c->family->write(c, out);
-    if (!code && (!out || ferror(out))) code = complain("%s: %s", path, strerror(errno));
+    if (!code && (!out || fwrite(text, 1, size, out) != size))
+        code = complain("%s: %s", path, strerror(errno));
     if (out && fclose(out) != 0 && !code) code = complain("%s: %s", path, strerror(errno));
     free(path);
+    return code;
+}
+
+static int write_scene(const family_choice *c, const char *dir)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return complain("out of memory");
+    c->family->write(c, out);
+    int code = fclose(out) == 0 ? prove(c, text, size) : complain("out of memory");
+    if (!code) code = write_text(dir, text, size);
+    free(text);
     return code;
 }
 

@@ -54,6 +54,13 @@ for more in "sloshing --period 1.4" "sloshing --dimension 2 --period 1.4" "wave_
     rm -rf more
 done
 expect 1 "the water reaches the box" new wave_impact --water-length 2.5
+expect 1 "static_pressure: spacing: is 10 m, the domain has only 0.2 m in x" new static_pressure --spacing 10
+for family in $families; do
+    expect 1 "no scene is written; given: --spacing 10" new $family --spacing 10 absurd
+    expect 2 "--spacing: 'nan' is not a number from 1e-07 to 100000 m" new $family --spacing nan absurd
+    check "$family left no folder" test ! -e absurd
+done
+expect 2 "--until: '1e9' is not a number from 1e-06 to 100000 s" new hose --until 1e9
 
 # --- sweeps -----------------------------------------------------------------------------------------
 expect 2 "which SCENE?" sweep
