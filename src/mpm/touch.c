@@ -3,7 +3,7 @@
 #include "mpm/touch.h"
 #include "base/error.h"
 #include "geom/vec3.h"
-#include "mpm/split.k.h"
+#include "mpm/feel.h"
 #include "mpm/spline.h"
 #include <math.h>
 #include <stdlib.h>
@@ -25,8 +25,6 @@ void mpm_touch_free(mpm_touch *t)
     free(t->moving);
     memset(t, 0, sizeof *t);
 }
-
-static int nodes_each(const mpm_grid *g) { return g->dimension == 3 ? 27 : 9; }
 
 /* Places of all nodes, second velocities included. */
 static int64_t count_nodes(const mpm_grid *g)
@@ -80,7 +78,7 @@ static tobi_status reserve_nodes(mpm_touch *t, int64_t count)
 
 static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, tobi_error *err)
 {
-    t->count = entry_of(t, contacts, nodes_each(g));
+    t->count = entry_of(t, contacts, mpm_nodes_each(g));
     if (reserve_entries(t, t->count) == TOBI_OK && reserve_contacts(t, contacts) == TOBI_OK &&
         reserve_nodes(t, count_nodes(g)) == TOBI_OK) return TOBI_OK;
     return tobi_fail(err, TOBI_NO_MEMORY, "no memory for %lld contacts", (long long)contacts);
@@ -88,45 +86,6 @@ static tobi_status reserve(mpm_touch *t, const mpm_grid *g, int64_t contacts, to
 
 /* Threads for a loop over all entries. */
 static int team_of(const mpm_touch *t, const tobi_exec *x) { return tobi_team(x, t->count, 16384); }
-
-static const mpm_block *block_of(const mpm_grid *g, int64_t particle)
-{
-    int64_t low = 0, high = g->block_count - 1;
-    while (low < high) {
-        int64_t middle = (low + high + 1)/2;
-        if (g->block[middle].begin <= particle) low = middle;
-        else high = middle - 1;
-    }
-    return &g->block[low];
-}
-
-/* What decides which nodes a particle feels, and their list: particles of one cell on one side of a cut,
-   which mostly follow one another, share it. */
-typedef struct gathered {
-    const mpm_block *block;            /* NULL = none yet                                          */
-    int first[3];                      /* the lowest node, from the node -4 of the block           */
-    mpm_hidden hidden;
-    const uint32_t *node;
-} gathered;
-
-static void list_nodes(const mpm_grid *g, const gathered *f, uint32_t *node)
-{
-    const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
-    for (int n = 0; n < nodes_each(g); n++) {
-        const int at[3] = {f->first[0] + (three ? n/9 : n/3), f->first[1] + (three ? n/3 : n)%3,
-                           f->first[2] + (three ? n%3 : 0)};
-        const int q = mpm_number_at(&f->hidden, n);
-        const mpm_block *from = q ? &g->block[f->block->twin + q - 1] : f->block;
-        const int64_t patch = from->around[((at[0] >> 2)*3 + (at[1] >> 2))*3 + (three ? at[2] >> 2 : 1)];
-        const int row = (at[0] & 3)*4 + (at[1] & 3);
-        node[n] = (uint32_t)(patch*nodes + (three ? row*4 + (at[2] & 3) : row));
-    }
-}
-
-static int is_gathered(const gathered *f, const mpm_block *b, const int first[3], const mpm_hidden *hidden)
-{
-    return f->block == b && !memcmp(f->first, first, sizeof f->first) && mpm_is_same(&f->hidden, hidden);
-}
 
 typedef struct spreading {
     mpm_touch *touch;
@@ -141,31 +100,20 @@ static void spread_contacts(const void *view, int64_t begin, int64_t end)
     const spreading *s = view;
     const mpm_grid *g = s->grid;
     const mpm_view *v = s->v;
-    const int dim = g->dimension, each = nodes_each(g), deep = dim == 3 ? 3 : 1;
-    gathered last = { 0 };
+    const int dim = g->dimension, each = mpm_nodes_each(g), deep = dim == 3 ? 3 : 1;
+    mpm_felt last = { 0 };
     for (int64_t k = begin; k < end; k++) {
         const tobi_contact *contact = &s->contacts->list[k];
         const int64_t i = contact->particle;
-        const mpm_block *b = last.block;
-        if (!b || i < b->begin || i >= b->end) b = block_of(g, i);
-        const mpm_hidden hidden = mpm_read_hidden(v, i, b->levels);
         const double reach = -4*contact->depth*v->inverse_cell;
-        uint32_t *node = s->touch->node + k*each;
         float *weight = s->touch->weight + 2*k*each;
         double w[3][3] = {{1}, {1}, {1}}, slope[3][3] = {{0}};
-        int first[3] = {0, 0, 0};
+        int base[3];
+        mpm_feel(g, v, i, &last, s->touch->node + k*each, w, base);
         for (int a = 0; a < dim; a++) {
             const double place = (&v->position[i].x)[a]*v->inverse_cell;
-            const int base = (int)mpm_spline(place, w[a]);
-            first[a] = base - b->corner[a] + 4;
-            for (int n = 0; n < 3; n++) slope[a][n] = (base + n - place)*reach*contact->normal[a];
+            for (int n = 0; n < 3; n++) slope[a][n] = (base[a] + n - place)*reach*contact->normal[a];
         }
-        if (is_gathered(&last, b, first, &hidden)) memcpy(node, last.node, (size_t)each*sizeof *node);
-        else {
-            last = (gathered){ .block = b, .first = {first[0], first[1], first[2]}, .hidden = hidden };
-            list_nodes(g, &last, node);
-        }
-        last.node = node;
         for (int m = 0; m < 9; m++)
             for (int l = 0; l < deep; l++) {
                 const double all = w[0][m/3]*w[1][m%3]*w[2][l];
@@ -226,7 +174,7 @@ static void find_region(const mpm_grid *g, const int first[3], region *r)
 static void list_around(const mpm_grid *g, const region *r, int ways, surroundings *s)
 {
     const int three = g->dimension == 3, nodes = three ? MPM_NODES_3D : MPM_NODES_2D;
-    for (int n = 0; n < nodes_each(g); n++) {
+    for (int n = 0; n < mpm_nodes_each(g); n++) {
         const int at[3] = {s->first[0] + (three ? n/9 : n/3), s->first[1] + (three ? n/3 : n)%3,
                            s->first[2] + (three ? n%3 : 0)};
         const int far = (at[0] >> 2 != r->low[0])*4 + (at[1] >> 2 != r->low[1])*2 +
@@ -304,7 +252,7 @@ static tobi_status list_edges(mpm_touch *t, tobi_contacts *c, tobi_body *b, cons
    moves it nor is thrown by it. */
 static void find_edge_nodes(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g)
 {
-    const int each = nodes_each(g);
+    const int each = mpm_nodes_each(g);
     for (int64_t k = t->edge_first; k < c->count; k++) {
         const surroundings *s = &t->around[k - t->edge_first];
         uint32_t *node = t->node + entry_of(t, k, each);
@@ -330,8 +278,8 @@ static mpm_pack_view view_packs(const mpm_touch *t, const mpm_grid *g)
 static tobi_status pack_contacts(mpm_touch *t, const tobi_contacts *c, const mpm_grid *g, tobi_error *err)
 {
     const mpm_pack_entries e = { .node = t->node, .weight = t->weight, .contacts = c->count,
-                                 .edge_first = t->edge_first, .each = nodes_each(g),
-                                 .edge_each = t->ways*nodes_each(g) };
+                                 .edge_first = t->edge_first, .each = mpm_nodes_each(g),
+                                 .edge_each = t->ways*mpm_nodes_each(g) };
     return mpm_packs_make(&t->packs, &e, &c->list->particle, sizeof *c->list, g, err);
 }
 
